@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import secrets
 import stat
 import tempfile
 from collections.abc import Iterator
@@ -61,7 +62,7 @@ def expand_home(name: str | Path) -> Path:
 def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspace:
     """Opens the workspace at ``folder``; by default ``$KIT_WORKSPACE``, else ``robot-kit`` in the home folder.
 
-    Makes the folder and its parts where they are missing, unless ``make`` is false. Raises WorkspaceError
+    Makes the folder and its parts where they are missing, readable by their owner alone, unless ``make`` is false. Raises WorkspaceError
     if the path is a file or not writable, or in a home folder that does not exist.
     """
     if folder is None:
@@ -73,6 +74,7 @@ def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspac
         )
     if make:
         try:
+            make_private_folder(workspace.folder)
             for part in (
                 workspace.controllers,
                 workspace.lessons,
@@ -81,7 +83,7 @@ def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspac
                 workspace.recordings,
                 workspace.runs,
             ):
-                part.mkdir(parents=True, exist_ok=True)
+                make_private_folder(part)
         except OSError as error:
             raise unusable_workspace_error(workspace.folder, error) from None
     return workspace
@@ -107,21 +109,36 @@ def check_writable(path: Path) -> None:
 def write_atomically(path: Path, data: bytes) -> None:
     """Writes ``data`` to ``path`` so that a reader, or a kill at any moment, sees the old file or the new one.
 
-    Raises OSError.
+    A new file has the mode that the user's umask gives, one that is replaced keeps its own. Raises OSError.
     """
     with _errors_name_file(path):
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
+        handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
         try:
             with os.fdopen(handle, "wb") as file:
+                with suppress(FileNotFoundError):
+                    os.fchmod(handle, stat.S_IMODE(path.stat().st_mode) & 0o777)
                 file.write(data)
                 file.flush()
                 os.fsync(file.fileno())
-            Path(name).chmod(0o644)
-            Path(name).replace(path)
+            temporary.replace(path)
         except BaseException:  # Ctrl-C too: no half-written file stays; raised again
             with suppress(OSError):
-                Path(name).unlink()
+                temporary.unlink()
             raise
+
+
+def make_private_folder(folder: Path) -> None:
+    """Makes a folder that only its owner may open, and those above it that are missing. An empty one that is there becomes
+    one; what else is there stays as it is, for it may be somebody's home. Raises OSError."""
+    try:
+        folder.mkdir(mode=0o700, parents=True)
+    except FileExistsError:
+        if not folder.is_dir():
+            raise
+        status = folder.stat()
+        if status.st_uid == os.getuid() and not status.st_mode & stat.S_ISVTX and not any(folder.iterdir()):
+            folder.chmod(0o700)
 
 
 def open_common_folder(folder: Path) -> str:

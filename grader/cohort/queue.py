@@ -27,7 +27,7 @@ from kit.host.job_executors import MAX_TRIES, JobPool, in_shard
 from kit.host.job_executors import ExecutorUnavailable as ExecutorUnavailable
 from kit.host.sandbox.confinement import Level
 from kit.school.result import SCHEMA, CriterionResult, CriterionStatus, GradingResult, GradingVerdict
-from kit.workspace import write_atomically
+from kit.workspace import make_private_folder, write_atomically
 
 MANIFEST: Final = "manifest.json"
 
@@ -162,8 +162,9 @@ def prepare_queue(
 
     Raises QueueError, OSError.
     """
+    make_private_folder(queue.folder)
     for part in ("jobs", "results"):
-        (queue.folder / part).mkdir(parents=True, exist_ok=True)
+        make_private_folder(queue.folder / part)
     _copy_assignment(queue, assignment)
     entries = tuple(_entries(queue, cohort, assignment, options))
     level = level_for_untrusted(assignment, options.level)

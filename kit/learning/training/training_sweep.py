@@ -47,7 +47,7 @@ from kit.learning.training.runs import (
 )
 from kit.learning.training.training import resolve_preset, train
 from kit.learning.training.worker import start_worker
-from kit.workspace import write_atomically
+from kit.workspace import make_private_folder, write_atomically
 
 ALL_CASES = "all"
 DEFAULT_GOAL = 0.9
@@ -143,7 +143,7 @@ class TrainingSweep:
         if known not in (None, new):
             raise RunError(f"{folder} contains a different sweep. Give this one another --name.")
         for part in ("runs", "results"):
-            (folder / part).mkdir(parents=True, exist_ok=True)
+            make_private_folder(folder / part)
         write_atomically(manifest, text)
         return sweep
 
