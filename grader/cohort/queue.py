@@ -25,6 +25,7 @@ from grader.submitted_files import IGNORED_NAMES, SubmissionRefused, SubmissionU
 from kit.host import job_executors
 from kit.host.job_executors import MAX_TRIES, JobPool, in_shard
 from kit.host.job_executors import ExecutorUnavailable as ExecutorUnavailable
+from kit.host.python_command import python_command
 from kit.host.sandbox.confinement import Level
 from kit.school.result import SCHEMA, CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 from kit.workspace import make_private_folder, write_atomically
@@ -257,7 +258,7 @@ class WorkerPool(JobPool):
 
     def __init__(self, queue: Queue, keys: Sequence[str], jobs: int, on_done: Callable[[str], None]) -> None:
         super().__init__(
-            [sys.executable, "-P", "-m", "grader", "worker", str(queue.folder.absolute())],
+            python_command("grader", "worker", str(queue.folder.absolute())),
             keys,
             jobs,
             on_done,
@@ -302,7 +303,7 @@ def run_locally(queue: Queue, keys: Sequence[str], jobs: int, on_done: Callable[
 
 def slurm_script(queue: Queue, shards: int) -> str:
     """Returns the script of an array job of ``shards`` tasks, each of which grades its share of the queue."""
-    command = [sys.executable, "-P", "-m", "grader", "work", str(queue.folder.absolute())]
+    command = python_command("grader", "work", str(queue.folder.absolute()))
     return job_executors.slurm_script(queue.folder, command, shards, "grader")
 
 

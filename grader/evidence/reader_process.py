@@ -9,7 +9,6 @@ import os
 import select
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass
@@ -20,6 +19,7 @@ from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.submitted_files import SubmissionUnreadable
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.private_folder import make_private_folder
+from kit.host.python_command import python_command
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import GIB
 from kit.host.sandbox.reaper import remove_folder
@@ -63,17 +63,7 @@ class ReaderProcess:
         self._folder = make_private_folder()
         confined = _CONFINED if level >= Level.FILTERED else ""
         self._child = subprocess.Popen(
-            [
-                sys.executable,
-                "-P",
-                "-m",
-                module,
-                str(file.absolute()),
-                str(memory),
-                confined,
-                self._folder,
-                *words,
-            ],
+            python_command(module, str(file.absolute()), str(memory), confined, self._folder, *words),
             env={**os.environ, "TMPDIR": self._folder},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,

@@ -234,7 +234,7 @@ def _tune(
 def run_sweep(sweep: TrainingSweep, executor: str, jobs: int, cluster: str) -> None:
     """Runs the trainings that have no result yet. Raises ExecutorUnavailable and KeyboardInterrupt."""
     from kit.host import job_executors
-    from kit.learning.training.sweep_worker import make_pool, run_job_by_key
+    from kit.learning.training.sweep_worker import make_pool, run_job_by_key, sweep_command
 
     keys = sweep.waiting()
     if executor == "none" or not keys:
@@ -246,8 +246,7 @@ def run_sweep(sweep: TrainingSweep, executor: str, jobs: int, cluster: str) -> N
             bar.update(1)
 
         if executor == "slurm":
-            module = "kit.learning.training.sweep_worker"
-            command = [sys.executable, "-P", "-m", module, str(sweep.folder.absolute())]
+            command = sweep_command(sweep)
             script = job_executors.slurm_script(sweep.folder, command, jobs, "kit-sweep")
             job_executors.run_on_slurm(sweep.folder, script, lambda: bool(sweep.waiting()))
         elif executor == "dask":

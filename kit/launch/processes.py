@@ -280,8 +280,3 @@ def _line(data: bytes, name: str) -> PrintedLine:
     if len(data) > MAX_LINE_LENGTH:
         text += f"... (cut after {MAX_LINE_LENGTH} bytes)"
     return PrintedLine(text, "out" if name == "out" else "err")
-
-
-def kit_command(arguments: Sequence[str]) -> list[str]:
-    """The command that runs the kit's command line with these arguments."""
-    return [sys.executable, "-P", "-m", "kit", *arguments]

@@ -15,6 +15,7 @@ from kit.host.failure import StudentCodeError
 from kit.host.node_process import NodeProcess
 from kit.host.process import PackageProgram
 from kit.host.program_terminal import ProgramStreams
+from kit.host.python_command import python_command
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import GIB, INTERACTIVE_LIMITS, MIB, Limits
 from kit.inspection.sockets import WORLD_VARIABLE
@@ -25,7 +26,6 @@ from kit.launch.processes import (
     Process,
     ProcessStartError,
     ProgramUnavailable,
-    kit_command,
 )
 from kit.launch.requests import StartRequest, WorldRequest, parse_world_request
 from kit.msg.geometry_msgs import Quaternion, Transform, TransformStamped, Vector3
@@ -355,10 +355,10 @@ def _start_command(request: StartRequest, context: StartContext) -> Process:
             )
     if name == "ros2" and not request.shell:
         context.log(f"{request.name}: `kit ros` replaces `ros2`")
-        command = kit_command(["ros", *command[1:]])
+        command = python_command("kit", "ros", *command[1:])
     elif request.shell and _NAMES_ROS2.search(" ".join(command)):
         context.log(f"{request.name}: `kit ros` replaces `ros2`")
-        command = [f'ros2() {{ {shlex.join(kit_command(["ros"]))} "$@"; }};', *command]
+        command = [f'ros2() {{ {shlex.join(python_command("kit", "ros"))} "$@"; }};', *command]
     try:
         return CommandProcess(
             command, shell=request.shell, environment=_environment(request, context), cwd=cwd

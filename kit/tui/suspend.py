@@ -17,6 +17,7 @@ from typing import Any, BinaryIO, Final
 from rich.text import Text
 from textual.app import App, SuspendNotSupported
 
+from kit.host.python_command import python_command
 from kit.school.lessons.shell_lines import expand_words
 from kit.tui.terminal import TerminalDecision
 
@@ -40,7 +41,7 @@ def arguments_of(line: str) -> list[str] | None:
         return None
     if not words or words[0] not in PROGRAMS:
         return None
-    return [sys.executable, "-P", "-m", PROGRAMS[words[0]], *expand_words(words[1:])]
+    return python_command(PROGRAMS[words[0]], *expand_words(words[1:]))
 
 
 def run_aside(

@@ -28,13 +28,20 @@ _UNSHARE: Final = (
 )
 
 
+def _find_program() -> str | None:
+    """Returns the program's absolute path; None if it is not installed. One in the current folder, which an empty entry of PATH
+    would find, may be a student's."""
+    found = shutil.which(PROGRAM)
+    return found if found is not None and os.path.isabs(found) else None
+
+
 @cache
 def is_needed() -> bool:
     """Returns whether namespaces are refused to this process's children, and bubblewrap makes them. Tried once."""
-    program = shutil.which(PROGRAM)
+    program = _find_program()
     if program is None or _succeeds([sys.executable, "-S", "-P", "-c", _UNSHARE]):
         return False
-    return _succeeds([program, "--unshare-all", "--ro-bind", "/", "/", sys.executable, "-S", "-c", ""])
+    return _succeeds([program, "--unshare-all", "--ro-bind", "/", "/", sys.executable, "-S", "-P", "-c", ""])
 
 
 def _succeeds(command: list[str]) -> bool:
@@ -49,7 +56,8 @@ def wrap_command(command: list[str], tree: FileTree, scratch: str, room: int) ->
 
     ``scratch`` becomes an empty folder in memory with room for ``room`` bytes, and the working folder.
     """
-    program = shutil.which(PROGRAM) or PROGRAM
+    program = _find_program()
+    assert program is not None, "`is_needed` has found it"
     shown = FileTree((*tree.readable, *_interpreter(command[0])), tree.writable, tree.hidden)
     own = (
         "--perms",

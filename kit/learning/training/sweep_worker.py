@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.host.job_executors import JobPool, read_shard, serve_jobs
+from kit.host.python_command import python_command
 from kit.learning.environment.world_threads import available_threads
 from kit.learning.training.training_sweep import LOCK_FILE, TrainingSweep
 from kit.learning.training.worker import EXIT_SIGNALS, ExitRequest
@@ -33,10 +34,14 @@ def run_job_by_key(folder: str, key: str) -> str:
     return key
 
 
+def sweep_command(sweep: TrainingSweep) -> list[str]:
+    """Returns the command that runs this module for the sweep, to which options may be added."""
+    return python_command("kit.learning.training.sweep_worker", str(sweep.folder.absolute()))
+
+
 def make_pool(sweep: TrainingSweep, jobs: int, on_done: Callable[[str], object]) -> JobPool:
     """Processes on this machine for the trainings that have no result yet, at most ``jobs`` side by side."""
-    command = [sys.executable, "-P", "-m", "kit.learning.training.sweep_worker", str(sweep.folder.absolute())]
-    return JobPool(command, sweep.waiting(), jobs, on_done, sweep.record_loss)
+    return JobPool(sweep_command(sweep), sweep.waiting(), jobs, on_done, sweep.record_loss)
 
 
 def start_sweep(sweep: TrainingSweep) -> subprocess.Popen[bytes]:
@@ -44,14 +49,7 @@ def start_sweep(sweep: TrainingSweep) -> subprocess.Popen[bytes]:
     does. The caller need not wait for it."""
     with (sweep.folder / "log.txt").open("wb") as log:
         process = subprocess.Popen(
-            [
-                sys.executable,
-                "-P",
-                "-m",
-                "kit.learning.training.sweep_worker",
-                str(sweep.folder.absolute()),
-                "--all",
-            ],
+            [*sweep_command(sweep), "--all"],
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=log,

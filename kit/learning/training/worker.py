@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 from types import FrameType
 
+from kit.host.python_command import python_command
 from kit.learning.training.runs import RunError, TrainingRun
 
 EXIT_SIGNALS = (signal.SIGTERM, signal.SIGINT)
@@ -60,7 +61,7 @@ def start_worker(run: TrainingRun, *, patience: float = 30.0) -> subprocess.Pope
     run.send_command("go")
     with run.log.open("wb") as log:
         process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "kit.learning.training.worker", str(run.folder)],
+            python_command("kit.learning.training.worker", str(run.folder)),
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=log,

@@ -7,7 +7,6 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any, Final, Self
 
+from kit.host.python_command import python_command
 from kit.school.lessons.reading import solutions_folder
 from kit.school.lessons.records import Exercise, Lesson
 from kit.school.lessons.training_curves import TrainingCurves, is_drive_line, read_training_curves
@@ -231,7 +231,7 @@ class ExerciseCheck:
             return
         if recording is not None:
             recording.unlink(missing_ok=True)
-        command = [sys.executable, "-P", "-m", "grader", "check", str(submission_path(exercise, file))]
+        command = python_command("grader", "check", str(submission_path(exercise, file)))
         command += ["--assignment", str(exercise.folder), "--json", "--for-student", "--secret"]
         # Their own program on their own machine needs no confinement, and starts faster without.
         command += [] if as_class else ["--level", "0"]

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from kit.host.python_command import python_command
 from kit.plain_text import quoted, suggestion
 from kit.school.lessons.checking import SOLUTIONS
 from kit.school.lessons.reading import LESSON_FILE, read_lesson
@@ -100,16 +100,9 @@ def _prove(lesson: Lesson, exercise: str) -> ContractFinding:
         return ContractFinding(
             lesson.folder.name, text, f"{solutions}: no folder with a solution and wrong works"
         )
-    command = [
-        sys.executable,
-        "-P",
-        "-m",
-        "grader",
-        "self-test",
-        str(lesson.folder / exercise),
-        "--solutions",
-        str(solutions),
-    ]
+    command = python_command(
+        "grader", "self-test", str(lesson.folder / exercise), "--solutions", str(solutions)
+    )
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=SELF_TEST_S, check=False)
     except subprocess.TimeoutExpired:

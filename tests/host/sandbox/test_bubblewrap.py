@@ -140,3 +140,27 @@ def test_it_is_needed_where_only_bubblewrap_may(monkeypatch: pytest.MonkeyPatch)
     bubblewrap.is_needed.cache_clear()
     assert not bubblewrap.is_needed()
     bubblewrap.is_needed.cache_clear()
+
+
+def test_a_program_in_the_current_folder_is_not_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mark = tmp_path / "mark"
+    (tmp_path / bubblewrap.PROGRAM).write_text(f"#!/bin/sh\n: > '{mark}'\n")
+    (tmp_path / bubblewrap.PROGRAM).chmod(0o755)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", f":{os.environ['PATH']}")
+    monkeypatch.setattr(bubblewrap, "_succeeds", _ran)
+    bubblewrap.is_needed.cache_clear()
+    try:
+        bubblewrap.is_needed()
+    finally:
+        bubblewrap.is_needed.cache_clear()
+    assert not mark.exists()
+
+
+def _ran(command: list[str]) -> bool:
+    """Runs the command unless it is the trial of the system's own namespaces, which counts as failed."""
+    if command[0] == sys.executable:
+        return False
+    return subprocess.run(command, capture_output=True, timeout=20, check=False).returncode == 0
