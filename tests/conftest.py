@@ -9,7 +9,7 @@ import os
 import signal
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -57,6 +57,26 @@ def pytest_configure_node(node: Any) -> None:
         if spec.share is None:
             spec.share = int(node.workerinput["workerid"].removeprefix("gw"))
         node.workerinput["share"] = spec.share
+
+
+class _WholeProgress:
+    """Counts the tests of all workers of ``--dist each``: pytest's percentages are of the last one's alone."""
+
+    def __init__(self, session: pytest.Session) -> None:
+        self._session = session
+        self._counts: dict[str, int] = {}
+
+    @pytest.hookimpl(optionalhook=True)
+    def pytest_xdist_node_collection_finished(self, node: Any, ids: Sequence[str]) -> None:
+        self._counts[node.gateway.id] = len(ids)
+
+    def pytest_runtest_logstart(self) -> None:
+        self._session.testscollected = sum(self._counts.values())
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    if session.config.option.dist == "each":
+        session.config.pluginmanager.register(_WholeProgress(session))
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:

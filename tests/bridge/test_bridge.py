@@ -65,6 +65,7 @@ def test_a_stop_holds_until_it_is_lifted_and_the_end_is_a_stop() -> None:
         wait_until(lambda: moved[-1][1] == Twist(), "the robot to stand at the end")
 
 
+@pytest.mark.leans_on_clock("a robot stops within its watchdog's time")
 @pytest.mark.long
 @pytest.mark.parametrize("loss", [0.0, 0.05])
 def test_a_cut_line_stops_the_robot_within_the_watchdogs_time_and_it_goes_on(loss: float) -> None:
@@ -91,6 +92,7 @@ def test_a_cut_line_stops_the_robot_within_the_watchdogs_time_and_it_goes_on(los
         assert any("resumed" in text for text in robot.lines)
 
 
+@pytest.mark.leans_on_clock("a robot stops within its watchdog's time")
 @pytest.mark.long
 def test_a_line_that_was_cut_for_long_comes_back() -> None:
     """For longer than a connection may be silent: it is made anew."""

@@ -154,6 +154,7 @@ def bridge(world: World, *words: str, wire: str = "zenoh") -> Iterator[BridgePro
             program.end()
 
 
+@pytest.mark.leans_on_clock("a robot stops within its watchdog's time")
 def test_a_controller_in_one_world_drives_the_robot_in_the_other(tmp_path: Path) -> None:
     port = free_port()
     with (

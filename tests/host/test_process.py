@@ -164,6 +164,7 @@ def test_a_failure_deep_in_a_library_names_the_students_line(student: Student) -
     assert not any("json/" in line for line in shown)
 
 
+@pytest.mark.leans_on_clock("the program must be in its loop within the limit of 0.4 s")
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("source", "line", "function"),
@@ -307,6 +308,7 @@ def test_a_broken_conversation_ends_it(student: Student, attack: str) -> None:
     assert _folders() == before
 
 
+@pytest.mark.leans_on_clock("the end must come soon after the deadline")
 @pytest.mark.long
 @LINUX
 def test_bytes_that_dribble_do_not_extend_the_deadline(student: Student) -> None:

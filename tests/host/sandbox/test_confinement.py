@@ -522,6 +522,7 @@ def _interpret(code: bytes, number: int, audit: int, first: int, second: int) ->
             at += yes if tests[operation] else no
 
 
+@pytest.mark.leans_on_clock("it compares how long two starts take")
 @pytest.mark.long
 @LINUX
 def test_confinement_costs_little_time(student: Student) -> None:
