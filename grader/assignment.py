@@ -156,7 +156,8 @@ class Assignment:
     submit: str
     """Name of the submitted file."""
     level: Level
-    """The lowest confinement level at which secret seeds are used."""
+    """The lowest confinement level at which secret seeds are used. 0 allows the check of one's own work to use them; it
+    does not lower the level of a program, which is 0 only where that is requested."""
     limits: Limits
     trials: tuple[Trial, ...]
     criteria: tuple[Criterion, ...]

@@ -73,12 +73,12 @@ class GradingOptions:
     """How to grade a submission."""
 
     level: Level | None = None
-    """Confinement level of programs; None takes the assignment's."""
+    """Confinement level of programs; None takes the assignment's, and at least 1."""
     secret: bool = False
     """Whether to use the secret seeds too, for the grade."""
     may_lower_level: bool = True
-    """Whether practice, without secret seeds, may go on at a lower level where this machine supports none higher, if no
-    level was requested."""
+    """Whether practice, without secret seeds, may go on at a lower level, at least 1, where this machine supports none
+    higher, if no level was requested."""
     show_progress: Callable[[str], None] = lambda text: None
     """Called with what is being done, whenever that changes."""
 
@@ -428,7 +428,7 @@ def open_grading(
 
     The level is decided here, by trying this machine with an empty program: no submission can influence it.
     """
-    level = assignment.level if options.level is None else options.level
+    level = level_for_untrusted(assignment, options.level)
     if options.secret and level < assignment.level:
         raise LevelTooLow(
             f"{assignment.title} uses its secret seeds at confinement level {int(assignment.level)} or higher, "
@@ -450,13 +450,13 @@ def open_grading(
 
 
 def _available_level(level: Level, *, may_lower_level: bool) -> Level:
-    """The level to use: ``level``, or the highest below it that this machine has. Raises LevelUnavailable."""
+    """The level to use: ``level``, or the highest below it that this machine has, at least 1. Raises LevelUnavailable."""
     available = highest_level_up_to(level)
     if available == level:
         return level
     message = f"This machine does not reach confinement level {int(level)}; `kit doctor` says why."
-    if not may_lower_level:
-        raise LevelUnavailable(message)
+    if not may_lower_level or available < Level.FILTERED:
+        raise LevelUnavailable(f"{message} For a program of your own, use --level 0.")
     sys.stderr.write(f"WARNING: {message} The program runs at level {int(available)}, for practice only.\n")
     return available
 

@@ -147,6 +147,15 @@ WORKED_ONCE: Mapping[str, tuple[str, ...]] = MappingProxyType(
             "grader/cohort/test_cohort.py::test_a_class_is_not_graded_at_level_0_by_silence",
             "grader/cohort/test_cohort.py::test_one_work_with_secrets_is_not_graded_at_level_0_by_silence",
         ),
+        "a lesson that is checked at level 0 because its sheet says so": (
+            "grader/cli/test_check_level.py::test_a_lesson_checked_for_somebody_else_writes_nothing",
+        ),
+        "a pip.py, git or result.json beside a submission in CI": (
+            "grader/test_ci.py::test_a_workflow_grades_and_runs_nothing_of_the_students",
+        ),
+        "a reward so large that the iteration over it never ends": (
+            "grader/kinds/test_reward.py::test_the_iteration_ends_whatever_the_rewards_are",
+        ),
         "folders without end": ("grader/test_submission.py::test_folders_without_end_are_not_entered",),
         "headers of archives as large as the memory": (
             "grader/test_submission.py::test_a_large_header_is_refused_before_it_is_read",

@@ -77,11 +77,15 @@ def test_a_program_that_blames_the_machine_is_confined_and_fails(
     assert not any("GOT" in test.log + test.rationale for test in result.tests)
 
 
-@pytest.mark.usefixtures("no_level_1")
-def test_practice_falls_loudly(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@LOCKS
+def test_practice_falls_loudly(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(probe, "_known_levels", set())
+    monkeypatch.setattr(probe, "is_level_available", lambda level: level <= Level.FILTERED)
     result = graded(tmp_path, "controller", Level.SEPARATE, FORWARD, GradingOptions())
-    assert result.level == 0
-    assert any("level 0" in notice and "level 2" in notice for notice in result.notices)
+    assert result.level == 1
+    assert any("level 1" in notice and "level 2" in notice for notice in result.notices)
     assert "WARNING: This machine does not reach confinement level 2" in capsys.readouterr().err
 
 
@@ -94,6 +98,14 @@ def test_practice_falls_loudly(tmp_path: Path, capsys: pytest.CaptureFixture[str
 def test_a_grade_never_falls(tmp_path: Path, terms: GradingOptions) -> None:
     with pytest.raises(LevelUnavailable, match="does not reach confinement level 1"):
         graded(tmp_path, "controller", Level.FILTERED, FORWARD, terms)
+
+
+@pytest.mark.usefixtures("no_level_1")
+@pytest.mark.parametrize("asked_by_sheet", Level)
+def test_nothing_falls_to_level_0(tmp_path: Path, asked_by_sheet: Level) -> None:
+    with pytest.raises(LevelUnavailable, match="use --level 0"):
+        graded(tmp_path, "controller", asked_by_sheet, FORWARD, GradingOptions())
+    assert graded(tmp_path, "controller", asked_by_sheet, FORWARD, GradingOptions(Level.LIMITED)).level == 0
 
 
 @LOCKS

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Final
 
 from kit.host.python_command import python_command
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.probe import highest_level_up_to
 from kit.plain_text import quoted, suggestion
 from kit.school.lessons.checking import SOLUTIONS
 from kit.school.lessons.reading import LESSON_FILE, read_lesson
@@ -103,6 +105,8 @@ def _prove(lesson: Lesson, exercise: str) -> ContractFinding:
     command = python_command(
         "grader", "self-test", str(lesson.folder / exercise), "--solutions", str(solutions)
     )
+    if highest_level_up_to(Level.FILTERED) < Level.FILTERED:
+        command += ["--level", "0"]  # the author's own programs, on a machine that has no higher level
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=SELF_TEST_S, check=False)
     except subprocess.TimeoutExpired:

@@ -556,7 +556,7 @@ def test_one_work_with_secrets_is_not_graded_at_level_0_by_silence(tmp_path: Pat
     folder, file = write_assignment(tmp_path / "quick", secret="seeds: {turn: [5]}"), tmp_path / "ada.py"
     file.write_text(FORWARD)
     asked = (file, "--assignment", folder, "--json")
-    for more, level in ((("--secret",), 1), (("--secret", "--level", "0"), 0), ((), 0)):
+    for more, level in ((("--secret",), 1), (("--secret", "--level", "0"), 0), ((), 1)):
         code, told = verb("check", *asked, *more)
         result = told[told.index("{") :]  # before it, on standard error: that the secret seeds were not used
         assert (code, json.loads(result)["level"]) == (1, level)
