@@ -34,6 +34,28 @@ def lines_allowed(source: Path) -> int:
     return 900 if source.name == "kernels.py" else 600
 
 
+def test_no_text_has_control_characters() -> None:
+    """An editor does not show them. The worlds that are bad on purpose have some."""
+    folders = ("kit", "grader", "lessons", "maps", "tests", ".github")
+    texts = {
+        each
+        for name in folders
+        for kind in ("py", "pyi", "yaml", "md")
+        for each in (ROOT / name).rglob(f"*.{kind}")
+    }
+    texts = {each for each in texts if "bad_worlds" not in each.parts} | {
+        ROOT / "README.md",
+        ROOT / "pyproject.toml",
+    }
+    assert len(texts) > 1000
+    allowed = bytes({10, *range(32, 256)} - {127})
+    assert {
+        str(each.relative_to(ROOT)): rest
+        for each in texts
+        if (rest := each.read_bytes().translate(None, allowed))
+    } == {}
+
+
 @every_case("source", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_a_module_fits_in_a_head(source: Path) -> None:
     assert len(source.read_text().splitlines()) <= lines_allowed(source)

@@ -11,6 +11,7 @@ import click
 
 from kit.cli import options
 from kit.cli.full_screen import run_screen
+from kit.interruption import ended_by_signals
 from kit.ros.packages import Package, PackageError, find_packages, read_package
 from kit.workspace import Workspace
 
@@ -165,6 +166,7 @@ def _show_arguments(target: LaunchTarget) -> None:
         click.echo("\n  No arguments.")
 
 
+@ended_by_signals()
 def _run_plainly(
     target: LaunchTarget,
     arguments: Mapping[str, str],
@@ -175,7 +177,6 @@ def _run_plainly(
     speed: float | None,
 ) -> None:
     from kit.host.failure import StudentCodeError
-    from kit.host.program_terminal import exit_on_signal
     from kit.inspection.server import open_inspection_server
     from kit.inspection.sockets import sockets_folder, world_name
     from kit.launch.launch_run import Launch
@@ -184,8 +185,6 @@ def _run_plainly(
     from kit.ros.graph.graph import Graph
     from kit.world.problems import WorldError
 
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, exit_on_signal)
     name = target.name
     launch = Launch(
         target,

@@ -12,6 +12,7 @@ import click
 
 from kit.cli import options
 from kit.cli.options import Storage
+from kit.interruption import ended_by_signals
 from kit.plain_text import counted
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ INTERRUPTED = 130
 @options.storage
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @options.workspace
+@ended_by_signals()
 def command(
     place: str,
     case: str | None,
@@ -85,7 +87,8 @@ def command(
     kit run maze --controller my_controller.py --steps 6000 --seed 1
 
     Exit code: 0 the run finished; 1 the controller failed; 2 an argument is wrong or names something that does not
-    exist; 130 interrupted by Ctrl-C, with a summary of the steps that ran.
+    exist; 130 interrupted by Ctrl-C (143 by SIGTERM, 129 by a connection that is gone), with a summary of the steps that
+    ran. --record and --bag keep them.
     """
     from kit.controllers import find_controller
     from kit.host.program_terminal import ProgramTerminal, has_user_terminal, piped_streams
@@ -139,6 +142,8 @@ def command(
         options.fail(options.describe_os_error(error))
     click.echo(json.dumps(summary.as_dict(), indent=2) if as_json else format_summary(summary))
     if summary.interrupted:
+        for kept in filter(None, (record, bag)):
+            click.echo(f"What ran until then is in {kept}.", err=True)
         raise SystemExit(INTERRUPTED)
     if summary.failure is not None:
         raise SystemExit(1)
@@ -174,5 +179,5 @@ def format_summary(summary: RunSummary) -> str:
     if summary.failure is not None:
         rows.append(("stopped", str(summary.failure).replace("\n", "\n" + " " * 13)))
     if summary.interrupted:
-        rows.append(("stopped", "by Ctrl-C"))
+        rows.append(("stopped", "by Ctrl-C or a signal"))
     return "\n".join(f"{name:<12} {text}" for name, text in rows)

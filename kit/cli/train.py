@@ -255,7 +255,7 @@ def command(
     (behaviour cloning), or by dagger, which asks the demonstrator what to do in the
     states that the learner visits, and so needs more than a recording.
 
-    
+    \b
     kit play turn --controller teleop --record drive.npz
     kit train smooth-turn --imitate drive.npz
     kit train smooth-turn --imitate fields

@@ -53,6 +53,8 @@ class Failure:
     message: str
     file: str | None = None
     line: int | None = None
+    status: int = 1
+    """The exit status with which ``python FILE`` would have ended: 1 for an exception."""
 
     def __str__(self) -> str:
         if self.file is None:

@@ -18,7 +18,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, Final, NoReturn, Self
+from typing import Final, Self
 
 GRACE_S: Final = 3.0
 """How long a program may take to end after Ctrl-C before the kit ends it [s]."""
@@ -56,7 +56,6 @@ class ProgramTerminal:
         """Whether the program was sent Ctrl-C's signal."""
         self._shows_output = shows_output
         self._deadline: float | None = None
-        self._old_handlers: dict[int, Any] = {}
 
     def __enter__(self) -> Self:
         self._settings = termios.tcgetattr(0)
@@ -67,12 +66,7 @@ class ProgramTerminal:
         self._copy_window_size()
         self._wake_reader, self._wake_writer = os.pipe()
         self._pump_thread = threading.Thread(target=self._pump, name="terminal", daemon=True)
-        for number, handler in (
-            (signal.SIGWINCH, self._on_resize),
-            (signal.SIGTERM, exit_on_signal),
-            (signal.SIGHUP, exit_on_signal),
-        ):
-            self._old_handlers[number] = signal.signal(number, handler)
+        self._old_handler = signal.signal(signal.SIGWINCH, self._on_resize)
         self._set_raw()
         self._pump_thread.start()
         return self
@@ -82,8 +76,7 @@ class ProgramTerminal:
         self._pump_thread.join()
         self._show_output()  # what a program wrote that has ended
         self._restore()
-        for number, handler in self._old_handlers.items():
-            signal.signal(number, handler)
+        signal.signal(signal.SIGWINCH, self._old_handler)
         for descriptor in (
             self._controller,
             self._slave,
@@ -206,8 +199,3 @@ def piped_streams() -> ProgramStreams:
         return ProgramStreams(0) if sys.stdin.fileno() == 0 and not os.isatty(0) else ProgramStreams()
     except (OSError, ValueError, AttributeError):  # likewise
         return ProgramStreams()
-
-
-def exit_on_signal(number: int, frame: object) -> NoReturn:
-    """Ends the verb, and with it what it has started; the terminal is restored on the way."""
-    raise SystemExit(128 + number)

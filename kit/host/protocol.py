@@ -10,8 +10,8 @@ else is ended.
     tick   n, time, events                       reply n, wake time, events
     call   n, function, count, columns           values n, numbers
     tell   n, function, record                   told n, what it returned
-                                                 ended n, events        the program is over, as it wished
-                                                 failed n, what, where  the program is over, by its own fault
+                                                 ended n, events                 the program is over, as it wished
+                                                 failed n, what, where, status   the program is over, by its own fault
 
 ``ALLOWED_FRAMES`` says which frame may come when: by what the parent waits for. Nothing that the student's code can
 write has a meaning before ``confined`` (it is not there yet), and nothing that only the kit's code may write has one
@@ -200,14 +200,14 @@ def _ended(seq: Json, events: Json) -> Ended:
     return Ended(integer(seq), _events(events))
 
 
-def _failed(seq: Json, kind: Json, message: Json, file: Json, line: Json) -> Failed:
+def _failed(seq: Json, kind: Json, message: Json, file: Json, line: Json, status: Json) -> Failed:
     name = text(kind, MAX_NAME)
     known = {kind.value: kind for kind in REPORTABLE}
     if name not in known:
         raise ProtocolError(f"no such kind of failure: {name}")
     where = None if file is None else text(file, MAX_NAME)
     at = None if line is None or where is None else integer(line, 1)
-    return Failed(integer(seq), Failure(known[name], text(message), where, at))
+    return Failed(integer(seq), Failure(known[name], text(message), where, at, integer(status, 0, 255)))
 
 
 def _events(events: Json) -> tuple[GraphEvent, ...]:
@@ -227,7 +227,7 @@ _FRAMES: Final[Mapping[str, tuple[int, Callable[..., Frame]]]] = MappingProxyTyp
         "values": (2, _batch_result),
         "told": (2, _json_result),
         "ended": (2, _ended),
-        "failed": (5, _failed),
+        "failed": (6, _failed),
     }
 )
 

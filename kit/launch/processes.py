@@ -143,7 +143,7 @@ class NodeProgramProcess:
                 self._failure = error.failure
         failure = self._failure or self._node_process.failure
         if failure is not None:
-            return ProcessExit(1, str(failure))
+            return ProcessExit(failure.status, str(failure))
         return ProcessExit(0) if self._node_process.has_ended else None
 
     def wait_until_started(self) -> None:

@@ -26,6 +26,7 @@ from rosbags.interfaces import (
 )
 from rosbags.rosbag2 import Reader, ReaderError, StoragePlugin, Writer, WriterError
 
+from kit.interruption import uninterrupted
 from kit.msg.class_builder import build_recorded_message
 from kit.msg.interfaces import DefinitionError, UnknownInterface, find_message
 from kit.msg.message import Message
@@ -87,7 +88,7 @@ class BagRecorder:
     """Records the messages of a graph in a new bag until it is closed. A participant of the lock-step.
 
     ``topics`` None: all but hidden ones, also those that come later. The bag appears under its name when it is
-    complete; until then, and after a kill, what there is of it lies in ``.NAME.part`` beside it.
+    complete; until then, and after SIGKILL, what there is of it lies in ``.NAME.part`` beside it.
     Raises BagError.
     """
 
@@ -162,19 +163,21 @@ class BagRecorder:
 
     def close(self) -> None:
         """Completes the bag. May be called twice. Raises BagError if writing fails."""
-        node, self._node = self._node, None
+        node = self._node
         if node is None:
             return
-        node.destroy_node()
-        try:
-            self._writer.close()
-            self._writer.path.rename(self._folder)
-            self._part.rmdir()
-        except OSError as problem:
-            raise BagError(
-                f"{self._folder}: the bag could not be completed ({_reason(problem)}). "
-                f"What there is of it lies in {self._part}."
-            ) from None
+        with uninterrupted():
+            self._node = None
+            node.destroy_node()
+            try:
+                self._writer.close()
+                self._writer.path.rename(self._folder)
+                self._part.rmdir()
+            except OSError as problem:
+                raise BagError(
+                    f"{self._folder}: the bag could not be completed ({_reason(problem)}). "
+                    f"What there is of it lies in {self._part}."
+                ) from None
         if self.failure is not None:
             raise BagError(self.failure)
 
@@ -200,7 +203,9 @@ class BagRecorder:
     def _write(self, connection: Connection, message: Message) -> None:
         if self.failure is None:
             try:
-                self._writer.write(connection, self._graph.now_ns, self._serializer.serialize(message))
+                data = self._serializer.serialize(message)
+                with uninterrupted():  # half a record would make what follows unreadable
+                    self._writer.write(connection, self._graph.now_ns, data)
             except OSError as problem:  # not the publisher's fault, in whose call this happens
                 self.failure = f"{self._folder}: the bag ends early: {_reason(problem)}."
             else:

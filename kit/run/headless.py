@@ -13,6 +13,7 @@ from kit.controllers import ControllerFile, find_controller
 from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.host.program_terminal import ProgramStreams
+from kit.interruption import uninterrupted
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
 from kit.run.episode import EndCondition, EndReason, run_until, when_failed, when_reached
@@ -49,7 +50,7 @@ class RunSummary:
     """Seconds of wall clock that the run took."""
     failure: Failure | None
     interrupted: bool = False
-    """Whether Ctrl-C ended it."""
+    """Whether Ctrl-C or a signal ended it."""
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able; the same for the same run but for ``wall_s``."""
@@ -112,18 +113,21 @@ def run_headless(
         session.drive_with(controller)
         session.wait_until_driven()
         start = time.perf_counter()
-        interrupted = _run(
-            session,
-            fingerprint,
-            steps,
-            factor,
-            until_reached=until_reached,
-            output_interval=OUTPUT_INTERVAL if streams is None else INPUT_INTERVAL,
-        )
-        session.read_output()
-        wall = time.perf_counter() - start
-        if record is not None:
-            save_recording(recorder.recording(), record)
+        try:
+            interrupted = _run(
+                session,
+                fingerprint,
+                steps,
+                factor,
+                until_reached=until_reached,
+                output_interval=OUTPUT_INTERVAL if streams is None else INPUT_INTERVAL,
+            )
+            session.read_output()
+        finally:  # also where a terminal is gone, or Ctrl-C comes twice
+            wall = time.perf_counter() - start
+            if record is not None:
+                with uninterrupted():
+                    save_recording(recorder.recording(), record)
         poses = dict(zip(runner.simulation.model_names, runner.simulation.poses(), strict=False))
         return RunSummary(
             scenario.title,
@@ -148,7 +152,7 @@ def _run(
     until_reached: bool,
     output_interval: int,
 ) -> bool:
-    """Ticks to the end. Returns whether Ctrl-C ended it."""
+    """Ticks to the end. Returns whether Ctrl-C or a signal ended it."""
     is_paced = factor != MAXIMUM
     ends = [when_failed(session)]
     if until_reached:

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.arrays import FloatArray, IntArray
+from kit.interruption import uninterrupted
 from kit.msg.conversion import from_dict, to_dict
 from kit.msg.interfaces import find_interface
 from kit.msg.message import Message
@@ -138,7 +139,8 @@ class Recorder(Observer):
         self._counts.append(len(names))
 
     def recording(self) -> Recording:
-        """The run so far."""
+        """The run so far: all ticks that have ended, also where a signal has interrupted the one after."""
+        poses = np.array(self._poses, dtype=np.float64)[: 3 * sum(self._counts)]
         return Recording(
             self._place,
             self._case,
@@ -146,7 +148,7 @@ class Recorder(Observer):
             self._step_size,
             tuple(self._models),
             tuple(self._inputs),
-            np.array(self._poses, dtype=np.float64).reshape(-1, 3),
+            poses.reshape(-1, 3),
             np.array(self._counts, dtype=np.int64),
             self._level,
         )
@@ -175,7 +177,8 @@ def save_recording(recording: Recording, file: Path) -> None:
         poses=recording.poses,
         counts=recording.counts,
     )
-    write_atomically(file, data.getvalue())
+    with uninterrupted():
+        write_atomically(file, data.getvalue())
 
 
 def load_recording(file: Path | str) -> Recording:

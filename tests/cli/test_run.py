@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,14 +18,17 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
+import kit as kit_package
 from kit.cli import main
 from kit.inspection.sockets import running_worlds, sockets_folder
 from kit.msg.geometry_msgs import Twist, Vector3
+from kit.ros.bags import read_bag, read_messages
 from kit.run.episode import run_until
 from kit.run.recording import Recorder, load_recording, save_recording
 from kit.run.session import Session
 from kit.school.game.levels import find_level
 from kit.world.catalogue import maps_folder
+from tests.tui.input.conftest import Terminal
 from tests.waiting import wait_until
 
 TALKER = """
@@ -131,6 +135,37 @@ def test_a_home_that_nobody_has_is_an_error_in_words(monkeypatch: pytest.MonkeyP
     result = kit("run", "maze")
     assert result.exit_code == 2
     assert "--workspace" in result.stderr
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "sent", ["SIGINT", "SIGTERM", "SIGHUP", "SIGTERM SIGTERM", "SIGINT SIGTERM", "hang up"]
+)
+def test_every_end_keeps_what_was_recorded(tmp_path: Path, sent: str) -> None:
+    """The terminal is the user's, so that the controller has one of its own too."""
+    file, bag = tmp_path / "run.npz", tmp_path / "bag"
+    (tmp_path / "talker.py").write_text(TALKER)
+    words = ("run", "maze", "--controller", tmp_path / "talker.py", "--steps", "100000000", "--speed", "20")
+    main_file = Path(kit_package.__file__).with_name("__main__.py")
+    with closing(Terminal(*map(str, (main_file, *words, "--record", file, "--bag", bag)))) as terminal:
+        terminal.until(lambda: b"printed" in terminal.output, "the run")
+        if sent == "hang up":
+            terminal.hang_up()
+            terminal.process.wait(60)
+        else:
+            for name in sent.split():
+                terminal.process.send_signal(signal.Signals[name])
+            terminal.wait()
+            assert terminal.process.returncode != 0
+            terminal.assert_sane()
+    if " " not in sent:
+        first = signal.SIGHUP if sent == "hang up" else signal.Signals[sent]
+        assert terminal.process.returncode == 128 + first
+        assert sent == "hang up" or str(file).encode() in terminal.output.replace(b"\r\n", b"")
+    assert load_recording(file).ticks >= 50
+    assert kit("replay", file, "--check").exit_code == 0
+    assert sum(1 for _ in read_messages(bag)) == read_bag(bag).count > 0
+    assert {each.name for each in tmp_path.iterdir()} == {"run.npz", "bag", "talker.py"}
 
 
 @pytest.mark.parametrize("where", ["no/such/folder/run.npz", "file/run.npz"])

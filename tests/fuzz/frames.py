@@ -106,7 +106,7 @@ OTHER_FRAMES: Final[tuple[list[Json], ...]] = (
     ["values", 1, "AAAAAAAA8D8="],
     ["told", 1, [1.5, "a", None, [True]]],
     ["ended", 1, []],
-    ["failed", 1, "exception", "NameError: x", "work.py", 3],
+    ["failed", 1, "exception", "NameError: x", "work.py", 3, 1],
     ["reply", 0, None, []],
 )
 HEAR: Final = None

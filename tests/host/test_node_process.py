@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 import time
 from array import array
 from collections.abc import Iterator
@@ -610,7 +611,8 @@ def test_a_failing_callback_ends_the_process_only(harness: GraphHarness, student
     ("change", "kind", "line", "words"),
     [
         ("while True: pass", FailureKind.TIMEOUT, 13, "on_question() did not return within 0.5 s"),
-        ("import sys; sys.exit(1)", FailureKind.EXIT, 13, "sys.exit(1)"),
+        ("import sys; sys.exit(4)", FailureKind.EXIT, 13, "status 4"),
+        ("exit('no scan')", FailureKind.EXIT, 13, "no scan"),
         ("import os; os._exit(1)", FailureKind.EXIT, None, "os._exit(1)"),
         ("x = bytearray(10**12)", FailureKind.MEMORY, 13, "600 MiB"),
         ("self.back.publish('text')", FailureKind.EXCEPTION, 13, "Expected"),
@@ -641,7 +643,9 @@ def test_every_failure_of_a_node(
         ),
         ("from rclpy.node import Nod", "cannot import name 'Nod'"),
         ("from turtle_msgs.msg import Shell", "No module named 'turtle_msgs'"),
-        ("import sys\nif __name__ == '__main__': sys.exit(2)", "sys.exit(2)"),
+        ("import sys\nif __name__ == '__main__': sys.exit(2)", "status 2"),
+        ("exit('no map')", "no map"),
+        ("quit()", "without creating a node"),
     ],
 )
 def test_a_file_that_cannot_be_run(student: Student, source: str, words: str) -> None:
@@ -666,6 +670,104 @@ def test_sys_exit_of_main_at_the_end_is_an_end(harness: GraphHarness, student: S
     assert process.has_ended
     assert process.failure is None
     assert harness.node.get_node_names() == ["checker"]
+
+
+EXITING = """
+import sys, threading, rclpy
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from std_msgs.msg import String
+
+rclpy.init()
+node = rclpy.create_node("brief")
+
+def on_go(message):
+    IN_CALLBACK
+
+def main():
+    node.create_subscription(String, "go", on_go, 10)
+    IN_MAIN
+    executor = EXECUTOR()
+    executor.add_node(node)
+    executor.spin()
+
+AT_IMPORT
+main()
+"""
+
+
+def exiting(student: Student, place: str, statement: str, executor: str = "SingleThreadedExecutor") -> Path:
+    """Returns a program that executes a statement ``IN_CALLBACK`` of a message, ``IN_MAIN`` or ``AT_IMPORT``."""
+    source = EXITING.replace(place, statement).replace("EXECUTOR()", f"{executor}()")
+    return student(re.sub("IN_CALLBACK|IN_MAIN|AT_IMPORT", "pass", source))
+
+
+@pytest.mark.parametrize("place", ["AT_IMPORT", "IN_MAIN", "IN_CALLBACK"])
+@pytest.mark.parametrize("statement", ["exit()", "quit(0)", "raise SystemExit"])
+def test_a_program_that_exits_has_ended(
+    harness: GraphHarness, student: Student, place: str, statement: str
+) -> None:
+    process = harness.start(exiting(student, place, statement))
+    harness.publish("/go", String())
+    assert process.has_ended
+    assert process.failure is None
+    assert harness.node.get_node_names() == ["checker"]
+
+
+@pytest.mark.parametrize("place", ["AT_IMPORT", "IN_MAIN", "IN_CALLBACK"])
+@pytest.mark.parametrize(
+    ("statement", "status", "words"),
+    [("exit(3)", 3, "status 3"), ("quit(-1)", 255, "status 255"), ("exit('no map')", 1, "no map")],
+)
+def test_a_program_that_exits_with_a_status_has_failed(
+    harness: GraphHarness, student: Student, place: str, statement: str, status: int, words: str
+) -> None:
+    file = exiting(student, place, statement)
+    line = 1 + file.read_text().partition(statement)[0].count("\n")
+    if place == "IN_CALLBACK":
+        process = harness.start(file)
+        harness.publish("/go", String())
+        failure = process.failure
+    else:
+        with pytest.raises(StudentCodeError) as caught:
+            harness.start(file)
+        failure = caught.value.failure
+    assert failure is not None
+    assert (failure.kind, failure.file, failure.line, failure.status) == (
+        FailureKind.EXIT,
+        "work.py",
+        line,
+        status,
+    )
+    assert words in failure.message
+
+
+def test_an_exit_in_one_of_many_threads_ends_the_program(harness: GraphHarness, student: Student) -> None:
+    process = harness.start(exiting(student, "IN_CALLBACK", "exit()", "MultiThreadedExecutor"))
+    harness.publish("/go", String())
+    harness.tick(3)
+    assert process.has_ended
+    assert process.failure is None
+
+
+def test_a_thread_that_exits_ends_itself_alone(harness: GraphHarness, student: Student) -> None:
+    thread = "thread = threading.Thread(target=exit, args=(3,)); thread.start(); thread.join()"
+    process = harness.start(exiting(student, "IN_MAIN", thread))
+    harness.tick()
+    assert process.is_running
+    assert process.failure is None
+
+
+def test_what_python_has_of_the_module_site(harness: GraphHarness, student: Student) -> None:
+    process = harness.start(
+        exiting(
+            student, "IN_MAIN", "print(exit, copyright, credits, license, help, sep=chr(10)); help(String)"
+        )
+    )
+    harness.tick()
+    assert process.failure is None
+    printed = "\n".join(line.text for line in process.take_output().lines)
+    assert "Copyright" in printed
+    assert "class String" in printed
 
 
 def test_a_thread_that_fails_is_told(harness: GraphHarness, student: Student) -> None:
@@ -881,12 +983,13 @@ def test_logs_and_prints_are_kept_apart_and_in_order(harness: GraphHarness, stud
 
 @pytest.mark.usefixtures("cold_start")
 def test_a_process_is_light(harness: GraphHarness, student: Student) -> None:
-    heavy = ("numpy", "numba", "pymunk", "PIL", "textual", "click", "networkx", "torch", "site")
-    source = ECHO.replace("message.data.upper()", f"str([name for name in {heavy} if name in sys.modules])")
+    heavy = ("numpy", "numba", "pymunk", "PIL", "textual", "click", "networkx", "torch")
+    loaded = f"[name for name in {heavy} if name in sys.modules]"
+    source = ECHO.replace("message.data.upper()", f"str({loaded} + [sys.flags.no_site])")
     answers = harness.subscribe(String, "/answers")
     harness.start(student("import sys" + source))
     harness.publish("/questions", String())
-    assert texts(answers) == ["[]"]
+    assert texts(answers) == ["[1]"]  # the module site is imported for its names, but was not run
 
 
 @pytest.mark.usefixtures("cold_start")

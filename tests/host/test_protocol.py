@@ -38,10 +38,10 @@ GOOD: list[tuple[list[Json], object]] = [
     (["told", 4, [1, True, None, "left", [2.5]]], JsonResult(4, [1.0, True, None, "left", [2.5]])),
     (["ended", 2, []], Ended(2, ())),
     (
-        ["failed", 2, "exception", "E: x", "a.py", 3],
+        ["failed", 2, "exception", "E: x", "a.py", 3, 1],
         Failed(2, Failure(FailureKind.EXCEPTION, "E: x", "a.py", 3)),
     ),
-    (["failed", 2, "exit", "left", None, None], Failed(2, Failure(FailureKind.EXIT, "left"))),
+    (["failed", 2, "exit", "left", None, None, 7], Failed(2, Failure(FailureKind.EXIT, "left", status=7))),
 ]
 
 
@@ -81,10 +81,12 @@ def test_good_frames(content: list[Json], frame: object) -> None:
         ["functions", 0, ["x" * 256]],
         ["confined", 4],
         ["confined", "1"],
-        ["failed", 1, "timeout", "a child cannot say this of itself", None, None],
-        ["failed", 1, "heroic", "", None, None],
-        ["failed", 1, "exit", "x" * 4_001, None, None],
-        ["failed", 1, "exit", "", "a.py", "3"],
+        ["failed", 1, "timeout", "a child cannot say this of itself", None, None, 1],
+        ["failed", 1, "heroic", "", None, None, 1],
+        ["failed", 1, "exit", "x" * 4_001, None, None, 1],
+        ["failed", 1, "exit", "", "a.py", "3", 1],
+        ["failed", 1, "exit", "", "a.py", 3],
+        ["failed", 1, "exit", "", "a.py", 3, 256],
     ],
     ids=str,
 )
@@ -131,7 +133,7 @@ def test_a_thousand_broken_frames_are_understood_or_refused() -> None:
 
 
 def test_a_childs_words_are_made_printable() -> None:
-    frame = parse(["failed", 1, "exception", "\x1b]0;title\x07", "a\n.py", 3])
+    frame = parse(["failed", 1, "exception", "\x1b]0;title\x07", "a\n.py", 3, 1])
     assert isinstance(frame, Failed)
     assert frame.failure.message.isprintable()
     assert str(frame.failure).isprintable()

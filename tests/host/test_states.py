@@ -21,7 +21,7 @@ FRAMES: dict[str, Callable[[int], list[Any]]] = {
     "values": lambda seq: ["values", seq, ""],
     "told": lambda seq: ["told", seq, None],
     "ended": lambda seq: ["ended", seq, []],
-    "failed": lambda seq: ["failed", seq, "exception", "E", None, None],
+    "failed": lambda seq: ["failed", seq, "exception", "E", None, None, 1],
 }
 
 ROLES: dict[ProcessState, Role] = {

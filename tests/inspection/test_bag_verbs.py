@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import signal
+from contextlib import closing
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
+import kit
 from kit.msg.std_msgs import String
-from kit.ros.bags import BagRecorder, Storage
+from kit.ros.bags import BagRecorder, Storage, read_bag, read_messages
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from tests.inspection.conftest import SPEED, Kit, Stage
+from tests.tui.input.conftest import Terminal
+
+MAIN = Path(kit.__file__).with_name("__main__.py")
 
 INFO = """
 Files:             words.mcap
@@ -72,6 +78,32 @@ def test_a_bag_is_played_at_its_own_pace(
     assert stage.talker.heard[-5:] == list("abcde")
     gaps = [(b - a) / 1e9 for a, b in pairwise(times)]
     assert gaps == pytest.approx([0.2] * 4, abs=0.15), "half as fast, in the world's time"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "sent", ["SIGINT", "SIGTERM", "SIGHUP", "SIGTERM SIGTERM", "SIGHUP SIGINT", "hang up"]
+)
+def test_every_end_keeps_what_was_recorded(sent: str, stage: Stage, tmp_path: Path) -> None:
+    folder = tmp_path / "heard"
+    terminal = Terminal(
+        str(MAIN),
+        *("ros", "bag", "record", "-a", "-o", str(folder)),
+        environment={"KIT_WORKSPACE": str(stage.workspace)},
+    )
+    with closing(terminal):
+        terminal.until(
+            lambda: any(each.stat().st_size for each in folder.parent.rglob("*.mcap")), "messages on the disk"
+        )
+        if sent == "hang up":
+            terminal.hang_up()
+        for name in sent.split() if sent != "hang up" else ():
+            terminal.process.send_signal(signal.Signals[name])
+        terminal.process.wait(60)
+    first = "SIGHUP" if sent == "hang up" else sent.split()[0]
+    assert terminal.process.returncode == 128 + signal.Signals[first]
+    assert sum(1 for _ in read_messages(folder)) == read_bag(folder).count > 0
+    assert list(tmp_path.iterdir()) == [folder]
 
 
 @pytest.mark.parametrize(

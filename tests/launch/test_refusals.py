@@ -112,7 +112,7 @@ FAILING = {
     "syntax": ("def main(:\n    pass\n", "bad/run.py:1: SyntaxError", ""),
     "callback": ("self.create_timer(0.01, lambda: 1 / 0)", "bad/run.py:9: ZeroDivisionError", ""),
     "no main": ("x = 1\ndef main_(): pass\n", "bad.run has no main()", ""),
-    "exit code": ("def main():\n    return 7\n", "sys.exit(7)", ""),
+    "exit code": ("def main():\n    return 7\n", "exit code 7", "exited with status 7"),
 }
 
 

@@ -14,6 +14,7 @@ from kit.cli import options
 from kit.cli.ros.world_client import EXIT_INTERRUPTED, exit_with_error
 from kit.inspection.client import InspectionClient, WorldDisconnected
 from kit.inspection.sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
+from kit.interruption import ended_by_signals
 
 if TYPE_CHECKING:
     from kit.workspace import Workspace
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 @options.workspace
 @click.argument("package", metavar="PACKAGE|FILE.py")
 @click.argument("words", nargs=-1, type=click.UNPROCESSED, metavar="[EXECUTABLE] [ARGUMENTS ...]")
+@ended_by_signals()
 def command(world: str | None, seed: int, workspace: Path | None, package: str, words: Sequence[str]) -> None:
     """Run a package's program, or a Python file with a node, in the world of another terminal.
 

@@ -90,7 +90,9 @@ class CommandSession:
 
     def fail(self, failure: Failure) -> NoReturn:
         """Answers that the program has failed, and ends the process."""
-        self._finish("failed", failure.kind.value, failure.message, failure.file, failure.line)
+        self._finish(
+            "failed", failure.kind.value, failure.message, failure.file, failure.line, failure.status
+        )
 
     def _finish(self, *final_answer: Json) -> NoReturn:
         """Ends the process with this answer: to the open command, or to the next one, for which another thread waits."""

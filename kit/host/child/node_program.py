@@ -31,7 +31,7 @@ from typing import Final, SupportsIndex
 
 from kit.host.child.command_loop import CommandSession
 from kit.host.child.program_input import mark_reading
-from kit.host.child.student_module import StudentProgram
+from kit.host.child.student_module import StudentProgram, exit_status
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.graph_bridge import ChildBridge
 from kit.host.waiter import AllThreadsWaiter
@@ -122,10 +122,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
             if not bridge.has_had_nodes and not (as_package and b"__main__" in program.source):
                 _run_main(module, program)
     except SystemExit as stop:
-        # `sys.exit(main())` at the end of a file is how a program ends that has done its work; and where it is run as
-        # `ros2 run` would, so is `raise SystemExit` in a callback.
-        is_inside = len(program.frames(stop.__traceback__)) > 1 and not as_package
-        if stop.code not in (None, 0) or is_inside:
+        if exit_status(stop):
             raise
     for thread in threading.enumerate():
         if thread is not threading.current_thread() and not thread.daemon:

@@ -121,8 +121,7 @@ def explain(problem: BaseException, program: StudentProgram) -> Failure:
         )
     frames = program.frames(problem.__traceback__)
     if isinstance(problem, SystemExit):
-        text = f"the program exited with sys.exit({_message_of(problem)}). Let the callback or main() return instead."
-        return _failure(FailureKind.EXIT, text, frames)
+        return _exit_failure(problem, frames)
     if len(frames) > 1:
         _print_frames(frames, program)
     kind = FailureKind.IMPORT if isinstance(problem, ImportError) else FailureKind.EXCEPTION
@@ -131,6 +130,24 @@ def explain(problem: BaseException, program: StudentProgram) -> Failure:
     if frames and frames[-1][2] != "<module>":
         message += f" (in {frames[-1][2]})"
     return _failure(kind, message + _way_out(problem), frames)
+
+
+def exit_status(problem: SystemExit) -> int:
+    """Returns the status with which Python would end the process: 0 to 255."""
+    if problem.code is None:
+        return 0
+    return problem.code & 0xFF if isinstance(problem.code, int) else 1
+
+
+def _exit_failure(problem: SystemExit, frames: list[tuple[str, int, str]]) -> Failure:
+    status = exit_status(problem)
+    if not isinstance(problem.code, int | None):
+        text = f"the program exited: {_message_of(problem)}"
+    elif status:
+        text = f"the program exited with status {status}."
+    else:  # what was called has not returned
+        text = "the program exited before it had done what it was called for. Let it return instead."
+    return _failure(FailureKind.EXIT, text, frames, status)
 
 
 def _way_out(problem: BaseException) -> str:
@@ -174,9 +191,9 @@ def _innermost_names(trace: TracebackType | None) -> tuple[set[str], set[str]]:
     return set(trace.tb_frame.f_locals), set(trace.tb_frame.f_globals)
 
 
-def _failure(kind: FailureKind, message: str, frames: list[tuple[str, int, str]]) -> Failure:
+def _failure(kind: FailureKind, message: str, frames: list[tuple[str, int, str]], status: int = 1) -> Failure:
     file, line = frames[-1][:2] if frames else (None, None)
-    return Failure(kind, message[:MAX_TEXT], file, line)
+    return Failure(kind, message[:MAX_TEXT], file, line, status)
 
 
 def short_repr(value: object) -> str:

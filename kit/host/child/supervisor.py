@@ -13,6 +13,7 @@ import os
 import random
 import select
 import signal
+import site
 import sys
 import termios
 import threading
@@ -209,12 +210,14 @@ def _run_program(role: str, channel: CommandChannel, dumps: int = STDERR) -> NoR
     program = StudentProgram(start["file"], start["source"].encode("latin-1"), start.get("folder"))
 
     def thread_has_failed(problem: threading.ExceptHookArgs) -> None:
-        if problem.exc_value is not None:
+        # A thread that exits ends itself alone, without a word.
+        if problem.exc_value is not None and not isinstance(problem.exc_value, SystemExit):
             session.fail(explain(problem.exc_value, program))
 
     threading.excepthook = thread_has_failed
     os.environ.update(start.get("environment", {}))
     sys.path += [*start.get("imports", ()), *start["libraries"], program.folder]
+    _add_site_names()
     _seed_random(start["seed"])
     try:
         if "cwd" in start:
@@ -232,6 +235,17 @@ def _run_program(role: str, channel: CommandChannel, dumps: int = STDERR) -> NoR
     except BaseException as problem:  # noqa: BLE001 - whatever a student's code raises is for the student to read
         session.fail(explain(problem, program))
     raise AssertionError("a program ends by an answer")
+
+
+def _add_site_names() -> None:
+    """Adds the names that ``python FILE`` has from the module ``site``, which is not run here: exit, quit, help and others.
+
+    All of them, so that no program misses one. They are the standard library's own; what ``help`` needs is imported when
+    it is called.
+    """
+    site.setquit()
+    site.setcopyright()
+    site.sethelper()
 
 
 def _seed_random(seed: int) -> None:

@@ -192,6 +192,12 @@ class Terminal:
         with pytest.raises(BlockingIOError):
             os.read(self.other_fd, 1)
 
+    def hang_up(self) -> None:
+        """Closes the terminal, as a dropped connection does."""
+        for name in ("other_fd", "fd"):
+            os.close(getattr(self, name))
+            setattr(self, name, -1)  # or the number may be another's when all is closed
+
     def close(self) -> None:
         if self.process.poll() is None:
             self.process.kill()

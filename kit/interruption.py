@@ -1,0 +1,107 @@
+"""Ends a verb at SIGTERM and SIGHUP as at Ctrl-C, and lets what is being written become whole before any of them.
+
+SIGHUP is what a process gets when its terminal or the connection to it is gone.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from types import FrameType
+from typing import Any, Final
+
+ENDING: Final = (signal.SIGTERM, signal.SIGHUP)
+"""The signals that end a process that does nothing about them, and that are sent for that."""
+
+
+@contextmanager
+def ended_by_signals() -> Iterator[None]:
+    """Has SIGTERM and SIGHUP interrupt the main thread as Ctrl-C does, by KeyboardInterrupt, until the context ends.
+
+    If one has come, the context ends by SystemExit, with 128 and the signal's number, as shells have it; output to a
+    terminal that is gone does not change that. A signal that is ignored, as under ``nohup``, stays ignored, and one for
+    which there is a handler keeps it. In other threads than the main one the context does nothing.
+
+    >>> import signal
+    >>> @ended_by_signals()
+    ... def work() -> None:
+    ...     try:
+    ...         signal.raise_signal(signal.SIGTERM)
+    ...     except KeyboardInterrupt:
+    ...         print("what there is is kept")
+    >>> work()
+    Traceback (most recent call last):
+    SystemExit: 143
+    """
+    received: list[int] = []
+    owner = os.getpid()
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        if os.getpid() != owner:  # a fork, which has nothing to keep
+            signal.signal(number, signal.SIG_DFL)
+            signal.raise_signal(number)
+            return
+        received.append(number)
+        raise KeyboardInterrupt
+
+    replaced = []
+    if threading.current_thread() is threading.main_thread():
+        replaced = [number for number in ENDING if signal.getsignal(number) is signal.SIG_DFL]
+    for number in replaced:
+        signal.signal(number, interrupt)
+    try:
+        yield
+    except (SystemExit, KeyboardInterrupt, OSError):
+        if not received:
+            raise
+    finally:
+        for number in replaced:
+            signal.signal(number, signal.SIG_DFL)
+    if received:
+        _write_out()
+        raise SystemExit(128 + received[0])
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Keeps Ctrl-C, SIGTERM and SIGHUP waiting until the context ends, for what has to be written whole.
+
+    Python handles signals in the main thread alone: in another one there is nothing to keep away.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    waiting: list[int] = []
+
+    def keep(number: int, frame: FrameType | None) -> None:
+        waiting.append(number)
+
+    previous: dict[int, Any] = {}
+    try:
+        for number in (signal.SIGINT, *ENDING):
+            handler = signal.getsignal(number)
+            if handler is not None and handler is not signal.SIG_IGN:
+                previous[number] = handler
+                signal.signal(number, keep)
+        yield
+    finally:
+        for kept, handler in previous.items():
+            signal.signal(kept, handler)
+        if waiting:
+            signal.raise_signal(waiting[0])
+
+
+def _write_out() -> None:
+    """Writes what the standard streams hold. What a terminal that is gone does not take is lost, without an error at the exit."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except (OSError, ValueError, AttributeError):  # gone, closed, or not there
+            with suppress(OSError, ValueError, AttributeError):
+                null = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(null, stream.fileno())
+                os.close(null)
