@@ -271,18 +271,8 @@ class StepOutputs(NamedTuple):
     readings: Float32Array
 
 
-class Step(NamedTuple):
-    """A step that several threads may make together."""
-
-    progress: Int64Array
-    """(``kit.kernels.batch_step.COUNTS``,): zeros at first."""
-    rules: StepRules
-    inputs: StepInputs
-    outputs: StepOutputs
-
-
 class StepScratch(NamedTuple):
-    """Arrays for one thread alone."""
+    """Arrays that a step writes to besides its outputs; the next one writes over them."""
 
     hulls: Shapes
     seen_hulls: Shapes

@@ -27,7 +27,6 @@ from kit.learning.environment.batch_map import UnsupportedWorld
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.tasks import LearningTask, TaskSpec
-from kit.learning.environment.world_threads import available_threads
 from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError, save_policy
 from kit.learning.tasks.learning_task import CasePractice, practices
@@ -436,14 +435,7 @@ def make_learner(
     if algorithm.family == "table":
         if preset.mirrored:
             raise UnsupportedWorld("tabular algorithms learn without a mirror")
-        batch = BatchEnv(
-            task,
-            preset.worlds,
-            seed,
-            reward=reward,
-            fixed_cases=fixed_cases,
-            threads=available_threads(),
-        )
+        batch = BatchEnv(task, preset.worlds, seed, reward=reward, fixed_cases=fixed_cases)
         learner: Learner = algorithm.load()(algorithm, preset, choice, batch, seed)
         return learner
     from kit.learning.environment.sb3_vec_env import HalfMirroredVecEnv, make_vec_env
