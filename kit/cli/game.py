@@ -7,7 +7,6 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import click
@@ -72,20 +71,7 @@ def _require_open(journal: ProgressJournal, level: GameLevel) -> None:
         options.fail(f"{level.title} {opens_after(level)}. `kit game --plain` lists which levels are open.")
 
 
-RENAMED = MappingProxyType({"film": "replay", "fame": "leaderboard"})
-"""Commands of earlier versions, and what they are called now."""
-
-
-class GameCommands(click.Group):
-    """Takes commands by their earlier names too, and says so."""
-
-    def get_command(self, context: click.Context, name: str) -> click.Command | None:
-        if new := RENAMED.get(name):
-            click.echo(f"`kit game {name}` is now `kit game {new}`.", err=True)
-        return super().get_command(context, new or name)
-
-
-@click.group(cls=GameCommands, invoke_without_command=True)
+@click.group(invoke_without_command=True)
 @options.workspace
 @click.option("--plain", is_flag=True, help="Print the list as text instead of a full screen.")
 @click.pass_context

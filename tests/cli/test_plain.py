@@ -194,7 +194,7 @@ def test_other_terminals_look_in_while_a_line_is_awaited(tmp_path: Path) -> None
 def test_a_drive_is_kept_when_one_leaves(tmp_path: Path) -> None:
     file = tmp_path / "drive.npz"
     desk = ["play", "simple", "--plain", "--controller", "teleop", "--record", str(file)]
-    result = CliRunner().invoke(main, desk, input="drive 0.3 0 1\nreset\ndrive 0.2 0 1\n")
+    result = CliRunner().invoke(main, desk, input="drive 0.3 0 1\nrestart\ndrive 0.2 0 1\n")
     assert result.exit_code == 0
     assert str(file) in result.output
     recording = load_recording(file)
