@@ -418,9 +418,6 @@ def _print_levels(summary: GameSummary) -> None:
         f"Challenges: {won} of {len(summary.challenges)} with a medal; `kit game challenge` lists them."
     )
     click.echo(f"\n{medal_counts(summary)}. `kit game play NAME` drives a level by hand.")
-    first = sum(sum(each.first_edition) for each in found)
-    if first:
-        click.echo(f"First edition: {counted(first, 'star')}.")
 
 
 def _record_drive(
