@@ -364,9 +364,9 @@ class _TrainingLoop:
         state = {
             "memory": asdict(self._memory),
             "seconds": self._elapsed(),
-            "looks": self._test_count,
+            "test_count": self._test_count,
             "resumed": self._resumed,
-            "next_look": self._next_evaluation,
+            "next_evaluation": self._next_evaluation,
             "stage": self._stage,
         }
         save_policy(self._learner.policy(), self._run.newest_policy)
@@ -396,9 +396,9 @@ class _TrainingLoop:
             state = json.loads(parts["training.json"])
             best = state["memory"]["best"]
             self._memory = StoppingMemory(**{**state["memory"], "best": tuple(best) if best else None})
-            self._seconds, self._test_count = float(state["seconds"]), int(state["looks"])
-            self._resumed, self._next_evaluation = int(state["resumed"]) + 1, int(state["next_look"])
-            self._stage = int(state.get("stage", 0))
+            self._seconds, self._test_count = float(state["seconds"]), int(state["test_count"])
+            self._resumed, self._next_evaluation = int(state["resumed"]) + 1, int(state["next_evaluation"])
+            self._stage = int(state["stage"])
             if min(self._seconds, self._test_count, self._resumed, self._next_evaluation, self._stage) < 0:
                 raise ValueError("a count below 0")
         note = "Training continues from the last checkpoint, with new episodes."
