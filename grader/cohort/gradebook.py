@@ -113,7 +113,7 @@ class GradebookRow:
 
     name: str
     verdict: str
-    """``pass``, ``fail``, ``broken``, ``unreadable`` or ``waiting``; ``refused`` in older gradebooks."""
+    """``pass``, ``fail``, ``broken``, ``unreadable`` or ``waiting``."""
     points: float | None
     """Before lateness; None where there is no grade."""
     max_points: float
@@ -126,7 +126,7 @@ class GradebookRow:
     note: str
     submission: str
     level: int | None = None
-    """The confinement level of the program; None without a result, and in older gradebooks."""
+    """The confinement level of the program; None without a result."""
     error: str = ""
     """The internal error for which the submission cannot be read; empty for a known reason."""
 

@@ -92,15 +92,8 @@ class Queue:
         return content
 
     def level(self) -> Level:
-        """The confinement level of every program. Raises QueueError if it is 0 without a request for that."""
-        content = self.manifest()
-        level = Level(content["level"])
-        if level == Level.LIMITED and not content.get("level_0_asked"):
-            raise QueueError(
-                f"{self.folder}: an older queue with level 0, which was not requested. Run `grader cohort` again: "
-                "it grades at level 1 or higher, or at 0 if you say --level 0."
-            )
-        return level
+        """The confinement level of every program."""
+        return Level(self.manifest()["level"])
 
     def grading_options(self) -> GradingOptions:
         return GradingOptions(self.level(), bool(self.manifest()["secret"]), may_lower_level=False)
@@ -175,7 +168,6 @@ def prepare_queue(
         "grader_version": grader_version(),
         "secret": options.secret,
         "level": int(level),
-        "level_0_asked": options.level == Level.LIMITED,
         "entries": [asdict(each) for each in entries],
     }
     write_atomically(queue.folder / MANIFEST, (json.dumps(content, indent=1) + "\n").encode())

@@ -56,13 +56,9 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
         "kit.cli.evaluate:compare_command",
         "Test several policies on the same episodes, side by side.",
     ),
-    "crosstable": (
-        "kit.cli.evaluate:crosstable_command",
-        "Train on each group of cases and test on all (resumable).",
-    ),
     "sweep": (
         "kit.cli.sweep",
-        "Train with many seeds, algorithms and rewards (resumable).",
+        "Train with many seeds, algorithms, rewards or groups of cases (resumable).",
     ),
     "study": (
         "kit.cli.study",

@@ -1,8 +1,7 @@
-"""``kit class``: reports what a class did and did not learn; computes the dissertation's own evaluation again."""
+"""``kit class``: reports what a class did and did not learn, and prints the teacher's guide."""
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -27,7 +26,6 @@ def command() -> None:
     \b
     kit class report FILES...   report on exported progress files
     kit class guide             what each lesson teaches, and common errors
-    kit class study             the dissertation's class (same as kit study 5)
 
     Students create progress files with `kit progress export FILE`.
     """
@@ -82,25 +80,6 @@ def report(
         data = build_class_data(roster, read_form(), _items())
         made = build_report(prepare_report(data, method=division), roster.file_count, wanted)
         report_output.write_outputs(made, outputs)
-
-
-@command.command()
-@click.option("--whole", is_flag=True, help="Print everything in the list, not only the list.")
-@report_output.output_options
-@options.workspace
-@click.pass_context
-def study(
-    context: click.Context,
-    whole: bool,
-    outputs: report_output.ReportOutputs,
-    workspace: Path | None,
-) -> None:
-    """Same as `kit study 5`. Print the dissertation's class: its tables beside ours, and its errors."""
-    from kit.cli import study as study_verb
-
-    context.invoke(
-        study_verb.command, number=("5",), whole=whole, workspace=workspace, **dataclasses.asdict(outputs)
-    )
 
 
 @command.command()

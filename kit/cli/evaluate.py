@@ -1,4 +1,4 @@
-"""``kit evaluate``, ``compare`` and ``crosstable``: how good policies are, case by case, side by side, and on other cases."""
+"""``kit evaluate`` and ``compare``: how good policies are, case by case and side by side."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import shutil
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import click
 
@@ -267,65 +267,3 @@ def _draw(policies: tuple[str, ...], workspace: Path | None) -> None:
     columns, _ = shutil.get_terminal_size()
     runs = [find_run(folder, name) for name in policies]
     click.echo("\n".join(draw_test_curves(runs, columns - 1, 16, ENCODERS["braille"](True))))
-
-
-@click.command()
-@click.argument("task", default="hallway")
-@click.option(
-    "--groups", metavar="GROUPS", help="Only these groups, separated by commas; `all` is all cases."
-)
-@click.option("--algo", default="ppo", show_default=True, help="Training algorithm.")
-@click.option("--preset", type=click.Choice(("kit", "seed", "seed-text")), default="kit", show_default=True)
-@click.option("--seed", type=click.IntRange(0, 2**31 - 1), default=0, show_default=True, help="Random seed.")
-@click.option("--steps", type=click.IntRange(1), help="Most steps per group (default: the preset's).")
-@learning_options.episodes
-@click.option("--at-once", type=click.IntRange(1, 64), help="Trainings in parallel (default: one per core).")
-@click.option("--name", help="Name of the table (default: made from task, algorithm and seed).")
-@options.workspace
-def crosstable_command(
-    task: str,
-    groups: str | None,
-    algo: str,
-    preset: Literal["kit", "seed", "seed-text"],
-    seed: int,
-    steps: int | None,
-    episodes: int,
-    at_once: int | None,
-    name: str | None,
-    workspace: Path | None,
-) -> None:
-    """Train one agent per group of TASK's cases, test each on every case, and print the table of success rates.
-
-    You can interrupt it; run the same command to continue.
-
-    `hallway-seed-as-run` is the dissertation's Table 3.5 as it was run, `hallway-seed` as its text describes it;
-    likewise `wheelchairs-seed-as-run` and `wheelchairs-seed` for the agents of its Table 4.6. `hallway` and
-    `wheelchairs` are the kit's own versions. For these tasks, the dissertation's means are printed below the table.
-    """
-    with learning_options.explained_errors():
-        from kit.learning.environment.tasks import TaskSpec
-        from kit.learning.training.algorithms import find_algorithm, require_learn_extra
-        from kit.learning.training.runs import RunConfig
-        from kit.learning.training.training_sweep import case_groups, format_crosstable, train_crosstable
-        from kit.study.printed_tables import printed_means
-
-        if find_algorithm(algo).needs_torch:
-            require_learn_extra()
-        config = RunConfig(TaskSpec(task), algo, preset, seed, steps)
-        chosen = learning_options.split_names(groups) or case_groups(config)
-        folder = (
-            learning_options.runs_folder(workspace).parent
-            / "tables"
-            / (name or f"{config.choice.name}-{algo}-{preset}-{seed}")
-        )
-        try:
-            columns = train_crosstable(
-                folder, config, chosen, episodes=episodes, at_once=at_once, on_progress=click.echo
-            )
-        except KeyboardInterrupt:
-            click.echo(f"\nThe trainings continue in {folder}. Run the same command to follow them.")
-            raise SystemExit(130) from None
-        number, compare = printed_means(task)
-        click.echo("\n".join(format_crosstable(columns, compare)))
-        if compare:
-            click.echo(f"dissertation: means of its Table {number}; `kit study {number}` shows every cell.")

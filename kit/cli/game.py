@@ -7,7 +7,6 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import click
@@ -72,20 +71,7 @@ def _require_open(journal: ProgressJournal, level: GameLevel) -> None:
         options.fail(f"{level.title} {opens_after(level)}. `kit game --plain` lists which levels are open.")
 
 
-RENAMED = MappingProxyType({"film": "replay", "fame": "leaderboard"})
-"""Commands of earlier versions, and what they are called now."""
-
-
-class GameCommands(click.Group):
-    """Takes commands by their earlier names too, and says so."""
-
-    def get_command(self, context: click.Context, name: str) -> click.Command | None:
-        if new := RENAMED.get(name):
-            click.echo(f"`kit game {name}` is now `kit game {new}`.", err=True)
-        return super().get_command(context, new or name)
-
-
-@click.group(cls=GameCommands, invoke_without_command=True)
+@click.group(invoke_without_command=True)
 @options.workspace
 @click.option("--plain", is_flag=True, help="Print the list as text instead of a full screen.")
 @click.pass_context
@@ -432,9 +418,6 @@ def _print_levels(summary: GameSummary) -> None:
         f"Challenges: {won} of {len(summary.challenges)} with a medal; `kit game challenge` lists them."
     )
     click.echo(f"\n{medal_counts(summary)}. `kit game play NAME` drives a level by hand.")
-    first = sum(sum(each.first_edition) for each in found)
-    if first:
-        click.echo(f"First edition: {counted(first, 'star')}.")
 
 
 def _record_drive(

@@ -72,8 +72,6 @@ class PlainLesson:
         self._lines = InputLines(_no_op, input_buffer)
         self._file: FileWatcher | None = None
         self.step = session.first_step
-        self._announced: set[str] = set()
-        """Letters of earlier versions whose new ones were named already."""
         self.is_over = False
 
     def run(self) -> None:
@@ -106,24 +104,12 @@ class PlainLesson:
             if word.isdecimal() and self._is_prediction:
                 self.predict(int(word))
                 return
-            verb = VERBS.get(self._current_letter(word))
+            verb = VERBS.get(word)
             if verb is None or not verb.is_available(self):
-                more = "; c checks the exercise" if word == "r" and _has_exercise(self) else ""
-                raise CommandError(f"{word!r} does nothing here; ? lists what does{more}")
+                raise CommandError(f"{word!r} does nothing here; ? lists what does")
             verb.execute(self, rest)
         except CommandError as error:
             click.echo(str(error))
-
-    def _current_letter(self, word: str) -> str:
-        """The letter of a verb, also for a letter of an earlier version; says once which letter it is now."""
-        verb = VERBS.get(word)
-        letter = None if verb is not None and verb.is_available(self) else OLD_LETTERS.get(word)
-        if letter is None:
-            return word
-        if word not in self._announced:
-            self._announced.add(word)
-            click.echo(f"{word} is now {letter} ({VERBS[letter].word}).")
-        return letter
 
     def show(self) -> None:
         """The step, from its title on."""
@@ -538,5 +524,3 @@ VERBS: Final[Mapping[str, LessonVerb]] = dict(
         ("q", LessonVerb("quit", "quit the lesson", _leave, _always)),
     )
 )  # fmt: skip
-OLD_LETTERS: Final[Mapping[str, str]] = {"w": "r", "p": "u", "g": "l"}
-"""Letters of earlier versions that are still accepted."""

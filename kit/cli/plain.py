@@ -166,8 +166,6 @@ class PlainSession:
         self._session = self._open(scenario)
         if observer is not None:
             self._session.runner.observers.append(observer)
-        self._announced: set[str] = set()
-        """Words of earlier versions whose new ones were named already."""
         self.is_over = False
 
     def answer_clients(self) -> None:
@@ -239,13 +237,6 @@ class PlainSession:
         self._close_world()
         self._session = self._open(scenario)
         self.print_state()
-
-    def current_word(self, word: str) -> str:
-        """The present word for one of an earlier version; says once what it is."""
-        if word not in self._announced:
-            self._announced.add(word)
-            click.echo(f"{word} is now {OLD_WORDS[word]}.")
-        return OLD_WORDS[word]
 
     def reset(self) -> None:
         """Puts the world back to its start."""
@@ -386,20 +377,13 @@ def _parse_numbers(words: Sequence[str], count: int) -> list[float]:
     return numbers
 
 
-OLD_WORDS: Final = {"reset": "restart"}
-"""Words of earlier versions that are still accepted."""
-
-
 def execute_line(plain: PlainSession, line: str) -> None:
     """Executes one line. Errors are printed, and change nothing."""
     try:
         words = shlex.split(line, comments=True)
         if not words:
             return
-        word = words[0].lower()
-        if word in OLD_WORDS:
-            word = plain.current_word(word)
-        verb = VERBS.get(word)
+        verb = VERBS.get(words[0].lower())
         if verb is None:
             raise CommandError(f"there is no command {words[0]!r}; type help for a list")
         verb.execute(plain, words[1:])

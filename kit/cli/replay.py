@@ -143,8 +143,7 @@ def command(
         else [0]
     )
     click.echo(
-        f"not the same run: the poses differ from row {differing_rows[0]} on. Has the world changed since? "
-        "For a game drive recorded by an older kit, use: kit game replay LEVEL"
+        f"not the same run: the poses differ from row {differing_rows[0]} on. Has the world changed since?"
     )
     raise SystemExit(1)
 

@@ -20,8 +20,12 @@ if TYPE_CHECKING:
     from kit.learning.training.tuning import SettingRange
 
 
-def _read_seeds(context: click.Context, parameter: click.Parameter, text: str) -> tuple[int, ...]:
+def _read_seeds(
+    context: click.Context, parameter: click.Parameter, text: str | None
+) -> tuple[int, ...] | None:
     """``5``: the seeds 0 to 4; ``100:110``: 100 to 109; ``3,7``: these."""
+    if text is None:
+        return None
     try:
         if ":" in text:
             low, high = (int(part) for part in text.split(":"))
@@ -62,10 +66,8 @@ def _read_ranges(
 @click.argument("tasks", metavar="TASK ...", nargs=-1, required=True)
 @click.option(
     "--seeds",
-    default="5",
-    show_default=True,
     callback=_read_seeds,
-    help="Number of seeds, or a range (100:110), or a list (3,7).",
+    help="Number of seeds, or a range (100:110), or a list (3,7) (default: 5; with --crosstable 1).",
 )
 @click.option("--algos", default="ppo", show_default=True, help="Algorithms, separated by commas.")
 @click.option(
@@ -79,9 +81,13 @@ def _read_ranges(
 @click.option(
     "--on",
     "cases",
-    default="all",
-    show_default=True,
-    help="Cases or groups, separated by commas; each is trained separately.",
+    help="Cases or groups, separated by commas; each is trained separately (default: all; with --crosstable each group "
+    "of the task, and all).",
+)
+@click.option(
+    "--crosstable",
+    is_flag=True,
+    help="Test each policy on every case of TASK, trained on or not, and print that table.",
 )
 @learning_options.settings_option("NAME=NUMBERS", "several numbers are compared (gamma=0.95,0.99)")
 @click.option(
@@ -118,11 +124,12 @@ def _read_ranges(
 @options.workspace
 def command(
     tasks: tuple[str, ...],
-    seeds: tuple[int, ...],
+    seeds: tuple[int, ...] | None,
     algos: str,
     presets: str,
     rewards: str,
-    cases: str,
+    cases: str | None,
+    crosstable: bool,
     settings: dict[str, tuple[float, ...]],
     ranges: tuple[SettingRange, ...],
     trials: int,
@@ -150,9 +157,16 @@ def command(
     kit sweep hallway --on doors,obstacles,all --executor slurm --jobs 20
     kit sweep turn --set gamma=0.95,0.98,0.99 --set n_steps=64,128
     kit sweep turn --tune gamma=0.9:0.999 --tune learning_rate=1e-4:1e-2
+    kit sweep hallway --crosstable
 
     With --tune the table begins with the settings that need the fewest steps to learn; a seed that has not learned
     counts its most steps, and as many again for its share of failures. Try the best ones on other seeds.
+
+    With --crosstable a column is one group of cases trained on and a row one case tested on; the cells are success
+    rates, means of the seeds. `hallway-seed-as-run` is the dissertation's Table 3.5 as it was run, `hallway-seed` as
+    its text describes it; likewise `wheelchairs-seed-as-run` and `wheelchairs-seed` for the agents of its Table 4.6.
+    `hallway` and `wheelchairs` are the kit's own versions. For these tasks, the dissertation's means are printed below
+    the table.
 
     You can interrupt it, even in the middle of a training; run the same command to continue. With --executor slurm
     it submits an array job of --jobs tasks and waits; dask needs --cluster. The workspace must then be on a disk that
@@ -160,11 +174,22 @@ def command(
 
     Exit code: 0 every training has a result; 1 some failed; 130 interrupted by Ctrl-C.
     """
+    if crosstable and (ranges or goal is not None):
+        raise click.UsageError("--crosstable cannot be combined with --tune or --goal.")
+    seeds = seeds or tuple(range(1 if crosstable else 5))
     with learning_options.explained_errors():
         from kit.host.job_executors import ExecutorUnavailable
+        from kit.learning.environment.tasks import TaskSpec
+        from kit.learning.training.crosstable import case_groups, check_crosstable
         from kit.learning.training.run_check import check_run_config
         from kit.learning.training.runs import NAME_PATTERN, PresetName
-        from kit.learning.training.training_sweep import TrainingSweep, combine
+        from kit.learning.training.training_sweep import (
+            TrainingSweep,
+            combine,
+            problems,
+            sweep_table_csv,
+        )
+        from kit.workspace import write_atomically
 
         split = learning_options.split_names
         known: dict[str, PresetName] = {"kit": "kit", "seed": "seed", "seed-text": "seed-text"}
@@ -174,7 +199,7 @@ def command(
             )
         configs = combine(
             tasks,
-            cases=split(cases) or ("all",),
+            cases=split(cases) or (case_groups(TaskSpec(tasks[0])) if crosstable else ("all",)),
             algorithms=split(algos) or ("ppo",),
             presets=[known[each] for each in split(presets)],
             rewards=split(rewards),
@@ -182,10 +207,13 @@ def command(
             steps=steps,
             settings=settings,
         )
+        if crosstable:
+            check_crosstable(configs)
         for config in configs:
             if config.seed == seeds[0]:
                 check_run_config(config)
-        title = name or "-".join([*(config.choice.name for config in configs[:1]), *split(algos)])[:90]
+        words = [configs[0].choice.name, *split(algos), *(["crosstable"] if crosstable else [])]
+        title = name or "-".join(words)[:90]
         if not NAME_PATTERN.fullmatch(title):
             options.fail(
                 f"{title}: a sweep's name may contain letters, digits, '_', '-' and '.'; set one with --name."
@@ -203,7 +231,15 @@ def command(
         except KeyboardInterrupt:
             click.echo("\nFinished training is kept; run the same command to continue.", err=True)
             raise SystemExit(130) from None
-        failed = _publish(sweep, goal, csv_file, as_json=as_json, best_first=bool(ranges))
+        if csv_file is not None:
+            write_atomically(csv_file, sweep_table_csv(sweep).encode())
+        failed = problems(sweep)
+        if crosstable:
+            _print_crosstable(sweep, failed, as_json=as_json)
+        else:
+            _print_table(sweep, goal, failed, as_json=as_json, best_first=bool(ranges))
+        for line in failed:
+            click.echo(line, err=True)
     raise SystemExit(1 if failed else 0)
 
 
@@ -255,29 +291,38 @@ def run_sweep(sweep: TrainingSweep, executor: str, jobs: int, cluster: str) -> N
             make_pool(sweep, jobs, count).run()
 
 
-def _publish(
-    sweep: TrainingSweep, goal: float | None, csv_file: Path | None, *, as_json: bool, best_first: bool
-) -> bool:
-    """Prints the table. Returns whether a training has failed."""
+def _print_table(
+    sweep: TrainingSweep, goal: float | None, failed: Sequence[str], *, as_json: bool, best_first: bool
+) -> None:
     from dataclasses import asdict
 
-    from kit.learning.training.training_sweep import (
-        format_sweep_table,
-        problems,
-        sweep_rows,
-        sweep_table_csv,
-    )
-    from kit.workspace import write_atomically
+    from kit.learning.training.training_sweep import format_sweep_table, sweep_rows
 
-    rows, failed = sweep_rows(sweep, goal), problems(sweep)
+    rows = sweep_rows(sweep, goal)
     if best_first:
         rows = tuple(sorted(rows, key=lambda row: row.cost))
-    if csv_file is not None:
-        write_atomically(csv_file, sweep_table_csv(sweep).encode())
     if as_json:
         click.echo(json.dumps({"rows": [asdict(row) for row in rows], "problems": failed}, indent=2))
     else:
         click.echo("\n".join(format_sweep_table(rows)))
-    for line in failed:
-        click.echo(line, err=True)
-    return bool(failed)
+
+
+def _print_crosstable(sweep: TrainingSweep, failed: Sequence[str], *, as_json: bool) -> None:
+    """Tests what is untested and prints the cross table, below it the dissertation's means."""
+    from dataclasses import asdict
+
+    from kit.learning.training.crosstable import crosstable_columns, format_crosstable
+    from kit.study.printed_tables import printed_means
+
+    columns = crosstable_columns(sweep)
+    if as_json:
+        found = [asdict(column) for column in columns]
+        click.echo(json.dumps({"columns": found, "problems": failed}, indent=2))
+        return
+    if columns:
+        number, compare = printed_means(sweep.entries()[0].config.choice.task)
+        click.echo("\n".join(format_crosstable(columns, compare)))
+        if compare:
+            click.echo(f"dissertation: means of its Table {number}; `kit study {number}` shows every cell.")
+    if waiting := len(sweep.waiting()) - len(failed):
+        click.echo(f"{waiting} of {len(sweep.entries())} trainings have no result yet.")

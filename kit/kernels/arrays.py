@@ -264,18 +264,8 @@ class StepOutputs(NamedTuple):
     readings: Float32Array
 
 
-class Step(NamedTuple):
-    """A step that several threads may make together."""
-
-    progress: IntArray
-    """(``kit.kernels.batch_step.COUNTS``,): zeros at first."""
-    rules: StepRules
-    inputs: StepInputs
-    outputs: StepOutputs
-
-
 class StepScratch(NamedTuple):
-    """Arrays for one thread alone."""
+    """Arrays that a step writes to besides its outputs; the next one writes over them."""
 
     hulls: Shapes
     seen_hulls: Shapes

@@ -1,5 +1,4 @@
-"""How kernels are compiled: on first use, kept on disk, called without working out types, or handed to C code; and
-counts that threads share.
+"""How kernels are compiled: on first use, kept on disk, called without working out types, or handed to C code.
 
 What numba keeps on disk holds until one of the files of this folder is edited.
 """
@@ -12,8 +11,6 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
-from numba import types
-from numba.extending import intrinsic
 
 SOURCE_STAMP = tuple(
     (file.name, file.stat().st_mtime, file.stat().st_size)
@@ -77,33 +74,6 @@ def compiled_for(function: FunctionT, arguments: tuple[Any, ...]) -> FunctionT:
     types = tuple(map(typeof, arguments))
     kernel.compile(types)
     return cast(FunctionT, kernel.get_overload(types))
-
-
-def _intrinsic(function: Any) -> Any:
-    """As numba's; by its types a call would have to pass the context too."""
-    return intrinsic(function)
-
-
-@_intrinsic
-def fetch_add(context: Any, array: Any, place: Any, amount: Any) -> Any:
-    """Adds to a number of an array, as one undivided operation; returns what it was."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
-        return builder.atomic_rmw("add", builder.gep(data, [arguments[1]]), arguments[2], "seq_cst")
-
-    return types.int64(array, types.intp, types.int64), generate
-
-
-@_intrinsic
-def load_count(context: Any, array: Any, place: Any) -> Any:
-    """Reads a number of an array that other threads add to; what they wrote before is there then."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
-        return builder.load_atomic(builder.gep(data, [arguments[1]]), "acquire", 8)
-
-    return types.int64(array, types.intp), generate
 
 
 class TypedKernel:

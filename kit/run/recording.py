@@ -167,9 +167,8 @@ def save_recording(recording: Recording, file: Path) -> None:
         "step_size": recording.step_size,
         "models": recording.models,
         "inputs": [(each.tick, each.kind, each.content) for each in recording.inputs],
+        "level": recording.level,
     }
-    if recording.level is not None:
-        header["level"] = recording.level
     data = io.BytesIO()
     np.savez_compressed(
         data,
@@ -219,7 +218,7 @@ def _recording_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Recording:
         tuple(Input(int(tick), str(kind), tuple(content)) for tick, kind, content in header["inputs"]),
         poses.reshape(-1, 3),
         counts,
-        None if header.get("level") is None else str(header["level"]),
+        None if header["level"] is None else str(header["level"]),
     )
 
 

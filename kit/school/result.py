@@ -233,8 +233,6 @@ class GradingResult:
             tests=tuple(_criterion_from_dict(each) for each in content["tests"]),
             notices=tuple(content["notices"]),
             timing=GradingTiming(**content["timing"]),
-            secret_steps=content.get("secret_steps", 0),
-            public_version=content.get("public_version", ""),
         )
 
     def without_secrets(self) -> GradingResult:
@@ -255,12 +253,12 @@ class GradingResult:
         return replace(self.without_secrets(), tests=tuple(test.for_student() for test in self.tests))
 
 
-_OWN_READING: Final = ("tests", "notices", "timing", "secret_steps", "public_version")
+_OWN_READING: Final = ("tests", "notices", "timing")
 """Fields of a result that ``from_dict`` does not take as they are."""
 
 
 def _criterion_from_dict(content: Mapping[str, Any]) -> CriterionResult:
-    if content.get("is_withheld"):
+    if content["is_withheld"]:
         status = content["status"] or CriterionStatus.SKIPPED
         content = {**content, "status": status, "points": 0.0, "max_points": 0.0}
     return CriterionResult(

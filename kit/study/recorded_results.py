@@ -302,8 +302,8 @@ def _read_line(file: Path, number: int, line: str) -> Event:
             return RecordedSettings(**content)
         if event == "path":
             return _read_path(content)
-        content["own_cases"] = tuple(content.get("own_cases", ()))
-        content["sessions"] = tuple(TrainingSession(*each) for each in content.get("sessions", ()))
+        content["own_cases"] = tuple(content["own_cases"])
+        content["sessions"] = tuple(TrainingSession(*each) for each in content["sessions"])
         test = RecordedTest(**content)
         counts = [test.steps, test.episodes, *test.reached.values()]
         counts += [count for each in test.sessions for count in each[:4]]

@@ -288,7 +288,7 @@ def _overview(chapter: StudyChapter, workspace: Workspace | None) -> ReportChapt
     names = "; ".join(f"{VARIANT_NAMES[each]}: {_VARIANT_WORDS[each]}" for each in VARIANTS)
     notes = [f"Recorded agents, {names}. `kit study NUMBER` shows one."]
     if chapter.number == 5:
-        notes.append("`kit study 5 --whole` is all of it at once; `kit class study` is `kit study 5`.")
+        notes.append("`kit study 5 --whole` is all of it at once.")
     if failing := _failure_counts(chapter, workspace):
         notes.append(
             f"Cells whose 95 % interval lies below the printed number: {failing}; each table names its own."

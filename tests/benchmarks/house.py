@@ -1,6 +1,6 @@
 """How large and how tangled the code is, with the figures of the first build beside each: ``python tests/benchmarks/house.py``.
 
-Counts modules, lines, import circles, repeated class names and names that the house does not use any more.
+Counts modules, lines, import circles and repeated class names.
 ``--tests`` also times the README's test command (minutes). The figures are no quota: they tell whether it got simpler.
 """
 
@@ -38,28 +38,6 @@ NAMED_TWICE_BY_ROS: Final = {
     "Shutdown": "of launch.actions, and of launch.events",
 }
 """Classes of two modules of ROS 2 that have one name there, and so here."""
-
-PRESCRIBED: Final = frozenset({"grader.archives:tell", "kit.ros.action.client:accepted"})
-"""Names that Python's ``BinaryIO`` and rclpy's ``ClientGoalHandle`` prescribe."""
-
-_OLD_NAMES: Final = """
-    Seat seat DESK DESK_LEVEL DESK_BOUNDS open_desk Trip Guest Companion converse Place Showing _Standing tell
-    accepted called ticked allow Stage StandingModel Site GuestError Embassy Delegation Mirror Census Cage Rung
-    condemn hang_up Pump LonePump PipePump Door Visit Visitor Line Standing Logbook look Looks Examined Examiner
-    Courses Ground TaskChoice Falling Rollouts deal remember recall foresee begin_again lay_out Judged Chance Said
-    Caution Running Following Workbench Look Trouble StillScreen Ride Comfort Follower Course Ways Floor Sacrifice
-    HAIR displayable Sort SORT Sheet _Look gather Order Talk Eye Ear Heard Told Intake obey sayable Wishes Mistake
-    Study Search new_gaze Gaze read_odometry forward Places allows greedily_apart Group leave decide Refused Made
-"""
-"""The left column of the rename table: classes, functions, methods and constants."""
-
-_OLD_MODULES: Final = """
-    seat desk trip turns places showing telling stage site embassy delegation verdicts standing tally courses arena
-    choice enclosure extra works shelf sitting words roll gathering fame guide aside credit painting picture stamps
-    travel shares walk slots dropping existing composing touching agenda instants running traffic stand_ins own
-    edition shield ladder pump door visit visitor strategies look following workbench
-"""
-"""The left column of the rename table: modules."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,41 +141,8 @@ def repeated_classes(trees: dict[str, ast.Module]) -> list[str]:
     return sorted(twice - NAMED_TWICE_BY_ROS.keys())
 
 
-def assigned_names(scope: ast.Module | ast.ClassDef) -> list[str]:
-    """Names given at the top of a module or class; a local variable is nobody else's word."""
-    names: list[str] = []
-    for node in scope.body:
-        targets = (
-            node.targets
-            if isinstance(node, ast.Assign)
-            else [node.target]
-            if isinstance(node, ast.AnnAssign)
-            else []
-        )
-        names += [target.id for target in targets if isinstance(target, ast.Name)]
-    return names
-
-
-def old_names(trees: dict[str, ast.Module]) -> list[str]:
-    """Definitions and modules that still carry a name of the rename table's left column."""
-    found: set[str] = set()
-    for module, tree in trees.items():
-        if FIXED_BY_ROS.intersection(module.split(".")):
-            continue
-        if module.rpartition(".")[2] in _OLD_MODULES.split():
-            found.add(module)
-        for node in ast.walk(tree):
-            names: list[str] = []
-            if isinstance(node, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
-                names = [node.name]
-            if isinstance(node, (ast.Module, ast.ClassDef)):
-                names += assigned_names(node)
-            found.update(f"{module}:{name}" for name in names if name in _OLD_NAMES.split())
-    return sorted(found - PRESCRIBED)
-
-
 def figures() -> tuple[list[Figure], list[str]]:
-    """Every figure that reading the code gives, and the names behind those that should be none."""
+    """Every figure that reading the code gives, and the class names that are defined twice."""
     paths = sources()
     texts = {module_name(path): path.read_text(encoding="utf-8") for path in paths}
     trees = {module: ast.parse(text) for module, text in texts.items()}
@@ -216,7 +161,7 @@ def figures() -> tuple[list[Figure], list[str]]:
     ]
     layers = next(each["layers"] for each in contract if each["type"] == "layers")
     children = [path for path in (ROOT / "kit").iterdir() if not path.name.startswith(("_", "."))]
-    repeated, old = repeated_classes(trees), old_names(trees)
+    repeated = repeated_classes(trees)
     rows = [
         Figure("import circles at import time", circles(at_import), "none"),
         Figure("import circles at run time", circles(at_run_time), "4, 4, 2"),
@@ -229,10 +174,8 @@ def figures() -> tuple[list[Figure], list[str]]:
         Figure("lines of the median module", f"{statistics.median(lines.values()):.0f}", "96"),
         Figure("lines of the median function", f"{statistics.median(lengths):.0f}", "5"),
         Figure("share of header lines", f"{headers / sum(lines.values()):.1%}", "13.9%"),
-        Figure("names of the rename table's left column", str(len(old)), "302"),
     ]
-    notes = [f"defined twice: {name}" for name in repeated] + [f"old name: {name}" for name in old]
-    return rows, notes
+    return rows, repeated
 
 
 def test_seconds() -> Figure:
@@ -246,8 +189,8 @@ def test_seconds() -> Figure:
 
 
 def main(arguments: list[str]) -> int:
-    """Prints the report; ``--names`` also lists the names that should be none."""
-    rows, notes = figures()
+    """Prints the report; ``--names`` also lists the class names that are defined twice."""
+    rows, repeated = figures()
     if "--tests" in arguments:
         rows.append(test_seconds())
     width = max(len(row.name) for row in rows)
@@ -255,7 +198,7 @@ def main(arguments: list[str]) -> int:
     for row in rows:
         print(f"{row.name:{width}}  {row.now:>10}  {row.first_build}")
     if "--names" in arguments:
-        print(*notes, sep="\n")
+        print(*repeated, sep="\n")
     return 0
 
 

@@ -10,6 +10,7 @@ start of the process and the final test.
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import time
 from collections.abc import Callable, Iterable
@@ -25,13 +26,15 @@ from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.evaluation import EvaluationResult, Evaluator
 from kit.learning.training.algorithms import ALGORITHMS
+from kit.learning.training.crosstable import case_groups, crosstable_columns, format_crosstable
 from kit.learning.training.events import Evaluated, TrainingEnded
 from kit.learning.training.presets import KIT_PPO_HALLWAY, KIT_PPO_TURN
 from kit.learning.training.run_text import success_shares
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run
 from kit.learning.training.student_reward import StudentReward
+from kit.learning.training.sweep_worker import make_pool
 from kit.learning.training.training import make_learner, train
-from kit.learning.training.training_sweep import case_groups, format_crosstable, train_crosstable
+from kit.learning.training.training_sweep import TrainingSweep, combine
 from kit.study.printed_tables import printed_means
 
 FIRST_SEED = 6000
@@ -155,10 +158,12 @@ def left_out(folder: Path, seeds: Seeds) -> None:
 
 def table(folder: Path, seeds: Seeds) -> None:
     """Table 3.5: every column's mean above the dissertation's."""
-    config = RunConfig(TaskSpec("hallway"), seed=seeds(1)[0])
-    columns = train_crosstable(
-        folder / "table", config, case_groups(config), on_progress=lambda text: print(f"  {text}", flush=True)
+    groups = case_groups(TaskSpec("hallway"))
+    sweep = TrainingSweep.prepare(
+        folder / "table", combine(("hallway",), cases=groups, seeds=seeds(1)[:1]), 500
     )
+    make_pool(sweep, os.cpu_count() or 1, lambda key: print(f"  {key} trained", flush=True)).run()
+    columns = crosstable_columns(sweep)
     print("\n".join(f"  {row}" for row in format_crosstable(columns, printed_means("hallway")[1])))
 
 

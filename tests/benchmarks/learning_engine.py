@@ -1,8 +1,8 @@
 """What a step of an environment costs: ``python tests/benchmarks/learning_engine.py``.
 
 One step is: move, look for collisions, scan with 91 noisy rays, observe, reward, end, begin anew. The dissertation's
-robot, as the polygons of its file, drives at random among the 20 walls of the map ``slalom``, on one thread unless the
-line says more. Every figure is the best of ``REPEATS``, but for threads and processes.
+robot, as the polygons of its file, drives at random among the 20 walls of the map ``slalom``, on one thread.
+Every figure is the best of ``REPEATS``.
 
 Where ir-sim or VMAS is installed (they are no part of the kit), the same walls and as many rays are given to them, and
 the ratio is printed. They do other things besides: ir-sim keeps Python objects, VMAS solves contacts.
@@ -11,8 +11,6 @@ the ratio is printed. They do other things besides: ir-sim keeps Python objects,
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -30,14 +28,11 @@ from kit.learning.environment.env import TaskEnv
 from kit.learning.environment.rewards import PROGRESS
 from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, LearningTask, StartVariation
 from kit.learning.environment.transition import Array, Transition
-from kit.learning.environment.world_threads import available_threads
 from kit.world.catalogue import find_map
 
 REPEATS = 12
 SECONDS = 0.25
 """Each repeat takes about so long."""
-TURNS = 25
-"""Threads and processes are measured in turns, so many times each."""
 MAP = "slalom"
 RAYS = 91
 PEERS_AT_ONCE = 1024
@@ -88,56 +83,6 @@ def students(transition: Transition) -> Array:
     """A reward as a student may write it, for all worlds at once."""
     reward = transition.previous_to_go - transition.to_go
     return reward[:, 0] - 0.01 - 2.0 * transition.collided + 2.0 * transition.reached
-
-
-def windows(n: int, threads: int) -> Iterator[float]:
-    """Steps per second of one world, in one window of time after another."""
-    step = driving(BatchEnv(SLALOM, n, seed=0, threads=threads))
-    while True:
-        start, count = time.perf_counter(), 0
-        while (passed := time.perf_counter() - start) < SECONDS:
-            step()
-            count += 1
-        yield count * n / passed
-
-
-def answer_windows(n: int) -> None:
-    """Prints the rate of one window for each line of the standard input."""
-    rates = windows(n, 1)
-    print(next(rates), flush=True)
-    for _ in sys.stdin:
-        print(next(rates), flush=True)
-
-
-def threaded(n: int, threads: int) -> tuple[float, float, float]:
-    """Steps per second of ``n`` worlds on several threads, of as many processes together with ``n`` worlds each, and the ratio. The two
-    take turns, so that what else the machine does is shared out; medians."""
-    code = f"import learning_engine as engine; engine.answer_windows({n})"
-    processes = [
-        subprocess.Popen(
-            [sys.executable, "-c", code],
-            cwd=Path(__file__).parent,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        for _ in range(threads)
-    ]
-    asked = [(each.stdin, each.stdout) for each in processes if each.stdin and each.stdout]
-    for _, answers in asked:
-        answers.readline()
-    together, pairs = windows(n, threads), []
-    for _ in range(TURNS):
-        for questions, _ in asked:
-            questions.write("\n")
-            questions.flush()
-        apart = sum(float(answers.readline()) for _, answers in asked)
-        pairs.append((next(together), apart))
-    for process in processes:
-        process.communicate()
-    rates = np.array(pairs)
-    ratio = float(np.median(rates[:, 0] / rates[:, 1]))
-    return float(np.median(rates[:, 0])), float(np.median(rates[:, 1])), ratio
 
 
 def single() -> float:
@@ -259,12 +204,6 @@ def main() -> None:
     for n, rate in rates.items():
         shown(f"batch of {n}: tutorial 2's robot", rate)
     engine = max(rates.values())
-    threads = available_threads()
-    if threads > 1:
-        together, apart, ratio = threaded(4096, threads)
-        shown(f"batch of 4096 on {threads} threads", together)
-        shown(f"{threads} processes, a batch of 4096 each", apart)
-        print(f"{'the threads reach of what the processes reach':58} {ratio:12.2f}")
     shown("batch of 1024: the hallway study's, two looks, algorithm 1", ours(SLALOM_2, 1024))
     shown("batch of 1024: all fifteen hallways at once", ours(HALLWAY, 1024))
     shown("batch of 1024: two wheelchairs on nine cases", ours(WHEELCHAIRS, 1024))

@@ -2,11 +2,9 @@
 
 from pathlib import Path
 
-import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.cli.game import RENAMED
 
 
 def result_of(folder: Path, *words: str):
@@ -21,17 +19,6 @@ def test_a_replay_without_a_full_screen_says_whose_drive_it_is_and_how_long(tmp_
     missing = result_of(tmp_path, "replay", "first-drive", "--driver", "keys")
     assert missing.exit_code == 2
     assert "no drive" in missing.output
-
-
-@pytest.mark.parametrize("old", RENAMED)
-def test_commands_of_earlier_versions_work_and_say_their_new_name_once(tmp_path: Path, old: str) -> None:
-    words = ("first-drive",) if RENAMED[old] == "replay" else ()
-    old_way, new_way = result_of(tmp_path, old, *words), result_of(tmp_path, RENAMED[old], *words)
-    assert old_way.exit_code == new_way.exit_code == 0
-    assert old_way.stdout == new_way.stdout
-    assert old_way.stderr.count(f"kit game {RENAMED[old]}") == 1
-    assert not new_way.stderr
-    assert f"\n  {old} " not in result_of(tmp_path, "--help").output
 
 
 def test_a_race_of_a_program_that_stops_fails_and_says_where(tmp_path: Path) -> None:

@@ -90,7 +90,7 @@ MISTAKES = {
     "no range": (("train", "turn", "--drift", "1:"), "neither a number nor a range"),
     "kinds without a sweep": (("evaluate", "--kinds", "drift"), "--sweep"),
     "no such file": (("evaluate", "gone.npz"), "gone.npz"),
-    "unknown group": (("crosstable", "hallway", "--algo", "sarsa", "--groups", "stairs"), "stairs"),
+    "unknown group": (("sweep", "hallway", "--crosstable", "--algos", "sarsa", "--on", "stairs"), "stairs"),
 }
 
 

@@ -198,3 +198,14 @@ def test_a_run_that_was_killed_goes_on_where_it_was(tmp_path: Path) -> None:
     assert "90,000 steps" in result.stdout
     assert "timed out" in (tmp_path / "svg" / "figure-3-5.svg").read_text()
     assert "90,000 steps" in study(tmp_path, "figure", "3.6").stdout
+
+
+@pytest.mark.long
+def test_the_evaluation_s_histograms_are_drawn_beside_its_list(tmp_path: Path) -> None:
+    done = study(tmp_path / "none", "5", "--svg", str(tmp_path))
+    assert done.exit_code == 0, done.output
+    assert done.stdout == study(tmp_path / "none", "5").stdout
+    made = {each.name for each in tmp_path.iterdir()}
+    assert {"prior-bars.svg", "prior-histogram.svg", "gained-bars.svg", "quiz-histogram.svg"} <= made
+    # Figures 5.6a, 5.7a and 5.7b: one histogram for each of the topics that were rated before.
+    assert len([name for name in made if name.startswith("prior-q")]) >= 3

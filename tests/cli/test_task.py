@@ -167,7 +167,7 @@ def test_a_task_of_ones_own_from_file_to_table(tmp_path: Path) -> None:
         assert "turn_a_to_b" in kit(*verb).output
     assert "mine" in kit("runs").output
     task.write_text(text)
-    folder = ("crosstable", "mine", "--algo", "sarsa", "--steps", 4000, "--episodes", 5)
+    folder = ("sweep", "mine", "--crosstable", "--algos", "sarsa", "--steps", 4000, "--episodes", 5)
     for _ in range(2):  # the second time it only reads
         assert "turn_b_to_a" in kit(*folder).output
 

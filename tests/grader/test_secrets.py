@@ -395,25 +395,6 @@ def test_short_secret_seeds_are_warned_about(tmp_path: Path, verb: str) -> None:
     assert short_seeds_warning([]) == ""
 
 
-def test_results_of_before_are_still_read() -> None:
-    made = GradingResult(
-        "reach",
-        "v1",
-        "abc",
-        "0.1",
-        "public",
-        1,
-        "linux",
-        (CriterionResult("a", "A", CriterionStatus.PASS, 1, 1),),
-    )
-    content = made.as_dict()
-    del content["secret_steps"]
-    del content["public_version"]
-    for key in ("uses_secrets", "teacher_note", "is_withheld"):
-        del content["tests"][0][key]
-    assert GradingResult.from_dict(content) == made
-
-
 def test_no_digest_of_the_secrets_is_shown(tmp_path: Path) -> None:
     """Anybody could compute it for all short seeds."""
     one, other = (

@@ -82,7 +82,7 @@ def given(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
 
 
 def level_on(map_name: str, case: str, seconds: float = 6.0) -> GameLevel:
-    return GameLevel("test", "Test", map_name, case, 0.0, "", (), 0, time_limit=seconds)
+    return GameLevel("test", "Test", map_name, case, "", (), 0, time_limit=seconds)
 
 
 def trial_on(map_name: str, case: str | None, seconds: float) -> Trial:

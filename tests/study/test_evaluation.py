@@ -201,7 +201,7 @@ def test_the_report_names_every_slip() -> None:
 
 @pytest.mark.long
 def test_the_verb_fits_eighty_columns_and_ascii() -> None:
-    result = CliRunner().invoke(main, ["class", "study", "--whole", "--glyphs", "ascii"])
+    result = CliRunner().invoke(main, ["study", "5", "--whole", "--glyphs", "ascii"])
     assert result.exit_code == 0
     assert max(map(len, result.stdout.splitlines())) <= 79
     assert result.stdout.isascii()

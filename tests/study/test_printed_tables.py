@@ -13,7 +13,7 @@ from gymnasium.spaces import Discrete
 from kit.cli import main
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.tasks import find_task, task_names
-from kit.learning.training.training_sweep import GroupResult
+from kit.learning.training.crosstable import CrosstableColumn
 from kit.study.evaluation import evaluation_plots, read_evaluation_data
 from kit.study.pairs import TABLE_46, TABLE_53
 from kit.study.printed_tables import (
@@ -51,7 +51,7 @@ def test_table_3_5_gives_its_own_means_and_deviations_but_for_the_named_slip() -
     for column, group in zip(table.columns, table.groups, strict=True):
         cells = table.case_cells(column)
         assert len(cells) == 15
-        ours = GroupResult(group, 0, 0.0, cells)
+        ours = CrosstableColumn(group, 0, 0.0, cells)
         for row, value in (("mean", ours.mean), ("SD", ours.spread)):
             assert round(value, 3) == slips.pop((row, column), table.cell(row, column))
     assert slips == {}
@@ -138,7 +138,7 @@ def test_every_command_that_is_named_can_be_given() -> None:
         command = main.get_command(click.Context(main), verb)
         assert command is not None
         command.make_context(verb, [*words])  # raises where an option or a value is wrong
-        if verb in ("train", "sweep", "crosstable"):
+        if verb in ("train", "sweep"):
             assert words[0] in task_names()
 
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
-from kit.kernels import batch_step, grids, kernels
-from kit.kernels.arrays import Step, StepInputs, StepMoves
+from kit.kernels import grids, kernels
+from kit.kernels.arrays import StepInputs, StepMoves
 from kit.learning.environment.actions import Commands, DiscreteActions, TwistTable
 from kit.learning.environment.batch_loops import BatchLoops
 from kit.learning.environment.batch_map import BatchMap
@@ -24,7 +24,6 @@ from kit.learning.environment.transition import (
     bearing_of_target,
     distance_to_target,
 )
-from kit.learning.environment.world_threads import StartedStep, WorldThreads
 from kit.learning.tasks.learning_task import (
     AvoidGoal,
     CoverGoal,
@@ -61,7 +60,7 @@ class BatchEnv:
     Cases are dealt in turn: episode k of world i runs case number ``first + i + k``, counted round and round, so that
     every case gets equally many episodes; or, if ``fixed_cases``, number ``first + i``, so that they get equally many steps.
     ``reward``: instead of the task's own. ``autoreset``: whether a world whose episode has ended begins its next one
-    in the same step; else it waits for ``reset``. ``threads``: at most so many step the worlds, to the same bits as one.
+    in the same step; else it waits for ``reset``.
     Raises UnsupportedWorld for a map that it cannot represent.
     """
 
@@ -78,7 +77,6 @@ class BatchEnv:
         first: int = 0,
         autoreset: bool = True,
         fixed_cases: bool = False,
-        threads: int = 1,
     ) -> None:
         self.task = task
         self.n = n
@@ -88,9 +86,6 @@ class BatchEnv:
         self._reward_function: RewardFunction = task.reward if reward is None else reward
         self._case_arrays = CaseArrays(task)
         self._goal = GoalCount(task, self._case_arrays)
-        known = self._reward_function
-        self._is_scan_rewarded = not isinstance(known, Reward) or known.reads_ranges
-        """Whether rewards depend on the scan of their step, or may."""
         self._is_disturbed = bool(task.disturbances)
         self._is_told_later = isinstance(task.goal, WallGoal)
         """Whether what is seen is counted, and told in the next step; else what is counted is seen at once."""
@@ -100,10 +95,7 @@ class BatchEnv:
         self._has_ways = self._goal.has_targets and not self._has_leaders
         self._far, self._no_heading = np.full((n, task.robots), FAR), np.zeros(n)
         self._parts, self._frames = task.observation.part_slices(), task.observation.frames
-        self._is_scan_used = self._is_told_later or self._frames > 1
-        """Whether the scan of a step is used before its rewards are."""
-        self._loops = BatchLoops(task, self._case_arrays, has_ways=self._has_ways)
-        self._threads = WorldThreads(threads)
+        self._loops = BatchLoops(task, self._case_arrays, n, has_ways=self._has_ways)
         self._maps = np.zeros(n, dtype=np.int64)
         """(n,) the map of each world's present case."""
         self._actions = (
@@ -225,29 +217,24 @@ class BatchEnv:
         """
         if len(actions) != self.n:
             raise ValueError(f"{self.n} worlds need {self.n} actions, not {len(actions)}")
-        transition, seen, started = self._simulate(self._actions.commands(actions, self.task.robots))
+        transition, seen = self._simulate(self._actions.commands(actions, self.task.robots))
         terminated, truncated = self.task.endings(transition)
         over = transition.ended.nonzero()[0]
         fresh = self._begin_next(over) if len(over) and self._autoreset else None
-        if self._is_scan_rewarded:
-            started.finish()
         rewards, terms = self._reward(transition)
-        started.finish()
         last = seen[over]
         if fresh is not None:
             seen[over] = fresh
         return BatchStep(seen, rewards, terminated, truncated, last, transition, terms)
 
-    def _simulate(self, commands: Commands) -> tuple[Transition, Float32Array, StartedStep]:
-        """Moves every world by these commands; what happened, and what agents see then. ``ranges`` of the one and the numbers of
-        rays in the other are there when the step is finished."""
+    def _simulate(self, commands: Commands) -> tuple[Transition, Float32Array]:
+        """Moves every world by these commands; what happened, and what agents see then."""
         task, old = self.task, self._state
         step, twists, move = old.step + 1, np.ascontiguousarray(commands.twists), commands.moves
         disturbed, moves = self._drive(twists)
         bodies = self._bodies_at_checks()
         target = self._followed(old.target, bodies[-1])
         noise, dropped = self._scan_disturbances(ALL_WORLDS, disturbed, self.n)
-        made = self._loops.allocate_step(self.n)
         inputs = StepInputs(
             maps=self._maps,
             moves=moves,
@@ -262,8 +249,7 @@ class BatchEnv:
             noise_std=noise,
             dropped=dropped,
         )
-        whole = Step(np.zeros(batch_step.COUNTS, dtype=np.int64), self._loops.rules, inputs, made)
-        started = self._threads.start(whole, self._loops.scratch)
+        made = self._loops.step(inputs)
         pose, hit = made.poses, made.collided
         self._state = new = BatchState(
             episode=old.episode,
@@ -288,8 +274,6 @@ class BatchEnv:
         )
         nearest = self._nearest_obstacles(bodies[-1], pose)
         in_target, to_go = new.in_target, new.to_go  # of this step's target; the next one's may follow
-        if self._is_scan_used:
-            started.finish()
         if self._is_told_later:
             seen = self._complete(made.readings, ALL_WORLDS, is_fresh=False)
             self._count(new, old.pose, hit, nearest, made.ranges)
@@ -321,7 +305,7 @@ class BatchEnv:
             previous_achieved=self._achieved(old),
             collision_ends=task.collision_ending != "continues",
         )
-        return transition, seen, started
+        return transition, seen
 
     def _drive(self, twists: FloatArray) -> tuple[DisturbanceState, StepMoves]:
         """The state of the disturbances once ``twists`` are sent, and how the robots move in this step."""
@@ -455,7 +439,6 @@ class BatchEnv:
     def _begin_next(self, over: IntArray) -> Float32Array:
         """Begins the next episodes of the worlds ``over`` (m); (m, size) what agents see of them."""
         self._state.unshare_arrays()
-        self._maps = self._maps.copy()
         self._state.episode[over] += 1
         self._begin_episodes(over)
         return self._observe(over, len(over), is_fresh=True)

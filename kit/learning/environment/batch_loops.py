@@ -9,7 +9,7 @@ import numpy as np
 from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
 from kit.kernels import batch_step, compilation, grids, world_kernels
-from kit.kernels.arrays import StepOutputs, StepRules
+from kit.kernels.arrays import StepInputs, StepOutputs, StepRules
 from kit.learning.environment.batch_map import hulls_in_lidar_frame
 from kit.learning.environment.case_arrays import CELL, CaseArrays
 from kit.learning.environment.observations import RAY_COUNT
@@ -31,8 +31,8 @@ class BatchScan(NamedTuple):
 class BatchLoops:
     """The loops for a task's cases; the arrays that they fill are of m worlds."""
 
-    def __init__(self, task: LearningTask, case_arrays: CaseArrays, *, has_ways: bool) -> None:
-        """``has_ways``: whether targets stand, so that tables have the ways to them."""
+    def __init__(self, task: LearningTask, case_arrays: CaseArrays, n: int, *, has_ways: bool) -> None:
+        """``n``: how many worlds a step is of. ``has_ways``: whether targets stand, so that tables have the ways to them."""
         self._robots, self._frame_size = task.robots, task.observation.frame_size
         lidar = case_arrays.lidar
         single_rays, sectors = task.observation.ray_tables(task.robots)
@@ -56,17 +56,18 @@ class BatchLoops:
             sectors=sectors,
         )
         """What is the same in every step."""
-        self.scratch = batch_step.allocate_scratch(self.rules, task.robots)
-        """Of the thread that steps the batch."""
+        self._scratch = batch_step.allocate_scratch(self.rules, n, task.robots)
+        self._step = compilation.TypedKernel(batch_step.step_batch)
         self._find_arrivals = compilation.TypedKernel(world_kernels.find_arrivals)
         self._interpolate = compilation.TypedKernel(grids.interpolate_tables)
         self._carry = compilation.TypedKernel(world_kernels.carry_lidars)
         self._scan = compilation.TypedKernel(world_kernels.scan_worlds)
 
-    def allocate_step(self, m: int) -> StepOutputs:
-        """Arrays for a step of ``m`` worlds."""
-        shape, scan = (m, self._robots), self.allocate_scan(m)
-        return StepOutputs(
+    def step(self, inputs: StepInputs) -> StepOutputs:
+        """Makes one step of all ``n`` worlds."""
+        n = len(inputs.maps)
+        shape, scan = (n, self._robots), self._allocate_scan(n)
+        outputs = StepOutputs(
             poses=np.empty((*shape, 3)),
             clearance=np.empty(shape),
             collided=np.empty(shape, dtype=np.bool_),
@@ -78,8 +79,10 @@ class BatchLoops:
             ranges=scan.ranges,
             readings=scan.frame,
         )
+        self._step(self.rules, self._scratch, inputs, outputs)
+        return outputs
 
-    def allocate_scan(self, m: int) -> BatchScan:
+    def _allocate_scan(self, m: int) -> BatchScan:
         """Arrays for the scans of ``m`` worlds."""
         return BatchScan(
             np.empty((m, self._robots, SCAN_LENGTH), dtype=np.float32),
@@ -109,13 +112,13 @@ class BatchLoops:
         bodies: FloatArray,
     ) -> BatchScan:
         """What robots at ``poses`` scan; see ``world_kernels.scan_worlds``."""
-        rules, scan, lidars = self.rules, self.allocate_scan(len(poses)), poses
+        rules, scan, lidars = self.rules, self._allocate_scan(len(poses)), poses
         if rules.is_lidar_offset:
             lidars = np.empty_like(poses)
             self._carry(rules.lidar, poses, lidars)
         self._scan(
-            self.scratch.buffers,
-            self.scratch.seen_hulls,
+            self._scratch.buffers,
+            self._scratch.seen_hulls,
             rules.seen_fleet,
             maps,
             lidars,

@@ -259,18 +259,6 @@ TERMS: Mapping[str, RewardTerm] = MappingProxyType(
     }
 )
 """Terms by the name that weights, events and ``info["terms"]`` use."""
-RANGE_TERMS = frozenset(
-    {
-        "turning_with_room",
-        "turning_in_need",
-        "room_ahead",
-        "room_aside",
-        "room_diagonal",
-        "adjacent",
-        "beside_wall",
-    }
-)
-"""Those that depend on a transition's ranges: all others are known before robots have scanned."""
 
 
 class UnknownRewardTerm(LookupError):
@@ -323,11 +311,6 @@ class Reward:
     """Factor of the whole sum."""
     is_small: bool = False
     """Whether an episode earns a few units as it stands; the dissertation's rewards come to hundreds."""
-
-    @property
-    def reads_ranges(self) -> bool:
-        """Whether a term depends on ranges."""
-        return not RANGE_TERMS.isdisjoint(weight.term for weight in self.weights)
 
     def terms(self, transition: Transition) -> dict[str, Array]:
         """(...) each: what every term adds to the reward, weight and scale included."""

@@ -18,7 +18,6 @@ from kit.learning.environment.env import obstacle_outlines
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.tasks import LearningTask
-from kit.learning.environment.world_threads import available_threads
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
 from kit.learning.policies.policies import Policy, load_policy
 from kit.learning.tasks.learning_task import Area, PatrolGoal, TargetGoal, TaskCase
@@ -212,9 +211,7 @@ class Evaluator:
 
     def _batch(self, n: int) -> BatchEnv:
         if n not in self._batches:
-            self._batches[n] = BatchEnv(
-                self.task, n, reward=self._reward_function, threads=available_threads()
-            )
+            self._batches[n] = BatchEnv(self.task, n, reward=self._reward_function)
         return self._batches[n]
 
 

@@ -104,23 +104,19 @@ class RunConfig:
     def as_dict(self) -> dict[str, Any]:
         """JSON-able."""
         values = {name: getattr(self, name) for name in self.__dataclass_fields__ if name != "choice"}
-        # A sweep's keys are digests of this: those of older ones hold no settings.
-        values["settings"] = dict(self.settings)
-        if not self.settings:
-            del values["settings"]
-        return {"choice": self.choice.as_dict(), **values}
+        return {"choice": self.choice.as_dict(), **values, "settings": dict(self.settings)}
 
     @classmethod
     def from_dict(cls, data: Any) -> RunConfig:
         """Reads what ``as_dict`` returned. Raises ValueError for anything else."""
         try:
             plain = {name: value for name, value in data.items() if name not in ("choice", "settings")}
-            settings = tuple((str(name), number) for name, number in data.get("settings", {}).items())
+            settings = tuple((str(name), number) for name, number in data["settings"].items())
             check_field_types(cls, plain)
             if not all(type(number) in (int, float) for _, number in settings):
                 raise ValueError("settings are numbers")
             choice = TaskSpec.from_dict(data["choice"])
-            config = cls(choice, **{**plain, "imitate": tuple(data.get("imitate", ()))}, settings=settings)
+            config = cls(choice, **{**plain, "imitate": tuple(data["imitate"])}, settings=settings)
         except (TypeError, KeyError, AttributeError) as error:
             raise ValueError(f"not the configuration of a run: {error}") from None
         if config.seed < 0 or any(count is not None and count < 1 for count in (config.steps, config.worlds)):
@@ -146,9 +142,8 @@ class TrainingSummary:
     reason: str = ""
 
     def as_dict(self) -> dict[str, Any]:
-        """JSON-able; the evaluations keep their keys ``tested`` and ``best``, which scripts read."""
-        keys = {"last_evaluation": "tested", "best_evaluation": "best"}
-        return {keys.get(name, name): value for name, value in asdict(self).items()}
+        """JSON-able."""
+        return asdict(self)
 
 
 @dataclass(frozen=True, slots=True)

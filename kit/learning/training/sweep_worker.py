@@ -20,7 +20,6 @@ from typing import Final
 
 from kit.host.job_executors import JobPool, read_shard, serve_jobs
 from kit.host.python_command import python_command
-from kit.learning.environment.world_threads import available_threads
 from kit.learning.training.training_sweep import LOCK_FILE, TrainingSweep
 from kit.learning.training.worker import EXIT_SIGNALS, ExitRequest
 
@@ -73,8 +72,13 @@ def _run_all(sweep: TrainingSweep) -> int:
         lock.truncate(0)
         lock.write(str(os.getpid()))
         lock.flush()
-        make_pool(sweep, available_threads(), lambda key: None).run()
+        make_pool(sweep, _available_processors(), lambda key: None).run()
     return 0
+
+
+def _available_processors() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def main(arguments: list[str]) -> int:

@@ -27,7 +27,6 @@ from kit.learning.environment.batch_map import UnsupportedWorld
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
 from kit.learning.environment.rewards import RewardFunction
 from kit.learning.environment.tasks import LearningTask, TaskSpec
-from kit.learning.environment.world_threads import available_threads
 from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError, save_policy
 from kit.learning.tasks.learning_task import CasePractice, practices
@@ -365,9 +364,9 @@ class _TrainingLoop:
         state = {
             "memory": asdict(self._memory),
             "seconds": self._elapsed(),
-            "looks": self._test_count,
+            "test_count": self._test_count,
             "resumed": self._resumed,
-            "next_look": self._next_evaluation,
+            "next_evaluation": self._next_evaluation,
             "stage": self._stage,
         }
         save_policy(self._learner.policy(), self._run.newest_policy)
@@ -397,9 +396,9 @@ class _TrainingLoop:
             state = json.loads(parts["training.json"])
             best = state["memory"]["best"]
             self._memory = StoppingMemory(**{**state["memory"], "best": tuple(best) if best else None})
-            self._seconds, self._test_count = float(state["seconds"]), int(state["looks"])
-            self._resumed, self._next_evaluation = int(state["resumed"]) + 1, int(state["next_look"])
-            self._stage = int(state.get("stage", 0))
+            self._seconds, self._test_count = float(state["seconds"]), int(state["test_count"])
+            self._resumed, self._next_evaluation = int(state["resumed"]) + 1, int(state["next_evaluation"])
+            self._stage = int(state["stage"])
             if min(self._seconds, self._test_count, self._resumed, self._next_evaluation, self._stage) < 0:
                 raise ValueError("a count below 0")
         note = "Training continues from the last checkpoint, with new episodes."
@@ -436,14 +435,7 @@ def make_learner(
     if algorithm.family == "table":
         if preset.mirrored:
             raise UnsupportedWorld("tabular algorithms learn without a mirror")
-        batch = BatchEnv(
-            task,
-            preset.worlds,
-            seed,
-            reward=reward,
-            fixed_cases=fixed_cases,
-            threads=available_threads(),
-        )
+        batch = BatchEnv(task, preset.worlds, seed, reward=reward, fixed_cases=fixed_cases)
         learner: Learner = algorithm.load()(algorithm, preset, choice, batch, seed)
         return learner
     from kit.learning.environment.sb3_vec_env import HalfMirroredVecEnv, make_vec_env

@@ -24,7 +24,6 @@ from kit.school.game.challenges import (
     naive_plan,
     shortest_moves,
 )
-from kit.school.game.race import EDITION
 from kit.school.lessons.reading import STARTER_FOLDER
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace, write_atomically
@@ -104,7 +103,7 @@ def begin_repair(
     now = time.time() if now_s is None else now_s
     begun = [event.time.timestamp() for event in journal.events(EventKind.FINISH, subject)]
     if not begun:
-        journal.add(EventKind.FINISH, subject, {"medal": 0, "edition": EDITION, "text": "begun"})
+        journal.add(EventKind.FINISH, subject, {"medal": 0, "text": "begun"})
     return made / challenge.task.file, max(0.0, now - begun[0]) if begun else 0.0
 
 

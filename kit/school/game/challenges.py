@@ -20,7 +20,6 @@ from kit.layers.requirements_file import read_requirements
 from kit.plain_text import quoted, suggestion
 from kit.school.game.levels import all_levels
 from kit.school.game.player_progress import GameSummary, Medal, level_progress
-from kit.school.game.race import EDITION
 from kit.school.lessons.checking import ExerciseCheck
 from kit.school.lessons.reading import lessons_folder
 from kit.school.lessons.records import Exercise
@@ -274,7 +273,7 @@ def record_judgement(journal: ProgressJournal, challenge: Challenge, judgement: 
     journal.add(
         EventKind.FINISH,
         f"{PREFIX}{challenge.id}",
-        {"medal": judgement.medal.value, "edition": EDITION, "text": judgement.text},
+        {"medal": judgement.medal.value, "text": judgement.text},
     )
 
 

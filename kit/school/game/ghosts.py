@@ -18,7 +18,7 @@ from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.recording import Recording, RecordingError, load_recording, save_recording
 from kit.school.game import leaderboard
 from kit.school.game.levels import GameLevel
-from kit.school.game.race import EDITION, DriverKind, run_race
+from kit.school.game.race import DriverKind, run_race
 from kit.school.lessons.reading import lessons_folder
 from kit.workspace import Workspace
 
@@ -245,8 +245,8 @@ def level_ghosts(
 
 
 def ghost_file(workspace: Workspace, level: GameLevel, driver: DriverKind) -> Path:
-    """The file of a driver's best drive; drives of the game's first edition have other names."""
-    return ghosts_folder(workspace) / f"{level.id}.{driver.value}-{EDITION}.npz"
+    """The file of a driver's best drive."""
+    return ghosts_folder(workspace) / f"{level.id}.{driver.value}.npz"
 
 
 def _ghost_of(name: str, recording: Recording, scenario: Scenario) -> Ghost:

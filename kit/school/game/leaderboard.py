@@ -194,8 +194,8 @@ def _read_file(file: Path) -> Iterator[LeaderboardEntry]:
             float(seconds),
             int(each["stars"]),
             status.st_uid == os.getuid(),
-            Medal(each.get("medals", {}).get(driver, 0)),
-            _read_track(each.get("tracks", {}).get(driver, ())),
+            Medal(each["medals"].get(driver, 0)),
+            _read_track(each["tracks"].get(driver, ())),
             status.st_uid,
         )
         for level, each in content["levels"].items()

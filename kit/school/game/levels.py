@@ -159,8 +159,6 @@ class GameLevel:
     map_name: str
     """Name of a map of the kit; of a task's level, of the task's map."""
     case: str
-    par: float
-    """Time to beat in the first edition of the game [s]; 0 for a level that was not in it."""
     hint: str
     opened_by: tuple[str, ...]
     """Ids of levels; finishing any of them opens this one. Empty: it is open from the start."""
@@ -313,7 +311,6 @@ def _read_levels(section: Section, worlds: Mapping[str, GameWorld]) -> Iterator[
 
 
 def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) -> GameLevel:
-    par = each.number("par", 0.0, minimum=0, maximum=3600)
     targets = each.points("targets", at_least=1) if each.has("targets") else ()
     goal = _read_goal(each, bool(targets))
     return GameLevel(
@@ -321,7 +318,6 @@ def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) 
         title=each.name("title"),
         map_name=each.name("place"),
         case=each.name("case"),
-        par=par,
         hint=each.text("hint"),
         opened_by=after,
         row=row,
@@ -329,7 +325,7 @@ def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) 
         story=each.text("story"),
         skill=each.text("skill"),
         opened_by_lesson=each.text("lesson", ""),
-        time_limit=each.number("time_limit", 6.0 * par or 60.0, above=0, maximum=3600),
+        time_limit=each.number("time_limit", 60.0, above=0, maximum=3600),
         goal=goal,
         targets=targets,
         any_order=each.flag("any_order", False),

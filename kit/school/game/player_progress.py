@@ -24,7 +24,7 @@ from kit.school.game.levels import (
     all_worlds,
     find_level,
 )
-from kit.school.game.race import EDITION, DriverKind, RaceFinish
+from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.task_levels import find_task_level
 from kit.school.lessons.catalogue import lesson_progress_from_events
 from kit.school.lessons.reading import find_lesson
@@ -141,8 +141,6 @@ def _without_docstrings(source: bytes) -> ast.Module:
 
 
 BELTS: Final = ("no", "white", "yellow", "green", "blue", "brown", "black")
-STAR_COUNT = 3
-"""Stars of a level in the first edition."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,8 +153,6 @@ class LevelProgress:
     """The best medal of each driver that has one."""
     rules: frozenset[ExtraRule]
     """Extra rules that a drive has kept: a star each."""
-    first_edition: tuple[bool, bool, bool]
-    """Stars of the game's first edition: finished, safe, under par."""
     best_times: Mapping[DriverKind, float]
     """The shortest time [s] of each driver that counts for medals."""
 
@@ -176,7 +172,6 @@ class RecordedDrive:
 
     driver: DriverKind
     finish: RaceFinish
-    edition: int
     medal: Medal
     rules: frozenset[ExtraRule]
     is_shipped: bool
@@ -195,7 +190,6 @@ def drive_from_event(event: ProgressEvent) -> RecordedDrive | None:
     return RecordedDrive(
         driver,
         finish,
-        int(event.number("edition") or 1),
         Medal(medal) if finish.reached and medal in tuple(Medal) else Medal.NONE,
         frozenset(rule for rule in ExtraRule if isinstance(rules, list) and rule.value in rules),
         event.content.get("shipped") is True,
@@ -299,17 +293,13 @@ def _progress_of_level(level: GameLevel, drives: Sequence[RecordedDrive], is_ope
     best: dict[DriverKind, float] = {}
     medals: dict[DriverKind, Medal] = {}
     rules: frozenset[ExtraRule] = frozenset()
-    stars = [False] * STAR_COUNT
     for drive in drives:
-        if drive.edition < EDITION:
-            stars = [had or has for had, has in zip(stars, drive.finish.earned_stars(level.par), strict=True)]
-        elif drive.finish.reached and not drive.is_shipped:
+        if drive.finish.reached and not drive.is_shipped:
             driver = drive.driver
             best[driver] = min(best.get(driver, float("inf")), drive.finish.seconds)
             medals[driver] = max(medals.get(driver, Medal.NONE), drive.medal)
             rules |= drive.rules
-    first_edition = stars[0], stars[1], stars[2]
-    return LevelProgress(level, is_open or bool(best) or stars[0], medals, rules, first_edition, best)
+    return LevelProgress(level, is_open or bool(best), medals, rules, best)
 
 
 DAILY_PREFIX: Final = "daily-"

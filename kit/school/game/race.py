@@ -238,8 +238,6 @@ def objective_of(level: GameLevel, scenario: Scenario, metrics: MetricsRecorder)
             return TargetObjective(metrics, scenario)
 
 
-EDITION: Final = 2
-"""Edition of the game's rules; events without one count as the first edition."""
 STANDING_SPEED: Final = 0.02
 """A robot slower than this stands still [m/s]."""
 OUTPUT_INTERVAL: Final = 10
@@ -283,10 +281,6 @@ class RaceFinish:
     has_stopped: bool = False
     """Whether a robot stood still between its first move and the end."""
 
-    def earned_stars(self, par: float) -> tuple[bool, bool, bool]:
-        """The stars of the first edition: finished, finished without a collision, finished under par."""
-        return self.reached, self.reached and self.collisions == 0, self.reached and self.seconds <= par
-
     def as_event(self, driver: DriverKind, recording: str | None) -> dict[str, Any]:
         """The content of the journal's event."""
         return {
@@ -295,7 +289,6 @@ class RaceFinish:
             "seconds": round(self.seconds, 3),
             "bumps": self.collisions,
             "recording": recording,
-            "edition": EDITION,
         }
 
 

@@ -142,7 +142,6 @@ def task_level(file: Path) -> TaskLevel:
         title=task.name,
         map_name=cases[0][0].name,
         case=case.name,
-        par=0.0,
         hint=f"{task.goal.description[0].upper()}{task.goal.description[1:]}.",
         opened_by=(),
         row=0,

@@ -128,11 +128,8 @@ def world_levels(
 def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | None) -> list[Row]:
     """What the chosen level asks for, and how it was driven."""
     level = progress.level
-    first = (
-        "" if not any(progress.first_edition) else f"   first edition {STAR * sum(progress.first_edition)}"
-    )
     rows = [
-        row((level.title, "bold"), f"  {level.story}", (first, "dim")),
+        row((level.title, "bold"), f"  {level.story}"),
         row(("task   ", "dim"), level.hint),
         row(
             ("needs  ", "dim"),

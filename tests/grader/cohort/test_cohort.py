@@ -539,17 +539,6 @@ def test_a_machine_no_level_1_grades_no_class_unless_told(tmp_path: Path) -> Non
     assert verb("cohort", *asked, "--level", "0")[0] == 0
 
 
-def test_an_older_queue_at_level_0_is_not_gone_on_with(tmp_path: Path) -> None:
-    asked = one_of_a_class(tmp_path)
-    assert verb("cohort", *asked, "--executor", "none", "--level", "0")[0] == 0
-    file = tmp_path / "queue" / "manifest.json"
-    manifest = json.loads(file.read_bytes())
-    del manifest["level_0_asked"]
-    file.write_text(json.dumps(manifest))
-    code, told = verb("work", tmp_path / "queue")
-    assert (code, "--level 0" in told) == (2, True)
-
-
 @pytest.mark.long
 @LOCKS
 def test_one_work_with_secrets_is_not_graded_at_level_0_by_silence(tmp_path: Path) -> None:

@@ -243,20 +243,6 @@ def test_secrets_that_are_not_used_are_said_and_cost_nothing(tmp_path: Path) -> 
     assert (row.max_points, set(row.tests)) == (6.0, {"runs", "moves", "bumps"})
 
 
-def test_an_older_queue_is_still_read(tmp_path: Path) -> None:
-    """Its entries have no notes; what it refused has no grade any more."""
-    cohort = tmp_path / "in"
-    cohort.mkdir()
-    (cohort / "link.py").symlink_to("/etc/passwd")
-    queue = Queue(tmp_path / "queue")
-    prepare_queue(queue, cohort, read_assignment(write_assignment(tmp_path / "sheet", QUICK)), TERMS)
-    manifest = queue.manifest()
-    manifest["entries"] = [{"name": "link", "key": None, "refused": "link.py is a link."}]
-    (queue.folder / "manifest.json").write_text(json.dumps(manifest))
-    (row,) = gradebook_rows(queue)
-    assert (row.verdict, row.final, row.note) == ("unreadable", None, "link.py is a link.")
-
-
 @pytest.mark.parametrize("shape", ["(9**9,", "(", "(1,\n 2", "[[" * 3000])
 def test_a_recording_with_a_broken_header_is_the_students(tmp_path: Path, shape: str) -> None:
     """An array's header is parsed as Python, by several readers that each fail in their own way."""

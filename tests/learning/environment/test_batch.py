@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-import threading
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from kit.kernels import batch_step
-from kit.kernels.arrays import Step, StepScratch
 from kit.learning.environment.actions import Move
 from kit.learning.environment.batch import BatchEnv, RewardError
 from kit.learning.environment.batch_state import BatchStep
@@ -24,10 +21,8 @@ from kit.learning.environment.tasks import (
     WHEELCHAIRS,
     LearningTask,
     StartVariation,
-    find_task,
 )
 from kit.learning.environment.transition import Array, Transition, bearing_of_target, distance_to_target
-from kit.learning.environment.world_threads import LEAST_SHARED, StartedStep, WorldThreads
 from tests.learning.worlds import (
     FOUR_MOVES,
     NINETEEN_NUMBERS,
@@ -78,113 +73,6 @@ def test_a_world_is_the_same_to_the_bit_alone_or_among_many(task: LearningTask) 
         step = together.step(actions)
         for i, each in enumerate(alone):
             assert bits(each.step(actions[i : i + 1]), 0) == bits(step, i)
-
-
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize("name", ["turn", "wheelchairs", "night-watch", "wall-follower"])
-def test_worlds_on_several_threads_are_the_same_to_the_bit(name: str) -> None:
-    task = find_task(name)
-    n = LEAST_SHARED + 5
-    one, several = BatchEnv(task, n, seed=2), BatchEnv(task, n, seed=2, threads=3)
-    assert one.reset().tobytes() == several.reset().tobytes()
-    one.action_space.seed(0)
-    for _ in range(12):
-        actions = np.array([one.action_space.sample() for _ in range(n)])
-        expected, found = one.step(actions), several.step(actions)
-        for field in fields(Transition):
-            values = (np.asarray(getattr(step.transition, field.name)) for step in (expected, found))
-            assert next(values).tobytes() == next(values).tobytes(), field.name
-        assert expected.observations.tobytes() == found.observations.tobytes()
-        assert expected.rewards.tobytes() == found.rewards.tobytes()
-
-
-def step_once(batch: BatchEnv) -> bytes:
-    return batch.step(np.zeros(batch.n, dtype=np.int64)).observations.tobytes()
-
-
-def test_every_world_is_stepped_by_one_thread_and_few_worlds_by_the_caller(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    steps: list[Step] = []
-    start, help_ = WorldThreads.start, StartedStep.help
-    together = threading.Barrier(2)
-
-    def note_and_start(threads: WorldThreads, step: Step, scratch: StepScratch) -> StartedStep:
-        steps.append(step)
-        return start(threads, step, scratch)
-
-    def help_together(started: StartedStep, scratch: StepScratch | None) -> StepScratch:
-        together.wait(60)
-        return help_(started, scratch)
-
-    def advance_together(started: StartedStep) -> None:
-        together.wait(60)
-        advance(started)
-
-    monkeypatch.setattr(WorldThreads, "start", note_and_start)
-    for n in (LEAST_SHARED - 1, LEAST_SHARED, LEAST_SHARED + 5):
-        if n == LEAST_SHARED:
-            advance = StartedStep.advance
-            monkeypatch.setattr(StartedStep, "help", help_together)
-            monkeypatch.setattr(StartedStep, "advance", advance_together)
-        batch = BatchEnv(find_task("turn"), n, threads=2)
-        batch.reset()
-        for _ in range(3):
-            step_once(batch)
-            for part in (batch_step.ADVANCE, batch_step.SCAN):
-                done, _, first, last = steps[-1].progress[
-                    part : part + 4 * batch_step.CACHE_LINE : batch_step.CACHE_LINE
-                ]
-                assert done == n
-                assert first + last == -(-n // batch_step.CHUNK)
-                assert last == 0 or n >= LEAST_SHARED
-    with pytest.raises(ValueError, match="at least one"):
-        WorldThreads(0)
-
-
-def test_a_thread_without_memory_leaves_its_worlds_to_the_caller(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(started: StartedStep, scratch: StepScratch | None) -> StepScratch:
-        raise MemoryError("no more")
-
-    monkeypatch.setattr(StartedStep, "help", fail)
-    alone, together = (BatchEnv(find_task("turn"), LEAST_SHARED, threads=count) for count in (1, 2))
-    assert alone.reset().tobytes() == together.reset().tobytes()
-    before = threading.active_count()
-    for _ in range(3):
-        assert step_once(alone) == step_once(together)
-    assert threading.active_count() == before + 1
-
-
-def test_threads_end_with_what_started_them() -> None:
-    batch = BatchEnv(find_task("turn"), LEAST_SHARED, threads=3)
-    batch.reset()
-    before = set(threading.enumerate())
-    step_once(batch)
-    started = set(threading.enumerate()) - before
-    assert len(started) == 2
-    del batch
-    for thread in started:
-        thread.join(60)
-        assert not thread.is_alive()
-
-
-@pytest.mark.parametrize("allowed", [0, 1])
-def test_where_threads_are_refused_the_caller_steps_all_worlds(
-    monkeypatch: pytest.MonkeyPatch, allowed: int
-) -> None:
-    left, start = [None] * allowed, threading.Thread.start
-
-    def start_or_refuse(thread: threading.Thread) -> None:
-        if not left:
-            raise RuntimeError("can't start new thread")
-        left.pop()
-        start(thread)
-
-    monkeypatch.setattr(threading.Thread, "start", start_or_refuse)
-    alone, refused = (BatchEnv(find_task("turn"), LEAST_SHARED, threads=count) for count in (1, 3))
-    assert alone.reset().tobytes() == refused.reset().tobytes()
-    for _ in range(2):
-        assert step_once(alone) == step_once(refused)
 
 
 @pytest.mark.long_cases(

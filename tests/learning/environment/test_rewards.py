@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -15,7 +13,6 @@ from kit.learning.environment.rewards import (
     ALGORITHM_2_AS_RUN,
     ALGORITHM_3,
     PROGRESS,
-    RANGE_TERMS,
     REWARDS,
     SIDE_BY_SIDE,
     TERMS,
@@ -51,16 +48,6 @@ def test_a_term_is_the_same_for_one_world_and_for_many(task: str, term: str) -> 
     assert values.shape == many.step.shape
     for i in np.random.default_rng(2).integers(len(values), size=200).tolist():
         assert np.asarray(TERMS[term](many.select(i))) == values[i]
-
-
-@every_case("term", TERMS)
-def test_terms_that_depend_on_ranges_are_listed(term: str) -> None:
-    depends = False
-    for task in TASKS:
-        many = sampled(task)
-        blind = replace(many, ranges=np.full_like(many.ranges, np.nan))
-        depends |= not np.array_equal(TERMS[term](many), TERMS[term](blind))
-    assert depends == (term in RANGE_TERMS)
 
 
 @pytest.mark.parametrize("task", TASKS)

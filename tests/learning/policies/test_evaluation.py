@@ -10,7 +10,7 @@ import pytest
 
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
-from kit.learning.environment.tasks import StartVariation, TaskSpec, UnknownTask, find_task
+from kit.learning.environment.tasks import StartVariation, TaskSpec, find_task
 from kit.learning.policies.evaluation import Evaluator, build_paths_scene, derive_seed, record_paths
 from kit.learning.policies.policies import (
     ActionSampling,
@@ -22,21 +22,12 @@ from kit.learning.policies.policies import (
 )
 from kit.learning.policies.policy_node import format_policy_node
 from kit.learning.tasks.learning_task import EpisodePlaces
-from kit.learning.training.runs import RunConfig, RunError
 from kit.learning.training.student_reward import (
     RewardFileError,
     StudentReward,
     metric_parameters,
     reward_parameters,
 )
-from kit.learning.training.training_sweep import (
-    ALL_CASES,
-    GroupResult,
-    case_groups,
-    format_crosstable,
-    train_crosstable,
-)
-from kit.study.printed_tables import printed_means
 
 STRAIGHT = TaskSpec("hallway", ("straight", "center_door"))
 AHEAD_ONLY = replace(STRAIGHT.resolve(), start=StartVariation(shifted=False))
@@ -185,50 +176,6 @@ def test_a_policy_drives_in_the_world_as_a_node(tmp_path: Path) -> None:
     assert summary.failure is None
     assert summary.metrics.reached_s is not None
     assert summary.metrics.bumps == 0
-
-
-@pytest.mark.long
-def test_the_table_is_made_once_and_taken_up_again(tmp_path: Path) -> None:
-    config = RunConfig(TaskSpec("turn"), "q-learning", steps=2000, keep_training=True)
-    told: list[str] = []
-    groups = ("turn_a_to_b", ALL_CASES)
-    columns = train_crosstable(tmp_path / "table", config, groups, episodes=5, on_progress=told.append)
-    assert [column.group for column in columns] == list(groups)
-    assert all(set(column.shares) == {"turn_a_to_b", "turn_b_to_a"} for column in columns)
-    marks = {file: file.stat().st_mtime_ns for file in tmp_path.glob("table/*/*.npz")}
-    assert train_crosstable(tmp_path / "table", config, groups, episodes=5) == columns
-    assert {file: file.stat().st_mtime_ns for file in tmp_path.glob("table/*/*.npz")} == marks
-    with pytest.raises(RunError, match="other settings"):
-        train_crosstable(tmp_path / "table", replace(config, seed=9), groups, episodes=5)
-    with pytest.raises(UnknownTask, match="stairs"):
-        train_crosstable(tmp_path / "other", config, ("stairs",))
-
-
-def test_the_table_stands_beside_the_dissertation_s() -> None:
-    assert case_groups(RunConfig(TaskSpec("hallway"))) == (
-        "doors",
-        "obstacles",
-        "90_turns",
-        "180_turns",
-        ALL_CASES,
-    )
-    column = GroupResult("doors", 1000, 5.0, {"straight": 0.99, "left_door": 0.75})
-    assert column.mean == pytest.approx(0.87)
-    assert column.spread == pytest.approx(0.12)
-    rows = format_crosstable([column], printed_means("hallway")[1])
-    assert rows[0].split() == ["tested", "on", "doors"]
-    assert rows[-1].split() == ["dissertation", "0.797"]
-
-
-def test_a_table_is_compared_with_its_own_task_alone() -> None:
-    columns = [GroupResult(group, 1000, 5.0, {"one": 0.5}) for group in ("doors", "90_turns", ALL_CASES)]
-    pair = format_crosstable(columns, printed_means("wheelchairs")[1])
-    assert not any("side by side" in row for row in pair)
-    beside = format_crosstable([replace(column, adjacency={"one": 0.25}) for column in columns], {})
-    assert beside[-1].split() == ["mean", *["0.250"] * len(columns)]
-    assert pair[-1].split() == ["dissertation", "0.443"]
-    for task in ("turn", "turn-seed", "wheelchairs-seed-49"):
-        assert not any("dissertation" in row for row in format_crosstable(columns, printed_means(task)[1]))
 
 
 REWARDS = {

@@ -113,7 +113,15 @@ def test_where_a_run_stands_follows_from_its_events() -> None:
     assert state(6) == "finished"
     summary = summarise_events(EVENTS, alive=False, order="go")
     assert (summary.best_evaluation, summary.last_evaluation, summary.steps) == (EVENTS[2], EVENTS[3], 200)
-    assert list(summary.as_dict()) == ["state", "steps", "seconds", "rate", "tested", "best", "reason"]
+    assert list(summary.as_dict()) == [
+        "state",
+        "steps",
+        "seconds",
+        "rate",
+        "last_evaluation",
+        "best_evaluation",
+        "reason",
+    ]
     assert summarise_events((*EVENTS, EVENTS[0]), alive=False, order="go").state == "interrupted"
 
 

@@ -31,9 +31,7 @@ OWN_FILE = f"{os.getuid()}.json"
 
 def fastest(seconds: float, level: int = 0) -> LevelProgress:
     """The progress of somebody who has driven a level once, by hand."""
-    return LevelProgress(
-        LEVELS[level], True, {}, frozenset(), (False, False, False), {DriverKind.KEYS: seconds}
-    )
+    return LevelProgress(LEVELS[level], True, {}, frozenset(), {DriverKind.KEYS: seconds})
 
 
 def track_of(poses: int) -> list[list[float]]:
@@ -44,7 +42,7 @@ def write_entry(
     folder: Path, track: Sequence[Sequence[float]] = (), name: str = "Ada", padding: int = 0
 ) -> Path:
     """Writes this user's file by hand, ``padding`` bytes longer than it need be."""
-    level = {"stars": 0, "best": {"keys": 5.0}, "tracks": {"keys": track}}
+    level = {"stars": 0, "best": {"keys": 5.0}, "medals": {}, "tracks": {"keys": track}}
     text = json.dumps({"name": name, "levels": {FIRST.id: level}})
     (folder / OWN_FILE).write_text(text + " " * padding)
     return folder / OWN_FILE

@@ -200,7 +200,7 @@ def test_a_day_has_one_level_for_everybody_and_days_differ() -> None:
 
 def finish(day: datetime.date, level: str, *, reached: bool = True) -> ProgressEvent:
     at = datetime.datetime.combine(day, datetime.time(12)).astimezone()
-    content = {"driver": "keys", "reached": reached, "seconds": 9.0, "bumps": 0, "edition": 2, "medal": 1}
+    content = {"driver": "keys", "reached": reached, "seconds": 9.0, "bumps": 0, "medal": 1}
     return ProgressEvent(f"{day}{level}{reached}", at.isoformat(), EventKind.FINISH, level, content)
 
 
@@ -219,7 +219,7 @@ def test_a_streak_counts_days_in_a_row_on_their_day() -> None:
 
 def test_belts_rise_with_the_medals_of_a_world() -> None:
     levels = [level for level in kit_levels() if level.world == "pair"]
-    nothing = [LevelProgress(each, True, {}, frozenset(), (False, False, False), {}) for each in levels]
+    nothing = [LevelProgress(each, True, {}, frozenset(), {}) for each in levels]
 
     def belt(*medals: Medal) -> str:
         found = [

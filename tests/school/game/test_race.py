@@ -32,7 +32,7 @@ from kit.school.game.player_progress import (
     level_progress,
     today,
 )
-from kit.school.game.race import DriverKind, RaceFinish, RaceReferee, race_controller
+from kit.school.game.race import DriverKind, RaceReferee, race_controller
 from kit.school.lessons.reading import find_lesson, lesson_names
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.workspace import open_workspace
@@ -164,7 +164,7 @@ def test_a_program_that_stops_says_why(tmp_path: Path) -> None:
 def drive(
     level: str, driver: str, seconds: float, *, reached: bool = True, bumps: int = 0, **more: object
 ) -> ProgressEvent:
-    """A drive of the first edition, unless ``more`` says otherwise."""
+    """A drive that keeps no rule and wins no medal, unless ``more`` says otherwise."""
     content = {
         "driver": driver,
         "reached": reached,
@@ -178,35 +178,21 @@ def drive(
     )
 
 
-def test_stars_of_the_first_edition_stay_and_open_levels() -> None:
-    events = [
-        drive(FIRST.id, "keys", FIRST.par + 3.0),
-        drive(FIRST.id, "agent", FIRST.par - 1.0, bumps=2),
-        drive("the-door", "keys", 3.0, reached=False),
-        ProgressEvent("x", datetime.now(UTC).isoformat(), EventKind.FINISH, FIRST.id, {"driver": "horse"}),
-    ]
-    found = {each.level.id: each for each in level_progress(LEVELS, events)}
-    assert found[FIRST.id].first_edition == (True, True, True)
-    assert (found[FIRST.id].best_times, found[FIRST.id].medals) == ({}, {})
-    assert found["left-turn"].is_open
-    assert not found["two-doors"].is_open
-    assert not any(found["the-door"].first_edition)
-
-
 def test_medals_are_counted_by_driver_beside_them() -> None:
     events = [
-        drive(FIRST.id, "keys", 7.0, edition=2, medal=1, rules=["clean", "levitation"]),
-        drive(FIRST.id, "keys", 6.5, edition=2, medal=2, rules=["no stop"]),
-        drive(FIRST.id, "controller", 6.1, edition=2, medal=3, shipped=True),
-        drive(FIRST.id, "agent", 9.0, edition=2, medal=99, rules="clean"),
-        drive("the-door", "controller", 6.1, edition=2, medal=3, shipped=True),
+        drive(FIRST.id, "keys", 7.0, medal=1, rules=["clean", "levitation"]),
+        drive(FIRST.id, "keys", 6.5, medal=2, rules=["no stop"]),
+        drive(FIRST.id, "controller", 6.1, medal=3, shipped=True),
+        drive(FIRST.id, "agent", 9.0, medal=99, rules="clean"),
+        drive("the-door", "controller", 6.1, medal=3, shipped=True),
+        drive("the-door", "keys", 3.0, reached=False),
+        ProgressEvent("x", datetime.now(UTC).isoformat(), EventKind.FINISH, FIRST.id, {"driver": "horse"}),
     ]
     found = {each.level.id: each for each in level_progress(LEVELS, events)}
     first = found[FIRST.id]
     assert first.medals == {DriverKind.KEYS: Medal.SILVER, DriverKind.AGENT: Medal.NONE}
     assert first.best_times == {DriverKind.KEYS: 6.5, DriverKind.AGENT: 9.0}
     assert first.rules == {ExtraRule.CLEAN, ExtraRule.NO_STOP}
-    assert first.first_edition == (False, False, False)
     assert found["left-turn"].is_open
     assert not found["two-doors"].is_open  # only a controller of the kit was through the door
 
@@ -302,15 +288,11 @@ def test_a_level_is_found_by_name_and_number(tmp_path: Path) -> None:
     with pytest.raises(UnknownLevel, match="first-drive"):
         find_level("first-drve")
     (tmp_path / "levels.yaml").write_text(
-        "levels: [{id: a, title: A, world: w, place: nowhere, case: x, par: -1, hint: h, story: s, skill: s, after: [b]}]\n"
+        "levels: [{id: a, title: A, world: w, place: nowhere, case: x, time_limit: -1, hint: h, story: s, skill: s, after: [b]}]\n"
     )
     with pytest.raises(WorldError) as raised:
         all_levels(tmp_path)
-    assert all(word in str(raised.value) for word in ("nowhere", "par", '"b"'))
-
-
-def test_a_finish_that_is_no_finish_is_not_one() -> None:
-    assert RaceFinish(False, 3.0, 0).earned_stars(10.0) == (False, False, False)
+    assert all(word in str(raised.value) for word in ("nowhere", "time_limit", '"b"'))
 
 
 def test_every_lesson_that_opens_a_level_exists_and_opens_it_once_completed(tmp_path: Path) -> None:

@@ -91,20 +91,6 @@ def test_help_lists_every_chapter() -> None:
     assert set(CHAPTER_IDS) <= set(words) | {word.rstrip(".") for word in words}
 
 
-@pytest.mark.long
-def test_the_study_of_a_class_is_chapter_5_of_the_study(tmp_path: Path) -> None:
-    words = ["--svg", str(tmp_path), "--workspace", str(tmp_path / "none")]
-    done = CliRunner().invoke(main, ["class", "study", *words])
-    assert done.exit_code == 0, done.output
-    assert (
-        done.stdout == CliRunner().invoke(main, ["study", "5", "--workspace", str(tmp_path / "none")]).stdout
-    )
-    made = {each.name for each in tmp_path.iterdir()}
-    assert {"prior-bars.svg", "prior-histogram.svg", "gained-bars.svg", "quiz-histogram.svg"} <= made
-    # Figures 5.6a, 5.7a and 5.7b: one histogram for each of the topics that were rated before.
-    assert len([name for name in made if name.startswith("prior-q")]) >= 3
-
-
 def test_what_a_file_is_called_commands_no_terminal(tmp_path: Path) -> None:
     (tmp_path / "x\x1b]0;owned\x07.json").write_text("no export")
     found = report(tmp_path)

@@ -284,7 +284,7 @@ def test_the_panel_speaks_of_the_target_that_is_next_and_of_all_bumps(
 def test_medals_and_the_streak_have_room_in_the_heading(
     progress: ProgressJournal, tmp_path: Path, width: int
 ) -> None:
-    content = {"driver": "keys", "reached": True, "seconds": 6.5, "bumps": 0, "edition": 2, "medal": 3}
+    content = {"driver": "keys", "reached": True, "seconds": 6.5, "bumps": 0, "medal": 3}
     for level in LEVELS[:12]:
         for driver in DriverKind:
             progress.add(
@@ -309,7 +309,7 @@ def text_of(rows: TextRows) -> str:
 
 
 def test_one_key_joins_the_leaderboard_and_leaves_it(progress: ProgressJournal, tmp_path: Path) -> None:
-    content = {"driver": "keys", "reached": True, "seconds": 6.5, "bumps": 0, "edition": 2, "medal": 2}
+    content = {"driver": "keys", "reached": True, "seconds": 6.5, "bumps": 0, "medal": 2}
     progress.add(EventKind.FINISH, LEVELS[0].id, content)
     progress.add(EventKind.ABOUT, "name", {"value": "Ada"})
     board = leaderboard.leaderboard_folder()

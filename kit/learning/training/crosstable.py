@@ -1,0 +1,122 @@
+"""A cross table: policies of a sweep, each trained on some cases of a task and tested on all (dissertation, Table 3.5)."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from statistics import fmean
+from typing import Any, Final
+
+import numpy as np
+
+from kit.learning.environment.tasks import TaskSpec
+from kit.learning.policies.evaluation import Evaluator, derive_seed
+from kit.learning.training.runs import RunConfig, RunError, TrainingRun
+from kit.learning.training.training_sweep import ALL_CASES, TrainingSweep
+from kit.workspace import write_atomically
+
+TEST_FILE: Final = "tested-on-all.json"
+"""In a run's folder: the test of its policy, which is made once."""
+
+
+@dataclass(frozen=True, slots=True)
+class CrosstableColumn:
+    """One group of cases trained on: means over its seeds."""
+
+    group: str
+    steps: float
+    seconds: float
+    shares: Mapping[str, float]
+    """Success by tested case."""
+    adjacency: Mapping[str, float] = field(default_factory=dict)
+    """Share of steps in which two robots were side by side by their rays, by case. Empty for one robot."""
+
+    @property
+    def mean(self) -> float:
+        return float(np.mean([*self.shares.values()]))
+
+    @property
+    def spread(self) -> float:
+        """Standard deviation over the cases, of the population: that is what the dissertation's Table 3.5 gives."""
+        return float(np.std([*self.shares.values()]))
+
+
+def case_groups(task: TaskSpec) -> tuple[str, ...]:
+    """The task's groups of more than one case, and all cases together."""
+    groups = [case.group for _, case in task.resolve().map_cases() if case.group]
+    return (*(group for group in dict.fromkeys(groups) if groups.count(group) > 1), ALL_CASES)
+
+
+def check_crosstable(configs: Sequence[RunConfig]) -> None:
+    """Raises RunError unless the trainings differ in their cases and seeds alone."""
+    if len({replace(config, choice=replace(config.choice, on=()), seed=0) for config in configs}) > 1:
+        raise RunError(
+            "A cross table compares groups of cases: give one task, algorithm, preset, reward and number per setting."
+        )
+
+
+def crosstable_columns(sweep: TrainingSweep) -> tuple[CrosstableColumn, ...]:
+    """Tests what is untested; a column for each group of cases that has a trained policy, in the order of the sweep."""
+    tests: dict[str, list[CrosstableColumn]] = {}
+    for entry in sweep.entries():
+        result = sweep.result(entry.key)
+        if result is not None and not result.problem:
+            column = _test(sweep.run_of(entry), entry.config, sweep.episodes)
+            tests.setdefault(column.group, []).append(column)
+    return tuple(_mean(columns) for columns in tests.values())
+
+
+def _test(run: TrainingRun, config: RunConfig, episodes: int) -> CrosstableColumn:
+    """The run's policy on all cases; tested once, then read."""
+    file = run.folder / TEST_FILE
+    if file.exists():
+        stored: dict[str, Any] = json.loads(file.read_bytes())
+    else:
+        policy = run.policy()
+        evaluator = Evaluator(replace(policy.trained_on, on=()).resolve())
+        result = evaluator.test(policy, episodes, derive_seed(config.seed, "crosstable"))
+        stored = {"shares": {case.case: case.share for case in result.cases}, "adjacency": {}}
+        if result.is_pair:
+            stored["adjacency"] = {case.case: case.adjacency for case in result.cases}
+        write_atomically(file, json.dumps(stored).encode())
+    summary, group = run.summary(), ", ".join(config.choice.on) or ALL_CASES
+    return CrosstableColumn(group, summary.steps, summary.seconds, stored["shares"], stored["adjacency"])
+
+
+def _mean(columns: Sequence[CrosstableColumn]) -> CrosstableColumn:
+    """The column of several seeds."""
+    first = columns[0]
+    return CrosstableColumn(
+        first.group,
+        fmean(column.steps for column in columns),
+        fmean(column.seconds for column in columns),
+        {case: fmean(column.shares[case] for column in columns) for case in first.shares},
+        {case: fmean(column.adjacency[case] for column in columns) for case in first.adjacency},
+    )
+
+
+def format_crosstable(columns: Sequence[CrosstableColumn], compare: Mapping[str, float]) -> list[str]:
+    """An aligned table: a row for each case tested on; means, and below them ``compare``, the means of the dissertation for
+    this task, by group."""
+    cases = list(columns[0].shares)
+    width = max(len("dissertation"), *(len(case) for case in cases))
+    wide = [max(9, len(column.group)) for column in columns]
+
+    def row(head: str, cells: Sequence[str]) -> str:
+        return "  ".join([f"{head:{width}}", *(f"{cell:>{w}}" for cell, w in zip(cells, wide, strict=True))])
+
+    rows = [row("tested on", [column.group for column in columns])]
+    rows += [row(case, [f"{column.shares[case]:.3f}" for column in columns]) for case in cases]
+    rows.append(row("mean", [f"{column.mean:.3f}" for column in columns]))
+    rows.append(row("spread", [f"{column.spread:.3f}" for column in columns]))
+    rows.append(row("steps", [f"{column.steps:,.0f}" for column in columns]))
+    rows.append(row("seconds", [f"{column.seconds:.0f}" for column in columns]))
+    if any(column.group in compare for column in columns):
+        means = [f"{compare[column.group]:.3f}" if column.group in compare else "" for column in columns]
+        rows.append(row("dissertation", means))
+    if all(column.adjacency for column in columns):
+        rows += ["", "side by side, as rays tell: the share of an episode's steps (equations 4.7 to 4.9)"]
+        rows += [row(case, [f"{column.adjacency[case]:.3f}" for column in columns]) for case in cases]
+        rows.append(row("mean", [f"{np.mean([*column.adjacency.values()]):.3f}" for column in columns]))
+    return rows
