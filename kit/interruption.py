@@ -55,7 +55,12 @@ def ended_by_signals() -> Iterator[None]:
         signal.signal(number, interrupt)
     try:
         yield
-    except (SystemExit, KeyboardInterrupt, OSError):
+    except SystemExit as stop:  # its class may say more, as ScreenClosed's does
+        if received:
+            _write_out()
+            stop.code = 128 + received[0]
+        raise
+    except (KeyboardInterrupt, OSError):
         if not received:
             raise
     finally:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 
 from kit.cli import ScreenClosed, options
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from kit.tui.terminal import TerminalDecision
     from kit.workspace import Workspace
 
+INTERRUPTED: Final = 130
 AnyScreen = TypeVar("AnyScreen", bound="Screen[Any]")
 
 
@@ -32,7 +33,8 @@ def run_screen(
     """Runs the app with the screen that ``make_screen`` builds until the user leaves it.
 
     ``make_screen`` imports its screen itself: textual reads the environment when it is imported, and that is set
-    here first. Returns the screen, and the exit code: 0 unless the app failed.
+    here first. Returns the screen, and the exit code: 0 unless the app failed or, in ``ended_by_signals``, a signal has
+    ended it. What the screen has made is there in every case.
     """
     os.environ.update(terminal.environment())
     from kit.tui.app import KitApp
@@ -41,7 +43,10 @@ def run_screen(
     screen = make_screen(app)
     app.begin(screen)
     # Elsewhere the mouse is left to the terminal, so that what is shown can be selected and copied.
-    app.run(mouse=terminal.mouse.value or getattr(screen, "uses_mouse", False))
+    try:
+        app.run(mouse=terminal.mouse.value or getattr(screen, "uses_mouse", False))
+    except KeyboardInterrupt:
+        return screen, INTERRUPTED
     return screen, app.return_code or 0
 
 

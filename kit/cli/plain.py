@@ -16,6 +16,7 @@ import click
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
 from kit.inspection.server import InspectionServer, open_inspection_server
+from kit.interruption import uninterrupted
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.plain_text import format_clock
 from kit.render.world_text import describe_scene, scene_rows
@@ -251,12 +252,13 @@ class PlainSession:
 
     def close(self) -> None:
         """Ends the session, and saves the drive if that was asked for. Raises OSError where it cannot be saved."""
-        self.lines.close()
-        self._close_world()
-        if self._record is not None and self._recorder is not None:
-            save_recording(self._recorder.recording(), self._record)
-            if self._prints_file:
-                click.echo(f"Drive saved to {self._record}.")
+        with uninterrupted():
+            self.lines.close()
+            self._close_world()
+            if self._record is not None and self._recorder is not None:
+                save_recording(self._recorder.recording(), self._record)
+                if self._prints_file:
+                    click.echo(f"Drive saved to {self._record}.")
 
     def _open(self, scenario: Scenario) -> Session:
         session = Session(scenario, seed=self._seed, always_scan=True, on_message=_print_log)

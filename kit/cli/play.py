@@ -9,6 +9,7 @@ import click
 
 from kit.cli import ScreenClosed, options
 from kit.cli.full_screen import run_screen
+from kit.interruption import ended_by_signals
 
 if TYPE_CHECKING:
     from kit.tui.app import KitApp
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 )
 @options.glyphs
 @options.color
+@ended_by_signals()
 def command(
     place: str,
     case: str | None,

@@ -291,3 +291,30 @@ def test_ctrl_c_leaves_from_wherever_one_is(kit: Open, key: bytes) -> None:
     terminal.send(b"\x03")
     assert terminal.wait() == 0
     terminal.assert_sane()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("plain", [(), ("--plain",)])
+@pytest.mark.parametrize("sent", ["SIGTERM", "SIGHUP", "SIGTERM SIGTERM", "hang up"])
+def test_every_end_keeps_the_drive(kit: Open, tmp_path: Path, sent: str, plain: tuple[str, ...]) -> None:
+    file = tmp_path / "drive.npz"
+    words = ("play", "simple", "--controller", "random_walk", "--record", str(file), *plain)
+    if plain:
+        terminal = kit(*words, ready="Type help")
+        terminal.send(b"run 2\n")
+        terminal.until(lambda: "at 0:02.0" in terminal.text, "the end of the run")
+    else:
+        terminal = kit(*words)
+        clock = re.search(r"\d:\d\d\.\d", terminal.text)
+        assert clock is not None
+        terminal.until(lambda: clock[0] not in terminal.text, "the world's time to pass")
+    if sent == "hang up":
+        terminal.hang_up()
+        terminal.process.wait(60)
+    else:
+        for name in sent.split():
+            terminal.process.send_signal(signal.Signals[name])
+        assert terminal.wait() in ({128 + signal.Signals[sent]} if " " not in sent else {143, -15})
+        terminal.assert_sane()
+    if " " not in sent or file.exists():
+        assert load_recording(file).ticks > 0

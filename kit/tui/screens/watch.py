@@ -166,7 +166,10 @@ class WatchScreen(RowsScreen[None], DriveScreen):
 
     def recording(self) -> Recording | None:
         """The drive, once the screen has been left; None where none is kept, or no world was opened."""
-        return self.host.recording() if self._records and hasattr(self, "host") else None
+        if not self._records or not hasattr(self, "host"):
+            return None
+        self.host.close()  # a signal has ended the app with the world still running
+        return self.host.recording()
 
     # The agent that drives
 

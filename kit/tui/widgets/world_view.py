@@ -42,6 +42,11 @@ CONGESTED: Final = 0.25
 """Seconds that a picture waits in the link's buffers, beyond the link's own delay, from which on it is too much for it."""
 _ENOUGH_ANSWERS: Final = 10
 
+BEAT_S: Final = 0.05
+"""How often this process says, while it waits for answers, that it is free to hear them [s]."""
+_LATEST_BEAT_S: Final = 1.5 * BEAT_S
+"""What comes later than this shows that it was not: it computed, or did not get the processor."""
+
 _SOON: Final = 1e-3
 """Seconds that make no difference: timers ring a little early or late."""
 _SMOOTHING: Final = 0.2
@@ -57,8 +62,14 @@ class FrameThrottle:
     """Frames per second that are never exceeded."""
 
     def __post_init__(self) -> None:
-        self._asked: deque[float] = deque()
+        self._asked: deque[tuple[float, float]] = deque()
+        """When each open question was put, and the time that this process had missed by then."""
         self._lags: deque[float] = deque(maxlen=_WINDOW)
+        self._waits: deque[float] = deque(maxlen=_WINDOW)
+        """The lags without what this process missed of them."""
+        self._beat_at = 0.0
+        self._missed = 0.0
+        """Seconds in which it was not free to hear an answer."""
         self._lag = math.nan
         self._fps = min(SLOW, self.fastest)
         self._due = -math.inf
@@ -72,10 +83,16 @@ class FrameThrottle:
 
     @property
     def is_congested(self) -> bool:
-        """Whether pictures wait in the link's buffers: they hold more than it carries. One pause, of this process or of the
-        terminal, delays no more answers than are under way: it does not count."""
-        newest = [*self._lags][-_ENOUGH_ANSWERS:]
-        return len(newest) == _ENOUGH_ANSWERS and median(newest) - min(self._lags) > CONGESTED
+        """Whether pictures wait in the link's buffers: they hold more than it carries. Time in which this process itself was
+        busy or did not get the processor is no wait, and one pause of the terminal delays no more answers than are under
+        way: it does not count."""
+        newest = [*self._waits][-_ENOUGH_ANSWERS:]
+        return len(newest) == _ENOUGH_ANSWERS and median(newest) - min(self._waits) > CONGESTED
+
+    @property
+    def awaits_answer(self) -> bool:
+        """Whether a question is open: ``beat`` is to be called as long as that is so."""
+        return bool(self._asked)
 
     @property
     def fps(self) -> int:
@@ -96,13 +113,13 @@ class FrameThrottle:
         self._give_up(now)
         wait = self._due - now
         if len(self._asked) >= self.allowed and not self._deaf:
-            wait = max(wait, self._asked[0] + TIMEOUT - now)
+            wait = max(wait, self._asked[0][0] + TIMEOUT - now)
         return wait if wait > _SOON else 0.0
 
     def _give_up(self, now: float) -> None:
         """Forgets all open questions when the oldest was put too long ago. Should they be answered after all,
         the answers are taken for later questions' until none is open: for so long the lag is underrated."""
-        if self._asked and now - self._asked[0] >= TIMEOUT - _SOON:
+        if self._asked and now - self._asked[0][0] >= TIMEOUT - _SOON:
             self._asked.clear()
             self._deaf = not self._lags
 
@@ -113,7 +130,16 @@ class FrameThrottle:
 
     def sent(self, now: float) -> None:
         """It was written, and the question after it."""
-        self._asked.append(now)
+        self.beat(now)
+        self._asked.append((now, self._missed))
+
+    def beat(self, now: float) -> None:
+        """This process is free to hear an answer. To be called every BEAT_S while one is awaited: what is missing between two
+        calls is a delay of its own, not the link's."""
+        gap = now - self._beat_at
+        if gap > _LATEST_BEAT_S:
+            self._missed += gap - BEAT_S
+        self._beat_at = now
 
     def answered(self, now: float) -> None:
         """The terminal gave its cursor position. Answers come in the order of the questions."""
@@ -121,8 +147,11 @@ class FrameThrottle:
         if not self._asked:
             return
         self._deaf = False
-        lag = now - self._asked.popleft()
+        self.beat(now)
+        asked, missed = self._asked.popleft()
+        lag = now - asked
         self._lags.append(lag)
+        self._waits.append(lag - (self._missed - missed))
         self._lag = lag if math.isnan(self._lag) else self._lag + _SMOOTHING * (lag - self._lag)
         if self._lag < LAG_FOR_FAST:
             self._fps = self.fastest
@@ -181,6 +210,7 @@ class WorldView(FrameView):
         self._followed: int | None = None
         self._offered: Callable[[], Scene] | None = None
         self._later: Timer | None = None
+        self._beats: Timer | None = None
 
     @cached_property
     def _painter(self) -> Painter:
@@ -256,6 +286,7 @@ class WorldView(FrameView):
 
     def on_mount(self) -> None:
         self.app.message_signal.subscribe(self, self._on_app_message, immediate=True)
+        self._beats = self.set_interval(BEAT_S, self._beat, pause=True)
 
     def on_resize(self, event: events.Resize) -> None:
         self._redraw()
@@ -341,3 +372,10 @@ class WorldView(FrameView):
         """The frame has gone out to the terminal."""
         if ask_cursor(self.app):
             self.throttle.sent(self._clock())
+            if self._beats is not None:
+                self._beats.resume()
+
+    def _beat(self) -> None:
+        self.throttle.beat(self._clock())
+        if self._beats is not None and not self.throttle.awaits_answer:
+            self._beats.pause()

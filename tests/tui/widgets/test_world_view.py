@@ -26,7 +26,7 @@ from kit.render.painter import Painter
 from kit.render.roles import COLOR_SCHEMES, PALETTES, SHADES, Role
 from kit.render.scene import Scene
 from kit.tui.textual_patches import CroppingCompositor
-from kit.tui.widgets.world_view import FAST, MOST_UNDER_WAY, SLOW, TIMEOUT, FrameThrottle, LinkIsSlow
+from kit.tui.widgets.world_view import BEAT_S, FAST, MOST_UNDER_WAY, SLOW, TIMEOUT, FrameThrottle, LinkIsSlow
 from tests.render.scenes import drive, maze, robot
 from tests.tui.tape import Display, ViewApp, painted, run_in
 
@@ -179,22 +179,51 @@ def test_the_fastest_rate_can_be_chosen() -> None:
     assert not math.isnan(rate(drawn, 0, 1))
 
 
+def ask(throttle: FrameThrottle, now: float, answer_s: float, heard_s: float | None = None) -> None:
+    """Asks one question. The answer comes after ``answer_s``; a busy process is free to hear it only after ``heard_s``."""
+    throttle.sent(now)
+    for number in itertools.count(1):
+        if (beat := number * BEAT_S) >= answer_s or heard_s is not None:
+            break
+        throttle.beat(now + beat)
+    throttle.answered(now + (heard_s or answer_s))
+
+
 def test_a_link_is_congested_when_pictures_wait_in_it_and_not_when_it_is_far() -> None:
     far, full = FrameThrottle(), FrameThrottle()
     for number in range(20):
-        for throttle, lag in ((far, 0.6), (full, 0.05 + 0.04 * number)):
-            throttle.sent(number)
-            throttle.answered(number + lag)
+        ask(far, number, 0.6)
+        ask(full, number, 0.05 + 0.04 * number)
     assert not far.is_congested
     assert full.is_congested
 
 
-def test_a_pause_of_the_process_is_no_congestion() -> None:
+def test_a_pause_of_the_terminal_is_no_congestion() -> None:
     throttle = FrameThrottle()
     for number in range(30):
-        throttle.sent(number)
-        throttle.answered(number + (1.9 if 10 <= number < 10 + MOST_UNDER_WAY else 0.05))
+        ask(throttle, number, 1.9 if 10 <= number < 10 + MOST_UNDER_WAY else 0.05)
         assert not throttle.is_congested
+
+
+def test_a_busy_process_on_a_fast_link_sees_no_congestion_and_on_a_slow_one_it_does() -> None:
+    fast, slow = FrameThrottle(), FrameThrottle()
+    for number in range(10):
+        ask(fast, number, 0.02)
+        ask(slow, number, 0.02)
+    for number in range(10, 30):
+        ask(fast, number, 0.02, heard_s=0.9)
+        assert not fast.is_congested
+        busy_s, now = 0.15, number + 0.0
+        slow.sent(now)
+        for _ in range(3):  # it computes for a while, and then listens for a while, in vain
+            slow.beat(now := now + busy_s)
+            for _ in range(3):
+                slow.beat(now := now + BEAT_S)
+        slow.answered(now)
+    assert fast.lag is not None
+    assert fast.lag > 0.8
+    assert fast.fps == SLOW, "fewer pictures are made all the same"
+    assert slow.is_congested
 
 
 BUDGET = 30_000 / 20
@@ -593,8 +622,7 @@ def test_a_slow_link_gets_16_colours_and_no_floor_and_is_told(monkeypatch: pytes
         assert frame is not None
         assert np.isin(frame.bg, SHADES).any()
         for number in range(20):
-            app.view.throttle.sent(1000.0 + number)
-            app.view.throttle.answered(1000.0 + number + 0.04 * number)
+            ask(app.view.throttle, 1000.0 + number, 0.04 * number)
         monkeypatch.setattr(app.view, "post_message", partial(heard, app.view.post_message))
         app.message_signal.publish(events.CursorPosition(0, 0))
         await pilot.pause()
