@@ -14,7 +14,14 @@ import pytest
 
 import kit
 from kit.learning.environment.tasks import TaskSpec
-from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
+from kit.learning.policies.policies import (
+    ActionSampling,
+    LinearLayer,
+    Policy,
+    PolicyNetwork,
+    save_policy,
+    task_interface,
+)
 
 ROOT = Path(__file__).parent.parent
 
@@ -96,7 +103,17 @@ def examples_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("examples")
     layers = (LinearLayer(np.zeros((9, 3), np.float32), np.array([1, 0, 0], np.float32)),)
     network = PolicyNetwork(layers, "tanh")
-    save_policy(Policy(network, (3,), ActionSampling("softmax"), TaskSpec("turn"), 0), folder / "best.npz")
+    save_policy(
+        Policy(
+            network,
+            (3,),
+            ActionSampling("softmax"),
+            TaskSpec("turn"),
+            0,
+            task_interface(TaskSpec("turn").resolve()),
+        ),
+        folder / "best.npz",
+    )
     return folder
 
 

@@ -163,7 +163,7 @@ def test(
                 if not as_json:
                     _print_test(found[-1], first=len(found) == 1)
     if as_json:
-        click.echo(json.dumps([each.as_dict() for each in found], indent=2))
+        click.echo(json.dumps([asdict(each) for each in found], indent=2))
     if any(each.accuracy < 1.0 for each in found):
         raise SystemExit(FAILED)
 
@@ -205,7 +205,7 @@ def table(runs: int, seed: int, as_json: bool) -> None:
                 click.echo("Table 5.3, the map of tutorial 3")
             click.echo(_table_row(row, ours))
     if as_json:
-        facts = [asdict(row) | {each.controller: each.as_dict() for each in ours} for row, ours in printed]
+        facts = [asdict(row) | {each.controller: asdict(each) for each in ours} for row, ours in printed]
         click.echo(json.dumps(facts, indent=2))
         return
     for line in failures:

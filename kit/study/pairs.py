@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -78,12 +78,6 @@ class PairSummary:
     jerk: float
     failures: tuple[tuple[int, str], ...]
     """For each way to fail: how many runs failed so, and how the first of them did."""
-
-    def as_dict(self) -> dict[str, Any]:
-        """JSON-able; ``adjacency_score`` keeps its key of before, ``graded``."""
-        return {
-            ("graded" if name == "adjacency_score" else name): each for name, each in asdict(self).items()
-        }
 
     @classmethod
     def of(cls, case: str, controller: str, outcomes: list[PairRunResult]) -> PairSummary:

@@ -40,8 +40,6 @@ SHORT = {
 ARGUMENTS = {"grading": ["8", "2"]}
 TOO_LONG = ("learning",)
 """Runs only if named: it trains for minutes."""
-RENAMED = (("guest", "process"), ("a door", "a server"), ("nobody", "no server"), ("a reader", "a visitor"))
-"""Words of the first build's lines, and the same of later ones."""
 DEARER = 1.1
 """A figure that is more than so many times the old one's is marked."""
 
@@ -80,8 +78,6 @@ def figures(output: str) -> Iterator[Figure]:
 
 def _figure(label: str, number: str, *, is_rate: bool) -> Iterator[Figure]:
     value = float(number.replace(",", ""))
-    for old, new in RENAMED:
-        label = label.replace(old, new)
     if value > 0.0:
         yield Figure(" ".join(label.split()), 1.0 / value if is_rate else value)
 

@@ -207,8 +207,8 @@ class Policy:
     trained_on: TaskSpec
     steps: int
     """Steps of training."""
-    interface: Mapping[str, Any] | None = None
-    """What it saw and could do when it was trained; None for policies that do not say."""
+    interface: Mapping[str, Any]
+    """What it saw and could do when it was trained; see ``task_interface``."""
     critic: PolicyNetwork | None = None
     """Says what return is expected, from the observation, or from observation and continuous action; None where no network
     of its own was learned for that."""
@@ -231,7 +231,7 @@ class Policy:
         lowest = 0.0 if self.sampling.kind == "epsilon" else sys.float_info.min
         if not lowest <= self.sampling.amount < math.inf:
             raise ValueError(f"actions drawn with an amount of {self.sampling.amount}")
-        if not (self.interface is None or isinstance(self.interface, dict)):
+        if not isinstance(self.interface, dict):
             raise ValueError("no record of what it saw")
         if self.critic is not None:
             self.critic.check_shapes()
@@ -265,7 +265,7 @@ class Policy:
                 f"from {_product_text(self.choices)} actions, but task {task.name} gives {sees} and wants one of "
                 f"{_product_text(choices)}. Play it on the task it was trained on, or train another."
             )
-        if self.interface is not None and (changes := _differences(self.interface, task_interface(task))):
+        if changes := _differences(self.interface, task_interface(task)):
             raise PolicyError(
                 f"this policy was trained on {self.trained_on.title}, and task {task.name} is not the same as that was: "
                 f"{'; '.join(changes)}. Play it on the task it was trained on, or train another."
@@ -414,7 +414,7 @@ def policy_bytes(policy: Policy) -> bytes:
         "steps": policy.steps,
         "activation": getattr(policy.model, "activation", None),
         "inputs": policy.model.inputs,
-        **({} if policy.interface is None else {"interface": policy.interface}),
+        "interface": policy.interface,
         **({} if policy.critic is None else {"critic": policy.critic.activation}),
     }
     text = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
@@ -480,7 +480,7 @@ def _policy_from_arrays(arrays: dict[str, NDArray[Any]]) -> Policy:
         ActionSampling(known_kind, float(amount), tuple(map(float, about.get("deviations", ())))),
         TaskSpec.from_dict(about["task"]),
         int(about["steps"]),
-        about.get("interface"),
+        about["interface"],
         _network_from_arrays(_critics_own(arrays), about["critic"]) if "critic" in about else None,
     )
     policy.check_consistent()

@@ -19,6 +19,7 @@ from kit.learning.policies.policies import (
     PolicyError,
     PolicyNetwork,
     action_counts,
+    task_interface,
 )
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
@@ -34,7 +35,7 @@ def random_policy(name: str, sampling: ActionSampling | None = None, *, tells_ta
     weights = rng.normal(size=(task.observation.size * task.robots, outputs)).astype(np.float32)
     usual = ActionSampling("softmax") if choices else ActionSampling("normal", 1.0, (0.1,) * outputs)
     network = PolicyNetwork((LinearLayer(weights, np.zeros(outputs, np.float32)),), "tanh")
-    return Policy(network, choices, sampling or usual, choice, 0)
+    return Policy(network, choices, sampling or usual, choice, 0, task_interface(choice.resolve()))
 
 
 def view_of(policy: Policy) -> tuple[AgentView, BatchEnv, np.ndarray]:

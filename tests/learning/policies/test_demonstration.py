@@ -17,6 +17,7 @@ from kit.learning.policies.policies import (
     PolicyError,
     PolicyNetwork,
     save_policy,
+    task_interface,
 )
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run
 
@@ -29,7 +30,12 @@ def always(move: int, steps: int) -> Policy:
     bias[move] = 1.0
     layer = LinearLayer(np.zeros((9, 3), dtype=np.float32), bias)
     return Policy(
-        PolicyNetwork((layer,), "tanh"), (3,), ActionSampling("softmax", 1.0), TaskSpec("turn"), steps
+        PolicyNetwork((layer,), "tanh"),
+        (3,),
+        ActionSampling("softmax", 1.0),
+        TaskSpec("turn"),
+        steps,
+        task_interface(TaskSpec("turn").resolve()),
     )
 
 

@@ -19,6 +19,7 @@ from kit.learning.policies.policies import (
     PolicyError,
     PolicyNetwork,
     action_counts,
+    task_interface,
 )
 from kit.learning.policies.policy_node import format_policy_node
 from kit.learning.tasks.learning_task import EpisodePlaces
@@ -41,7 +42,9 @@ def always(choice: TaskSpec, action: int) -> Policy:
     for first in np.cumsum([0, *choices[:-1]]):
         bias[first + action] = 9.0
     layer = LinearLayer(np.zeros((task.observation.size * task.robots, sum(choices)), np.float32), bias)
-    return Policy(PolicyNetwork((layer,), "tanh"), choices, ActionSampling("softmax"), choice, 0)
+    return Policy(
+        PolicyNetwork((layer,), "tanh"), choices, ActionSampling("softmax"), choice, 0, task_interface(task)
+    )
 
 
 FORWARD = always(STRAIGHT, 1)

@@ -37,14 +37,26 @@ def made(choices: tuple[int, ...] = (3,), *, recurrent: bool = False, seed: int 
     lstm = LstmLayer(layer(rng, 9, 20), layer(rng, 5, 20)) if recurrent else None
     layers = (layer(rng, 5 if recurrent else 9, 8), layer(rng, 8, sum(choices)))
     return Policy(
-        PolicyNetwork(layers, "tanh", lstm), choices, ActionSampling("softmax"), TaskSpec("turn"), 1234
+        PolicyNetwork(layers, "tanh", lstm),
+        choices,
+        ActionSampling("softmax"),
+        TaskSpec("turn"),
+        1234,
+        task_interface(TaskSpec("turn").resolve()),
     )
 
 
 def table() -> Policy:
     values = np.arange(27 * 3, dtype=np.float32).reshape(27, 3) % 7
     model = ActionValueTable(np.array([0, 4, 8]), np.array([0.2, 0.4], dtype=np.float32), values, 9)
-    return Policy(model, (3,), ActionSampling("epsilon", 0.5), TaskSpec("turn"), 9)
+    return Policy(
+        model,
+        (3,),
+        ActionSampling("epsilon", 0.5),
+        TaskSpec("turn"),
+        9,
+        task_interface(TaskSpec("turn").resolve()),
+    )
 
 
 def continuous() -> Policy:
@@ -63,7 +75,14 @@ def squashed() -> Policy:
     last = layer(rng, 8, 4)
     small = LinearLayer(last.weights * np.float32(0.1), last.bias * np.float32(0.1))
     network = PolicyNetwork((layer(rng, 9, 8), small), "relu")
-    return Policy(network, (), ActionSampling("tanh-normal"), TaskSpec("turn"), 5)
+    return Policy(
+        network,
+        (),
+        ActionSampling("tanh-normal"),
+        TaskSpec("turn"),
+        5,
+        task_interface(TaskSpec("turn").resolve()),
+    )
 
 
 def noisy() -> Policy:

@@ -24,6 +24,7 @@ from kit.learning.policies.policies import (
     PolicyError,
     PolicyNetwork,
     save_policy,
+    task_interface,
 )
 from kit.learning.policies.policy_node import create_policy_package, format_policy_node
 from kit.ros.packages import PackageError
@@ -129,7 +130,8 @@ def test_a_node_chooses_what_the_policy_chooses(policy: Policy, tmp_path: Path) 
 @pytest.mark.parametrize("policy", [squashed(), noisy(), continuous()], ids=["squashed", "noisy", "normal"])
 def test_a_node_drives_as_a_continuous_policy(policy: Policy, tmp_path: Path) -> None:
     (tmp_path / "task.yaml").write_text(CONTINUOUS_TASK)
-    policy = replace(policy, trained_on=TaskSpec(str(tmp_path / "task.yaml")).frozen(), interface=None)
+    spec = TaskSpec(str(tmp_path / "task.yaml")).frozen()
+    policy = replace(policy, trained_on=spec, interface=task_interface(spec.resolve()))
     commands = policy.trained_on.resolve().actions.commands
     wanted = commands(policy.make_player(len(SEEN)).act(SEEN), 1).twists[:, 0]
     found = np.array(in_a_process(policy, tmp_path, [])[0])[:, 0]
@@ -143,7 +145,9 @@ def test_a_node_remembers_frames_and_what_it_did(tmp_path: Path) -> None:
     choice = TaskSpec(str(tmp_path / "task.yaml")).frozen()
     rng = np.random.default_rng(0)
     model = PolicyNetwork((layer(rng, 39, 2),), "tanh")
-    policy = Policy(model, (), ActionSampling("normal", 1.0, (0.1, 0.1)), choice, 1)
+    policy = Policy(
+        model, (), ActionSampling("normal", 1.0, (0.1, 0.1)), choice, 1, task_interface(choice.resolve())
+    )
     task = replace(choice.resolve(), lidar_noise=0.0)
     batch, player = BatchEnv(task, 1, 3, autoreset=False), policy.make_player(1)
     seen, shown = [batch.reset()[0]], []
@@ -166,7 +170,11 @@ def test_a_node_remembers_frames_and_what_it_did(tmp_path: Path) -> None:
 
 @pytest.mark.long
 def test_a_continuous_policy_is_packaged_with_its_odometry(tmp_path: Path) -> None:
-    policy = replace(squashed(), trained_on=TaskSpec("smooth-turn"), interface=None)
+    policy = replace(
+        squashed(),
+        trained_on=TaskSpec("smooth-turn"),
+        interface=task_interface(TaskSpec("smooth-turn").resolve()),
+    )
     policy = replace(policy, model=PolicyNetwork((layer(np.random.default_rng(0), 15, 4),), "relu"))
     folder = create_policy_package(policy, "my_agent", tmp_path)
     output = launched(tmp_path, folder, "simulation.launch.py", "--until", "3")
@@ -205,7 +213,9 @@ def test_a_node_knows_its_place_and_the_target_from_odometry(tmp_path: Path) -> 
     (tmp_path / "task.yaml").write_text(text)
     choice = TaskSpec(str(tmp_path / "task.yaml")).frozen()
     model = PolicyNetwork((layer(np.random.default_rng(0), 15, 2),), "tanh")
-    policy = Policy(model, (), ActionSampling("normal", 1.0, (0.1, 0.1)), choice, 1)
+    policy = Policy(
+        model, (), ActionSampling("normal", 1.0, (0.1, 0.1)), choice, 1, task_interface(choice.resolve())
+    )
     batch = BatchEnv(replace(choice.resolve(), lidar_noise=0.0), 3, 3)
     seen = batch.reset()
     shown = [batch.step(np.tile(np.float32([0.2, 0.9]), (3, 1))) for _ in range(4)][-1]

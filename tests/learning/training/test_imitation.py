@@ -13,7 +13,14 @@ from kit.controllers import find_controller
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.tasks import TaskSpec, find_task
 from kit.learning.policies.evaluation import Evaluator
-from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
+from kit.learning.policies.policies import (
+    ActionSampling,
+    LinearLayer,
+    Policy,
+    PolicyNetwork,
+    save_policy,
+    task_interface,
+)
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.controller_demonstrator import ControllerDemonstrator, read_demonstrator
 from kit.learning.training.demonstrations import (
@@ -39,7 +46,14 @@ def twist_policy(forward: float, turn: float) -> Policy:
     """One that always drives with the same shares of the speeds."""
     layer = LinearLayer(np.zeros((9, 2), np.float32), np.array([forward, turn], np.float32))
     sampling = ActionSampling("normal", 1.0, (0.0, 0.0))
-    return Policy(PolicyNetwork((layer,), "tanh"), (), sampling, TaskSpec("hallway"), 0)
+    return Policy(
+        PolicyNetwork((layer,), "tanh"),
+        (),
+        sampling,
+        TaskSpec("hallway"),
+        0,
+        task_interface(ANY_SPEED),
+    )
 
 
 def test_twists_become_the_actions_that_are_most_like_them() -> None:
@@ -111,6 +125,7 @@ def test_a_controller_takes_over_where_a_policy_has_driven_to() -> None:
         ActionSampling("normal", 1.0, (0.0, 0.0)),
         TaskSpec("smooth-turn"),
         0,
+        task_interface(SMOOTH),
     )
     after = demonstrator.demonstrate(turner, 1)
     assert not np.allclose(own.observations[0], after.observations[0], atol=0.02), "it begins elsewhere"
@@ -153,7 +168,14 @@ def test_a_saved_imitator_goes_on_as_it_was(name: str, tmp_path: Path) -> None:
 @needs_learner
 def test_a_table_of_actions_is_imitated_too(tmp_path: Path) -> None:
     layer = LinearLayer(np.zeros((9, 3), np.float32), np.array([5, 0, 0], np.float32))
-    ahead = Policy(PolicyNetwork((layer,), "tanh"), (3,), ActionSampling("softmax"), TaskSpec("hallway"), 0)
+    ahead = Policy(
+        PolicyNetwork((layer,), "tanh"),
+        (3,),
+        ActionSampling("softmax"),
+        TaskSpec("hallway"),
+        0,
+        task_interface(STRAIGHT_ON),
+    )
     save_policy(ahead, tmp_path / "p.npz")
     learner = make_learner(
         find_algorithm("bc"),

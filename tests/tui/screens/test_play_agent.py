@@ -10,7 +10,14 @@ from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
 from kit.learning.environment.tasks import TaskSpec
-from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
+from kit.learning.policies.policies import (
+    ActionSampling,
+    LinearLayer,
+    Policy,
+    PolicyNetwork,
+    save_policy,
+    task_interface,
+)
 from kit.learning.training.runs import RunConfig, create_run
 from kit.run.headless import run_episode
 from kit.run.recording import load_recording
@@ -30,7 +37,15 @@ def save_agent(runs: Path, name: str, spec: TaskSpec) -> None:
     inputs = spec.resolve().observation.size
     layer = LinearLayer(np.zeros((inputs, 3), np.float32), np.array([0.0, 2.0, 0.0], np.float32))
     save_policy(
-        Policy(PolicyNetwork((layer,), "tanh"), (3,), ActionSampling("softmax"), spec, 100), run.best_policy
+        Policy(
+            PolicyNetwork((layer,), "tanh"),
+            (3,),
+            ActionSampling("softmax"),
+            spec,
+            100,
+            task_interface(spec.resolve()),
+        ),
+        run.best_policy,
     )
 
 
@@ -113,6 +128,7 @@ def test_a_replay_shows_what_the_agent_perceived_and_expected(tmp_path: Path) ->
         ActionSampling("softmax"),
         spec,
         100,
+        task_interface(spec.resolve()),
         critic=PolicyNetwork((critic,), "tanh"),
     )
 

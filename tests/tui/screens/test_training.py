@@ -11,7 +11,14 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from kit.learning.environment.tasks import TaskSpec
-from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
+from kit.learning.policies.policies import (
+    ActionSampling,
+    LinearLayer,
+    Policy,
+    PolicyNetwork,
+    save_policy,
+    task_interface,
+)
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run
 from kit.render.curve import Axes, Curve
 from kit.render.encode import AsciiEncoder
@@ -97,7 +104,14 @@ def run(tmp_path: Path) -> TrainingRun:
     """A run that has left a policy, which prefers to stay where it is and turn."""
     made = create_run(tmp_path, RunConfig(TaskSpec("turn")), "mine")
     layer = LinearLayer(np.zeros((9, 3), np.float32), np.array([0.0, 2.0, 0.0], np.float32))
-    policy = Policy(PolicyNetwork((layer,), "tanh"), (3,), ActionSampling("softmax"), TaskSpec("turn"), 4000)
+    policy = Policy(
+        PolicyNetwork((layer,), "tanh"),
+        (3,),
+        ActionSampling("softmax"),
+        TaskSpec("turn"),
+        4000,
+        task_interface(TaskSpec("turn").resolve()),
+    )
     save_policy(policy, made.newest_policy)
     return made
 

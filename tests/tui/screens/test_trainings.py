@@ -11,7 +11,14 @@ import pytest
 from textual.pilot import Pilot
 
 from kit.learning.environment.tasks import TaskSpec
-from kit.learning.policies.policies import ActionSampling, LinearLayer, Policy, PolicyNetwork, save_policy
+from kit.learning.policies.policies import (
+    ActionSampling,
+    LinearLayer,
+    Policy,
+    PolicyNetwork,
+    save_policy,
+    task_interface,
+)
 from kit.learning.tasks.task_template import new_task_file
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run, find_run, list_runs
 from kit.learning.training.training_sweep import TrainingSweep
@@ -32,7 +39,15 @@ def folder(tmp_path: Path) -> Path:
             layer = LinearLayer(np.zeros((9, 3), np.float32), np.array([1, 0, 0], np.float32))
             network = PolicyNetwork((layer,), "tanh")
             save_policy(
-                Policy(network, (3,), ActionSampling("softmax"), TaskSpec("turn"), 100), run.best_policy
+                Policy(
+                    network,
+                    (3,),
+                    ActionSampling("softmax"),
+                    TaskSpec("turn"),
+                    100,
+                    task_interface(TaskSpec("turn").resolve()),
+                ),
+                run.best_policy,
             )
     return runs
 
