@@ -9,6 +9,7 @@ from kit.geometry import Pose
 from kit.learning.environment.tasks import TaskSpec, UnknownTask, task_names
 from kit.learning.tasks.learning_task import LearningTask, TaskCase
 from kit.learning.tasks.task_reader import read_task
+from kit.learning.training.student_reward import RewardFileError
 from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Scenario, scenario_on_map
 from kit.world.catalogue import MapCard, MapCase
@@ -54,7 +55,6 @@ def problem_of_task(file: Path) -> str | None:
     # Only now: this loads all that worlds in batches take, and a slip in the file is told at once.
     from kit.learning.environment.batch_map import UnsupportedWorld
     from kit.learning.tasks.task_check import check_task
-    from kit.learning.training.student_reward import RewardFileError
 
     try:
         check_task(found)

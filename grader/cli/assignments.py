@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import textwrap
+from dataclasses import fields
 from pathlib import Path
 from typing import Final
 
@@ -12,6 +13,14 @@ import click
 
 from grader.ci import WORKFLOWS, GitSource, warnings, workflow
 from grader.cli import options
+from grader.cli.progress import shown_progress
+from grader.grading import GradingOptions, LevelTooLow
+from grader.kinds.contract import find_kind, kind_names
+from grader.reading import budget_lines
+from grader.reports.cleaning import plain
+from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds
+from kit.plain_text import quoted, suggestion
+from kit.workspace import write_atomically
 
 TEMPLATES: Final = Path(__file__).parents[1] / "templates"
 
@@ -70,12 +79,6 @@ def checks(kind: str) -> None:
     \b
     grader checks reward
     """
-    from dataclasses import fields
-
-    from grader.kinds.contract import find_kind, kind_names
-    from grader.reading import budget_lines
-    from kit.plain_text import quoted, suggestion
-
     if kind not in kind_names():
         options.fail(f"There is no kind {quoted(kind)}: {suggestion(kind, kind_names())}")
     for name, check in find_kind(kind).checks.items():
@@ -115,11 +118,6 @@ def self_test(folder: Path, solutions: Path | None, level: int | None) -> None:
 
     Exit code: 0 all tests pass; 1 some fail; 2 the assignment cannot be read.
     """
-    from grader.cli.progress import shown_progress
-    from grader.grading import GradingOptions, LevelTooLow
-    from grader.reports.cleaning import plain
-    from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds
-
     assignment = options.load_assignment(folder)
     options.warn_of_short_seeds(assignment)
     click.echo(f"{assignment.title}: {len(assignment.criteria)} criteria")
@@ -180,8 +178,6 @@ def ci(service: str, folder: Path, kit: str, write: bool) -> None:
     Anyone who can push can change the workflow and the assignment, so these results are only for practice. For the
     grade, run `grader cohort` on the submissions.
     """
-    from kit.workspace import write_atomically
-
     assignment = options.load_assignment(folder)
     name = folder.as_posix()
     if not PLAIN_PATH.fullmatch(name) or folder.is_absolute() or ".." in folder.parts:

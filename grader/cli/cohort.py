@@ -7,15 +7,44 @@ import os
 import sys
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from grader.cli import options
+from grader.cohort.gradebook import (
+    UNREADABLE,
+    as_csv,
+    as_json,
+    attention_lines,
+    changes,
+    choose_submissions,
+    gradebook_rows,
+    read_json,
+    read_policy,
+    read_submission_times,
+    summary,
+    unjudged_line,
+)
+from grader.cohort.program_ladder import LadderRace, find_programs, race_all, rank
+from grader.cohort.queue import (
+    ExecutorUnavailable,
+    Queue,
+    QueueError,
+    grade_job,
+    prepare_queue,
+    run_locally,
+    run_on_dask,
+    run_on_slurm,
+)
+from grader.grading import GradingOptions
+from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.cli.options import executor_options
-
-if TYPE_CHECKING:
-    from grader.cohort.queue import Queue
+from kit.host.job_executors import read_shard, serve_jobs
+from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.probe import is_level_available
+from kit.school.game.levels import UnknownLevel, find_level
+from kit.workspace import write_atomically
+from kit.world.problems import WorldError
 
 
 @click.command()
@@ -53,16 +82,6 @@ def cohort(
     Exit code: 0 all submissions have a grade; 1 some cannot be read; 2 an argument is wrong; 3 the grader failed for
     some.
     """
-    from grader.cohort.queue import (
-        ExecutorUnavailable,
-        Queue,
-        QueueError,
-        prepare_queue,
-        run_locally,
-        run_on_dask,
-        run_on_slurm,
-    )
-    from grader.grading import GradingOptions
 
     def count(key: str) -> None:
         bar.update(1)
@@ -96,17 +115,6 @@ def cohort(
 
 def publish(queue: Queue) -> int:
     """Writes the gradebook into the queue folder, lists who has no grade, and returns the exit code."""
-    from grader.cohort.gradebook import (
-        UNREADABLE,
-        as_csv,
-        as_json,
-        attention_lines,
-        gradebook_rows,
-        summary,
-        unjudged_line,
-    )
-    from kit.workspace import write_atomically
-
     table = gradebook_rows(queue)
     write_atomically(queue.folder / "gradebook.csv", as_csv(table).encode())
     write_atomically(queue.folder / "gradebook.json", as_json(table).encode())
@@ -137,9 +145,6 @@ def publish(queue: Queue) -> int:
 )
 def work(folder: Path, shard: str, jobs: int) -> None:
     """Grade the jobs in the queue FOLDER that have no result yet."""
-    from grader.cohort.queue import Queue, QueueError, run_locally
-    from kit.host.job_executors import read_shard
-
     share = read_shard(shard)
     if share is None:
         options.fail(f"{shard}: give the share and the number of shares, counting from 0, such as 0/4.")
@@ -158,9 +163,6 @@ def work(folder: Path, shard: str, jobs: int) -> None:
 @click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
 def worker(folder: Path) -> None:
     """Grade the jobs whose keys come on standard input."""
-    from grader.cohort.queue import Queue, grade_job
-    from kit.host.job_executors import serve_jobs
-
     # Other output must not mix with the answers.
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
@@ -197,20 +199,6 @@ def gradebook(
 ) -> None:
     """Print the gradebook of the queue FOLDER. The late rules and the choice among several submissions apply only to
     this output; they are not saved."""
-    from grader.cohort.gradebook import (
-        as_csv,
-        as_json,
-        changes,
-        choose_submissions,
-        gradebook_rows,
-        read_json,
-        read_policy,
-        read_submission_times,
-    )
-    from grader.cohort.queue import Queue, QueueError
-    from grader.reports.cleaning import clean_line
-    from kit.world.problems import WorldError
-
     try:
         policy = None if late is None else read_policy(late)
         submission_times = {} if times is None else read_submission_times(times)
@@ -262,12 +250,6 @@ def ladder(folder: Path, names: tuple[str, ...], as_csv: bool, unconfined: bool)
 
     Exit code: 0 success; 2 an argument is wrong, or this machine does not reach that level.
     """
-    from grader.cohort.program_ladder import LadderRace, find_programs, race_all, rank
-    from grader.reports.cleaning import clean_line, spreadsheet_cell
-    from kit.host.sandbox.confinement import Level
-    from kit.host.sandbox.probe import is_level_available
-    from kit.school.game.levels import UnknownLevel, find_level
-
     if not unconfined and not is_level_available(Level.FILTERED):
         options.fail(
             "This machine does not reach confinement level 1; `kit doctor` says why. To race without it, use --unconfined: "

@@ -18,6 +18,7 @@ import numpy as np
 
 from grader.evidence.reader_process import PosedMeasure
 from grader.evidence.submission_clock import SubmissionClock
+from grader.evidence.training import run_trainings
 from grader.evidence.training_results import (
     CaseOrder,
     PosedTaskPlan,
@@ -151,8 +152,6 @@ class PosedTask:
     @cached_property
     def results(self) -> TrainingResults:
         """Trainings with the task's own reward, and their tests."""
-        from grader.evidence.training import run_trainings  # only now: it loads all that learning takes
-
         plan, names = self.plan, tuple(case.name for case in self.cases)
         seeds = tuple(derive_seed(self._seed, "posed", number) for number in range(plan.trainings))
         budget = TrainingBudget(self.choice, names, (plan.algorithm,), plan.steps, seeds, (), plan.episodes)

@@ -37,7 +37,7 @@ from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_settings as read_trials
 from grader.submitted_files import reading_submission
 from kit.fields import adjacency
-from kit.fields.charges import derive_charges
+from kit.fields.charges import LineCharge, derive_charges, iter_members
 from kit.fields.controller_setup import ControllerSetup
 from kit.fields.layout import ChargeLayout, read_layout
 from kit.fields.minima import ForceFlow
@@ -177,8 +177,6 @@ Segment = tuple[tuple[float, float], tuple[float, float]]
 
 
 def _line_charges(charges: Sequence[Any]) -> list[Segment]:
-    from kit.fields.charges import LineCharge, iter_members
-
     return [each.ends for each in iter_members(charges) if isinstance(each, LineCharge)]
 
 

@@ -9,6 +9,7 @@ from typing import Final
 from grader.assignment import Assignment, GridTask
 from grader.checks.rewards import CHECKS
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, FixedEvidence
+from grader.evidence.reward import RewardEvidence
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.plain_text import quoted
 from kit.world.yaml_section import Section
@@ -26,8 +27,6 @@ def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
     """Evaluates the function once, for all criteria."""
-    from grader.evidence.reward import RewardEvidence
-
     evidence = RewardEvidence(file, assignment, options.level, options.clock)
     return nullcontext(FixedEvidence([evidence], options.level))
 

@@ -12,15 +12,23 @@ slow. ``trials`` in the assignment are runs of it, for the checks that need one:
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Self
+from typing import Final, Self
 
 from grader.assignment import Assignment, Criterion, Shift, Trial, read_seeds
 from grader.checks.faults import WorldContents, WorldRun
 from grader.checks.worlds import CHECKS, RUN_CHECKS, explain
-from grader.evidence.contract import EpisodeCollector, EpisodeSpec, EvidenceOptions, EvidenceRecord
+from grader.evidence.contract import (
+    EpisodeCollector,
+    EpisodeSpec,
+    Evidence,
+    EvidenceCollector,
+    EvidenceOptions,
+    EvidenceRecord,
+)
 from grader.evidence.reader_process import READ_TIMEOUT_S, WorldProcess
 from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
@@ -31,11 +39,6 @@ from kit.plain_text import quoted
 from kit.run.scenario import Scenario
 from kit.world.records import World
 from kit.world.yaml_section import Section
-
-if TYPE_CHECKING:
-    from contextlib import AbstractContextManager
-
-    from grader.evidence.contract import Evidence, EvidenceCollector
 
 MAX_RUN_S: Final = 120.0
 """Simulated seconds."""

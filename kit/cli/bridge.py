@@ -4,23 +4,27 @@ from __future__ import annotations
 
 import os
 import sys
+import termios
 import threading
 import time
+import tty
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import partial, wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import click
 
+from kit.bridge.bridge import Bridge, BridgeSettings, StopSocket, stop_bridges
+from kit.bridge.dds_wire import DdsAddress, DdsWire
+from kit.bridge.motion_guard import SpeedLimit
+from kit.bridge.shutdown import ShutdownDeadline
+from kit.bridge.wire import BridgeError, BridgeRoute, Direction, DryRunWire, RemoteEndpoint, Wire
+from kit.bridge.zenoh_wire import DEFAULT_ENDPOINT, ZenohAddress, ZenohWire
 from kit.cli import options
-
-if TYPE_CHECKING:
-    from kit.bridge.bridge import Bridge, BridgeSettings
-    from kit.bridge.shutdown import ShutdownDeadline
-    from kit.bridge.wire import RemoteEndpoint, Wire
+from kit.cli.ros.world_client import connect_to_world
 
 STOP_KEY: Final = " "
 RESUME_KEY: Final = "g"
@@ -49,8 +53,6 @@ def stop(workspace: Path | None) -> None:
 
     Exit code: 0 all bridges stopped; 1 no bridge runs, or one does not answer.
     """
-    from kit.bridge.bridge import stop_bridges
-
     answers = stop_bridges(options.open_existing_workspace(workspace).folder)
     for name, answer in answers:
         click.echo(f"{name}: stopped {answer}")
@@ -136,10 +138,6 @@ def with_bridge_options(function: Callable[..., Any]) -> Callable[..., Any]:
         workspace: Path | None,
         **rest: Any,
     ) -> None:
-        from kit.bridge.bridge import BridgeSettings
-        from kit.bridge.motion_guard import SpeedLimit
-        from kit.bridge.wire import BridgeError, BridgeRoute, Direction
-
         asked = {
             Direction.SEND: send,
             Direction.RECEIVE: receive,
@@ -227,8 +225,6 @@ def zenoh(request: BridgeRequest, connect: tuple[str, ...], listen: tuple[str, .
     and between two kits, both on one machine. Not tested with a real rmw_zenoh or
     a real robot. Start with its wheels off the ground.
     """
-    from kit.bridge.zenoh_wire import DEFAULT_ENDPOINT, ZenohAddress, ZenohWire
-
     if connect and listen:
         raise click.UsageError("--connect and --listen cannot be combined; give one of them.")
     address = ZenohAddress(connect or (DEFAULT_ENDPOINT,), listen, domain)
@@ -269,18 +265,11 @@ def dds(request: BridgeRequest, domain: int, interface: str | None, peer: tuple[
     with a real rmw_cyclonedds or rmw_fastrtps, or a real robot. Start with its
     wheels off the ground.
     """
-    from kit.bridge.dds_wire import DdsAddress, DdsWire
-
     address = DdsAddress(domain, interface, peer)
     _run(request, f"by DDS in domain {domain}", lambda: DdsWire(address))
 
 
 def _run(request: BridgeRequest, where: str, open_wire: Callable[[], Wire]) -> None:
-    from kit.bridge.bridge import Bridge, StopSocket
-    from kit.bridge.shutdown import ShutdownDeadline
-    from kit.bridge.wire import DryRunWire
-    from kit.cli.ros.world_client import connect_to_world
-
     with ShutdownDeadline(partial(click.echo, err=True)) as deadline:
         if request.is_listing:
             _list_endpoints(open_wire)
@@ -356,9 +345,6 @@ def _keys(bridge: Bridge, deadline: ShutdownDeadline) -> Iterator[None]:
     if not sys.stdin.isatty():
         yield
         return
-    import termios
-    import tty
-
     descriptor = sys.stdin.fileno()
     before = termios.tcgetattr(descriptor)
 

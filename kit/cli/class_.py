@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from kit.cli import options, report_output
-
-if TYPE_CHECKING:
-    from kit.school.report.measures import ReportItem
+from kit.plain_text import escape_controls, suggestion
+from kit.school.lessons.reading import UnknownLesson, find_lesson
+from kit.school.lessons.teachers_guide import teachers_guide
+from kit.school.quiz.items import read_bank
+from kit.school.report.class_data import build_class_data, read_roster
+from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
+from kit.school.report.measures import ReportItem
+from kit.school.survey import read_form
 
 DIVISION_METHODS = ("mean", "half", "scale")
 
@@ -59,11 +63,6 @@ def report(
     A folder means every .json file in it. Files that cannot be read are listed and skipped; two files of the same
     student count once. Students are shown as S1, S2, ... unless --names is given.
     """
-    from kit.plain_text import escape_controls, suggestion
-    from kit.school.report.class_data import build_class_data, read_roster
-    from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
-    from kit.school.survey import read_form
-
     wanted = tuple(part.strip() for part in (only or "").split(",") if part.strip())
     for each in wanted:
         if each not in CHAPTER_IDS:
@@ -91,9 +90,6 @@ def guide(lessons: tuple[str, ...]) -> None:
     kit class guide > guide.md
     kit class guide 3
     """
-    from kit.school.lessons.reading import UnknownLesson, find_lesson
-    from kit.school.lessons.teachers_guide import teachers_guide
-
     with report_output.explained_errors():
         try:
             names = [find_lesson(each).name for each in lessons]
@@ -104,9 +100,6 @@ def guide(lessons: tuple[str, ...]) -> None:
 
 def _items() -> Mapping[str, ReportItem]:
     """The questions of the kit's quiz with their options; none where the lessons are not there."""
-    from kit.school.quiz.items import read_bank
-    from kit.school.report.measures import ReportItem
-
     try:
         bank = read_bank()
     except FileNotFoundError:

@@ -7,17 +7,24 @@ import shutil
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from kit.cli import learning_options, options
-
-if TYPE_CHECKING:
-    from kit.learning.environment.disturbances import UniformRange
-    from kit.learning.environment.tasks import LearningTask
-    from kit.learning.policies.policies import Policy
-    from kit.learning.policies.sweep import PolicySweep
+from kit.learning.environment.disturbances import UniformRange
+from kit.learning.environment.tasks import LearningTask
+from kit.learning.policies.evaluation import Evaluator, build_paths_scene, derive_seed, record_paths
+from kit.learning.policies.policies import Policy
+from kit.learning.policies.policy_node import create_policy_package, format_policy_node
+from kit.learning.policies.sweep import PolicySweep, find_kinds, format_sweep, sweep_csv
+from kit.learning.training.run_text import format_comparison
+from kit.learning.training.run_upkeep import draw_test_curves
+from kit.learning.training.runs import find_run
+from kit.render.encode import ENCODERS
+from kit.render.image import draw_image, image_camera, save_image
+from kit.render.world_text import scene_rows
+from kit.ros.packages import PackageError
+from kit.workspace import open_workspace, write_atomically
 
 
 @click.command()
@@ -97,9 +104,6 @@ def command(
     if not sweep and (kinds or csv_file):
         raise click.UsageError("--kinds and --csv need --sweep.")
     with learning_options.explained_errors():
-        from kit.learning.policies.evaluation import Evaluator, derive_seed
-        from kit.learning.policies.sweep import PolicySweep, find_kinds
-
         title, found = learning_options.find_policy(policy, workspace, newest=newest)
         if node is not None:
             _write_node(found, node)
@@ -144,10 +148,6 @@ def command(
 
 
 def _sweep(sweep: PolicySweep, title: str, csv_file: Path | None, as_json: bool) -> None:
-    from kit.learning.policies.sweep import format_sweep, sweep_csv
-    from kit.render.encode import ENCODERS
-    from kit.workspace import write_atomically
-
     with click.progressbar(
         sweep.points(), length=len(sweep.places), label="sweep", file=sys.stderr
     ) as progress:
@@ -167,9 +167,6 @@ def _sweep(sweep: PolicySweep, title: str, csv_file: Path | None, as_json: bool)
 
 
 def _write_node(policy: Policy, file: Path) -> None:
-    from kit.learning.policies.policy_node import format_policy_node
-    from kit.workspace import write_atomically
-
     write_atomically(file, format_policy_node(policy).encode())
     task = policy.trained_on.resolve()
     where = task.maps[0] if task.maps else task.map_cards[0].world_file
@@ -177,10 +174,6 @@ def _write_node(policy: Policy, file: Path) -> None:
 
 
 def _make_package(policy: Policy, name: str, destination: Path | None, workspace: Path | None) -> None:
-    from kit.learning.policies.policy_node import create_policy_package
-    from kit.ros.packages import PackageError
-    from kit.workspace import open_workspace
-
     try:
         folder = create_policy_package(policy, name, destination or open_workspace(workspace).packages)
     except PackageError as problem:
@@ -196,11 +189,6 @@ def _make_package(policy: Policy, name: str, destination: Path | None, workspace
 def _show_paths(
     policy: Policy, task: LearningTask, count: int, pictures: Path | None, seed: int, *, greedy: bool
 ) -> None:
-    from kit.learning.policies.evaluation import build_paths_scene, derive_seed, record_paths
-    from kit.render.encode import ENCODERS
-    from kit.render.image import draw_image, image_camera, save_image
-    from kit.render.world_text import scene_rows
-
     ways = record_paths(policy, task, count, derive_seed(seed, "paths"), greedy=greedy)
     columns, rows = shutil.get_terminal_size()
     if pictures is not None:
@@ -239,9 +227,6 @@ def compare_command(
 ) -> None:
     """Test several policies on the same new episodes. `--on all` tests every case of the task, trained on or not."""
     with learning_options.explained_errors():
-        from kit.learning.policies.evaluation import Evaluator, derive_seed
-        from kit.learning.training.run_text import format_comparison
-
         results = {}
         for name in policies:
             title, policy = learning_options.find_policy(name, workspace)
@@ -257,12 +242,6 @@ def compare_command(
 
 
 def _draw(policies: tuple[str, ...], workspace: Path | None) -> None:
-    import shutil
-
-    from kit.learning.training.run_upkeep import draw_test_curves
-    from kit.learning.training.runs import find_run
-    from kit.render.encode import ENCODERS
-
     folder = learning_options.runs_folder(workspace)
     columns, _ = shutil.get_terminal_size()
     runs = [find_run(folder, name) for name in policies]

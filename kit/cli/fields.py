@@ -13,11 +13,13 @@ import click
 
 from kit.cli import options
 from kit.cli.full_screen import show_screen
-from kit.controllers import find_controller
+from kit.controllers import find_controller, prepare_workspace
+from kit.run.scenario import Scenario, case_names, find_scenario
+from kit.workspace import WorkspaceError
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
     from kit.fields.controller_setup import ControllerSetup
-    from kit.run.scenario import Scenario
     from kit.study.pairs import PairSummary, PrintedPairResult
     from kit.tui.app import KitApp
     from kit.tui.screens.fields import FieldsScreen
@@ -83,9 +85,6 @@ def show(
 
     On the full screen, `i` selects an intensity, `[` and `]` change it, `o` shows the planner's field instead.
     """
-    from kit.controllers import prepare_workspace
-    from kit.workspace import WorkspaceError
-
     with _explained_errors():
         try:
             opened_workspace = prepare_workspace(workspace)
@@ -149,7 +148,6 @@ def test(
     Exit code: 0 every run of every controller reached the target; 1 some did not; 2 an argument is wrong or names
     something that does not exist.
     """
-    from kit.run.scenario import case_names
     from kit.study.pairs import run_repeatedly
 
     found = []
@@ -296,16 +294,12 @@ def _open_setup(scenario: Scenario, derived: bool) -> ControllerSetup:
 
 
 def _place(name: str, case: str | None) -> Scenario:
-    from kit.run.scenario import find_scenario
-
     return find_scenario(name, case)
 
 
 @contextmanager
 def _explained_errors() -> Iterator[None]:
     """A mistake of the user's ends the verb with its message."""
-    from kit.world.problems import WorldError
-
     try:
         yield
     except (LookupError, ValueError, WorldError, OSError) as error:

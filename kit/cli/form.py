@@ -15,13 +15,26 @@ import click
 from kit.cli import options
 from kit.cli.full_screen import show_screen
 from kit.plain_text import counted, is_printable
+from kit.school.form_session import PHASE_LABELS, FormSession, current_phase
+from kit.school.progress import ProgressError
+from kit.school.survey import (
+    AnswerValue,
+    FormAnswers,
+    InvalidAnswer,
+    SurveyForm,
+    SurveyPhase,
+    SurveyQuestion,
+    asked_questions,
+    parse_answer,
+    read_form,
+)
+from kit.tui.terminal import TerminalDecision
+from kit.workspace import WorkspaceError, open_workspace
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
-    from kit.school.form_session import FormSession
-    from kit.school.survey import AnswerValue, FormAnswers, SurveyForm, SurveyPhase, SurveyQuestion
     from kit.tui.app import KitApp
     from kit.tui.screens.form import FormScreen
-    from kit.tui.terminal import TerminalDecision
 
 WIDTH: Final = 78
 
@@ -56,10 +69,6 @@ def command(
     Enter leaves a question blank, and blank answers are counted only as blank. Your teacher sees your answers only
     if you export your progress and hand it in.
     """
-    from kit.school.form_session import FormSession, current_phase
-    from kit.school.survey import SurveyPhase, read_form
-    from kit.workspace import open_workspace
-
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
     with _explained_errors():
         form = read_form()
@@ -125,8 +134,6 @@ class _Reply:
 
 def _ask(question: SurveyQuestion, was: AnswerValue, number: int, of: int) -> _Reply | None:
     """Asks one question until it is answered; None where the student leaves."""
-    from kit.school.survey import InvalidAnswer, parse_answer
-
     head = f"{number}/{of}  "
     if question.group_text:
         _print_wrapped(head, question.text)
@@ -171,8 +178,6 @@ _HINTS: Final = {"scale": "1-7", "choice": "number", "yes_no": "y/n", "text": "y
 
 
 def _print_introduction(session: FormSession) -> None:
-    from kit.school.form_session import PHASE_LABELS
-
     click.echo(
         f"{session.form.title} ({PHASE_LABELS[session.phase]}): {counted(session.count if session.asks_again else session.open_count, 'question')}."
     )
@@ -194,8 +199,6 @@ def _print_wrapped(head: str, text: str) -> None:
 
 
 def _show(form: SurveyForm, answers: FormAnswers, phases: list[SurveyPhase]) -> None:
-    from kit.school.survey import asked_questions
-
     for phase in phases:
         if not answers.has_started(phase):
             click.echo(f"{phase.value}: nothing answered yet.")
@@ -237,10 +240,6 @@ def format_answer(value: AnswerValue) -> str:
 
 @contextmanager
 def _explained_errors() -> Iterator[None]:
-    from kit.school.progress import ProgressError
-    from kit.workspace import WorkspaceError
-    from kit.world.problems import WorldError
-
     try:
         yield
     except (ProgressError, WorkspaceError, WorldError, FileNotFoundError) as error:

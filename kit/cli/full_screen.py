@@ -7,6 +7,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 
 from kit.cli import ScreenClosed, options
+from kit.tui.terminal import TerminalDecision
+from kit.workspace import Workspace, open_workspace
 
 if TYPE_CHECKING:
     from textual.screen import Screen
@@ -20,8 +22,6 @@ if TYPE_CHECKING:
     from kit.tui.screens.lesson import LessonScreen
     from kit.tui.screens.lessons import LessonsScreen
     from kit.tui.screens.levels import LevelsScreen
-    from kit.tui.terminal import TerminalDecision
-    from kit.workspace import Workspace
 
 INTERRUPTED: Final = 130
 AnyScreen = TypeVar("AnyScreen", bound="Screen[Any]")
@@ -108,7 +108,6 @@ def show_layers(task: PlanningTask, title: str, terminal: TerminalDecision | Non
 
     def make_screen(app: KitApp) -> LayersScreen:
         from kit.tui.screens.layers import LayersScreen
-        from kit.workspace import open_workspace
 
         return LayersScreen(app.kit_theme, task, title, saved_to=open_workspace(make=False).worlds)
 

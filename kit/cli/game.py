@@ -12,8 +12,11 @@ from typing import TYPE_CHECKING
 import click
 
 from kit.cli import options
+from kit.cli.full_screen import show_levels, show_screen
 from kit.cli.shared_game import guest, host
+from kit.controllers import find_controller, prepare_workspace
 from kit.plain_text import counted
+from kit.workspace import Workspace, WorkspaceError
 
 if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
@@ -24,7 +27,6 @@ if TYPE_CHECKING:
     from kit.school.progress import ProgressJournal
     from kit.tui.app import KitApp
     from kit.tui.screens.lesson_drive import ReplayScreen
-    from kit.workspace import Workspace
 
 STAR, NO_STAR = "*", "."
 
@@ -32,11 +34,9 @@ STAR, NO_STAR = "*", "."
 @contextmanager
 def _open_journal(workspace: Path | None) -> Iterator[tuple[ProgressJournal, Workspace]]:
     """Opens the journal and the workspace; every error of the user's ends the verb with a message."""
-    from kit.controllers import prepare_workspace
     from kit.school.game.leaderboard import LeaderboardError
     from kit.school.game.levels import UnknownLevel
     from kit.school.progress import ProgressError
-    from kit.workspace import WorkspaceError
     from kit.world.problems import WorldError
 
     try:
@@ -103,8 +103,6 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     with _open_journal(workspace) as (journal, opened_workspace):
         terminal = options.terminal(plain=plain)
         if not terminal.plain.value:
-            from kit.cli.full_screen import show_levels
-
             show_levels(journal, opened_workspace, terminal)
         _print_levels(_read_summary(journal))
 
@@ -122,8 +120,6 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
         chosen = find_playable_level(level)
         terminal = options.terminal(plain=plain)
         if not terminal.plain.value:
-            from kit.cli.full_screen import show_levels
-
             show_levels(journal, opened_workspace, terminal, chosen)
         _require_open(journal, chosen)
         click.echo(f"{chosen.title}. {chosen.story} {chosen.hint}")
@@ -143,7 +139,6 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
     target [x, y] and target_radius. On a level with several targets, target is the
     first, and targets [x1, y1, x2, y2, ...] lists all in order, lap by lap.
     """
-    from kit.controllers import find_controller
     from kit.learning.policies.policies import PolicyError
     from kit.learning.training.runs import RunError
     from kit.school.game.player_progress import facts_of_program, find_playable_level
@@ -260,7 +255,6 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
 @click.pass_obj
 def replay(workspace: Path | None, level: str, driver: str | None) -> None:
     """Replay your best drive of LEVEL, or the reference drive."""
-    from kit.cli.full_screen import show_screen
     from kit.run.recording import RecordingError, load_recording
     from kit.school.game.ghosts import ghost_file, load_ghosts, reference_recording
     from kit.school.game.player_progress import find_playable_level
@@ -350,7 +344,6 @@ command.add_command(guest)
 def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[RaceFinish, Recording]:
     """Lets the player drive with lines of text, in simulated time. Ends the verb where nothing was driven."""
     from kit.cli.plain import PlainSession, run_plain_session
-    from kit.controllers import find_controller
     from kit.host.private_folder import private_folder
     from kit.run.recording import RecordingError, load_recording
     from kit.school.game.race import SEED, RaceReferee, judge_recording

@@ -11,16 +11,20 @@ import click
 
 from kit.cli import options
 from kit.cli.full_screen import run_screen
+from kit.host.failure import StudentCodeError
+from kit.inspection.sockets import sockets_folder, world_name
 from kit.interruption import ended_by_signals
+from kit.ros.graph.graph import Graph
 from kit.ros.packages import Package, PackageError, find_packages, read_package
-from kit.workspace import Workspace
+from kit.tui.terminal import TerminalDecision
+from kit.workspace import Workspace, WorkspaceError, open_workspace
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
     from kit.launch.launch_file_process import LaunchTarget
     from kit.launch.launch_run import LaunchOutputLine
     from kit.tui.app import KitApp
     from kit.tui.screens.launched import LaunchScreen
-    from kit.tui.terminal import TerminalDecision
 
 
 INTERRUPTED = 128 + signal.SIGINT
@@ -83,8 +87,6 @@ def command(
     Exit code: 0 success; 1 a program failed; 2 something is missing or wrong; 130 interrupted by Ctrl-C.
     """
     from kit.launch.launch_file_process import find_launch_file
-    from kit.ros.packages import PackageError
-    from kit.workspace import WorkspaceError, open_workspace
 
     try:
         opened_workspace = open_workspace(workspace)
@@ -148,7 +150,6 @@ def _parse_words(words: Sequence[str]) -> tuple[str | None, dict[str, str]]:
 
 
 def _show_arguments(target: LaunchTarget) -> None:
-    from kit.host.failure import StudentCodeError
     from kit.launch.launch_file_process import declared_arguments
     from kit.launch.processes import explain_failure
 
@@ -176,14 +177,10 @@ def _run_plainly(
     until: float | None,
     speed: float | None,
 ) -> None:
-    from kit.host.failure import StudentCodeError
     from kit.inspection.server import open_inspection_server
-    from kit.inspection.sockets import sockets_folder, world_name
     from kit.launch.launch_run import Launch
     from kit.launch.plain_launch import LaunchLimit, run_plain_launch
     from kit.launch.processes import ProcessStartError, explain_failure
-    from kit.ros.graph.graph import Graph
-    from kit.world.problems import WorldError
 
     name = target.name
     launch = Launch(

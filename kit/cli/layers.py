@@ -11,23 +11,28 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import click
 
 from kit.cli import options
+from kit.cli.full_screen import show_layers
+from kit.layers import explain as words
+from kit.layers.assignment import LayerAssignment
+from kit.layers.case_sources import PlanningTask, UnknownPlanningTask, open_task, solve_task
+from kit.layers.drawing import GlyphStyle, draw_assignment, draw_case, to_plain_lines
+from kit.layers.examples import EXAMPLES
+from kit.layers.explain import greedy_end_text, patch_text, world_verdict_text
+from kit.layers.flatland.world_patch import PatchError, WorldPatch, apply_patch, build_patch, make_recheck
+from kit.layers.flatland.world_planning import WorldPlan
+from kit.layers.greedy import GreedyRun, run_greedy
+from kit.layers.plan_data import check_data, graphviz_text, greedy_data, mermaid_text
+from kit.layers.planning import LayerPlan, Relaxation, allow_unwanted, drop_requirements
+from kit.layers.requirements import LayerCase
+from kit.layers.requirements_file import requirements_text
 from kit.plain_text import counted, quoted, suggestion, table
-
-if TYPE_CHECKING:
-    from kit.layers.assignment import LayerAssignment
-    from kit.layers.case_sources import PlanningTask
-    from kit.layers.drawing import GlyphStyle
-    from kit.layers.flatland.world_patch import WorldPatch
-    from kit.layers.flatland.world_planning import WorldPlan
-    from kit.layers.greedy import GreedyRun
-    from kit.layers.planning import LayerPlan, Relaxation
-    from kit.layers.requirements import LayerCase
-
+from kit.world.problems import WorldError
+from kit.world.records import MAX_LAYERS
 
 REQUIREMENTS_NOT_MET: Final = 1
 """Exit code: the requirements are not met, or cannot be within sixteen layers."""
@@ -49,8 +54,6 @@ class _ReadingOptions:
 
     def open(self, target: str, requirements: Path | None = None) -> PlanningTask:
         """Opens the case or world that the user named. Raises WorldError and UnknownTask."""
-        from kit.layers.case_sources import open_task
-
         environment = dict(map(options.environment_variable, self.variables))
         return open_task(
             target,
@@ -124,10 +127,6 @@ def command(context: click.Context) -> None:
         if terminal.plain.value:
             click.echo(context.get_help())
             return
-        from kit.cli.full_screen import show_layers
-        from kit.layers.case_sources import open_task
-        from kit.layers.examples import EXAMPLES
-
         first = next(iter(EXAMPLES))
         show_layers(open_task(first), first, terminal)
 
@@ -182,9 +181,6 @@ def plan(
       kit layers plan my.world.yaml --apply
       kit layers plan depot --json
     """
-    from kit.layers.case_sources import solve_task
-    from kit.world.records import MAX_LAYERS
-
     with _explained_errors():
         task = reading.open(target)
         if as_requirements:
@@ -239,10 +235,6 @@ def check(
       kit layers plan my.world.yaml --requirements > my.layers.yaml  (once)
       kit layers check my.world.yaml my.layers.yaml                  (in CI)
     """
-    from kit.layers.case_sources import solve_task
-    from kit.layers.explain import world_verdict_text
-    from kit.layers.plan_data import check_data
-
     with _explained_errors():
         task = reading.open(world, requirements)
         if task.world is None:
@@ -294,16 +286,9 @@ def explain(
       kit layers explain slides --pictures
       kit layers explain greedy-trap
     """
-    from kit.layers import explain as words
-    from kit.layers.case_sources import solve_task
-    from kit.layers.drawing import draw_assignment, draw_case, to_plain_lines
-    from kit.layers.greedy import run_greedy
-
     with _explained_errors():
         task = reading.open(target)
         if on_screen:
-            from kit.cli.full_screen import show_layers
-
             show_layers(task, Path(target).name)
         run = run_greedy(task.case)
         echo_lines(words.wrap(task.case.title))
@@ -330,16 +315,10 @@ def example(name: str | None, on_screen: bool) -> None:
       kit layers example slides-lasers > slides.yaml
       kit layers example slides-lasers --screen
     """
-    from kit.layers.examples import EXAMPLES
-    from kit.layers.requirements_file import requirements_text
-
     if name is None:
         echo_lines(table([(key, case.title) for key, case in EXAMPLES.items()]))
         echo_lines(["", "`kit layers example NAME` prints one, `kit layers explain NAME` explains it."])
     elif name in EXAMPLES and on_screen:
-        from kit.cli.full_screen import show_layers
-        from kit.layers.case_sources import open_task
-
         show_layers(open_task(name), name)
     elif name in EXAMPLES:
         click.echo(requirements_text(EXAMPLES[name]), nl=False)
@@ -353,9 +332,6 @@ def example(name: str | None, on_screen: bool) -> None:
 @contextmanager
 def _explained_errors() -> Iterator[None]:
     """Ends the verb with a message and exit code 2 for errors in the user's files."""
-    from kit.layers.case_sources import UnknownPlanningTask
-    from kit.world.problems import WorldError
-
     try:
         yield
     except (WorldError, UnknownPlanningTask) as error:
@@ -363,8 +339,6 @@ def _explained_errors() -> Iterator[None]:
 
 
 def _apply(task: PlanningTask, world_plan: WorldPlan, patch: WorldPatch, *, quiet: bool) -> None:
-    from kit.layers.flatland.world_patch import PatchError, apply_patch, make_recheck
-
     assert task.source is not None  # there is a patch
     try:
         apply_patch(patch, make_recheck(world_plan, task.source.read, requirements=task.requirements))
@@ -378,9 +352,6 @@ def _apply(task: PlanningTask, world_plan: WorldPlan, patch: WorldPatch, *, quie
 
 
 def _patch(task: PlanningTask, world_plan: WorldPlan | None, also_shared: bool) -> WorldPatch:
-    from kit.layers.flatland.world_patch import build_patch
-    from kit.world.records import MAX_LAYERS
-
     if world_plan is None or task.source is None:
         raise click.UsageError(
             "There are no files to patch: give a world, or write `world: FILE` in the requirements."
@@ -392,11 +363,6 @@ def _patch(task: PlanningTask, world_plan: WorldPlan | None, also_shared: bool) 
 
 def show_plan(case: LayerCase, found: LayerPlan, world_plan: WorldPlan | None, time_limit: float) -> None:
     """Prints the plan as tables, its proof, the slides' method beside it, and relaxations where it is too large."""
-    from kit.layers import explain as words
-    from kit.layers.drawing import draw_assignment
-    from kit.layers.greedy import run_greedy
-    from kit.world.records import MAX_LAYERS
-
     if world_plan is None:
         echo_lines(words.wrap(case.title))
         echo_lines(words.plan_text(found))
@@ -415,9 +381,6 @@ def _find_relaxations(
     found: LayerPlan, kept: int, time_limit: float
 ) -> tuple[Relaxation | None, Relaxation | None]:
     """Finds requirements to give up, or contacts to tolerate, so that at most sixteen layers are needed."""
-    from kit.layers.planning import allow_unwanted, drop_requirements
-    from kit.world.records import MAX_LAYERS
-
     limit = MAX_LAYERS - kept
     return (
         drop_requirements(found.case, limit=limit, time_limit=time_limit),
@@ -429,9 +392,7 @@ def plan_data(
     found: LayerPlan, world_plan: WorldPlan | None, patch: WorldPatch | None, time_limit: float
 ) -> dict[str, Any]:
     """The content of ``show_plan`` and the patch as JSON-able data."""
-    from kit.layers.greedy import run_greedy
     from kit.layers.plan_data import patch_data, plan_data, sacrifice_data, world_data
-    from kit.world.records import MAX_LAYERS
 
     facts = plan_data(found, run_greedy(found.case))
     kept = 0 if world_plan is None else len(world_plan.world_case.layer_lists.kept_layers)
@@ -447,11 +408,6 @@ def plan_data(
 
 
 def show_greedy(case: LayerCase, *, as_json: bool, graph: str | None) -> None:
-    from kit.layers.drawing import draw_assignment
-    from kit.layers.explain import greedy_end_text
-    from kit.layers.greedy import run_greedy
-    from kit.layers.plan_data import greedy_data
-
     run = run_greedy(case)
     if as_json:
         click.echo(json.dumps(greedy_data(run), indent=2))
@@ -462,20 +418,15 @@ def show_greedy(case: LayerCase, *, as_json: bool, graph: str | None) -> None:
 
 
 def show_graph(case: LayerCase, assignment: LayerAssignment, language: str) -> None:
-    from kit.layers.plan_data import graphviz_text, mermaid_text
-
     click.echo({"dot": graphviz_text, "mermaid": mermaid_text}[language](case, assignment), nl=False)
 
 
 def print_patch(patch: WorldPatch) -> None:
-    from kit.layers.explain import patch_text
-
     echo_lines(["", *patch_text(patch)])
 
 
 def step_pictures(run: GreedyRun, glyphs: GlyphStyle) -> Callable[[int], list[str]]:
     """Draws the graph at a step: what is struck already, and the group just made."""
-    from kit.layers.drawing import draw_case, to_plain_lines
 
     def draw(step: int) -> list[str]:
         members = run.collision_steps[step].layer.members

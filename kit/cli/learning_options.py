@@ -5,23 +5,32 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from kit.cli import options
+from kit.controllers import find_controller
+from kit.host.failure import StudentCodeError
+from kit.learning.environment.batch_map import UnsupportedWorld
 from kit.learning.environment.disturbances import (
     DISTURBANCE_KINDS,
     DisturbanceError,
     DisturbanceKind,
     UniformRange,
 )
-
-if TYPE_CHECKING:
-    from kit.learning.environment.tasks import LearningTask
-    from kit.learning.policies.policies import Policy
+from kit.learning.environment.tasks import LearningTask, UnknownTask
+from kit.learning.policies.policies import Policy, PolicyError, load_policy
+from kit.learning.training.algorithms import LearnExtraMissing, UnknownAlgorithm, UnsuitableAlgorithm
+from kit.learning.training.demonstrations import DemonstrationError
+from kit.learning.training.runs import RunError, find_run
+from kit.learning.training.student_reward import RewardFileError
+from kit.run.recording import RecordingError
+from kit.workspace import WorkspaceError, open_workspace
+from kit.world.problems import WorldError
 
 on = click.option(
     "--on",
@@ -124,18 +133,6 @@ def settings_option(metavar: str, more: str) -> Callable[[Callable[..., Any]], C
 @contextmanager
 def explained_errors() -> Iterator[None]:
     """Ends the verb with one clear line for every error that a user can cause."""
-    from kit.host.failure import StudentCodeError
-    from kit.learning.environment.batch_map import UnsupportedWorld
-    from kit.learning.environment.tasks import UnknownTask
-    from kit.learning.policies.policies import PolicyError
-    from kit.learning.training.algorithms import LearnExtraMissing, UnknownAlgorithm, UnsuitableAlgorithm
-    from kit.learning.training.demonstrations import DemonstrationError
-    from kit.learning.training.runs import RunError
-    from kit.learning.training.student_reward import RewardFileError
-    from kit.run.recording import RecordingError
-    from kit.workspace import WorkspaceError
-    from kit.world.problems import WorldError
-
     try:
         yield
     except UnknownAlgorithm as error:
@@ -164,18 +161,12 @@ def explained_errors() -> Iterator[None]:
 
 def runs_folder(workspace: Path | None) -> Path:
     """The folder of the training runs. Raises WorkspaceError."""
-    from kit.workspace import open_workspace
-
     return open_workspace(workspace).runs
 
 
 def find_demonstrations(names: tuple[str, ...], workspace: Path | None) -> tuple[Path, ...]:
     """The files of those who are imitated: a recording or a policy by its file, a run's best policy by the run's name, a
     controller by name or file. DemonstrationError if something is none of these."""
-    from kit.controllers import find_controller
-    from kit.learning.training.demonstrations import DemonstrationError
-    from kit.workspace import open_workspace
-
     if not names:
         return ()
     opened, found = open_workspace(workspace), []
@@ -198,9 +189,6 @@ def find_demonstrations(names: tuple[str, ...], workspace: Path | None) -> tuple
 
 def find_policy(name: str | None, workspace: Path | None, *, newest: bool = False) -> tuple[str, Policy]:
     """Finds a policy by the name of its run, or by its file; without a name that of the last run. Returns its title too."""
-    from kit.learning.policies.policies import load_policy
-    from kit.learning.training.runs import find_run
-
     if name is not None and (name.endswith(".npz") or "/" in name):
         return Path(name).stem, load_policy(Path(name))
     run = find_run(runs_folder(workspace), name)
@@ -209,8 +197,6 @@ def find_policy(name: str | None, workspace: Path | None, *, newest: bool = Fals
 
 def sweep_journal(name: str | None, workspace: Path | None) -> Path:
     """The file that keeps the sweep of a policy, which is named as in ``find_policy``: beside it, or in its run."""
-    from kit.learning.training.runs import find_run
-
     if name is not None and (name.endswith(".npz") or "/" in name):
         return Path(name).with_suffix(".sweep.jsonl")
     return find_run(runs_folder(workspace), name).folder / "sweep.jsonl"
@@ -221,8 +207,6 @@ def resolve_test_task(
 ) -> LearningTask:
     """Finds the task to test a policy on: the one it was trained on, or another with the same inputs and actions; with
     other disturbances than its own, by kind."""
-    from dataclasses import replace
-
     choice = policy.trained_on
     if task is not None:
         choice = replace(choice, task=task, text=None, on=())

@@ -4,19 +4,34 @@ from __future__ import annotations
 
 import textwrap
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import NoReturn
 
 import click
 
-from kit.cli import options
-from kit.plain_text import counted, escape_controls
-
-if TYPE_CHECKING:
-    from kit.cli.plain import InputBuffer
-    from kit.school.lessons.records import GraphScene, LearningScene, Lesson, LessonScene
-    from kit.school.progress import ProgressJournal
-    from kit.workspace import Workspace
-
+from kit.cli import VERBS, options
+from kit.cli.full_screen import show_lesson, show_lessons
+from kit.cli.lesson_plain import PlainLesson
+from kit.cli.plain import HEIGHT, WIDTH, InputBuffer, PlainSession, run_plain_session
+from kit.controllers import find_controller, prepare_workspace
+from kit.plain_text import counted, escape_controls, quoted, suggestion
+from kit.render.world_text import describe_scene, scene_rows
+from kit.run.episode import run_until, when_failed
+from kit.run.recording import load_recording
+from kit.run.scenario import find_scenario
+from kit.run.session import Session
+from kit.run.view import ViewBuilder
+from kit.school.lessons.catalogue import list_lessons
+from kit.school.lessons.checking import ExerciseFilesError
+from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
+from kit.school.lessons.graph_playback import graph_rows
+from kit.school.lessons.learning_playback import plain_rows
+from kit.school.lessons.lesson_contract import check_contract, lesson_folders
+from kit.school.lessons.lesson_session import LessonSession
+from kit.school.lessons.reading import TEXT_WIDTH, UnknownLesson, find_lesson, read_lesson
+from kit.school.lessons.records import GraphScene, LearningScene, Lesson, LessonScene, scene_confinement_level
+from kit.school.progress import ProgressError, ProgressJournal
+from kit.workspace import Workspace, WorkspaceError
+from kit.world.problems import WorldError
 
 TRAIL_POINTS = 100
 """Points of the way that a recorded run is drawn with."""
@@ -73,16 +88,6 @@ def command(
     Your progress is saved as you go; quit at any time and come back. With KIT_REDUCE_MOTION=1, animations show only
     their first and last picture; --plain describes them in words.
     """
-    from kit.cli.lesson_plain import PlainLesson
-    from kit.cli.plain import InputBuffer
-    from kit.controllers import prepare_workspace
-    from kit.school.lessons.checking import ExerciseFilesError
-    from kit.school.lessons.lesson_session import LessonSession
-    from kit.school.lessons.reading import UnknownLesson, find_lesson
-    from kit.school.progress import ProgressError
-    from kit.workspace import WorkspaceError
-    from kit.world.problems import WorldError
-
     if contract_folder is not None:
         _print_contract(contract_folder)
     try:
@@ -93,16 +98,12 @@ def command(
             terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
             if name is None:
                 if not terminal.plain.value:
-                    from kit.cli.full_screen import show_lessons
-
                     show_lessons(opened_workspace, terminal)
                 _print_lessons(journal)
                 return
             lesson = find_lesson(name) if folder is None else _foreign_lesson(folder, name)
             session = LessonSession(lesson, journal, opened_workspace, as_class=as_class)
             if not terminal.plain.value:
-                from kit.cli.full_screen import show_lesson
-
                 show_lesson(session, opened_workspace, terminal)
             click.echo(f"Line by line. {terminal.plain.reason}")
             input_buffer = InputBuffer()
@@ -128,9 +129,6 @@ def command(
 
 def _print_contract(folder: Path) -> NoReturn:
     """Prints what was checked of the lessons in a folder. Exit code: 0 all is kept, 1 not, 2 there is no lesson."""
-    from kit.cli import VERBS
-    from kit.school.lessons.lesson_contract import check_contract
-
     findings = []
     for each in check_contract(folder, VERBS):
         findings.append(each)
@@ -146,8 +144,6 @@ def _print_contract(folder: Path) -> NoReturn:
 
 def _only_lesson(folder: Path) -> str | None:
     """The only lesson in a folder; else prints which there are."""
-    from kit.school.lessons.lesson_contract import lesson_folders
-
     found = lesson_folders(folder)
     if not found:
         options.fail(f"{folder}: there is no lesson.yaml in it or in a folder below it.")
@@ -161,10 +157,6 @@ def _only_lesson(folder: Path) -> str | None:
 
 def _foreign_lesson(folder: Path, name: str) -> Lesson:
     """The lesson of that name in a folder of somebody else's. Raises UnknownLesson and WorldError."""
-    from kit.plain_text import quoted, suggestion
-    from kit.school.lessons.lesson_contract import lesson_folders
-    from kit.school.lessons.reading import UnknownLesson, read_lesson
-
     found = {each.name: each for each in lesson_folders(folder)}
     if name not in found:
         raise UnknownLesson(f"{folder} has no lesson {quoted(name)}: {suggestion(name, tuple(found))}.")
@@ -172,9 +164,6 @@ def _foreign_lesson(folder: Path, name: str) -> Lesson:
 
 
 def _print_lessons(journal: ProgressJournal) -> None:
-    from kit.school.lessons.catalogue import list_lessons
-    from kit.school.lessons.reading import TEXT_WIDTH
-
     for each in list_lessons(journal.events()):
         if (unit := each.opened_unit) is not None:
             click.echo(f"\n{unit.letter}  {unit.title}\n{textwrap.fill(unit.opener, TEXT_WIDTH)}\n")
@@ -197,10 +186,6 @@ def _print_lessons(journal: ProgressJournal) -> None:
 
 def _print_watched(scene: LessonScene | LearningScene | GraphScene) -> None:
     """Prints what a step has to watch."""
-    from kit.school.lessons.graph_playback import graph_rows
-    from kit.school.lessons.learning_playback import plain_rows
-    from kit.school.lessons.records import GraphScene, LearningScene
-
     if isinstance(scene, LearningScene):
         click.echo("\n".join(plain_rows(scene)))
     elif isinstance(scene, GraphScene):
@@ -211,15 +196,6 @@ def _print_watched(scene: LessonScene | LearningScene | GraphScene) -> None:
 
 def _print_scene(scene: LessonScene) -> None:
     """Runs a scene and prints it in words and a picture: its beginning and its end."""
-    from kit.cli.plain import HEIGHT, WIDTH
-    from kit.controllers import find_controller
-    from kit.render.world_text import describe_scene, scene_rows
-    from kit.run.episode import run_until, when_failed
-    from kit.run.scenario import find_scenario
-    from kit.run.session import Session
-    from kit.run.view import ViewBuilder
-    from kit.school.lessons.records import scene_confinement_level
-
     scenario = find_scenario(scene.map_name, scene.case, None)
     with Session(
         scenario, seed=scene.seed, always_scan=True, level=scene_confinement_level(scene)
@@ -238,14 +214,6 @@ def _print_scene(scene: LessonScene) -> None:
 
 def _print_run(file: Path) -> None:
     """Prints a recorded run in words and a picture: where it began, and how it ended."""
-    from kit.cli.plain import HEIGHT, WIDTH
-    from kit.render.world_text import describe_scene, scene_rows
-    from kit.run.episode import run_until
-    from kit.run.recording import load_recording
-    from kit.run.scenario import find_scenario
-    from kit.run.session import Session
-    from kit.run.view import ViewBuilder
-
     recording = load_recording(file)
     place = find_scenario(recording.place, recording.case)
     with Session(place, seed=recording.seed, step_size=recording.step_size, always_scan=True) as session:
@@ -266,10 +234,6 @@ def _drive_scene(
     scene: LessonScene, file: str, opened_workspace: Workspace, input_buffer: InputBuffer
 ) -> None:
     """Lets the student drive line by line and saves the recording in ``file``."""
-    from kit.cli.plain import PlainSession, run_plain_session
-    from kit.controllers import find_controller
-    from kit.run.scenario import find_scenario
-
     scenario = find_scenario(scene.map_name, scene.case, None)
     click.echo(
         "`drive 0.3 0 2` drives at 0.3 m/s without turning for 2 s; `picture` shows where you are; `quit` hands in your drive."
@@ -295,9 +259,6 @@ def glossary_command(term: tuple[str, ...]) -> None:
     kit glossary                    all terms
     kit glossary quality of service one term
     """
-    from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
-    from kit.world.problems import WorldError
-
     try:
         terms = read_glossary()
         shown = find_terms(terms, " ".join(term)) if term else terms

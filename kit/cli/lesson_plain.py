@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -17,6 +18,7 @@ from kit.run.recording import RecordingError
 from kit.school.game.levels import opened_levels_text
 from kit.school.lessons.checking import CheckReport, has_other_files, submission_path
 from kit.school.lessons.defence import DefenceError
+from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
 from kit.school.lessons.graph_playback import graph_rows
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
@@ -426,8 +428,6 @@ def report_lines(report: CheckReport) -> list[str]:
 
 
 def _wrap(text: str, indent: str = "") -> str:
-    import textwrap
-
     return "\n".join(textwrap.wrap(text, TEXT_WIDTH, subsequent_indent=indent)) or text
 
 
@@ -471,8 +471,6 @@ def _go(lesson: PlainLesson, rest: str) -> None:
 
 
 def _glossary(term: str) -> None:
-    from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
-
     terms = read_glossary()
     try:
         shown = find_terms(terms, term) if term else terms

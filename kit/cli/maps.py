@@ -4,13 +4,28 @@ from __future__ import annotations
 
 import shutil
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from kit.cli import ScreenClosed, options
+from kit.cli.full_screen import run_screen
+from kit.plain_text import table
+from kit.run.scenario import own_map_folder, scenario_on_map
 from kit.workspace import WorkspaceError, open_workspace
+from kit.world.catalogue import (
+    CARD_FILE,
+    WORLD_FILE,
+    MapCard,
+    UnknownMap,
+    all_maps,
+    find_map,
+    map_names,
+    own_card,
+)
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -20,7 +35,6 @@ if TYPE_CHECKING:
     from kit.tui.app import KitApp
     from kit.tui.screens.map_drawing import MapDrawingScreen
     from kit.tui.screens.photo_corners import PhotoCornersScreen
-    from kit.world.catalogue import MapCard
 
 
 class MapsGroup(click.Group):
@@ -53,9 +67,6 @@ def command(ctx: click.Context) -> None:
 
 
 def _list() -> None:
-    from kit.plain_text import table
-    from kit.world.catalogue import all_maps
-
     cards = all_maps()
     click.echo("\n".join(table([(card.name, card.summary) for card in cards])))
     own = _own_maps()
@@ -69,8 +80,6 @@ def _list() -> None:
 
 
 def _own_maps() -> list[Path]:
-    from kit.world.catalogue import CARD_FILE
-
     try:
         folder = open_workspace(None, make=False).worlds
     except WorkspaceError:
@@ -83,9 +92,6 @@ def _own_maps() -> list[Path]:
 @options.glyphs
 def show(name: str, glyphs: str | None) -> None:
     """Draw a map with its starts and targets."""
-    from kit.world.catalogue import WORLD_FILE, UnknownMap, find_map, map_names, own_card
-    from kit.world.problems import WorldError
-
     try:
         own = None if name in map_names() else _own_card_of(name, own_card, WORLD_FILE)
         _show_card(own or find_map(name), glyphs)
@@ -104,7 +110,6 @@ def _own_card_of(name: str, own_card: Any, world_file: str) -> MapCard | None:
 def _show_card(card: MapCard, glyphs: str | None) -> None:
     from kit.render.encode import ENCODERS
     from kit.render.world_text import scene_rows
-    from kit.run.scenario import scenario_on_map
     from kit.run.session import Session
     from kit.run.view import ViewBuilder
 
@@ -193,7 +198,6 @@ def _title(name: str) -> str:
 
 def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str | None) -> None:
     """Opens the sheet, and tells what was made of it. The drawing is kept beside the map, to be changed later."""
-    from kit.cli.full_screen import run_screen
     from kit.mapmaking.new_map import MapSketch, read_drawing, write_map
 
     terminal = options.full_screen(
@@ -286,8 +290,6 @@ def from_photo(
     kit maps from-photo plan.jpg hall --walls-width 4  outer walls 4 m apart
     kit maps from-photo plan.jpg --width 5 --click     click the corners
     """
-    from dataclasses import replace
-
     from kit.mapmaking.new_map import MapExists, check_name, write_map
     from kit.mapmaking.photo import PAPER, PhotoError, Scale, open_photo, plan_from_photo
     from kit.mapmaking.route import NoRoute
@@ -323,8 +325,6 @@ def from_photo(
 
 def _clicked(photo: Image, name: str, glyphs: str | None, color: str | None) -> Corners:
     """Shows the photograph until its sheet's corners have been put; ends without them if it is left before."""
-    from kit.cli.full_screen import run_screen
-
     terminal = options.full_screen("--click", "--corners takes numbers.", glyphs=glyphs, color=color)
 
     def make_screen(app: KitApp) -> PhotoCornersScreen:
@@ -368,9 +368,6 @@ def _corners(text: str | None, photo: Image) -> Corners | None:
 
 
 def _report(made: NewMap, glyphs: str | None) -> None:
-    from kit.run.scenario import own_map_folder
-    from kit.world.catalogue import WORLD_FILE, map_names, own_card
-
     card = own_card(made.folder / WORLD_FILE)
     assert card is not None  # just written
     _show_card(card, glyphs)

@@ -9,7 +9,9 @@ import click
 
 from kit.cli import ScreenClosed, options
 from kit.cli.full_screen import run_screen
+from kit.controllers import find_controller, prepare_workspace
 from kit.interruption import ended_by_signals
+from kit.workspace import WorkspaceError, check_writable
 
 if TYPE_CHECKING:
     from kit.tui.app import KitApp
@@ -58,9 +60,7 @@ def command(
     kit play my_world/world.yaml --controller my_controller.py
     kit play simple --controller teleop --record drive.npz
     """
-    from kit.controllers import find_controller, prepare_workspace
     from kit.inspection.sockets import sockets_folder
-    from kit.workspace import WorkspaceError, check_writable
 
     try:
         opened_workspace = prepare_workspace(workspace)

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from kit.cli import options
 from kit.plain_text import counted
-
-if TYPE_CHECKING:
-    from kit.school.progress import ProgressJournal
-
+from kit.school.game.challenges import game_summary
+from kit.school.lessons.catalogue import list_lessons
+from kit.school.progress import EventKind, ProgressError, ProgressJournal, read_export
+from kit.workspace import WorkspaceError, open_workspace
+from kit.world.problems import WorldError
 
 TITLE_COLUMNS = 40
 
@@ -22,10 +22,6 @@ TITLE_COLUMNS = 40
 @contextmanager
 def _open_journal(workspace: Path | None) -> Iterator[ProgressJournal]:
     """Opens the journal; every error of the user's ends the verb with a message."""
-    from kit.school.progress import ProgressError
-    from kit.workspace import WorkspaceError, open_workspace
-    from kit.world.problems import WorldError
-
     try:
         with options.open_journal(open_workspace(workspace)) as journal:
             yield journal
@@ -64,8 +60,6 @@ def export(workspace: Path | None, file: Path) -> None:
 @click.pass_obj
 def import_progress(workspace: Path | None, file: Path) -> None:
     """Import an exported FILE; existing entries stay as they are."""
-    from kit.school.progress import read_export
-
     with _open_journal(workspace) as journal:
         events = read_export(file)
         new = journal.import_events(events)
@@ -77,8 +71,6 @@ def import_progress(workspace: Path | None, file: Path) -> None:
 @click.pass_obj
 def name_yourself(workspace: Path | None, name: str) -> None:
     """Set your name, for the leaderboard and your exports."""
-    from kit.school.progress import EventKind
-
     shown = " ".join(name.split())
     if not 1 <= len(shown) <= 40 or not shown.isprintable():
         options.fail("A name has 1 to 40 printable characters.")
@@ -88,8 +80,6 @@ def name_yourself(workspace: Path | None, name: str) -> None:
 
 
 def _show(journal: ProgressJournal) -> None:
-    from kit.school.game.challenges import game_summary
-    from kit.school.lessons.catalogue import list_lessons
     from kit.tui.rows.level_rows import game_progress
 
     events = journal.events()

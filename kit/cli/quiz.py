@@ -10,15 +10,39 @@ import click
 
 from kit.cli import options
 from kit.cli.full_screen import show_screen
+from kit.school.progress import FILE, ProgressError, ProgressEvent, ProgressJournal
+from kit.school.quiz.items import OPTION_COUNT, LessonWithoutQuestions, QuestionBank, QuizItem, read_bank
+from kit.school.quiz.quiz_session import (
+    PracticePlan,
+    QuestionPlan,
+    QuizRoundPlan,
+    QuizSession,
+    lesson_plan,
+    local_now,
+    quiz_plan,
+    student_seed,
+)
+from kit.school.quiz.quiz_text import (
+    CONFIDENCE_CHOICES,
+    CONFIDENCE_QUESTION,
+    closing_lines,
+    feedback_text,
+    follow_up_lines,
+    restart_line,
+    schedule_lines,
+    scores_lines,
+    today_line,
+    verdict_text,
+    wrap_text,
+)
+from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, answers_from_events, build_schedule
+from kit.tui.terminal import TerminalDecision
+from kit.workspace import WorkspaceError, open_workspace
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
-    from kit.school.progress import ProgressEvent, ProgressJournal
-    from kit.school.quiz.items import QuestionBank, QuizItem
-    from kit.school.quiz.quiz_session import QuestionPlan, QuizSession
-    from kit.school.quiz.schedule import AnswerChoice
     from kit.tui.app import KitApp
     from kit.tui.screens.quiz import QuizScreen
-    from kit.tui.terminal import TerminalDecision
 
 WIDTH: Final = 78
 NOT_SURE_WORDS: Final = ("?", "0")
@@ -71,8 +95,6 @@ def command(
         _print_scores(bank, workspace)
         return
     plan = _choose_plan(bank, lesson, today)
-    from kit.school.progress import ProgressError
-
     try:
         with _open_journal(workspace) as journal:
             session = _start_session(journal, bank, plan, again)
@@ -87,9 +109,6 @@ def command(
 
 
 def _read_bank() -> QuestionBank:
-    from kit.school.quiz.items import read_bank
-    from kit.world.problems import WorldError
-
     try:
         return read_bank()
     except (WorldError, FileNotFoundError) as error:
@@ -97,9 +116,6 @@ def _read_bank() -> QuestionBank:
 
 
 def _choose_plan(bank: QuestionBank, lesson: str | None, today: bool) -> QuestionPlan:
-    from kit.school.quiz.items import LessonWithoutQuestions
-    from kit.school.quiz.quiz_session import PracticePlan, lesson_plan, quiz_plan
-
     try:
         if today:
             return PracticePlan(bank)
@@ -109,8 +125,6 @@ def _choose_plan(bank: QuestionBank, lesson: str | None, today: bool) -> Questio
 
 
 def _open_journal(workspace: Path | None) -> ProgressJournal:
-    from kit.workspace import WorkspaceError, open_workspace
-
     try:
         return options.open_journal(open_workspace(workspace))
     except WorkspaceError as error:
@@ -120,17 +134,10 @@ def _open_journal(workspace: Path | None) -> ProgressJournal:
 def _start_session(
     journal: ProgressJournal, bank: QuestionBank, plan: QuestionPlan, again: bool
 ) -> QuizSession:
-    from kit.school.quiz.quiz_session import QuizSession, student_seed
-
     return QuizSession(journal, bank, plan, seed=student_seed(journal), restart=again)
 
 
 def _print_scores(bank: QuestionBank, workspace: Path | None) -> None:
-    from kit.school.progress import FILE, ProgressError
-    from kit.school.quiz.quiz_session import local_now
-    from kit.school.quiz.quiz_text import scores_lines
-    from kit.school.quiz.schedule import answers_from_events, build_schedule
-
     events: list[ProgressEvent] = []
     try:
         if (options.open_existing_workspace(workspace).folder / FILE).exists():  # else looking would make it
@@ -144,9 +151,6 @@ def _print_scores(bank: QuestionBank, workspace: Path | None) -> None:
 
 def _print_finished(session: QuizSession) -> None:
     """Prints the result of a finished quiz and what can be done next."""
-    from kit.school.quiz.quiz_session import QuizRoundPlan
-    from kit.school.quiz.quiz_text import closing_lines, restart_line, schedule_lines, today_line
-
     if isinstance(session.plan, QuizRoundPlan):
         for line in (*closing_lines(session), restart_line(session.plan)):
             click.echo(line)
@@ -173,8 +177,6 @@ def _ask_on_full_screen(session: QuizSession, terminal: TerminalDecision) -> NoR
 
 def ask_line_by_line(session: QuizSession) -> None:
     """Asks what the sitting has ahead, by lines of standard input, until all is asked, ``q``, or its end."""
-    from kit.school.quiz.quiz_text import closing_lines, today_line
-
     click.echo(f"{session.plan.title}: {session.question_count} questions.")
     if session.question_number > 1:
         click.echo(f"You continue at question {session.question_number}.")
@@ -194,8 +196,6 @@ def ask_line_by_line(session: QuizSession) -> None:
 
 
 def _ask(session: QuizSession, item: QuizItem) -> None:
-    from kit.school.quiz.quiz_text import feedback_text, follow_up_lines, verdict_text, wrap_text
-
     click.echo("")
     click.echo(f"Question {session.question_number} of {session.question_count}, {item.topic.label}")
     for line in wrap_text(item.question, WIDTH):
@@ -219,9 +219,6 @@ def _ask(session: QuizSession, item: QuizItem) -> None:
 
 
 def _read_choice() -> AnswerChoice:
-    from kit.school.quiz.items import OPTION_COUNT
-    from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice
-
     choices = {str(index + 1): AnswerChoice(index) for index in range(OPTION_COUNT)}
     choices |= dict.fromkeys(NOT_SURE_WORDS, NOT_SURE)
     asked_once = False
@@ -240,8 +237,6 @@ def _read_choice() -> AnswerChoice:
 
 
 def _read_confidence() -> int | None:
-    from kit.school.quiz.quiz_text import CONFIDENCE_CHOICES, CONFIDENCE_QUESTION
-
     words = ", ".join(f"{number} {text}" for number, text in CONFIDENCE_CHOICES)
     click.echo(f"{CONFIDENCE_QUESTION} {words}")
     while True:

@@ -7,15 +7,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import click
+import numpy as np
 
-from kit.cli import options
+from kit.cli import learning_options, options
 from kit.cli.full_screen import show_screen
+from kit.learning.policies.policies import Policy, load_policy
+from kit.learning.training.runs import find_run
+from kit.run.animation import AnimationSettings, ExportError, count_frames, export_recording
+from kit.run.recording import Recording, RecordingError, load_recording, rerun
+from kit.run.scenario import Scenario, find_scenario
+from kit.school.game.player_progress import find_playable_level
+from kit.school.game.two_players import CannotShare, recorded_scenario
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
-    from kit.learning.policies.policies import Policy
-    from kit.run.animation import AnimationSettings
-    from kit.run.recording import Recording
-    from kit.run.scenario import Scenario
     from kit.tui.app import KitApp
     from kit.tui.screens.lesson_drive import ReplayScreen
 
@@ -91,12 +96,6 @@ def command(
 
     Exit code of --check: 0 the same run; 1 a different run; 2 the file or its world cannot be read.
     """
-    import numpy as np
-
-    from kit.run.recording import RecordingError, load_recording, rerun
-    from kit.school.game.two_players import CannotShare
-    from kit.world.problems import WorldError
-
     try:
         recording = load_recording(file)
         scenario = _scenario(recording, root)
@@ -105,8 +104,6 @@ def command(
     except OSError as error:
         options.fail(options.describe_os_error(error))
     if exported is not None:
-        from kit.run.animation import AnimationSettings
-
         _export(
             recording,
             scenario,
@@ -150,12 +147,7 @@ def command(
 
 def _policy(agent: str, workspace: Path | None) -> Policy:
     """The best policy of a run; ends with a message where there is none, or it drives another number of robots."""
-    from kit.cli import learning_options
-
     with learning_options.explained_errors():
-        from kit.learning.policies.policies import load_policy
-        from kit.learning.training.runs import find_run
-
         if Path(agent).suffix == ".npz":
             return load_policy(agent)
         return find_run(learning_options.runs_folder(workspace), agent).policy()
@@ -163,13 +155,8 @@ def _policy(agent: str, workspace: Path | None) -> Policy:
 
 def _scenario(recording: Recording, root: Path | None) -> Scenario:
     """The world that was driven in: that of the game's level, where the recording is one of a level."""
-    from kit.run.scenario import find_scenario
-
     if recording.level is None:
         return find_scenario(recording.place, recording.case, root)
-    from kit.school.game.player_progress import find_playable_level
-    from kit.school.game.two_players import recorded_scenario
-
     return recorded_scenario(find_playable_level(recording.level), recording)
 
 
@@ -189,9 +176,6 @@ def _size(text: str | None, ending: str) -> tuple[int, int] | None:
 
 
 def _export(recording: Recording, scenario: Scenario, file: Path, settings: AnimationSettings) -> None:
-    from kit.run.animation import ExportError, count_frames, export_recording
-    from kit.run.recording import RecordingError
-
     count = count_frames(recording, settings)
     try:
         with click.progressbar(length=count, label=file.name, file=sys.stderr) as progress:

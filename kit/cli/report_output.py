@@ -13,6 +13,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kit.cli import options
+from kit.school.progress import ProgressError
+from kit.workspace import write_atomically
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
     from kit.school.report.document import ClassReport
@@ -132,8 +135,6 @@ def write_outputs(made: ClassReport, outputs: ReportOutputs, *, printed: ClassRe
 
 def _write(files: Mapping[Path, str]) -> None:
     """Writes each file whole or not at all, and prints which."""
-    from kit.workspace import write_atomically
-
     for file, text in files.items():
         write_atomically(file, text.encode("utf-8", errors="replace"))
     if files:
@@ -157,9 +158,6 @@ def _can_encode_blocks() -> bool:
 @contextmanager
 def explained_errors() -> Iterator[None]:
     """Ends the verb with one clear line for every error that a user can cause."""
-    from kit.school.progress import ProgressError
-    from kit.world.problems import WorldError
-
     try:
         yield
     except BrokenPipeError:

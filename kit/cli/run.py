@@ -6,17 +6,26 @@ import json
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from kit.cli import options
 from kit.cli.options import Storage
+from kit.controllers import find_controller
+from kit.host.program_terminal import ProgramTerminal, has_user_terminal, piped_streams
+from kit.inspection.server import InspectionServer
+from kit.inspection.sockets import sockets_folder
 from kit.interruption import ended_by_signals
 from kit.plain_text import counted
-
-if TYPE_CHECKING:
-    from kit.run.headless import RunSummary
+from kit.ros.bags import BagRecorder
+from kit.ros.graph.graph import Graph
+from kit.run.headless import RunSummary, run_headless
+from kit.run.lockstep import ClosableParticipant
+from kit.run.pacing import MAXIMUM, REAL_TIME
+from kit.run.scenario import find_scenario
+from kit.run.view import format_log
+from kit.workspace import WorkspaceError, open_workspace
+from kit.world.problems import WorldError
 
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells have it."""
@@ -90,32 +99,16 @@ def command(
     exist; 130 interrupted by Ctrl-C (143 by SIGTERM, 129 by a connection that is gone), with a summary of the steps that
     ran. --record and --bag keep them.
     """
-    from kit.controllers import find_controller
-    from kit.host.program_terminal import ProgramTerminal, has_user_terminal, piped_streams
-    from kit.ros.graph.graph import Graph
-    from kit.run.headless import run_headless
-    from kit.run.lockstep import ClosableParticipant
-    from kit.run.pacing import MAXIMUM, REAL_TIME
-    from kit.run.scenario import find_scenario
-    from kit.run.view import format_log
-    from kit.workspace import WorkspaceError, open_workspace
-    from kit.world.problems import WorldError
-
     try:
         opened_workspace = open_workspace(workspace, make=False)
     except WorkspaceError as error:
         options.fail(str(error))
     participants: list[Callable[[Graph], ClosableParticipant]] = []
     if serve:
-        from kit.inspection.server import InspectionServer
-        from kit.inspection.sockets import sockets_folder
-
         participants.append(
             lambda graph: InspectionServer(graph, sockets_folder(opened_workspace.folder), Path(place).stem)
         )
     if bag is not None:
-        from kit.ros.bags import BagRecorder
-
         options.explain_storage(storage)
         participants.append(lambda graph: BagRecorder(graph, bag, storage=storage))
     try:

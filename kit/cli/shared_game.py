@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
+from queue import SimpleQueue
 from typing import TYPE_CHECKING
 
 import click
 
 from kit.cli import options
+from kit.cli.full_screen import run_screen
+from kit.controllers import prepare_workspace
+from kit.workspace import Workspace, WorkspaceError
 
 if TYPE_CHECKING:
     from kit.school.game.shared_server import SharedGameClient
     from kit.tui.app import KitApp
     from kit.tui.screens.shared_game import SharedGuestScreen, SharedHostScreen
-    from kit.workspace import Workspace
 
 TELL_INTERVAL = 2.0
 """Simulated seconds between two lines about a shared game in which nothing else changes."""
@@ -39,12 +42,10 @@ def host(
     Your process runs the world. Guests only send their key presses and receive the positions of both robots. The
     recording of a finished game is saved in your workspace, for `kit replay`.
     """
-    from kit.controllers import prepare_workspace
     from kit.run.recording import save_recording
     from kit.school.game.levels import UnknownLevel, find_level
     from kit.school.game.shared_sockets import Audience, SharedGameError, games_folder, own_user_name
     from kit.school.game.two_players import CannotShare, SharedMode, shared_scenario
-    from kit.workspace import WorkspaceError
     from kit.world.problems import WorldError
 
     try:
@@ -55,8 +56,6 @@ def host(
     except (UnknownLevel, WorkspaceError, WorldError, CannotShare, SharedGameError) as error:
         options.fail(str(error))
     terminal = options.full_screen("A shared game")
-    from kit.cli.full_screen import run_screen
-
     mode = SharedMode.TAG if tag else SharedMode.RACE
 
     def make_screen(app: KitApp) -> SharedHostScreen:
@@ -84,9 +83,6 @@ def host(
 @click.pass_obj
 def guest(workspace: Path | None, game: str | None, name: str | None) -> None:
     """Join GAME on this machine as the second player (default: the only game)."""
-    from kit.controllers import prepare_workspace
-    from kit.workspace import WorkspaceError
-
     try:
         own_workspace = prepare_workspace(workspace)
     except WorkspaceError as error:
@@ -104,7 +100,6 @@ def join_shared_game(
 ) -> None:
     """Opens a guest's screen until the user leaves it, and tells a spectator of ``plain`` line by line; ends the verb with a
     message if there is no such game. ``workspace``: whose best drives are ghosts."""
-    from kit.cli.full_screen import run_screen
     from kit.school.game.levels import UnknownLevel
     from kit.school.game.shared_server import SharedGameClient
     from kit.school.game.shared_sockets import SharedGameError, find_game, games_folder, own_user_name
@@ -141,8 +136,6 @@ def join_shared_game(
 
 def _tell_shared_game(client: SharedGameClient) -> None:
     """Prints how a shared game stands, whenever that has changed and every few seconds, until it ends."""
-    from queue import SimpleQueue
-
     from kit.school.game.levels import find_level
     from kit.school.game.two_players import SharedGameState, SharedMode, SharedPhase
     from kit.tui.rows.level_rows import shared_message

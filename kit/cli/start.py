@@ -9,11 +9,11 @@ import click
 
 from kit.cli import options
 from kit.cli.full_screen import show_screen
+from kit.workspace import Workspace, WorkspaceError
 
 if TYPE_CHECKING:
     from kit.tui.app import KitApp
     from kit.tui.screens.start import StartScreen
-    from kit.workspace import Workspace
 
 SUGGESTED_COMMANDS: Final = (
     ("kit lesson", "lessons: predict, run, explain, modify, make"),
@@ -39,7 +39,6 @@ def command(seed: int, workspace: Path | None, plain: bool, glyphs: str | None, 
     Enter continues where you left off; for a new student, that is the first lesson.
     """
     from kit.controllers import prepare_workspace
-    from kit.workspace import WorkspaceError
 
     try:
         opened_workspace = prepare_workspace(workspace)

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from kit.cli import learning_options, options, report_output
-
-if TYPE_CHECKING:
-    from kit.study.recorded_results import StudyVariant
-    from kit.study.study_runs import StudyRun
-    from kit.workspace import Workspace
+from kit.cli.sweep import run_sweep
+from kit.host.job_executors import ExecutorUnavailable
+from kit.learning.training.algorithms import require_learn_extra
+from kit.learning.training.runs import RunError
+from kit.school.report.document import ClassReport
+from kit.study import study_document
+from kit.study.printed_tables import printed_table, study_chapters
+from kit.study.recorded_results import RecordedResultError, StudyVariant, source_number
+from kit.study.study_document import DOCUMENT, check_document
+from kit.study.study_report import duration_text
+from kit.study.study_runs import StudyRun
+from kit.workspace import Workspace
 
 
 @click.command()
@@ -76,10 +83,6 @@ def command(
     Exit code: 0 success; 1 a training failed, or --check found a difference;
     2 there is no such table; 130 interrupted by Ctrl-C.
     """
-    from kit.school.report.document import ClassReport
-    from kit.study import study_document
-    from kit.study.recorded_results import RecordedResultError
-
     with learning_options.explained_errors(), report_output.explained_errors():
         opened = options.open_existing_workspace(workspace)
         try:
@@ -126,8 +129,6 @@ def _read_number(words: tuple[str, ...]) -> tuple[str, str]:
 
 def _check() -> None:
     """Prints what differs between the document that comes with the kit and what its logs give; exits with 1 then."""
-    from kit.study.study_document import DOCUMENT, check_document
-
     differences = check_document()
     for line in differences[:20]:
         click.echo(line, err=True)
@@ -148,14 +149,6 @@ def _run_again(
     cluster: str,
 ) -> None:
     """Trains and tests what is missing of a table; runs its potential fields."""
-    from kit.host.job_executors import ExecutorUnavailable
-    from kit.learning.training.algorithms import require_learn_extra
-    from kit.learning.training.runs import RunError
-    from kit.study.printed_tables import printed_table, study_chapters
-    from kit.study.recorded_results import source_number
-    from kit.study.study_report import duration_text
-    from kit.study.study_runs import StudyRun
-
     tables = {each.id: each for chapter in study_chapters() for each in chapter.tables}
     trainings = (figure.training for chapter in study_chapters() for figure in chapter.figures)
     tables |= {each.id: each for each in trainings if each is not None}
@@ -194,16 +187,12 @@ def _run_again(
 
 
 def _run_fields(run: StudyRun) -> None:
-    import sys
-
     total = run.fields_runs
     with click.progressbar(length=total, label="potential fields", file=sys.stderr) as bar:
         run.record_fields(lambda case, number: bar.update(1))
 
 
 def _run_seed(run: StudyRun, seed: int, jobs: int, executor: str, cluster: str) -> None:
-    from kit.cli.sweep import run_sweep
-
     sweep = run.sweep(seed)
     run_sweep(sweep, executor, jobs, cluster)
     run.record(

@@ -6,18 +6,37 @@ import json
 import math
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import click
 
 from kit.cli import learning_options, options
-
-if TYPE_CHECKING:
-    from kit.learning.training.runs import RunConfig
-    from kit.learning.training.training_sweep import TrainingSweep
-    from kit.learning.training.tuning import SettingRange
+from kit.host import job_executors
+from kit.host.job_executors import ExecutorUnavailable
+from kit.learning.environment.tasks import TaskSpec
+from kit.learning.training.crosstable import (
+    case_groups,
+    check_crosstable,
+    crosstable_columns,
+    format_crosstable,
+)
+from kit.learning.training.run_check import check_run_config
+from kit.learning.training.runs import NAME_PATTERN, PresetName, RunConfig
+from kit.learning.training.sweep_worker import make_pool, run_job_by_key, sweep_command
+from kit.learning.training.training_sweep import (
+    TrainingSweep,
+    combine,
+    format_sweep_table,
+    problems,
+    sweep_rows,
+    sweep_table_csv,
+)
+from kit.learning.training.tuning import SettingRange, check_ranges, require_optuna, tune
+from kit.study.printed_tables import printed_means
+from kit.workspace import write_atomically
 
 
 def _read_seeds(
@@ -45,8 +64,6 @@ def _read_ranges(
     context: click.Context, parameter: click.Parameter, texts: tuple[str, ...]
 ) -> tuple[SettingRange, ...]:
     """``gamma=0.9:0.999``: a setting, and the least and the most that it may be."""
-    from kit.learning.training.tuning import SettingRange
-
     found = []
     for text in texts:
         name, _, numbers = text.partition("=")
@@ -178,19 +195,6 @@ def command(
         raise click.UsageError("--crosstable cannot be combined with --tune or --goal.")
     seeds = seeds or tuple(range(1 if crosstable else 5))
     with learning_options.explained_errors():
-        from kit.host.job_executors import ExecutorUnavailable
-        from kit.learning.environment.tasks import TaskSpec
-        from kit.learning.training.crosstable import case_groups, check_crosstable
-        from kit.learning.training.run_check import check_run_config
-        from kit.learning.training.runs import NAME_PATTERN, PresetName
-        from kit.learning.training.training_sweep import (
-            TrainingSweep,
-            combine,
-            problems,
-            sweep_table_csv,
-        )
-        from kit.workspace import write_atomically
-
         split = learning_options.split_names
         known: dict[str, PresetName] = {"kit": "kit", "seed": "seed", "seed-text": "seed-text"}
         if not set(split(presets)) <= set(known) or not split(presets):
@@ -253,8 +257,6 @@ def _tune(
     run: Callable[[TrainingSweep], None],
 ) -> TrainingSweep:
     """Tunes one combination; ``configs``: that, with each seed."""
-    from kit.learning.training.tuning import check_ranges, require_optuna, tune
-
     seeds = list(dict.fromkeys(config.seed for config in configs))
     if len(configs) > len(seeds):
         raise click.UsageError(
@@ -269,9 +271,6 @@ def _tune(
 
 def run_sweep(sweep: TrainingSweep, executor: str, jobs: int, cluster: str) -> None:
     """Runs the trainings that have no result yet. Raises ExecutorUnavailable and KeyboardInterrupt."""
-    from kit.host import job_executors
-    from kit.learning.training.sweep_worker import make_pool, run_job_by_key, sweep_command
-
     keys = sweep.waiting()
     if executor == "none" or not keys:
         return
@@ -294,10 +293,6 @@ def run_sweep(sweep: TrainingSweep, executor: str, jobs: int, cluster: str) -> N
 def _print_table(
     sweep: TrainingSweep, goal: float | None, failed: Sequence[str], *, as_json: bool, best_first: bool
 ) -> None:
-    from dataclasses import asdict
-
-    from kit.learning.training.training_sweep import format_sweep_table, sweep_rows
-
     rows = sweep_rows(sweep, goal)
     if best_first:
         rows = tuple(sorted(rows, key=lambda row: row.cost))
@@ -309,11 +304,6 @@ def _print_table(
 
 def _print_crosstable(sweep: TrainingSweep, failed: Sequence[str], *, as_json: bool) -> None:
     """Tests what is untested and prints the cross table, below it the dissertation's means."""
-    from dataclasses import asdict
-
-    from kit.learning.training.crosstable import crosstable_columns, format_crosstable
-    from kit.study.printed_tables import printed_means
-
     columns = crosstable_columns(sweep)
     if as_json:
         found = [asdict(column) for column in columns]

@@ -4,12 +4,28 @@ from __future__ import annotations
 
 import os
 import shutil
+import tempfile
 from pathlib import Path
 
 import click
 
 from kit.cli import learning_options, options
+from kit.learning.environment.tasks import all_tasks, find_task
+from kit.learning.tasks.own_files import own_task_files, workspace_folders, workspace_task_file
+from kit.learning.tasks.task_check import check_task
+from kit.learning.tasks.task_reader import read_task, task_name
+from kit.learning.tasks.task_template import (
+    NewTaskError,
+    TaskArchiveError,
+    new_task_file,
+    pack_task,
+    unpack_task,
+)
+from kit.learning.tasks.task_text import build_case_scene, describe_case, describe_keys, describe_task
+from kit.learning.training.run_check import check_reward
 from kit.plain_text import counted, table
+from kit.render.encode import ENCODERS
+from kit.render.world_text import scene_rows
 
 
 @click.group()
@@ -46,11 +62,6 @@ def command() -> None:
 def new(name: str, source: str) -> None:
     """Create a task file, ready to train. It is NAME/task.yaml here, or FOLDER/NAME.yaml beside your own world."""
     with learning_options.explained_errors():
-        from kit.learning.tasks.own_files import workspace_task_file
-        from kit.learning.tasks.task_check import check_task
-        from kit.learning.tasks.task_reader import read_task
-        from kit.learning.tasks.task_template import NewTaskError, new_task_file
-
         try:
             file = new_task_file(name, source, Path())
         except NewTaskError as error:
@@ -68,14 +79,7 @@ def check(task: str) -> None:
     """Check TASK, its worlds and its own reward. Print every error with its place.
 
     TASK can be a packed task."""
-    import tempfile
-
     with learning_options.explained_errors(), tempfile.TemporaryDirectory() as folder:
-        from kit.learning.environment.tasks import find_task
-        from kit.learning.tasks.task_check import check_task
-        from kit.learning.tasks.task_reader import read_task
-        from kit.learning.tasks.task_template import TaskArchiveError, unpack_task
-
         shown = task
         if Path(task).suffix == ".zip" and Path(task).is_file():
             try:
@@ -86,8 +90,6 @@ def check(task: str) -> None:
         assert found.file is not None  # every task is a file
         check_task(read_task(found.file))
         if found.reward_file is not None:
-            from kit.learning.training.run_check import check_reward
-
             check_reward(found.reward_file, found)
         cases = len(found.map_cases())
         place = shown if shown != task else found.file
@@ -105,9 +107,6 @@ def check(task: str) -> None:
 def pack(task: str, archive: Path | None) -> None:
     """Pack TASK into one zip file to share, with its world, pictures, models and reward."""
     with learning_options.explained_errors():
-        from kit.learning.environment.tasks import find_task
-        from kit.learning.tasks.task_template import TaskArchiveError, pack_task
-
         found = find_task(task)
         assert found.file is not None  # every task is a file
         archive = archive or Path(f"{found.name}.zip")
@@ -131,8 +130,6 @@ def pack(task: str, archive: Path | None) -> None:
 def unpack(archive: Path, dest: Path) -> None:
     """Unpack a packed task and check it. ARCHIVE is a file made by `kit task pack`; the folder gets the task's name."""
     with learning_options.explained_errors():
-        from kit.learning.tasks.task_template import TaskArchiveError, unpack_task
-
         try:
             file = unpack_task(archive, dest)
         except TaskArchiveError as error:
@@ -149,11 +146,6 @@ def unpack(archive: Path, dest: Path) -> None:
 def show(task: str, on: str | None, glyphs: str | None) -> None:
     """Show TASK. Print starts (S) and targets on each map, observations, actions, reward, and how episodes end."""
     with learning_options.explained_errors():
-        from kit.learning.environment.tasks import find_task
-        from kit.learning.tasks.task_text import build_case_scene, describe_case, describe_task
-        from kit.render.encode import ENCODERS
-        from kit.render.world_text import scene_rows
-
         found = find_task(task)
         if on is not None:
             found = found.on(*learning_options.split_names(on))
@@ -169,18 +161,12 @@ def show(task: str, on: str | None, glyphs: str | None) -> None:
 @command.command()
 def keys() -> None:
     """Print every key of a task file, and every name that a reward may use."""
-    from kit.learning.tasks.task_text import describe_keys
-
     click.echo("\n".join(describe_keys(min(100, shutil.get_terminal_size().columns))))
 
 
 @command.command(name="list")
 def list_tasks() -> None:
     """List the kit's tasks, and your own task files in the workspace."""
-    from kit.learning.environment.tasks import all_tasks
-    from kit.learning.tasks.own_files import own_task_files, workspace_folders
-    from kit.learning.tasks.task_reader import task_name
-
     rows = [(task.name, task.summary) for task in all_tasks()]
     rows += [(task_name(file), str(file)) for file in own_task_files(workspace_folders())]
     click.echo("\n".join(table(rows, 1000)))  # a path that is broken over two lines cannot be copied

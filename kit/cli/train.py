@@ -13,15 +13,41 @@ import click
 
 from kit.cli import learning_options, options
 from kit.cli.full_screen import run_screen
+from kit.cli.shared_game import join_shared_game
+from kit.learning.environment.disturbances import UniformRange
+from kit.learning.environment.rewards import REWARDS
+from kit.learning.environment.tasks import TaskSpec, all_tasks
+from kit.learning.training.algorithms import (
+    ALGORITHMS,
+    IMITATION_ALGORITHMS,
+    algorithms_for,
+    find_algorithm,
+    require_learn_extra,
+)
+from kit.learning.training.demonstrations import is_recording
+from kit.learning.training.events import EventReader, TrainingEnded, TrainingProgress
+from kit.learning.training.presets import LEARNING_RATE
+from kit.learning.training.run_check import check_run_config
+from kit.learning.training.run_text import format_event
+from kit.learning.training.run_upkeep import delete_run, disk_bytes, format_runs, read_overviews, rename_run
+from kit.learning.training.runs import (
+    PresetName,
+    RunConfig,
+    RunError,
+    TrainingRun,
+    create_run,
+    find_run,
+    list_runs,
+)
+from kit.learning.training.training import resolve_preset
+from kit.learning.training.worker import start_worker
 from kit.plain_text import format_size
+from kit.school.game.shared_sockets import SharedGameError, find_game, games_folder
+from kit.tui.terminal import TerminalDecision
 
 if TYPE_CHECKING:
-    from kit.learning.environment.disturbances import UniformRange
-    from kit.learning.training.events import EventReader
-    from kit.learning.training.runs import PresetName, RunConfig, TrainingRun
     from kit.tui.app import KitApp
     from kit.tui.screens.training import TrainingScreen
-    from kit.tui.terminal import TerminalDecision
 
 
 PROGRESS_INTERVAL_S = 2.0
@@ -43,11 +69,7 @@ def watch_command(
     Ctrl-C stops watching; the training continues. RUN can also be a game hosted on this machine with
     `kit game host`.
     """
-    from kit.learning.training.runs import find_run
-
     if run is not None and not once and _is_hosted(run, workspace):
-        from kit.cli.shared_game import join_shared_game
-
         join_shared_game(run, None, plays=False, plain=plain)
     with learning_options.explained_errors():
         found = find_run(learning_options.runs_folder(workspace), run)
@@ -61,9 +83,6 @@ def watch_command(
 
 def _is_hosted(name: str, workspace: Path | None) -> bool:
     """Whether a game of that name is hosted, and no training has it."""
-    from kit.learning.training.runs import RunError, find_run
-    from kit.school.game.shared_sockets import SharedGameError, find_game, games_folder
-
     try:
         find_game(games_folder(), name)
     except SharedGameError:
@@ -96,9 +115,6 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
 
     ``reader``: of its events, if not all of them.
     """
-    from kit.learning.training.events import EventReader, TrainingEnded, TrainingProgress
-    from kit.learning.training.run_text import format_event
-
     reader = reader or EventReader(run.events_file)
     printed_at, ended = -PROGRESS_INTERVAL_S, None
     try:
@@ -279,9 +295,6 @@ def command(
             raise click.UsageError(
                 "Which task? `kit train --list` lists them; `kit train turn` is the first."
             )
-        from kit.learning.environment.tasks import TaskSpec
-        from kit.learning.training.runs import RunConfig
-
         choice = TaskSpec(
             task,
             learning_options.split_names(on),
@@ -322,8 +335,6 @@ def command(
 
 
 def _usual_algorithm(demonstrations: tuple[Path, ...]) -> str:
-    from kit.learning.training.demonstrations import is_recording
-
     if not demonstrations:
         return "ppo"
     return "bc" if any(map(is_recording, demonstrations)) else "dagger"
@@ -333,16 +344,11 @@ def _begin(
     config: RunConfig, name: str | None, workspace: Path | None, terminal: TerminalDecision | None
 ) -> None:
     """Checks everything that can be wrong before anything is written."""
-    from kit.learning.training.run_check import check_run_config
-    from kit.learning.training.runs import create_run
-
     check_run_config(config)
     _start(create_run(learning_options.runs_folder(workspace), config, name), terminal)
 
 
 def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None) -> None:
-    from kit.learning.training.runs import RunError, find_run
-
     run = find_run(learning_options.runs_folder(workspace), name)
     run.config()
     summary = run.summary()
@@ -362,9 +368,6 @@ def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None)
 
 def _start(run: TrainingRun, terminal: TerminalDecision | None) -> None:
     """``terminal``: where to watch it; None: nowhere."""
-    from kit.learning.training.events import EventReader
-    from kit.learning.training.worker import start_worker
-
     reader = EventReader(run.events_file, from_now=True)
     process = start_worker(run)
     click.echo(f"{run.name}: training in {run.folder}")
@@ -388,12 +391,6 @@ def _show(run: TrainingRun, terminal: TerminalDecision, reader: EventReader | No
 
 def _list_settings(task: str, algo: str, preset: PresetName) -> list[str]:
     """A line for each setting of an algorithm on a task: its name, and the preset's number."""
-    from kit.learning.environment.tasks import TaskSpec
-    from kit.learning.training.algorithms import find_algorithm, require_learn_extra
-    from kit.learning.training.presets import LEARNING_RATE
-    from kit.learning.training.runs import RunConfig
-    from kit.learning.training.training import resolve_preset
-
     config, algorithm = RunConfig(TaskSpec(task), algo, preset), find_algorithm(algo)
     if algorithm.needs_torch:
         require_learn_extra()
@@ -407,10 +404,6 @@ def _list_settings(task: str, algo: str, preset: PresetName) -> list[str]:
 
 
 def _list() -> list[str]:
-    from kit.learning.environment.rewards import REWARDS
-    from kit.learning.environment.tasks import all_tasks
-    from kit.learning.training.algorithms import ALGORITHMS, IMITATION_ALGORITHMS, algorithms_for
-
     tasks = all_tasks()
     lines = ["Tasks:", *(f"  {task.name:20} {task.summary}" for task in tasks)]
     lines.append("\nCases, by group:")
@@ -465,9 +458,6 @@ def runs_command(
     """
     if run is None and (new_name is not None or deleted):
         raise click.UsageError(f"Which run? `kit runs NAME {'--delete' if deleted else '--rename NEW'}`.")
-    from kit.learning.training.run_upkeep import disk_bytes, format_runs, read_overviews, rename_run
-    from kit.learning.training.runs import find_run, list_runs
-
     with learning_options.explained_errors():
         folder = learning_options.runs_folder(workspace)
         if new_name is not None:
@@ -495,8 +485,6 @@ def runs_command(
 
 
 def _delete(run: TrainingRun, yes: bool) -> None:
-    from kit.learning.training.run_upkeep import delete_run, disk_bytes
-
     if not yes and not click.confirm(
         f"Delete {run.name} with its policies and curves ({format_size(disk_bytes(run))})?", default=False
     ):
@@ -506,8 +494,6 @@ def _delete(run: TrainingRun, yes: bool) -> None:
 
 
 def _ask(run: TrainingRun, order: Literal["pause", "go", "stop"]) -> None:
-    from kit.learning.training.runs import RunError
-
     if not run.is_active:
         raise RunError(f"{run.name} is not training. `kit train --resume {run.name}` resumes it.")
     run.send_command(order)
@@ -515,8 +501,6 @@ def _ask(run: TrainingRun, order: Literal["pause", "go", "stop"]) -> None:
 
 
 def _show_run(run: TrainingRun, as_json: bool) -> None:
-    from kit.learning.training.run_text import format_event
-
     config, summary = run.config(), run.summary()
     if as_json:
         click.echo(json.dumps({"name": run.name, "config": config.as_dict(), **summary.as_dict()}, indent=2))

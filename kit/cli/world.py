@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from kit.cli import options
-
-if TYPE_CHECKING:
-    from kit.world.problems import Problem
+from kit.plain_text import counted
+from kit.run.scenario import own_map_folder
+from kit.sim.plugins import plugin_readers, world_plugin_readers
+from kit.world.catalogue import WORLD_FILE, UnknownMap, allowed_root_of, find_map, map_names
+from kit.world.loading import load_world
+from kit.world.problems import Problem, WorldError
+from kit.world.report import world_report, world_report_data
 
 
 @click.group()
@@ -41,12 +44,6 @@ def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bo
 
     Exit code: 0 the world is valid; 1 it has errors; 2 there is no such world.
     """
-    from kit.plain_text import counted
-    from kit.sim.plugins import plugin_readers, world_plugin_readers
-    from kit.world.loading import load_world
-    from kit.world.problems import WorldError
-    from kit.world.report import world_report, world_report_data
-
     file, own_root = _find(world)
     try:
         loaded = load_world(
@@ -71,9 +68,6 @@ def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bo
 
 def _find(world: str) -> tuple[Path, Path | None]:
     """The world file meant, and the folder it may use if that is not its own."""
-    from kit.run.scenario import own_map_folder
-    from kit.world.catalogue import WORLD_FILE, UnknownMap, allowed_root_of, find_map, map_names
-
     path = Path(world)
     try:
         if world not in map_names() and not path.exists():

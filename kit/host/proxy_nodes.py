@@ -16,7 +16,7 @@ arrives at them is passed on instead of being queued for a callback. Both sides 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar, cast
+from typing import Any, Final, Protocol, TypeVar, cast
 
 from kit.host.wire import MAX_ID, MAX_NAME, Json, ProtocolError, integer, items, text
 from kit.msg.definition_writer import definitions_of
@@ -32,6 +32,8 @@ from kit.msg.message import Service as Definition
 from kit.ros.exceptions import NameValidationException
 from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
 from kit.ros.execution.context import context_of
+from kit.ros.graph.directory import NodeEntry
+from kit.ros.graph.graph import Graph
 from kit.ros.graph.naming import validate_full_topic_name, validate_namespace, validate_node_name
 from kit.ros.node.client import Client
 from kit.ros.node.events import PublisherEventCallbacks, SubscriptionEventCallbacks
@@ -41,10 +43,6 @@ from kit.ros.node.qos import QoSProfile
 from kit.ros.node.service import Call, Service
 from kit.ros.node.subscription import Subscription
 from kit.ros.parameters.parameter import Parameter
-
-if TYPE_CHECKING:
-    from kit.ros.graph.directory import NodeEntry
-    from kit.ros.graph.graph import Graph
 
 MAX_ENDPOINTS: Final = 2000
 """Nodes and endpoints that one student's program may have."""

@@ -27,6 +27,7 @@ from kit.ros.node.endpoint import TopicEndpointInfo, TopicEndpointTypeEnum
 from kit.ros.node.qos import HistoryPolicy, LivelinessPolicy
 from kit.ros.node.time import Duration
 from kit.ros.parameters.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
+from kit.ros.serialization import Serializer
 
 
 def node_names(graph: Graph, *, hidden: bool) -> list[str]:
@@ -107,8 +108,6 @@ def topic_info(graph: Graph, name: str, types: list[str], *, verbose: bool) -> I
 
 
 def _endpoint(info: TopicEndpointInfo) -> Iterator[str]:
-    from kit.ros.serialization import Serializer  # only now: it takes rosbags
-
     qos = info.qos_profile
     history = qos.history.name + (f" ({qos.depth})" if qos.history == HistoryPolicy.KEEP_LAST else "")
     liveliness = qos.liveliness

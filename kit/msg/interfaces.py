@@ -8,6 +8,7 @@ packages' source folders, and ``ReceivedInterfaces`` those that another process 
 from __future__ import annotations
 
 import os
+import sys
 import threading
 from collections.abc import Mapping
 from functools import cache
@@ -275,8 +276,6 @@ def package_attribute(module: str, package: str, parts: tuple[str, ...], name: s
 
     The class becomes an attribute of the module, so that it is asked for once. Raises AttributeError.
     """
-    import sys
-
     if name == "__all__":
         return sorted(full.split("/")[2] for full in _registry.names(package) if full.split("/")[1] in parts)
     if not name.startswith("_"):

@@ -9,7 +9,7 @@ import traceback
 from collections.abc import Callable, Iterable
 from enum import IntEnum
 from functools import wraps
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
+from typing import Any, Final, NamedTuple, TypeVar
 
 from kit.msg.lifecycle_msgs import (
     ChangeState,
@@ -23,11 +23,9 @@ from kit.msg.lifecycle_msgs import (
 )
 from kit.msg.message import Message
 from kit.ros.exceptions import RCLError
+from kit.ros.execution.callback_groups import CallbackGroup
 from kit.ros.node.node import Node
 from kit.ros.node.publisher import Publisher
-
-if TYPE_CHECKING:
-    from kit.ros.execution.callback_groups import CallbackGroup
 
 
 class TransitionCallbackReturn(IntEnum):

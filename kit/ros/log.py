@@ -9,12 +9,10 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol
 
-from kit.ros.node.time import S_TO_NS
+from kit.ros.node.time import S_TO_NS, Time
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-    from kit.ros.node.time import Time
 
 
 class LoggingSeverity(IntEnum):

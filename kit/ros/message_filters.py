@@ -10,15 +10,13 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from itertools import count, product
 from threading import RLock
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from kit.ros.execution.client_library import get_logger
 from kit.ros.node.clock import ROSClock
+from kit.ros.node.node import Node
+from kit.ros.node.subscription import Subscription
 from kit.ros.node.time import ClockType, Duration, Time
-
-if TYPE_CHECKING:
-    from kit.ros.node.node import Node
-    from kit.ros.node.subscription import Subscription
 
 Callback = Callable[..., Any]
 

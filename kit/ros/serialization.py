@@ -8,19 +8,17 @@ from __future__ import annotations
 from array import array
 from collections.abc import Callable
 from functools import cache, cached_property
-from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar
+from typing import Any, Final, Literal, TypeVar
 
 import numpy as np
 from rosbags.interfaces import Nodetype
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
 
 from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind, item_kind
 from kit.msg.interfaces import definition, fields_of, message_kind, service_event_class
 from kit.msg.message import Field, Message, Service, make_message_class, short_type_name
-
-if TYPE_CHECKING:
-    from rosbags.typesys.store import Typestore
 
 Distro = Literal["humble", "jazzy"]
 

@@ -6,13 +6,11 @@ ROS 2 has this in ``tf2_ros.buffer_interface``. Whoever needs a type imports wha
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
+from kit.msg.builtin_interfaces import Time as TimeMessage
 from kit.msg.geometry_msgs import TransformStamped
 from kit.ros.node.time import Duration, Time
-
-if TYPE_CHECKING:
-    from kit.msg.builtin_interfaces import Time as TimeMessage
 
 DoTransform = Callable[[Any, TransformStamped], Any]
 

@@ -8,10 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import Final
 
 import numpy as np
+from PIL import Image
 
 from kit.arrays import Float32Array, FloatArray
 from kit.fields.occupancy_grid import MAX_CELLS
@@ -144,10 +146,6 @@ class SavedLaserMap:
 
 def save_laser_map(cells: SceneCells, folder: Path, name: str) -> SavedLaserMap:
     """Writes a map as ROS's map_saver does: free white, unknown grey, occupied black. Raises OSError."""
-    from io import BytesIO
-
-    from PIL import Image
-
     folder.mkdir(parents=True, exist_ok=True)
     image, layer = folder / f"{name}.map.png", folder / f"{name}.map.yaml"
     levels = np.array([205, 254, 0], dtype=np.uint8)[cells.states[::-1]]

@@ -17,11 +17,10 @@ from kit.plain_text import format_clock
 from kit.render.scene import Disc, Scene, SceneBody, Trail
 from kit.ros.log import LogRecord
 from kit.run.metrics import DriveMetrics
-from kit.sim.state import SimulationState
+from kit.sim.state import BodyState, FootprintOutline, LatestScan, SimulationState
 
 if TYPE_CHECKING:
     from kit.run.session import Session
-    from kit.sim.state import BodyState, FootprintOutline, LatestScan
 
 ROBOT_SIDES = (("front", 0.0), ("left", math.pi / 2), ("right", -math.pi / 2), ("back", math.pi))
 """Name and direction [rad] of the middle of each quarter around a robot."""

@@ -19,7 +19,7 @@ from kit.render.scene import SceneBody
 from kit.run.episode import run_until, when, when_failed
 from kit.run.lockstep import Observer
 from kit.run.metrics import MetricsRecorder
-from kit.run.scenario import Scenario
+from kit.run.scenario import Scenario, find_scenario
 from kit.run.session import Session
 from kit.sim.simulation import Simulation
 from kit.study.printed_tables import ADJACENCY_BY_POSES, POTENTIAL_FIELDS, SUCCESS, printed_table
@@ -314,8 +314,6 @@ def run_tables(
     runs: int, seed: int, controllers: tuple[ControllerFile, ...]
 ) -> Iterator[tuple[PrintedPairResult, tuple[PairSummary, ...]]]:
     """Both tables, row by row, as they are done."""
-    from kit.run.scenario import find_scenario
-
     for printed in (*TABLE_46, *TABLE_53):
         scenario = find_scenario(printed.map, printed.case)
         yield printed, tuple(run_repeatedly(scenario, each, runs=runs, seed=seed) for each in controllers)

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -21,12 +21,15 @@ from kit.learning.policies.evaluation import (
     derive_seed,
     record_paths,
 )
+from kit.learning.policies.policies import Policy
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.training.algorithms import versions
+from kit.learning.training.events import Evaluated, EventReader
 from kit.learning.training.runs import PresetName, RunConfig, RunError, TrainingRun
 from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_sweep import SweepEntry, TrainingSweep, combine
 from kit.render.scene import Scene
+from kit.run.scenario import find_scenario
 from kit.school.report.document import ScenePlot
 from kit.study.pairs import SAMPLE_S, PairRunResult, run_once, shift_start_poses
 from kit.study.printed_tables import (
@@ -55,10 +58,6 @@ from kit.study.recorded_results import (
 )
 from kit.study.study_report import paths_title
 from kit.workspace import Workspace
-
-if TYPE_CHECKING:
-    from kit.learning.policies.policies import Policy
-
 
 PATH_INTERVAL_S: Final = 0.5
 """Between two places of a way that is kept."""
@@ -333,8 +332,6 @@ class StudyRun:
 
         ``on_run``: called after each run with its case and number. Raises RunError if the controller failed.
         """
-        from kit.run.scenario import find_scenario
-
         missing = self.missing_fields_cases
         self._begin_log()
         controller = find_controller(CONTROLLERS[self.variant])
@@ -397,8 +394,6 @@ class StudyRun:
         return agent_paths(figure, sweep.run_of(entry).policy(), task, 0, derive_seed(0, "study paths"))
 
     def _fields_paths(self, figure: PrintedFigure) -> tuple[RecordedPath, ...]:
-        from kit.run.scenario import find_scenario
-
         controller = find_controller(CONTROLLERS[self.variant])
         found = []
         for place, case in figure.paths:
@@ -489,8 +484,6 @@ def _test_agent(group: str, sweep: TrainingSweep, entry: SweepEntry, episodes: i
 
 def _sessions(run: TrainingRun) -> tuple[TrainingSession, ...]:
     """The tests while it was trained."""
-    from kit.learning.training.events import Evaluated, EventReader
-
     found = []
     for event in EventReader(run.events_file).read_new():
         if isinstance(event, Evaluated):

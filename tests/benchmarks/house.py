@@ -116,6 +116,25 @@ def functions(tree: ast.AST) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]
     return (node for node in ast.walk(tree) if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)))
 
 
+def late_imports(tree: ast.Module) -> int:
+    """The number of import statements inside functions."""
+    return len(
+        {
+            (node.lineno, node.col_offset)
+            for function in functions(tree)
+            for node in ast.walk(function)
+            if isinstance(node, (ast.Import, ast.ImportFrom))
+        }
+    )
+
+
+def typing_blocks(tree: ast.Module) -> int:
+    """The number of blocks that only type checkers read."""
+    return sum(
+        isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test) for node in ast.walk(tree)
+    )
+
+
 def header_lines(tree: ast.Module) -> int:
     """InputLines before the first definition: docstring, imports, blank lines."""
     for node in tree.body:
@@ -162,7 +181,10 @@ def figures() -> tuple[list[Figure], list[str]]:
     layers = next(each["layers"] for each in contract if each["type"] == "layers")
     children = [path for path in (ROOT / "kit").iterdir() if not path.name.startswith(("_", "."))]
     repeated = repeated_classes(trees)
+    product = {module: tree for module, tree in trees.items() if not FIXED_BY_ROS & set(module.split("."))}
     rows = [
+        Figure("imports inside functions", str(sum(map(late_imports, product.values()))), "374"),
+        Figure("blocks for type checkers alone", str(sum(map(typing_blocks, product.values()))), "101"),
         Figure("import circles at import time", circles(at_import), "none"),
         Figure("import circles at run time", circles(at_run_time), "4, 4, 2"),
         Figure("import circles with typing", circles(at_run_time | edges["typing"]), "27, 7, 4"),

@@ -22,6 +22,7 @@ from typing import Any
 import grader
 import kit
 from grader.evidence.world.facts import WorldFacts, WorldRunSpec
+from kit.host.sandbox.grants import find_grants
 from kit.world.documents import AllowedRoot, UnusableFile, WorldDocuments
 from kit.world.problems import ProblemCollector, WorldError
 from kit.world.records import SourceLocation, World
@@ -76,7 +77,6 @@ def confine_before_reading(
     # Only here: a world that cannot be read needs no numba, and a student's own check is not confined.
     from grader.ci import TEACHERS_STEMS
     from kit.host.sandbox.confinement import confine_reader
-    from kit.host.sandbox.grants import find_grants
 
     granted = find_grants([file.parent])
     own = [

@@ -13,11 +13,12 @@ from kit.cli import options
 from kit.cli.options import Storage
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
+from kit.msg.interfaces import UnknownInterface, find_message
+from kit.ros.node.node import Node
+from kit.ros.node.publisher import Publisher
 
 if TYPE_CHECKING:
     from kit.ros.bags import Bag
-    from kit.ros.node.node import Node
-    from kit.ros.node.publisher import Publisher
 
 
 @click.group()
@@ -179,8 +180,6 @@ def _read(folder: Path) -> Bag:
 def _publishers(
     node: Node, bag: Bag, topics: Sequence[str], names: dict[str, str]
 ) -> dict[str, Publisher[Any]]:
-    from kit.msg.interfaces import UnknownInterface, find_message
-
     strange = sorted(set(topics) - {topic.name for topic in bag.topics})
     if strange:
         exit_with_error(

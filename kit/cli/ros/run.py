@@ -6,18 +6,21 @@ import os
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from kit.cli import options
+from kit.cli.launch import run_launch
 from kit.cli.ros.world_client import EXIT_INTERRUPTED, exit_with_error
+from kit.host.program_terminal import ProgramTerminal, has_user_terminal
 from kit.inspection.client import InspectionClient, WorldDisconnected
 from kit.inspection.sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
 from kit.interruption import ended_by_signals
-
-if TYPE_CHECKING:
-    from kit.workspace import Workspace
+from kit.launch.launch_file_process import SHARE_FOLDER, LaunchTarget
+from kit.launch.processes import PrintedLine, ProcessExit, ProcessStartError, suggest_fix
+from kit.launch.requests import StartRequest
+from kit.launch.single_program import SingleProgram
+from kit.workspace import Workspace
 
 
 @click.command(context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False})
@@ -45,12 +48,6 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     The program gets its own terminal, shown in this one: input(), single keys and pynput listeners work, while the
     world keeps running in real time. Ctrl-C asks the program to stop; a second Ctrl-C ends it.
     """
-    from kit.host.program_terminal import ProgramTerminal, has_user_terminal
-    from kit.launch.launch_file_process import SHARE_FOLDER
-    from kit.launch.processes import PrintedLine, ProcessExit, ProcessStartError, suggest_fix
-    from kit.launch.requests import StartRequest
-    from kit.launch.single_program import SingleProgram
-
     opened_workspace = options.open_existing_workspace(workspace)
     if (package, *words[:1]) == ("turtlesim", "turtlesim_node"):
         _run_turtlesim(words[1:], opened_workspace, seed)
@@ -110,9 +107,6 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
 
 def _run_turtlesim(words: Sequence[str], opened_workspace: Workspace, seed: int) -> None:
     """Runs turtlesim's node in a world of its own, on the screen where there is one, as ROS 2 does in its window."""
-    from kit.cli.launch import run_launch
-    from kit.launch.launch_file_process import SHARE_FOLDER, LaunchTarget
-
     folder = SHARE_FOLDER / "turtlesim"
     target = LaunchTarget(folder / "launch" / "turtlesim_node.launch.py", folder, (SHARE_FOLDER,))
     run_launch(target, {"words": shlex.join(words)}, opened_workspace, options.terminal(), seed=seed)

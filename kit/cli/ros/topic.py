@@ -41,6 +41,7 @@ from kit.msg.message import Message
 from kit.ros.exceptions import NameValidationException
 from kit.ros.node.qos import QoSProfile, qos_profile_services_default
 from kit.ros.node.time import Time
+from kit.ros.serialization import Serializer
 
 REPORT_INTERVAL_S: Final = 1.0
 """Interval between two reports of a meter [s, simulated]."""
@@ -216,8 +217,6 @@ def hz(client: InspectionClient, topic: str, window: int, wall_time: bool, qos_o
 @with_world_client
 def bw(client: InspectionClient, topic: str, window: int, qos_options: QosOptions) -> None:
     """Print a topic's bandwidth once a second, until Ctrl-C."""
-    from kit.ros.serialization import Serializer  # only now: it takes rosbags
-
     meter, serializer = BandwidthMeter(window), Serializer()
 
     def count_message(message: Message) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 from types import FrameType
 
 from kit.host.python_command import python_command
+from kit.learning.training.algorithms import LearnExtraMissing
 from kit.learning.training.runs import RunError, TrainingRun
 
 EXIT_SIGNALS = (signal.SIGTERM, signal.SIGINT)
@@ -37,7 +38,6 @@ def run_worker(run: TrainingRun) -> int:
     for number in EXIT_SIGNALS:
         signal.signal(number, asked)
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    from kit.learning.training.algorithms import LearnExtraMissing
     from kit.learning.training.training import train
 
     try:

@@ -7,12 +7,13 @@ from binascii import crc32
 from collections.abc import Callable
 from enum import Enum
 from types import GenericAlias, MappingProxyType
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import Any, Final, Self
 
 from kit.msg.action_msgs import CancelGoal, GoalStatus, GoalStatusArray
 from kit.msg.message import Action
 from kit.msg.unique_identifier_msgs import UUID
 from kit.ros.exceptions import InvalidHandle
+from kit.ros.execution.callback_groups import CallbackGroup
 from kit.ros.execution.task import Future, Task
 from kit.ros.graph.naming import (
     CANCEL_GOAL,
@@ -23,16 +24,12 @@ from kit.ros.graph.naming import (
     all_served_actions,
 )
 from kit.ros.node.client import Client
+from kit.ros.node.clock import Clock
 from kit.ros.node.endpoint import accepted_argument_count, register_entity
-from kit.ros.node.node import check_action_type
+from kit.ros.node.node import Node, check_action_type
 from kit.ros.node.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
+from kit.ros.node.service_introspection import ServiceIntrospectionState
 from kit.ros.node.time import S_TO_NS
-
-if TYPE_CHECKING:
-    from kit.ros.execution.callback_groups import CallbackGroup
-    from kit.ros.node.clock import Clock
-    from kit.ros.node.node import Node
-    from kit.ros.node.service_introspection import ServiceIntrospectionState
 
 
 class GoalEvent(Enum):

@@ -9,10 +9,11 @@ import traceback
 from collections.abc import Callable
 from enum import Enum
 from types import GenericAlias
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 from kit.msg.action_msgs import CancelGoal, GoalInfo, GoalStatus, GoalStatusArray
 from kit.msg.message import Action
+from kit.msg.unique_identifier_msgs import UUID
 from kit.ros.action.client import (
     ENDED,
     FEEDBACK_QOS_PROFILE,
@@ -22,20 +23,16 @@ from kit.ros.action.client import (
     uuid_bytes,
 )
 from kit.ros.exceptions import RCLError
+from kit.ros.execution.callback_groups import CallbackGroup
 from kit.ros.execution.task import Future, Task, await_or_execute
 from kit.ros.graph.naming import CANCEL_GOAL, FEEDBACK, GET_RESULT, SEND_GOAL, STATUS
+from kit.ros.node.clock import Clock
 from kit.ros.node.endpoint import accepted_argument_count, register_entity
-from kit.ros.node.node import check_action_type
+from kit.ros.node.node import Node, check_action_type
 from kit.ros.node.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from kit.ros.node.service import DeferredService
+from kit.ros.node.service_introspection import ServiceIntrospectionState
 from kit.ros.node.time import S_TO_NS
-
-if TYPE_CHECKING:
-    from kit.msg.unique_identifier_msgs import UUID
-    from kit.ros.execution.callback_groups import CallbackGroup
-    from kit.ros.node.clock import Clock
-    from kit.ros.node.node import Node
-    from kit.ros.node.service_introspection import ServiceIntrospectionState
 
 Respond = Callable[[Any], None]
 

@@ -8,7 +8,7 @@ import threading
 from collections.abc import Sequence
 from enum import IntFlag
 from types import FrameType, TracebackType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from kit.msg.message import Message
 from kit.ros.execution.arguments import split_ros_arguments
@@ -17,11 +17,9 @@ from kit.ros.execution.executors import Executor, SingleThreadedExecutor
 from kit.ros.execution.task import Future
 from kit.ros.log import LoggingSeverity, RcutilsLogger
 from kit.ros.node.node import Node
+from kit.ros.node.qos import QoSProfile
 from kit.ros.node.time import S_TO_NS
-
-if TYPE_CHECKING:
-    from kit.ros.node.qos import QoSProfile
-    from kit.ros.parameters.parameter import Parameter
+from kit.ros.parameters.parameter import Parameter
 
 M = TypeVar("M", bound=Message)
 

@@ -12,15 +12,19 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from kit.msg.conversion import FieldValue, field_values
-from kit.msg.message import type_name
-from kit.ros.graph.directory import GraphEndpoint, TopicPublisher, TopicSubscription, describe_mismatch
+from kit.msg.message import Message, type_name
+from kit.ros.graph.directory import (
+    GraphEndpoint,
+    GraphNode,
+    TopicPublisher,
+    TopicSubscription,
+    describe_mismatch,
+)
 from kit.ros.graph.naming import CANCEL_GOAL, STATUS
+from kit.ros.node.qos import QoSProfile
 
 if TYPE_CHECKING:
-    from kit.msg.message import Message
-    from kit.ros.graph.directory import GraphNode
     from kit.ros.graph.graph import Graph
-    from kit.ros.node.qos import QoSProfile
 
 
 INFRASTRUCTURE_TOPICS: Final = frozenset({"/rosout", "/parameter_events", "/clock", "/tf", "/tf_static"})

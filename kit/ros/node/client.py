@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from kit.msg.message import Service as Definition
 from kit.ros.exceptions import ExternalShutdownException, ServerGoneError, WouldDeadlock
-from kit.ros.execution.callback_groups import NO_WORK, MutuallyExclusiveCallbackGroup
+from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup, MutuallyExclusiveCallbackGroup
 from kit.ros.execution.task import Future
 from kit.ros.node.endpoint import Entity, EntityOwner
+from kit.ros.node.qos import QoSProfile
 from kit.ros.node.service import Call
 from kit.ros.node.service_introspection import (
     ServiceEventKind,
@@ -19,9 +20,7 @@ from kit.ros.node.service_introspection import (
 from kit.ros.node.time import S_TO_NS
 
 if TYPE_CHECKING:
-    from kit.ros.execution.callback_groups import CallbackGroup
     from kit.ros.node.clock import Clock
-    from kit.ros.node.qos import QoSProfile
 
 Request = TypeVar("Request")
 Response = TypeVar("Response")

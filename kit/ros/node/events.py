@@ -12,14 +12,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup, ReentrantCallbackGroup
 from kit.ros.node.endpoint import Entity, EntityOwner, accepted_argument_count
-from kit.ros.node.qos import QoSPolicyKind
-
-if TYPE_CHECKING:
-    from kit.ros.node.qos import QoSProfile
+from kit.ros.node.qos import QoSPolicyKind, QoSProfile
 
 EventCallback = Callable[[Any], Any]
 

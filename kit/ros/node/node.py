@@ -20,10 +20,11 @@ from kit.ros.execution.callback_groups import CallbackGroup, MutuallyExclusiveCa
 from kit.ros.execution.context import Context, context_of, get_default_context
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.naming import absolute_namespace, validate_namespace, validate_node_name
-from kit.ros.log import LoggingSeverity, LogRecord, RcutilsLogger
+from kit.ros.log import LoggerSettings, LoggingSeverity, LogRecord, RcutilsLogger
 from kit.ros.node.client import Client
 from kit.ros.node.clock import Clock, ROSClock
 from kit.ros.node.endpoint import Destroyable, GuardCondition, register_entity
+from kit.ros.node.events import PublisherEventCallbacks, SubscriptionEventCallbacks
 from kit.ros.node.node_handle import NodeGraphMethods, NodeHandle
 from kit.ros.node.parameter_methods import NodeParameterMethods
 from kit.ros.node.publisher import Publisher
@@ -45,8 +46,6 @@ from kit.ros.parameters.parameter_store import ParameterStore
 
 if TYPE_CHECKING:
     from kit.ros.execution.executors import Executor
-    from kit.ros.log import LoggerSettings
-    from kit.ros.node.events import PublisherEventCallbacks, SubscriptionEventCallbacks
     from kit.ros.node.waitable import Waitable
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from kit.msg.message import type_name
 from kit.ros.exceptions import NodeNameNonExistentError
+from kit.ros.graph.directory import GraphNode, NodeEntry
 from kit.ros.graph.naming import (
     NamesAndTypes,
     action_names_and_types,
@@ -23,18 +24,22 @@ from kit.ros.graph.naming import (
     validate_topic_name,
 )
 from kit.ros.graph.ready_queue import ReadyQueue
-from kit.ros.node.endpoint import TopicEndpointInfo, TopicEndpointTypeEnum
+from kit.ros.node.endpoint import (
+    Destroyable,
+    Entity,
+    GuardCondition,
+    TopicEndpointInfo,
+    TopicEndpointTypeEnum,
+)
 from kit.ros.node.time import S_TO_NS
 
 if TYPE_CHECKING:
     from kit.ros.execution.arguments import RosArguments
     from kit.ros.execution.context import Context
     from kit.ros.execution.executors import Executor
-    from kit.ros.graph.directory import GraphNode, NodeEntry
     from kit.ros.graph.graph import Graph
     from kit.ros.log import RcutilsLogger
     from kit.ros.node.client import Client
-    from kit.ros.node.endpoint import Destroyable, Entity, GuardCondition
     from kit.ros.node.publisher import Publisher
     from kit.ros.node.service import Service
     from kit.ros.node.subscription import Subscription

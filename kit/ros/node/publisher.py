@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar
+from typing import Any, Generic, NoReturn, TypeVar
 
 from kit.msg.message import Message, check_message
+from kit.ros.execution.callback_groups import CallbackGroup
 from kit.ros.graph.directory import TopicSubscription
 from kit.ros.node.endpoint import Destroyable, EntityOwner
 from kit.ros.node.events import EndpointEvents, EventHandler, PublisherEventCallbacks
+from kit.ros.node.qos import QoSProfile
 from kit.ros.node.time import Duration
-
-if TYPE_CHECKING:
-    from kit.ros.execution.callback_groups import CallbackGroup
-    from kit.ros.node.qos import QoSProfile
 
 M = TypeVar("M", bound=Message)
 

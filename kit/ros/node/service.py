@@ -9,9 +9,10 @@ from types import CoroutineType
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from kit.msg.message import Service as Definition
-from kit.ros.execution.callback_groups import NO_WORK
+from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup
 from kit.ros.graph.directory import ServiceClient
 from kit.ros.node.endpoint import Entity, EntityOwner, accepted_argument_count
+from kit.ros.node.qos import QoSProfile
 from kit.ros.node.service_introspection import (
     ServiceEventKind,
     ServiceEventPublisher,
@@ -19,9 +20,7 @@ from kit.ros.node.service_introspection import (
 )
 
 if TYPE_CHECKING:
-    from kit.ros.execution.callback_groups import CallbackGroup
     from kit.ros.node.clock import Clock
-    from kit.ros.node.qos import QoSProfile
 
 Request = TypeVar("Request")
 Response = TypeVar("Response")

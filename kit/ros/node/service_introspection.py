@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, cast
 from kit.msg.interfaces import service_event_class
 from kit.msg.message import Message, Service
 from kit.ros.graph.directory import ServiceEndpoint
+from kit.ros.node.qos import QoSProfile
 
 if TYPE_CHECKING:
     from kit.ros.node.clock import Clock
     from kit.ros.node.publisher import Publisher
-    from kit.ros.node.qos import QoSProfile
 
 
 class ServiceIntrospectionState(IntEnum):

@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from enum import Enum
-from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
+from typing import Any, Generic, TypedDict, TypeVar
 
 from kit.msg.message import Message
-from kit.ros.execution.callback_groups import NO_WORK
+from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup
 from kit.ros.node.endpoint import Entity, EntityOwner, accepted_argument_count
 from kit.ros.node.events import EndpointEvents, EventHandler, SubscriptionEventCallbacks
-
-if TYPE_CHECKING:
-    from kit.ros.execution.callback_groups import CallbackGroup
-    from kit.ros.node.qos import QoSProfile
+from kit.ros.node.qos import QoSProfile
 
 M = TypeVar("M", bound=Message)
 

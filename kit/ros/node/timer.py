@@ -6,12 +6,11 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kit.ros.exceptions import InvalidHandle, ROSInterruptException, WouldDeadlock
-from kit.ros.execution.callback_groups import NO_WORK
+from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup
 from kit.ros.node.endpoint import Destroyable, Entity, EntityOwner, accepted_argument_count
 from kit.ros.node.time import Time
 
 if TYPE_CHECKING:
-    from kit.ros.execution.callback_groups import CallbackGroup
     from kit.ros.node.clock import Clock
 
 

@@ -7,15 +7,12 @@ waitable waits for guard conditions; messages, requests and time come to callbac
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Generic, NoReturn, TypeVar
+from collections.abc import Callable
+from typing import Any, Generic, NoReturn, TypeVar
 
 from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup, ItemOwner
 from kit.ros.execution.context import Context, get_default_context
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from kit.ros.execution.task import Future
+from kit.ros.execution.task import Future
 
 T = TypeVar("T")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from kit.msg.rcl_interfaces import (
     DescribeParameters,
@@ -17,18 +17,15 @@ from kit.msg.rcl_interfaces import (
     SetParametersAtomically,
 )
 from kit.msg.rcl_interfaces import Parameter as ParameterMessage
+from kit.ros.execution.callback_groups import CallbackGroup
+from kit.ros.execution.task import Future
 from kit.ros.graph.graph import Graph
-from kit.ros.node.node import create_graph_node
+from kit.ros.node.client import Client
+from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import QoSProfile, qos_profile_parameter_events, qos_profile_services_default
 from kit.ros.node.time import S_TO_NS
 from kit.ros.parameters.parameter import Parameter
 from kit.ros.parameters.parameter_files import parameter_dict_from_yaml_file
-
-if TYPE_CHECKING:
-    from kit.ros.execution.callback_groups import CallbackGroup
-    from kit.ros.execution.task import Future
-    from kit.ros.node.client import Client
-    from kit.ros.node.node import Node
 
 DoneCallback = Callable[["Future[Any]"], Any]
 

@@ -9,24 +9,20 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from kit.arrays import FloatArray
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.recording import Recording, RecordingError, load_recording, save_recording
+from kit.run.scenario import Scenario
+from kit.run.session import Session
 from kit.school.game import leaderboard
 from kit.school.game.levels import GameLevel
-from kit.school.game.race import DriverKind, run_race
+from kit.school.game.race import DriverKind, RaceFinish, run_race
 from kit.school.lessons.reading import lessons_folder
 from kit.workspace import Workspace
-
-if TYPE_CHECKING:
-    from kit.run.scenario import Scenario
-    from kit.run.session import Session
-    from kit.school.game.race import RaceFinish
-
 
 DRIVES_FILE: Final = "reference_drives.json"
 

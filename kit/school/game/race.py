@@ -19,7 +19,13 @@ from kit.host.private_folder import private_folder
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.probe import is_level_available
-from kit.learning.environment.batch_map import FLOOR_CELL, measure_floor
+from kit.learning.environment.batch_map import (
+    FLOOR_CELL,
+    hull_radius,
+    hull_width,
+    load_batch_map,
+    measure_floor,
+)
 from kit.learning.tasks.learning_task import CoverGoal, FollowGoal, PatrolGoal
 from kit.render.scene import Disc
 from kit.run.episode import EndCondition, EndReason, run_until, when, when_failed
@@ -28,13 +34,12 @@ from kit.run.metrics import MetricsRecorder, is_in_target
 from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Scenario
 from kit.run.session import Session
-from kit.school.game.levels import GameLevel
+from kit.school.game.levels import GameLevel, LevelConditions
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import MapCard
 
 if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
-    from kit.school.game.levels import LevelConditions
 
 
 DOCK_RADIUS: Final = 0.25
@@ -136,8 +141,6 @@ class CoverObjective(Objective):
     """A share of the floor is driven over."""
 
     def __init__(self, goal: CoverGoal, card: MapCard, scenario: Scenario) -> None:
-        from kit.learning.environment.batch_map import hull_radius, hull_width, load_batch_map
-
         assert scenario.robot is not None  # a level has one
         batch_map = load_batch_map(card, scenario.partners)
         floor, start = measure_floor(batch_map), scenario.starts[0]

@@ -18,7 +18,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Final
 
-from kit.inspection.sockets import SUFFIX, connect, is_world_name, listen
+from kit.inspection.sockets import SUFFIX, FramedSocket, connect, is_world_name, listen
 from kit.workspace import open_common_folder
 
 DEFAULT_FOLDER: Final = "/var/tmp/robot-learning-kit-games"
@@ -150,8 +150,6 @@ def own_user_name() -> str:
 
 def peer_user(connection: socket.socket) -> int | None:
     """The user id of the other process; None where the system does not tell."""
-    from kit.inspection.sockets import FramedSocket
-
     return FramedSocket(connection).peer_user
 
 

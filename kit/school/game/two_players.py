@@ -17,13 +17,13 @@ from kit.learning.tasks.learning_task import CoverGoal, FollowGoal
 from kit.msg.geometry_msgs import Twist
 from kit.run.lockstep import Observer
 from kit.run.metrics import is_in_target
+from kit.run.scenario import Scenario
 from kit.school.game.levels import SPEED, TURN_RATE, GameLevel
+from kit.sim.simulation import Simulation
 
 if TYPE_CHECKING:
     from kit.run.recording import Recording
     from kit.run.runner import Runner
-    from kit.run.scenario import Scenario
-    from kit.sim.simulation import Simulation
 
 GUEST: Final = "guest"
 """Name of the second robot's model."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from kit.controllers import find_controller
 from kit.host.python_command import python_command
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
@@ -74,7 +75,6 @@ def _check_commands(lesson: Lesson, verbs: Collection[str]) -> Iterator[Contract
 
 
 def _check_scenes(lesson: Lesson) -> Iterator[ContractFinding]:
-    from kit.controllers import find_controller
     from kit.run.scenario import find_scenario
 
     for step in lesson.steps:

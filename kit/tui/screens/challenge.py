@@ -32,11 +32,11 @@ from kit.tui.rows.lesson_rows import checking
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, TextScreen, wrapped
 from kit.tui.suspend import edit_aside
 from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.workspace import Workspace
 from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
     from kit.tui.theme import Theme
-    from kit.workspace import Workspace
 
 POLL_S: Final = 0.2
 """Between two looks at the answer's file and at the check [s]."""

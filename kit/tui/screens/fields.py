@@ -27,6 +27,7 @@ from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.play import PlayScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, row
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
     from kit.ros.parameters.parameter_client import ParameterTuner
@@ -166,7 +167,6 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
 
     def _open(self, session: Session) -> _FieldSetup | None:
         from kit.ros.parameters.parameter_client import ParameterTuner
-        from kit.world.problems import WorldError
 
         scenario = session.scenario
         if scenario.case is None:

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import textwrap
 from asyncio import to_thread
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import Any, ClassVar, Final
 
 from textual import events
 from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.screen import Screen
 
 from kit.school.form_session import PHASE_LABELS, FormSession, current_phase
 from kit.school.progress import ProgressError, ProgressJournal
@@ -25,10 +26,6 @@ from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_field import AnswerField
 from kit.tui.widgets.text_rows import MARGIN, Row, TextRows, row, spread, text_width, window
 from kit.world.problems import WorldError
-
-if TYPE_CHECKING:
-    from textual.screen import Screen
-
 
 ROWS_AROUND: Final = 3
 """Rows of the heading, the remark and the keys."""

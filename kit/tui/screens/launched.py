@@ -14,13 +14,13 @@ from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
+from kit.workspace import Workspace
 
 if TYPE_CHECKING:
     from kit.launch.launch_file_process import LaunchTarget
     from kit.launch.launch_run import Launch, LaunchOutputLine
     from kit.launch.plain_launch import LaunchSession
     from kit.run.session import Session
-    from kit.workspace import Workspace
 
 
 class LaunchRefused(Message):

@@ -10,6 +10,7 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 
 from kit.inspection.sockets import sockets_folder
+from kit.run.scenario import Scenario
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import CommandKind, LessonCommand, LessonStep, PredictionOption
 from kit.school.lessons.shell_lines import TITLE as SECOND_TERMINAL
@@ -26,6 +27,7 @@ from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, TextScreen, wrapped
 from kit.tui.screens.lesson_exercise import ExerciseListener, ExercisePanel
+from kit.tui.screens.quiz import ask_of_lesson
 from kit.tui.suspend import plain_lines, run_aside
 from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_page import (
@@ -42,7 +44,6 @@ from kit.workspace import Workspace
 
 if TYPE_CHECKING:
     from kit.run.recording import Recording
-    from kit.run.scenario import Scenario
 
 ARROWS = ("up", "down", "left", "right")
 HELD = (*ARROWS, "pageup", "pagedown", "space")
@@ -557,8 +558,6 @@ class LessonScreen(RowsScreen[None], DriveScreen):
     @work
     async def action_questions(self) -> None:
         if self.is_over:
-            from kit.tui.screens.quiz import ask_of_lesson  # of no use before the end
-
             await ask_of_lesson(self, self.visit.journal, self.visit.lesson.name)
 
     # Keys of the exercise

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual.binding import BindingType
@@ -9,8 +10,8 @@ from textual.message import Message
 
 from kit.controllers import find_controller
 from kit.inspection.sockets import sockets_folder
-from kit.run.recording import Recording
-from kit.run.scenario import Scenario
+from kit.run.recording import Recording, save_recording
+from kit.run.scenario import Scenario, find_scenario
 from kit.tui.actions import VIEW_IDS, ScreenAction, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import drive_key, named
@@ -18,14 +19,12 @@ from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, row
+from kit.workspace import Workspace
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from kit.learning.policies.policies import Policy
     from kit.run.session import Session
     from kit.school.lessons.records import LessonScene
-    from kit.workspace import Workspace
 
 
 class ReplayScreen(WatchScreen):
@@ -131,8 +130,6 @@ class RecordedDriveScreen(WatchScreen):
 
     def _place(self) -> Scenario:
         """Finds the scenario; runs in the helper thread."""
-        from kit.run.scenario import find_scenario
-
         return find_scenario(self._scene.map_name, self._scene.case)
 
     def is_drive_key(self, key: str) -> bool:
@@ -178,8 +175,6 @@ class RecordedDriveScreen(WatchScreen):
         self._save()
 
     def _save(self) -> None:
-        from kit.run.recording import save_recording
-
         recording = self.host.recording()
         if recording is None or not recording.ticks:
             return

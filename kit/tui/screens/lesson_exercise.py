@@ -17,8 +17,11 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Container
 
+from kit.run.scenario import Scenario, find_scenario
 from kit.school.lessons.checking import ExerciseFilesError
-from kit.school.lessons.defence import DefenceError
+from kit.school.lessons.defence import Defence, DefenceError
+from kit.school.lessons.lesson_session import LessonSession
+from kit.school.lessons.records import Exercise, LessonScene, LessonStep
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.lessons.training_curves import CURVE_ROWS, ROOMY_CURVE_ROWS
 from kit.school.progress import ProgressError
@@ -30,18 +33,14 @@ from kit.tui.rows.quiz_rows import defence_rows
 from kit.tui.screens.dialogs import MessageDialog, TextScreen, wrapped
 from kit.tui.suspend import edit_aside
 from kit.tui.textual_patches import ActivePaintScreen
+from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_page import LessonContent, LessonSceneView
 from kit.tui.widgets.text_rows import Row, TextRows, row, spread
 from kit.tui.widgets.world_view import ErrorEvent
+from kit.workspace import Workspace
 
 if TYPE_CHECKING:
     from kit.run.recording import Recording
-    from kit.run.scenario import Scenario
-    from kit.school.lessons.defence import Defence
-    from kit.school.lessons.lesson_session import LessonSession
-    from kit.school.lessons.records import Exercise, LessonScene, LessonStep
-    from kit.tui.theme import Theme
-    from kit.workspace import Workspace
 
 
 CONFIRM_KEYS: Final = key_row(("Enter", "start over; your files are kept"), ("any other key", "no"))
@@ -410,7 +409,6 @@ class ExercisePanel(Container):
 def _load(file: Path) -> tuple[Recording, Scenario]:
     """Loads a recording and its scenario, in another thread: the physics takes a moment to import."""
     from kit.run.recording import load_recording
-    from kit.run.scenario import find_scenario
 
     recording = load_recording(file)
     return recording, find_scenario(recording.place, recording.case)

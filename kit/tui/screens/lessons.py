@@ -14,7 +14,11 @@ from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 
+from kit.school.game.levels import GameLevel, levels_of_lesson
+from kit.school.lessons.catalogue import LessonEntry
+from kit.school.lessons.records import Lesson
 from kit.school.progress import EventKind, ProgressError
+from kit.school.quiz.items import read_bank
 from kit.tui.actions import ScreenActions
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer
@@ -27,9 +31,6 @@ from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
     from kit.render.scene import Scene
-    from kit.school.game.levels import GameLevel
-    from kit.school.lessons.catalogue import LessonEntry
-    from kit.school.lessons.records import Lesson
 
 
 SUMMARY_ROWS: Final = 6
@@ -182,7 +183,6 @@ class LessonsScreen(RowsScreen[None]):
 def _read_beside(lesson: Lesson) -> tuple[Scene | None, tuple[GameLevel, ...]]:
     """The lesson's world and the levels that it opens; what cannot be read is told when the lesson is opened."""
     # of no use to the first frame
-    from kit.school.game.levels import levels_of_lesson
     from kit.tui.screens.level_pictures import scene_of_lesson
 
     try:
@@ -225,7 +225,6 @@ def _game(store: StudentStore) -> list[Row]:
 
 
 def _quiz(store: StudentStore) -> list[str]:
-    from kit.school.quiz.items import read_bank
     from kit.school.quiz.quiz_session import local_now
     from kit.school.quiz.quiz_text import scores_lines
     from kit.school.quiz.schedule import answers_from_events, build_schedule

@@ -14,13 +14,17 @@ from textual.containers import Vertical
 from textual.message import Message
 from textual.screen import ModalScreen
 
-from kit.controllers import find_controller
+from kit.controllers import ControllerFile, find_controller
 from kit.inspection.sockets import sockets_folder
 from kit.plain_text import format_clock
 from kit.render.scene import Scene, SceneMark
 from kit.run.laser_map import LaserMap, world_bounds
+from kit.run.recording import Recorder, Recording
+from kit.run.scenario import Scenario
+from kit.run.session import Session
+from kit.run.view import View
 from kit.school.game.drive_records import DriveRecord, card_rows, record_drive, save_card
-from kit.school.game.ghosts import Ghost, GhostComparison, compare_tracks, reference_seconds
+from kit.school.game.ghosts import Ghost, GhostComparison, Split, compare_tracks, reference_seconds
 from kit.school.game.levels import GameLevel
 from kit.school.game.player_progress import BY_HAND, DriverFacts, Medal, medal_of
 from kit.school.game.race import SEED, DriverKind, RaceFinish, RaceReferee, open_race, sensors_in_use
@@ -32,20 +36,15 @@ from kit.tui.input.modes import drive_key, named
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.lesson_drive import RecordingScreen
 from kit.tui.screens.level_pictures import ghost_paths
 from kit.tui.screens.watch import WatchScreen
+from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, TextRows, row, spread
+from kit.workspace import Workspace
 
 if TYPE_CHECKING:
-    from kit.controllers import ControllerFile
     from kit.learning.policies.policies import Policy
-    from kit.run.recording import Recorder, Recording
-    from kit.run.scenario import Scenario
-    from kit.run.session import Session
-    from kit.run.view import View
-    from kit.school.game.ghosts import Split
-    from kit.tui.theme import Theme
-    from kit.workspace import Workspace
 
 
 REVEAL_INTERVAL: Final = 0.3
@@ -165,8 +164,6 @@ class DriveResultDialog(ModalScreen[Wish]):
 
     def action_replay(self) -> None:
         """The film of this drive."""
-        from kit.tui.screens.lesson_drive import RecordingScreen
-
         result = self._result
         self.app.push_screen(
             RecordingScreen(self._theme, result.level.film_scenario(), result.recording, result.driver.phrase)

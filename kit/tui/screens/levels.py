@@ -14,9 +14,10 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal
 
-from kit.controllers import kit_controllers, user_controllers
+from kit.controllers import ControllerFile, kit_controllers, user_controllers
 from kit.plain_text import counted
-from kit.run.recording import load_recording
+from kit.render.scene import Scene
+from kit.run.recording import Recording, RecordingError, load_recording
 from kit.school.game.challenge_answers import task_lines
 from kit.school.game.challenges import (
     Challenge,
@@ -53,17 +54,16 @@ from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
+from kit.tui.screens.leaderboard import LeaderboardScreen
+from kit.tui.screens.level_pictures import ghost_paths, picture_of, scene_of
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import Row, RowClicked, RowsScreen, TextRows, row, spread
 from kit.tui.widgets.world_view import WorldView
+from kit.workspace import Workspace
 
 if TYPE_CHECKING:
-    from kit.controllers import ControllerFile
     from kit.learning.policies.policies import Policy
     from kit.learning.training.runs import TrainingRun
-    from kit.render.scene import Scene
-    from kit.run.recording import Recording
-    from kit.workspace import Workspace
 
 ABOUT_ROWS: Final = 6
 MAP_WIDTH: Final = 84
@@ -267,8 +267,6 @@ class LevelsScreen(RowsScreen[None]):
     async def _draw_pictures(self) -> None:
         """The pictures of the chosen world's map, each in its turn."""
         for place in self._map_places():
-            from kit.tui.screens.level_pictures import picture_of
-
             picture = self._pictures.get(place.level)
             if picture is None or (len(picture), len(picture[0])) != (place.rows, place.columns):
                 level = next(each for each in self._levels if each.id == place.level)
@@ -294,8 +292,6 @@ class LevelsScreen(RowsScreen[None]):
             self._show()
         if self.has_class("-wide"):
             # of no use to the first frame
-            from kit.tui.screens.level_pictures import ghost_paths, scene_of
-
             if level.id not in self._scenes:
                 self._scenes[level.id] = await to_thread(scene_of, level)
             paths = (
@@ -517,7 +513,6 @@ class LevelsScreen(RowsScreen[None]):
             await self._replay(level, recordings[picked], picked)
 
     async def _replay(self, level: GameLevel, source: Path | Recording, who: str) -> None:
-        from kit.run.recording import RecordingError
         from kit.tui.screens.lesson_drive import RecordingScreen
 
         try:
@@ -528,8 +523,6 @@ class LevelsScreen(RowsScreen[None]):
         await self.app.push_screen_wait(RecordingScreen(self._theme, level.film_scenario(), recording, who))
 
     def action_hall_of_fame(self) -> None:
-        from kit.tui.screens.leaderboard import LeaderboardScreen
-
         self.app.push_screen(LeaderboardScreen(self._progress, self._workspace))
 
     def _may_drive(self) -> bool:

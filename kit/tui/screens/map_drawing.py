@@ -12,7 +12,7 @@ from textual.binding import BindingType
 from textual.containers import Horizontal
 from textual.message import Message
 
-from kit.mapmaking.new_map import MapSketch, SketchMark, Square
+from kit.mapmaking.new_map import MapSketch, NewMap, SketchMark, Square
 from kit.render.encode import Frame
 from kit.render.roles import Role
 from kit.tui.actions import ScreenAction, ScreenActions, digits
@@ -23,7 +23,6 @@ from kit.tui.widgets.frame_view import FrameView
 from kit.tui.widgets.text_rows import Row, TextRows, row
 
 if TYPE_CHECKING:
-    from kit.mapmaking.new_map import NewMap
     from kit.tui.theme import Theme
 
 PANEL_WIDTH: Final = 24

@@ -13,6 +13,7 @@ from textual.message import Message
 
 from kit.arrays import FloatArray
 from kit.mapmaking.photo import order_corners
+from kit.mapmaking.pixels import Corners
 from kit.render import raster
 from kit.render.curve import write_text
 from kit.render.encode import Encoder
@@ -25,7 +26,6 @@ from kit.tui.widgets.frame_view import FrameView
 from kit.tui.widgets.text_rows import TextRows, row
 
 if TYPE_CHECKING:
-    from kit.mapmaking.pixels import Corners
     from kit.tui.theme import Theme
 
 Point = tuple[float, float]

@@ -17,10 +17,11 @@ from kit.tui.input.drive import DriveState
 from kit.tui.input.driver import key_driver
 from kit.tui.input.modes import named
 from kit.tui.rows.key_rows import bindings, key_row
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.world_view import FloorClicked
+from kit.workspace import write_atomically
 
 if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from kit.run.place_driver import PlaceDriver
     from kit.run.scenario import Scenario
     from kit.run.session import Session
-    from kit.tui.screens.dialogs import PickerItem
     from kit.tui.widgets.program_editor import ProgramEditor
 
 TELEOP: Final = "teleop"
@@ -253,7 +253,6 @@ class PlayScreen(WatchScreen):
 
     @work
     async def action_choose_map(self) -> None:
-        from kit.tui.screens.dialogs import Picker, PickerItem  # of no use to the first frame
         from kit.world.catalogue import all_maps
 
         cards = {card.name: card for card in all_maps()}
@@ -272,8 +271,6 @@ class PlayScreen(WatchScreen):
 
     @work
     async def action_controllers(self) -> None:
-        from kit.tui.screens.dialogs import Picker, PickerItem
-
         files = {str(each.file): each for each in (*user_controllers(self._folder), *kit_controllers())}
         choices = [PickerItem(key, each.name, each.title) for key, each in files.items()]
         agents = await to_thread(_agent_items, self._runs)
@@ -319,7 +316,6 @@ def _look_again(session: Session) -> None:
 def _agent_items(folder: Path) -> list[PickerItem]:
     """The trainings that have left a policy. In another thread: files may be far away."""
     from kit.learning.training.runs import RunError, list_runs
-    from kit.tui.screens.dialogs import PickerItem
 
     items = []
     for run in list_runs(folder):
@@ -335,7 +331,6 @@ def _write_agent(folder: Path, name: str) -> tuple[ControllerFile, Policy]:
     """The node of a run's best policy, kept in the run's folder. Raises RunError, PolicyError and OSError."""
     from kit.learning.policies.policy_node import format_policy_node
     from kit.learning.training.runs import find_run
-    from kit.workspace import write_atomically
 
     run = find_run(folder, name)
     policy = run.policy()

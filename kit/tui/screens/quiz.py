@@ -7,30 +7,40 @@ from __future__ import annotations
 
 from asyncio import to_thread
 from enum import Enum
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import Any, ClassVar, Final
 
 from textual import events
 from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.screen import Screen
 
 from kit.school.lessons.reading import lesson_number, lesson_title
 from kit.school.progress import ProgressError, ProgressJournal
-from kit.school.quiz.items import OPTION_COUNT, QuizItem
-from kit.school.quiz.quiz_session import QuizSession
-from kit.school.quiz.quiz_text import closing_lines
-from kit.school.quiz.schedule import BLANK, CONFIDENCE_LABELS, NOT_SURE, AnswerChoice
+from kit.school.quiz.items import OPTION_COUNT, QuestionBank, QuizItem, read_bank
+from kit.school.quiz.quiz_session import (
+    PracticePlan,
+    QuestionPlan,
+    QuizSession,
+    lesson_plan,
+    local_now,
+    quiz_plan,
+    student_seed,
+)
+from kit.school.quiz.quiz_text import closing_lines, scores_lines, today_line
+from kit.school.quiz.schedule import (
+    BLANK,
+    CONFIDENCE_LABELS,
+    NOT_SURE,
+    AnswerChoice,
+    answers_from_events,
+    build_schedule,
+)
 from kit.tui.actions import ScreenAction, ScreenActions, digits, letter
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.quiz_rows import ROOMY_ROWS, centred, option_rows, question_rows, sure_rows, told_rows
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, TextScreen, wrapped
 from kit.tui.widgets.text_rows import Row, RowsScreen, TextRows, row, spread, window
 from kit.world.problems import WorldError
-
-if TYPE_CHECKING:
-    from textual.screen import Screen
-
-    from kit.school.quiz.items import QuestionBank
-    from kit.school.quiz.quiz_session import QuestionPlan
 
 
 class QuizStage(Enum):
@@ -209,8 +219,6 @@ TWELVE, TODAY, SCORES = "twelve", "today", "scores"
 
 async def ask_of_lesson(screen: Screen[Any], journal: ProgressJournal, lesson: str) -> None:
     """Asks a lesson's questions, and comes back. To be called in a worker."""
-    from kit.school.quiz.quiz_session import lesson_plan
-
     bank = await _bank(screen)
     if bank is not None:
         await _ask(screen, journal, bank, lesson_plan(bank, lesson))
@@ -218,10 +226,6 @@ async def ask_of_lesson(screen: Screen[Any], journal: ProgressJournal, lesson: s
 
 async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> None:
     """Has the student choose what to be asked, and asks it. To be called in a worker."""
-    from kit.school.quiz.quiz_session import PracticePlan, local_now, quiz_plan
-    from kit.school.quiz.quiz_text import scores_lines, today_line
-    from kit.school.quiz.schedule import answers_from_events, build_schedule
-
     bank = await _bank(screen)
     if bank is None:
         return
@@ -244,9 +248,6 @@ async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> Non
     ]
     chosen = await screen.app.push_screen_wait(Picker("Questions", choices))
     if chosen == SCORES:
-        from kit.tui.screens.dialogs import TextScreen  # of no use to the first frame
-        from kit.tui.widgets.text_rows import row
-
         lines = scores_lines(bank, answers_from_events(events), schedule)
         await screen.app.push_screen_wait(TextScreen("Scores", [row(" " + line) for line in lines]))
     elif chosen is not None:
@@ -255,15 +256,11 @@ async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> Non
 
 def _lesson_plans(bank: QuestionBank) -> dict[str, QuestionPlan]:
     """The plan of each lesson with questions. Slow: reads the titles of the lessons."""
-    from kit.school.quiz.quiz_session import lesson_plan
-
     return {name: lesson_plan(bank, name) for name in bank.lessons}
 
 
 async def _bank(screen: Screen[Any]) -> QuestionBank | None:
     """Read in another thread: there are many files."""
-    from kit.school.quiz.items import read_bank
-
     try:
         return await to_thread(read_bank)
     except (WorldError, FileNotFoundError) as error:
@@ -272,8 +269,6 @@ async def _bank(screen: Screen[Any]) -> QuestionBank | None:
 
 
 async def _ask(screen: Screen[Any], journal: ProgressJournal, bank: QuestionBank, plan: QuestionPlan) -> None:
-    from kit.school.quiz.quiz_session import QuizSession, student_seed
-
     try:
         session = QuizSession(journal, bank, plan, seed=student_seed(journal))
         if session.current_item is None:  # all were asked: once more, for practice

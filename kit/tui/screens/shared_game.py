@@ -5,7 +5,7 @@ from __future__ import annotations
 from asyncio import to_thread
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import ClassVar, Final
 
 import numpy as np
 from textual import work
@@ -15,9 +15,13 @@ from textual.message import Message
 from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.render.scene import Disc, Scene, SceneBody, ScenePath
+from kit.run.recording import Recorder, Recording
+from kit.run.scenario import Scenario
+from kit.run.session import Session
 from kit.school.game.ghosts import Ghost, level_ghosts
-from kit.school.game.levels import find_level
-from kit.school.game.shared_server import SharedGameServer
+from kit.school.game.levels import GameLevel, find_level
+from kit.school.game.shared_server import SharedGameClient, SharedGameServer
+from kit.school.game.shared_sockets import Audience
 from kit.school.game.two_players import (
     SharedGame,
     SharedGameState,
@@ -25,6 +29,7 @@ from kit.school.game.two_players import (
     SharedPhase,
     shared_scenario,
 )
+from kit.sim.simulation import Simulation
 from kit.tui.actions import VIEW_IDS, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings, footer
@@ -33,17 +38,9 @@ from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.level_drive import LETTER_NOTES, ghost_marks
 from kit.tui.screens.level_pictures import ghost_paths
 from kit.tui.screens.watch import WatchScreen
+from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import row
-
-if TYPE_CHECKING:
-    from kit.run.recording import Recorder, Recording
-    from kit.run.scenario import Scenario
-    from kit.run.session import Session
-    from kit.school.game.levels import GameLevel
-    from kit.school.game.shared_server import SharedGameClient
-    from kit.school.game.shared_sockets import Audience
-    from kit.tui.theme import Theme
-    from kit.workspace import Workspace
+from kit.workspace import Workspace
 
 HOST_PLAYER: Final = 0
 GUEST_PLAYER: Final = 1
@@ -162,8 +159,6 @@ class SharedHostScreen(SharedScreen):
 
     def _open(self) -> Session:
         """Opens the game; runs in the helper thread."""
-        from kit.run.session import Session
-
         session = Session(self._scenario, always_scan=True)
         self._game = game = SharedGame(self._scenario, self._mode, session.runner)
         session.runner.observers.append(game)
@@ -188,8 +183,6 @@ class SharedHostScreen(SharedScreen):
 
     def _record_phase(self, session: Session, phase: SharedPhase) -> None:
         """The film begins with the countdown, from which on the world is as new, and ends when the game is over."""
-        from kit.run.recording import Recorder
-
         observers = session.runner.observers
         if phase is SharedPhase.OVER and self._recorder is not None:
             self._film = self._recorder.recording()
@@ -299,8 +292,6 @@ class _Shapes:
     """A level's walls and both robots' outlines, to be drawn where the host says they are."""
 
     def __init__(self, scenario: Scenario) -> None:
-        from kit.sim.simulation import Simulation
-
         simulation = Simulation(scenario.world)
         walls = [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
         self._walls: FloatArray = np.concatenate([np.empty((0, 4)), *walls])

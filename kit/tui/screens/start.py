@@ -19,7 +19,7 @@ from kit.tui.actions import ScreenAction, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import base_key
 from kit.tui.rows.key_rows import bindings
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog, PaletteCommand, wrapped
 from kit.tui.screens.play import TELEOP, PlayScreen
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from kit.school.game.levels import GameLevel
     from kit.school.lessons.records import Lesson
     from kit.school.progress import ProgressJournal
-    from kit.tui.screens.dialogs import PaletteCommand
 
 
 PANEL_WIDTH: Final = 31
@@ -260,7 +259,6 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     async def palette_commands(self) -> list[PaletteCommand]:
         """Lines of the menu, lessons, levels and maps; each is opened in place of whatever is open above."""
         from kit.school.game.levels import all_levels
-        from kit.tui.screens.dialogs import PaletteCommand
         from kit.world.catalogue import all_maps
 
         overview = self._overview or await self._refresh_overview()

@@ -25,6 +25,9 @@ from kit.tui.screens.dialogs import (
     TextScreen,
     wrapped,
 )
+from kit.tui.screens.new_training import SWEEPS, NewTrainingScreen
+from kit.tui.screens.training import TrainingScreen
+from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowsScreen, TextRows, row, spread
 from kit.tui.widgets.training_preview import TrainingPreview
 
@@ -32,7 +35,6 @@ if TYPE_CHECKING:
     from kit.learning.environment.tasks import LearningTask
     from kit.learning.training.run_upkeep import RunOverview
     from kit.learning.training.runs import TrainingRun
-    from kit.tui.theme import Theme
 
 POLL_S: Final = 2.0
 """Between two looks at the folder of runs."""
@@ -181,15 +183,11 @@ class TrainingsScreen(RowsScreen[None]):
 
     @work(exclusive=True, group="screens")
     async def _look_at(self, run: TrainingRun) -> None:
-        from kit.tui.screens.training import TrainingScreen
-
         await self.app.push_screen_wait(TrainingScreen(self._theme, run))
 
     @work(exclusive=True, group="screens")
     async def action_begin(self) -> None:
         from kit.learning.training.runs import TrainingRun
-        from kit.tui.screens.new_training import NewTrainingScreen
-        from kit.tui.screens.training import TrainingScreen
 
         begun = await self.app.push_screen_wait(NewTrainingScreen(self._theme, self._runs))
         if isinstance(begun, TrainingRun):
@@ -223,8 +221,6 @@ class TrainingsScreen(RowsScreen[None]):
 
     @work(exclusive=True, group="screens")
     async def action_sweeps(self) -> None:
-        from kit.tui.screens.new_training import SWEEPS
-
         items = await to_thread(_sweep_items, self._runs.parent / SWEEPS)
         if not items:
             text = "No sweeps yet: the same training with several seeds, in one table. Press t to start one."

@@ -6,6 +6,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from textual import events
@@ -19,7 +20,7 @@ from kit.controllers import find_controller
 from kit.render.scene import Scene as Picture
 from kit.run.lockstep import Observer
 from kit.run.view import View
-from kit.school.lessons.records import GraphScene, LearningScene, LessonScene
+from kit.school.lessons.records import GraphScene, LearningScene, LessonScene, scene_confinement_level
 from kit.tui.session_host import SessionHost
 from kit.tui.theme import Theme
 from kit.tui.widgets.frame_view import FrameView
@@ -27,8 +28,6 @@ from kit.tui.widgets.text_rows import Row, TextRows, row
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from kit.run.recording import Recording
     from kit.run.runner import Runner
     from kit.run.scenario import Scenario
@@ -120,7 +119,6 @@ class LessonSceneView(WorldView):
             """Called in the helper thread, which imports the physics while the words are on the screen already."""
             from kit.run.scenario import find_scenario
             from kit.run.session import Session
-            from kit.school.lessons.records import scene_confinement_level
 
             session = Session(
                 find_scenario(scene.map_name, scene.case),

@@ -12,6 +12,7 @@ from textual.timer import Timer
 
 from kit.tui.rows import training_rows
 from kit.tui.screens.training import TrainingFollower
+from kit.tui.theme import Theme
 from kit.tui.widgets.chart_view import CurveView
 from kit.tui.widgets.text_rows import TextRows, row
 from kit.tui.widgets.world_view import WorldView
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from kit.learning.policies.demonstration import DemonstrationView
     from kit.learning.training.run_status import RunStatus
     from kit.learning.training.runs import TrainingRun
-    from kit.tui.theme import Theme
 
 REST_S: Final = 0.4
 """How long a run is the chosen one before its files are opened: whoever scrolls past opens none."""
