@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 
 from kit.cli import ScreenClosed, options
+from kit.interruption import ended_by_signals
 from kit.tui.terminal import TerminalDecision
 from kit.workspace import Workspace, open_workspace
 
@@ -45,13 +46,14 @@ def run_screen(
     # Elsewhere the mouse is left to the terminal, so that what is shown can be selected and copied.
     try:
         app.run(mouse=terminal.mouse.value or getattr(screen, "uses_mouse", False))
-    except KeyboardInterrupt:
+    except KeyboardInterrupt:  # the second signal
         return screen, INTERRUPTED
     return screen, app.return_code or 0
 
 
+@ended_by_signals()
 def show_screen(terminal: TerminalDecision, make_screen: Callable[[KitApp], Screen[Any]]) -> NoReturn:
-    """The same, for a verb that ends with its screen."""
+    """The same, for a verb that ends with its screen; at SIGTERM and SIGHUP too, after the screen has saved what it keeps."""
     _, code = run_screen(terminal, make_screen)
     raise ScreenClosed(code)
 

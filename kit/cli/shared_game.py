@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kit.cli import options
+from kit.cli import ScreenClosed, options
 from kit.cli.full_screen import run_screen
 from kit.controllers import prepare_workspace
+from kit.interruption import ended_by_signals
 from kit.workspace import Workspace, WorkspaceError
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ TELL_INTERVAL = 2.0
 @click.option("--everybody", is_flag=True, help="Let all users of this machine join.")
 @click.option("--name", help="Your name in the game (default: your login name).")
 @click.pass_obj
+@ended_by_signals()
 def host(
     workspace: Path | None, level: str, tag: bool, group: str | None, everybody: bool, name: str | None
 ) -> None:
@@ -74,7 +76,7 @@ def host(
         except OSError as error:
             options.fail(options.describe_os_error(error))
         click.echo(f"To replay this game: kit replay {file}")
-    raise SystemExit(code)
+    raise ScreenClosed(code)
 
 
 @click.command("guest")

@@ -43,6 +43,9 @@ from kit.ros.serialization import Distro, Serializer
 Storage = Literal["mcap", "sqlite3"]
 
 RECORDER: Final = "rosbag2_recorder"
+MAX_PENDING: Final = 64
+MAX_PENDING_BYTES: Final = 1 << 20
+"""Messages, and their bytes, that are written at once: to keep signals away takes longer than to write a message."""
 INFINITE_TIME: Final = QosTime(9223372036, 854775807)
 """How ROS 2 writes an infinite duration."""
 
@@ -112,10 +115,12 @@ class BagRecorder:
         self._connections: dict[str, Connection] = {}
         self._version = -1
         self._node = node
+        self._pending: list[tuple[Connection, int, bytes]] = []
+        self._pending_bytes = 0
         self.failure: str | None = None
         """Why writing has stopped; None while it works."""
         self.count = 0
-        """Number of messages written."""
+        """Number of messages recorded."""
         if self._folder.exists():
             raise BagError(f"{folder} already exists. Choose another folder, or remove it.")
         self._part = _unused_path(self._folder.parent, f".{self._folder.name}.part")
@@ -169,6 +174,7 @@ class BagRecorder:
         with uninterrupted():
             self._node = None
             node.destroy_node()
+            self._write_pending()
             try:
                 self._writer.close()
                 self._writer.path.rename(self._folder)
@@ -185,13 +191,14 @@ class BagRecorder:
         assert self._node is not None
         cls = find_message(type_of)
         publishers = list(self._graph.directory.publishers(topic))
-        self._connections[topic] = connection = self._writer.add_connection(
-            topic,
-            type_of,
-            msgdef=self._serializer.definition(cls),
-            rihs01=self._serializer.type_hash(cls),
-            offered_qos_profiles=[_rosbags_qos(publisher.qos_profile) for publisher in publishers],
-        )
+        with uninterrupted():
+            self._connections[topic] = connection = self._writer.add_connection(
+                topic,
+                type_of,
+                msgdef=self._serializer.definition(cls),
+                rihs01=self._serializer.type_hash(cls),
+                offered_qos_profiles=[_rosbags_qos(publisher.qos_profile) for publisher in publishers],
+            )
         _RecordingSubscription(
             self._node,
             cls,
@@ -201,15 +208,25 @@ class BagRecorder:
         )
 
     def _write(self, connection: Connection, message: Message) -> None:
-        if self.failure is None:
+        if self.failure is not None:
+            return
+        data = self._serializer.serialize(message)
+        self._pending.append((connection, self._graph.now_ns, data))
+        self._pending_bytes += len(data)
+        self.count += 1
+        if len(self._pending) >= MAX_PENDING or self._pending_bytes >= MAX_PENDING_BYTES:
+            with uninterrupted():  # half a record would make what follows unreadable
+                self._write_pending()
+
+    def _write_pending(self) -> None:
+        pending, self._pending, self._pending_bytes = self._pending, [], 0
+        for place, (connection, time_ns, data) in enumerate(pending):
             try:
-                data = self._serializer.serialize(message)
-                with uninterrupted():  # half a record would make what follows unreadable
-                    self._writer.write(connection, self._graph.now_ns, data)
+                self._writer.write(connection, time_ns, data)
             except OSError as problem:  # not the publisher's fault, in whose call this happens
                 self.failure = f"{self._folder}: the bag ends early: {_reason(problem)}."
-            else:
-                self.count += 1
+                self.count -= len(pending) - place
+                return
 
 
 def _unused_path(folder: Path, name: str) -> Path:

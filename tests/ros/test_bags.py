@@ -17,7 +17,7 @@ from kit.msg.flatland_msgs import Collision, Collisions
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String
-from kit.ros.bags import BagError, BagRecorder, Storage, read_bag, read_messages
+from kit.ros.bags import MAX_PENDING, BagError, BagRecorder, Storage, read_bag, read_messages
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -136,25 +136,27 @@ def test_what_a_killed_recording_left_is_no_hindrance_and_stays(tmp_path: Path) 
     assert sorted(path.name for path in tmp_path.iterdir()) == [".bag.part", "bag"]
 
 
+@pytest.mark.parametrize("lost", [2, MAX_PENDING])
 def test_a_full_disk_ends_the_bag_and_not_the_publisher(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, lost: int
 ) -> None:
+    """At once where many messages are to be written, else at the end."""
     graph = Graph()
     publisher = create_graph_node(graph, "robot").create_publisher(String, "words", 10)
     recorder = BagRecorder(graph, tmp_path / "bag")
-    publisher.publish(String(data="one"))
+    for _ in range(MAX_PENDING):
+        publisher.publish(String(data="written"))
 
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(Writer, "write", full)
-    publisher.publish(String(data="two"))
-    publisher.publish(String(data="three"))
-    assert recorder.failure is not None
-    assert "No space left on device" in recorder.failure
-    with pytest.raises(BagError, match="ends early"):
+    for _ in range(lost):
+        publisher.publish(String(data="lost"))
+    assert (recorder.failure is not None) == (lost == MAX_PENDING)
+    with pytest.raises(BagError, match=r"ends early.*No space left on device"):
         recorder.close()
-    assert read_bag(tmp_path / "bag").count == 1
+    assert read_bag(tmp_path / "bag").count == recorder.count == MAX_PENDING
 
 
 @pytest.mark.parametrize("definition", ["", "no definition at all"])

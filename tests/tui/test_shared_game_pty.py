@@ -29,10 +29,8 @@ def shows(terminal: User, words: str) -> None:
 
 
 @pytest.mark.nightly
-@pytest.mark.parametrize("is_killed", [True, False], ids=["the host is killed", "the host leaves"])
-def test_a_race_is_seen_by_three_and_goes_on_when_one_is_killed(
-    kit: Open, tmp_path: Path, is_killed: bool
-) -> None:
+@pytest.mark.parametrize("end", ["SIGKILL", "SIGTERM", "the host leaves"])
+def test_a_race_is_seen_by_three_and_goes_on_when_one_is_killed(kit: Open, tmp_path: Path, end: str) -> None:
     host = kit("game", "host", "first-drive", "--name", "Ada")
     shows(host, "Waiting for the second player")
     shows(host, "kit game guest first_drive")
@@ -53,12 +51,16 @@ def test_a_race_is_seen_by_three_and_goes_on_when_one_is_killed(
     shows(spectator, "Ada has won")
     shows(told, "Ada has won")
     assert told.wait() == 0
-    if is_killed:
+    if end == "SIGKILL":
         host.process.kill()
     else:
-        host.send(b"\x03")
-        assert host.wait() == 0
-        shows(host, "kit replay")
+        if end == "SIGTERM":
+            host.process.terminate()
+            assert host.wait() == 143
+        else:
+            host.send(b"\x03")
+            assert host.wait() == 0
+            shows(host, "kit replay")
         (film,) = (tmp_path / "home" / "films").iterdir()
         replay = kit("replay", str(film))
         shows(replay, "0:03")  # the countdown is part of it

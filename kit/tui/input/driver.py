@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import atexit
 import os
 import re
@@ -11,8 +12,9 @@ import termios
 import threading
 import time
 from codecs import getincrementaldecoder
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
+from functools import partial
 from types import FrameType
 from typing import TYPE_CHECKING, Any, Final
 
@@ -170,9 +172,13 @@ class TerminalGuard:
 
     It restores on the FATAL signals and at interpreter exit. A signal that was ignored stays ignored, a
     handler that was there is called afterwards, and otherwise the process dies of the signal, as it should.
+
+    ``leave``: called with the number of the first signal whose handler raises KeyboardInterrupt, in place of that, which
+    would break off whatever the app is doing.
     """
 
-    def __init__(self, input_fd: int, output_fd: int) -> None:
+    def __init__(self, input_fd: int, output_fd: int, leave: Callable[[int], object] | None = None) -> None:
+        self._leave = leave
         self._input = input_fd
         self._output = output_fd
         self._attributes: list[Any] | None = None
@@ -223,7 +229,13 @@ class TerminalGuard:
         previous = self._previous.get(number)
         self._give_back()
         if callable(previous):
-            previous(number, frame)
+            try:
+                previous(number, frame)
+            except KeyboardInterrupt:
+                leave, self._leave = self._leave, None
+                if leave is None:
+                    raise
+                leave(number)
         else:
             signal.signal(number, signal.SIG_DFL)
             os.kill(os.getpid(), number)
@@ -248,11 +260,19 @@ class KeyDriver(LinuxDriver):
     ) -> None:
         super().__init__(app, debug=debug, mouse=mouse, size=size)
         assert self._file is not None, "a full-screen app needs its standard error"
-        self._guard = TerminalGuard(self.fileno, self._file.fileno())
+        self._guard = TerminalGuard(self.fileno, self._file.fileno(), self._leave)
         self._reporting = False
         self._asked = 0
         self._heard = 0
         self._answered = threading.Event()
+
+    def _leave(self, number: int) -> None:
+        """Leaves the app at a signal as a user does, with 128 and its number."""
+        try:  # a signal comes to the thread in which it runs, and may come while it waits
+            loop = asyncio.get_running_loop()
+        except RuntimeError:  # before the app, or after it
+            raise KeyboardInterrupt from None
+        loop.call_soon_threadsafe(partial(self._app.exit, return_code=128 + number))
 
     def report_releases(self, on: bool) -> None:
         """Asks the terminal for key release events, or for none.

@@ -168,7 +168,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         """The drive, once the screen has been left; None where none is kept, or no world was opened."""
         if not self._records or not hasattr(self, "host"):
             return None
-        self.host.close()  # a signal has ended the app with the world still running
+        self.host.close()  # a second signal has ended the app with the world still running
         return self.host.recording()
 
     # The agent that drives
