@@ -30,7 +30,6 @@ SHORT = {
     "REPEATS": 3,
     "SECONDS": 0.1,
     "STARTS": 2,
-    "TURNS": 5,
     "FRAMES": 100,
     "TICKS": 500,
     "SCANS": 500,

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 from typing import Literal, Self, TypeAlias
@@ -104,13 +104,12 @@ def encode_event(event: TrainingEvent) -> bytes:
 
 
 def decode_event(line: bytes) -> TrainingEvent | None:
-    """The event; None if it is damaged, or of a kind that a later kit writes."""
+    """The event; None if it is damaged."""
     try:
         data = json.loads(line)
         kind = EVENT_TYPES[data.pop("event")]
-        known = {each.name: data[each.name] for each in fields(kind) if each.name in data}
-        check_field_types(kind, known)
-        return kind(**known)
+        check_field_types(kind, data)
+        return kind(**data)
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return None
 
