@@ -15,7 +15,6 @@ from typing import Any, Final
 
 import gymnasium
 import numpy as np
-from std_msgs.msg import String
 
 MAX_NUMBERS: Final = 1000
 MAX_PARTS: Final = 16
@@ -127,6 +126,7 @@ def _shares_memory(one: object, other: object) -> bool:
 def main() -> None:
     # The kit's own packages, only on the path of a student's process.
     import rclpy
+    from std_msgs.msg import String
 
     module, name = sys.argv[1:3]
     rclpy.init()

@@ -225,17 +225,28 @@ class TerminalGuard:
             os.dup2(nowhere, self._output)
         restore_terminal(self._input, terminal, self._attributes)
 
+    @staticmethod
+    def _interrupt(handler: Callable[[], object], leave: Callable[[], object]) -> None:
+        """Calls a handler, and leaves the app in place of raising KeyboardInterrupt. The app gives the terminal back itself
+        when it has ended; sooner, its thread that reads keys could wait for a whole line."""
+        try:
+            handler()
+        except KeyboardInterrupt:
+            leave()
+
     def _on_signal(self, number: int, frame: FrameType | None) -> None:
         previous = self._previous.get(number)
+        leave, self._leave = self._leave, None
+        if callable(previous) and leave is not None:
+            try:
+                self._interrupt(partial(previous, number, frame), partial(leave, number))
+            except BaseException:
+                self._give_back()
+                raise
+            return
         self._give_back()
         if callable(previous):
-            try:
-                previous(number, frame)
-            except KeyboardInterrupt:
-                leave, self._leave = self._leave, None
-                if leave is None:
-                    raise
-                leave(number)
+            previous(number, frame)
         else:
             signal.signal(number, signal.SIG_DFL)
             os.kill(os.getpid(), number)
