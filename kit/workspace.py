@@ -50,6 +50,18 @@ class Workspace:
     def runs(self) -> Path:
         return self.folder / "runs"
 
+    @property
+    def parts(self) -> tuple[Path, ...]:
+        """The folders that every workspace has."""
+        return (
+            self.controllers,
+            self.lessons,
+            self.packages,
+            self.worlds,
+            self.recordings,
+            self.runs,
+        )
+
 
 USUAL_WORKSPACE: Final = "~/robot-kit"
 
@@ -73,17 +85,11 @@ def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspac
             f"{folder}: there is no such home folder here. Name another folder with --workspace FOLDER."
         )
     if make:
+        # What is there is closed to others only if it is a workspace already: somebody may name a folder of a website.
+        is_ours = not workspace.folder.exists() or all(part.is_dir() for part in workspace.parts)
         try:
-            make_private_folder(workspace.folder)
-            for part in (
-                workspace.controllers,
-                workspace.lessons,
-                workspace.packages,
-                workspace.worlds,
-                workspace.recordings,
-                workspace.runs,
-            ):
-                make_private_folder(part)
+            for each in (workspace.folder, *workspace.parts) if is_ours else workspace.parts:
+                make_private_folder(each)
         except OSError as error:
             raise unusable_workspace_error(workspace.folder, error) from None
     return workspace
@@ -129,16 +135,18 @@ def write_atomically(path: Path, data: bytes) -> None:
 
 
 def make_private_folder(folder: Path) -> None:
-    """Makes a folder that only its owner may open, and those above it that are missing. An empty one that is there becomes
-    one; what else is there stays as it is, for it may be somebody's home. Raises OSError."""
-    try:
-        folder.mkdir(mode=0o700, parents=True)
-    except FileExistsError:
-        if not folder.is_dir():
-            raise
-        status = folder.stat()
-        if status.st_uid == os.getuid() and not status.st_mode & stat.S_ISVTX and not any(folder.iterdir()):
-            folder.chmod(0o700)
+    """Makes a folder that no other user may enter, and those above it that are missing; takes the rights of others from
+    one of this user's that is there.
+
+    One that another user owns, or in which anybody may write, such as /tmp, and the home folder and all above it stay as
+    they are. Raises OSError.
+    """
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    status = folder.stat()
+    is_shared = status.st_uid != os.geteuid() or status.st_mode & (stat.S_IWOTH | stat.S_ISVTX)
+    home = expand_home("~").resolve()
+    if status.st_mode & 0o077 and not is_shared and folder.resolve() not in (home, *home.parents):
+        folder.chmod(stat.S_IMODE(status.st_mode) & 0o700)
 
 
 def open_common_folder(folder: Path) -> str:

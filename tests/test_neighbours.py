@@ -126,14 +126,42 @@ def test_folders_are_their_owners_alone(open_place: Path) -> None:
     assert stat.S_IMODE((open_place / "robot-kit" / "progress.db").stat().st_mode) == 0o600
 
 
-def test_only_an_empty_folder_that_is_there_is_closed(open_place: Path) -> None:
-    for name in ("empty", "used"):
-        (open_place / name).mkdir()
-    (open_place / "used" / "file").touch()
-    for name in ("empty", "used"):
+def test_a_workspace_and_a_queue_that_are_open_are_closed(open_place: Path, tmp_path: Path) -> None:
+    for name in ("robot-kit", "queue"):
+        (open_place / name).mkdir(mode=0o755)
+    full_workspace(open_place / "robot-kit")
+    (open_place / "robot-kit").chmod(0o755)
+    (open_place / "robot-kit" / "progress.db").chmod(0o644)
+    ProgressJournal(open_workspace(open_place / "robot-kit").folder).close()
+    hand_ins = tmp_path / "in"
+    hand_ins.mkdir()
+    prepare_queue(
+        Queue(open_place / "queue"), hand_ins, read_assignment(write_assignment(tmp_path / "quick")), TERMS
+    )
+    for name, mode in (
+        ("robot-kit", 0o700),
+        ("robot-kit/progress.db", 0o600),
+        ("queue", 0o700),
+        ("queue/jobs", 0o700),
+    ):
+        assert stat.S_IMODE((open_place / name).stat().st_mode) == mode, name
+
+
+def test_folders_of_everybody_and_homes_stay_as_they_are(
+    open_place: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (open_place / "shared").mkdir()
+    (open_place / "shared").chmod(0o1777)
+    (open_place / "home").mkdir()
+    monkeypatch.setenv("HOME", str(open_place / "home"))
+    for name, mode in (("shared", 0o1777), ("home", 0o755), (".", 0o755)):
         make_private_folder(open_place / name)
-    assert stat.S_IMODE((open_place / "empty").stat().st_mode) == 0o700
-    assert stat.S_IMODE((open_place / "used").stat().st_mode) == 0o755
+        assert stat.S_IMODE((open_place / name).stat().st_mode) == mode, name
+    (open_place / "site").mkdir()
+    (open_place / "site" / "index.html").touch()
+    open_workspace(open_place / "site")
+    assert stat.S_IMODE((open_place / "site").stat().st_mode) == 0o755
+    assert stat.S_IMODE((open_place / "site" / "controllers").stat().st_mode) == 0o700
     (open_place / "file").touch()
     with pytest.raises(FileExistsError):
         make_private_folder(open_place / "file")

@@ -156,9 +156,8 @@ def prepare_queue(
 
     Raises QueueError, OSError.
     """
-    make_private_folder(queue.folder)
-    for part in ("jobs", "results"):
-        make_private_folder(queue.folder / part)
+    for folder in (queue.folder, queue.folder / "jobs", queue.folder / "results"):
+        make_private_folder(folder)
     _copy_assignment(queue, assignment)
     entries = tuple(_entries(queue, cohort, assignment, options))
     level = level_for_untrusted(assignment, options.level)

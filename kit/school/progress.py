@@ -271,6 +271,7 @@ def _open_connection(file: Path) -> sqlite3.Connection:
     # Readable by its owner alone, wherever the workspace lies; SQLite gives its journal the same mode.
     with suppress(OSError):  # SQLite says what is wrong
         os.close(os.open(file, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600))
+        file.chmod(0o600)
     # Several threads of a screen may use it; SQLite serialises them itself.
     connection = sqlite3.connect(file, timeout=LOCK_TIMEOUT_S, check_same_thread=False)
     try:
