@@ -166,6 +166,7 @@ def run_teacher_tests(
 
         options = ["-p", "no:terminal", "-p", "no:cacheprovider", "-p", "no:faulthandler", "--capture=sys"]
         options += ["-c", os.devnull, "--rootdir", str(folder), "--import-mode=importlib"]
+        options += ["--noconftest"]  # one above the assignment's folder may be a student's
         pytest.main([*options, *map(str, files)], plugins=[_plugin(session)])
     _forget_modules(files)
     return tuple(_test(test, session.outcomes.get(test.id, [])) for test in tests)

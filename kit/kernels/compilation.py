@@ -6,11 +6,18 @@ What numba keeps on disk holds until one of the files of this folder is edited.
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import chdir, nullcontext, suppress
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-import numba
+NUMBA_SETTINGS = Path(".numba_config.yaml")
+"""numba reads it in the current folder, at its import and whenever it compiles. It names the cache, whose files can run code,
+and the current folder may be a student's."""
+with chdir("/") if NUMBA_SETTINGS.exists() else nullcontext():
+    import numba
+    from numba.core import config
+
+config._config_fname = ""  # no file has this name
 
 SOURCE_STAMP = tuple(
     (file.name, file.stat().st_mtime, file.stat().st_size)

@@ -115,6 +115,16 @@ def test_what_is_not_named_is_not_run(tmp_path: Path) -> None:
     assert not marker.exists()
 
 
+@pytest.mark.long
+def test_a_conftest_beside_or_above_them_is_not_run(tmp_path: Path) -> None:
+    marker = tmp_path / "ran"
+    folder = folder_with(tmp_path, "import pytest\n@pytest.mark.points(2)\ndef test_ours(grading): pass\n")
+    for place in (folder, folder.parent):
+        (place / "conftest.py").write_text(f"open({str(marker)!r}, 'w')\n")
+    assert graded(folder)[1]["test_ours"].status is CriterionStatus.PASS
+    assert not marker.exists()
+
+
 @pytest.mark.parametrize(
     ("own", "sheet", "said"),
     [

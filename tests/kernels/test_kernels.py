@@ -390,3 +390,29 @@ def test_c_code_can_call_a_function() -> None:
 
     address = compilation.c_function(twice, "float64(float64)")
     assert ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)(address)(21.0) == 42.0
+
+
+def test_a_settings_file_of_numbas_in_the_current_folder_is_not_read(tmp_path: Path) -> None:
+    """It would name the cache, from which numba unpickles, and the folder may be a student's."""
+    (tmp_path / ".numba_config.yaml").write_text(f"cache_dir: {tmp_path / 'cache'}\n")
+    code = """
+from kit.kernels.compilation import jit
+from numba.core import config
+print(repr(config.CACHE_DIR))
+jit(abs_of := lambda x: abs(x))(1.0)
+print(repr(config.CACHE_DIR))
+"""
+    run = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 0, run.stderr
+    assert str(tmp_path) not in run.stdout
+    assert not (tmp_path / "cache").exists()
+    control = subprocess.run(
+        [sys.executable, "-c", "from numba.core import config; print(config.CACHE_DIR)"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert str(tmp_path) in control.stdout
