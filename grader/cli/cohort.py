@@ -40,8 +40,8 @@ from grader.grading import GradingOptions
 from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.cli.options import executor_options
 from kit.host.job_executors import read_shard, serve_jobs
+from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.probe import is_level_available
 from kit.school.game.levels import UnknownLevel, find_level
 from kit.workspace import write_atomically
 from kit.world.problems import WorldError
@@ -250,7 +250,7 @@ def ladder(folder: Path, names: tuple[str, ...], as_csv: bool, unconfined: bool)
 
     Exit code: 0 success; 2 an argument is wrong, or this machine does not reach that level.
     """
-    if not unconfined and not is_level_available(Level.FILTERED):
+    if not unconfined and not probe.is_level_available(Level.FILTERED):
         options.fail(
             "This machine does not reach confinement level 1; `kit doctor` says why. To race without it, use --unconfined: "
             "a submitted program can then read and change anything that you can."

@@ -45,7 +45,7 @@ def test_runs_are_counted_and_failures_explained() -> None:
         "acc",
         "adj",
         "rays",
-        "adjacency_score",
+        "graded",
         "path",
         "m",
         "time",

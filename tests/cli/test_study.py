@@ -16,6 +16,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kit.cli import main
+from kit.cli import study as study_command
 from kit.learning.training.runs import TrainingRun
 from kit.study import printed_tables, recorded_results, study_document
 from kit.study.printed_tables import printed_table, study_chapters
@@ -157,7 +158,7 @@ def test_again_trains_and_tests_in_processes_of_their_own(
         replace(each, paths=printed.cases[:1]) if each.paths else each for each in chapter.figures
     )
     chapter = replace(chapter, tables=(printed, printed_table("3.4")), figures=figures)
-    for module in (printed_tables, study_document):
+    for module in (printed_tables, study_document, study_command):
         monkeypatch.setattr(module, "study_chapters", lambda: (chapter,))
     quick = partial(StudyRun, algorithm="q-learning", preset="kit", episodes=4, steps=1000)
     monkeypatch.setattr(

@@ -90,7 +90,7 @@ if __name__ == "__main__":
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("code", "status"), [("", 0), ("0", 0), ("3", 1)])
+@pytest.mark.parametrize(("code", "status"), [("", 0), ("0", 0), ("3", 3)])
 def test_a_callback_may_end_the_program(code: str, status: int, tmp_path: Path) -> None:
     """``raise SystemExit`` in a callback is how many tutorials end a node."""
     (tmp_path / "leaves.py").write_text(LEAVES.replace("CODE", code))

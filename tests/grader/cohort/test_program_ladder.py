@@ -122,7 +122,7 @@ def test_links_and_what_is_no_file_are_no_programs(tmp_path: Path) -> None:
 def test_programs_of_others_are_not_raced_at_level_0_by_silence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("grader.cli.cohort.is_level_available", lambda level: False)
+    monkeypatch.setattr(probe, "is_level_available", lambda level: False)
     for name in "ab":
         (tmp_path / f"{name}.py").write_text("")
     result = CliRunner().invoke(ladder, [str(tmp_path)])
