@@ -78,6 +78,7 @@ def test_each_worker_runs_its_share(tmp_path: Path) -> None:
     assert len({worker for worker, _ in passed}) == 2
 
 
+@pytest.mark.daily(3)
 @pytest.mark.long
 @pytest.mark.parametrize("expression", ["long", "nightly", "not long"])
 def test_no_test_is_lost(expression: str) -> None:

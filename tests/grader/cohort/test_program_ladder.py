@@ -12,6 +12,7 @@ from click.testing import CliRunner
 
 from grader.cli.cohort import ladder
 from grader.cohort.program_ladder import LadderRace, find_programs, fit_elo, rank
+from kit.host.sandbox import probe
 
 FORWARD = """
 import rclpy
