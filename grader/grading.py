@@ -60,6 +60,9 @@ COARSE_RATIONALES: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
 """The whole note on a failure with a secret seed: an error's own text could hold what the program saw."""
 
 
+LEVEL_NOT_REACHED: Final = "This machine does not reach confinement level {}; `kit doctor` says why."
+
+
 class LevelTooLow(Exception):
     """Secret seeds would be used at a lower confinement level than the assignment allows."""
 
@@ -435,7 +438,7 @@ def open_grading(
             f"not at {int(level)}. `kit doctor` says what this machine can do."
         )
     may_lower_level = options.may_lower_level and options.level is None and not options.secret
-    available = _available_level(level, may_lower_level=may_lower_level)
+    available = _available_level(assignment, level, secret=options.secret, may_lower_level=may_lower_level)
     with suppress(OSError, AttributeError):  # a C library without prctl: then level 1 is out of reach as well
         shield_this_process()
     with submission.in_temporary_folder() as file:
@@ -449,14 +452,24 @@ def open_grading(
             yield Grading(assignment, submission, collector, secret=options.secret, clock=clock)
 
 
-def _available_level(level: Level, *, may_lower_level: bool) -> Level:
+def level_unavailable_text(assignment: Assignment, level: Level, *, secret: bool) -> str:
+    """Says that this machine does not reach a level, and how to grade at the one that it has."""
+    text, available = LEVEL_NOT_REACHED.format(int(level)), highest_level_up_to(level)
+    if secret and available < assignment.level:
+        return text  # secret seeds are never used below the assignment's level
+    if available is Level.LIMITED:
+        return f"{text} To grade without it, use --level 0: a submitted program can then read and change anything that you can."
+    return f"{text} To grade at level {int(available)}, use --level {int(available)}."
+
+
+def _available_level(assignment: Assignment, level: Level, *, secret: bool, may_lower_level: bool) -> Level:
     """The level to use: ``level``, or the highest below it that this machine has, at least 1. Raises LevelUnavailable."""
     available = highest_level_up_to(level)
     if available == level:
         return level
-    message = f"This machine does not reach confinement level {int(level)}; `kit doctor` says why."
     if not may_lower_level or available < Level.FILTERED:
-        raise LevelUnavailable(f"{message} For a program of your own, use --level 0.")
+        raise LevelUnavailable(level_unavailable_text(assignment, level, secret=secret))
+    message = LEVEL_NOT_REACHED.format(int(level))
     sys.stderr.write(f"WARNING: {message} The program runs at level {int(available)}, for practice only.\n")
     return available
 

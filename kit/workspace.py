@@ -74,8 +74,8 @@ def expand_home(name: str | Path) -> Path:
 def open_workspace(folder: Path | None = None, *, make: bool = True) -> Workspace:
     """Opens the workspace at ``folder``; by default ``$KIT_WORKSPACE``, else ``robot-kit`` in the home folder.
 
-    Makes the folder and its parts where they are missing, readable by their owner alone, unless ``make`` is false. Raises WorkspaceError
-    if the path is a file or not writable, or in a home folder that does not exist.
+    Makes the folder and its parts where they are missing, readable by their owner alone, unless ``make`` is false.
+    Raises WorkspaceError if the path is a file or not writable, or in a home folder that does not exist.
     """
     if folder is None:
         folder = Path(os.environ.get("KIT_WORKSPACE") or USUAL_WORKSPACE)

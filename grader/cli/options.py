@@ -84,15 +84,9 @@ def level_for_untrusted(
     from kit.host.sandbox.probe import highest_level_up_to
 
     level = grading.level_for_untrusted(assignment, to_level(number))
-    available = highest_level_up_to(level)
-    if not runs_here or available == level:
+    if not runs_here or highest_level_up_to(level) == level:
         return level
-    message = f"This machine does not reach confinement level {int(level)}; `kit doctor` says why."
-    if available and not (secret and available < assignment.level):
-        message += f" To grade at level {int(available)}, use --level {int(available)}."
-    elif not (secret and assignment.level):
-        message += " To grade without it, use --level 0: a submitted program can then read and change anything that you can."
-    fail(message)
+    fail(grading.level_unavailable_text(assignment, level, secret=secret))
 
 
 def to_level(number: int | None) -> Level | None:

@@ -291,7 +291,6 @@ class LevelsScreen(RowsScreen[None]):
             await self._prepare_ghosts(level)
             self._show()
         if self.has_class("-wide"):
-            # of no use to the first frame
             if level.id not in self._scenes:
                 self._scenes[level.id] = await to_thread(scene_of, level)
             paths = (

@@ -274,8 +274,11 @@ def test_the_panel_speaks_of_the_target_that_is_next_and_of_all_bumps(
         await wait_until_shown(pilot, drives)
         assert between
         assert all(each.reached_s is None for each in between)
-        assert between[0].target_m is not None
-        assert between[0].target_m > 0.3
+        # Driven straight on, what is left to the second target shrinks by what was driven, whenever it is looked at. One view,
+        # that of the tick in which the first was reached, may still measure to that one.
+        ways = {each.distance_m: each.distance_m + (each.target_m or 0.0) for each in between}
+        assert sum(way != pytest.approx(1.947, abs=0.01) for way in ways.values()) <= 1
+        assert ways[between[-1].distance_m] == pytest.approx(1.947, abs=0.01)
 
     play(scene, progress, tmp_path / "desk", level=level)
 
