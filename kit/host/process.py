@@ -60,6 +60,8 @@ Role: TypeAlias = Literal["node", "functions", "launch"]
 
 MAX_SOURCE: Final = 512 * KIB
 """Bytes of a student's file."""
+ROS_DISTRO: Final = "jazzy"
+"""The distribution that programs read in their environment: the one whose messages and names the kit follows."""
 STACK_DUMP_S: Final = 1.0
 """How long to wait, after a deadline, for the stack dump of the child's Python [s]."""
 SHUTDOWN_S: Final = 3.0
@@ -467,6 +469,9 @@ def process_environment(scratch: str) -> dict[str, str]:
         "LANG": "C.UTF-8",
         "PYTHONHASHSEED": "0",
         "PYTHONUTF8": "1",
+        "ROS_VERSION": "2",
+        "ROS_PYTHON_VERSION": "3",
+        "ROS_DISTRO": ROS_DISTRO,
         # One thread each: more would differ between machines, and each reserves memory.
         "OMP_NUM_THREADS": "1",
         "OPENBLAS_NUM_THREADS": "1",

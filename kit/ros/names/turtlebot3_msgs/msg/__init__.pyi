@@ -1,0 +1,3 @@
+from kit.msg.turtlebot3_msgs import SensorState as SensorState
+from kit.msg.turtlebot3_msgs import Sound as Sound
+from kit.msg.turtlebot3_msgs import VersionInfo as VersionInfo
