@@ -10,10 +10,13 @@ The clocks of the program follow the world's time, where that is what the progra
 ``time.ctime``                        started, plus that time; else as ever. So files get a real date (a zip archive
                                       refuses one before 1980).
 ``datetime.now``, ``date.today``      the wall clock: a date, not for measuring
-``time.monotonic``,                   the wall clock's progress: right for measuring how long a computation takes,
-``time.perf_counter``                 wrong for measuring how long the robot moves. The standard library's own
-                                      time-outs (threads, queues, sockets) are built on them.
+``time.monotonic``                    the same simulated time in the program's own code. In libraries the wall clock's
+                                      progress: their time-outs (threads, queues, sockets) are built on it.
+``time.perf_counter``                 the wall clock's progress: right for measuring how long a computation takes,
+                                      wrong for measuring how long the robot moves
 ====================================  ==============================================================================
+
+Whoever reads a simulated clock again and again without waiting lets time pass: see ``kit.ros.graph.graph.MAX_READS``.
 
 On a robot all of them show the wall clock.
 """
@@ -21,14 +24,16 @@ On a robot all of them show the wall clock.
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 import threading
 import time
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Sequence
+from functools import cache, partial
 from types import ModuleType
 from typing import Final, SupportsIndex
 
+import kit
 from kit.host.child.command_loop import CommandSession
 from kit.host.child.program_input import mark_reading
 from kit.host.child.student_module import StudentProgram, exit_status
@@ -47,11 +52,21 @@ _LAST_SIMULATED_S: Final = 315_532_800.0
 """1980-01-01. A simulated time is before it, a date of the wall clock is not [s]."""
 
 
-def use_simulated_time(graph: Graph) -> None:
+_PYTHON: Final = (os.path.dirname(os.__file__) + os.sep, os.path.dirname(kit.__file__) + os.sep, "<frozen")
+"""Where the modules of Python and of the kit lie."""
+
+
+def use_simulated_time(graph: Graph, libraries: Sequence[str] = ()) -> None:
     """Replaces functions of the module ``time`` in this process, as the table above says.
 
-    A controller that uses them then behaves the same at every speed.
+    A controller that uses them then behaves the same at every speed. ``libraries``: the folders of installed modules.
     """
+    foreign = (*_PYTHON, *(f"{folder}{os.sep}" for folder in libraries))
+
+    @cache
+    def is_own_code(file: str) -> bool:
+        """Whether a file of code belongs to the program, and not to a library or to Python."""
+        return not file.startswith(foreign)
 
     def sleep(seconds: float) -> None:
         """Waits in simulated time."""
@@ -82,8 +97,25 @@ def use_simulated_time(graph: Graph) -> None:
         return time.asctime(localtime(seconds))
 
     time.sleep = sleep  # type: ignore[assignment]  # for any number, where the stub has a list of kinds
-    time.time_ns = lambda: graph.now_ns
-    time.time = lambda: graph.now_ns / 1e9
+
+    def time_ns() -> int:
+        """The simulated time [ns]."""
+        graph.count_read()
+        return graph.now_ns
+
+    wall_monotonic, wall_monotonic_ns = time.monotonic, time.monotonic_ns
+
+    def monotonic() -> float:
+        """The simulated time [s] for the program's own code, the wall clock's progress for that of libraries."""
+        return time_ns() / 1e9 if is_own_code(sys._getframe(1).f_code.co_filename) else wall_monotonic()
+
+    def monotonic_ns() -> int:
+        """The same [ns]."""
+        return time_ns() if is_own_code(sys._getframe(1).f_code.co_filename) else wall_monotonic_ns()
+
+    time.time_ns = time_ns
+    time.time = lambda: time_ns() / 1e9
+    time.monotonic, time.monotonic_ns = monotonic, monotonic_ns
     time.localtime = localtime
     time.gmtime = gmtime
     time.ctime = ctime
@@ -102,7 +134,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     sys.argv = [program.file, *start["args"]]
     bridge = ChildBridge(session, start["now"], uninterrupted=session.interrupts.deferred)
     set_default_graph_finder(lambda: bridge.graph)
-    use_simulated_time(bridge.graph)
+    use_simulated_time(bridge.graph, start["libraries"])
     if start["has_input"]:
         session.interrupts.install()
         waiter = bridge.graph.waiter
@@ -110,7 +142,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
         mark_reading(partial(waiter.waiting_for_user, bridge.graph))
     bridge.graph.directory.replaced_names = frozenset(start.get("replaced", ()))
     if start["events"] is None:
-        _begin_when_needed(bridge, session, start["start_s"])
+        _begin_when_needed(bridge, session, start["start_s"], start["start_wall_s"])
     else:
         bridge.apply_events(start["events"])
     try:
@@ -132,18 +164,21 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     bridge.end()
 
 
-def _begin_when_needed(bridge: ChildBridge, session: CommandSession, start_s: float) -> None:
+def _begin_when_needed(
+    bridge: ChildBridge, session: CommandSession, start_s: float, start_wall_s: float
+) -> None:
     """Makes the program wait for the parent's graph when it first needs one: so a file that cannot be loaded needs none.
 
-    ``start_s``: how long the program may take to start [s], the wait for the parent not counted.
+    ``start_s``, ``start_wall_s``: how long the program may take to start, by processor time and by the wall clock [s], the
+    wait for the parent not counted.
     """
-    began = time.monotonic()
+    began = time.process_time()
 
     def find_graph() -> Graph:
         if not bridge.has_ticked:
-            left_s = start_s - (time.monotonic() - began)
+            left_s = start_s - (time.process_time() - began)
             bridge.next_tick(None)
-            session.set_deadline(max(SWITCH_S, left_s))
+            session.set_deadline(max(SWITCH_S, left_s), start_wall_s)
         return bridge.graph
 
     set_default_graph_finder(find_graph)

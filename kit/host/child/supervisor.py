@@ -205,8 +205,8 @@ def _run_program(role: str, channel: CommandChannel, dumps: int = STDERR) -> NoR
     enable_stack_dumps(dumps)
     session = CommandSession(channel)
     _, start = session.next_command()
-    session.set_deadline(start["start_s"])
-    session.reply_s = start["reply_s"]
+    session.set_deadline(start["start_s"], start["start_wall_s"])
+    session.reply_s, session.reply_wall_s = start["reply_s"], start["reply_wall_s"]
     program = StudentProgram(start["file"], start["source"].encode("latin-1"), start.get("folder"))
 
     def thread_has_failed(problem: threading.ExceptHookArgs) -> None:
