@@ -9,15 +9,15 @@ The clocks of the program follow the world's time, where that is what the progra
 ``time.localtime``, ``time.gmtime``,  with a simulated time as argument: the date and hour at which the program was
 ``time.ctime``                        started, plus that time; else as ever. So files get a real date (a zip archive
                                       refuses one before 1980).
-``datetime.now``, ``date.today``      the wall clock: a date, not for measuring
-``time.monotonic``                    the same simulated time in the program's own code. In libraries the wall clock's
-                                      progress: their time-outs (threads, queues, sockets) are built on it.
-``time.perf_counter``                 the wall clock's progress: right for measuring how long a computation takes,
-                                      wrong for measuring how long the robot moves
+``datetime.now``                      the date and hour at which the program was started, plus the simulated time
+``date.today``                        the wall clock's date
+``time.monotonic``,                   the simulated time in the program's own code, and a microsecond more at each reading,
+``time.perf_counter``                 so that no two are equal. In libraries the wall clock's progress: their time-outs
+                                      (threads, queues, sockets) are built on it.
+``time.process_time``                 the processor time: for measuring how long a computation takes
 ====================================  ==============================================================================
 
 Whoever reads a simulated clock again and again without waiting lets time pass: see ``kit.ros.graph.graph.MAX_READS``.
-
 On a robot all of them show the wall clock.
 """
 
@@ -31,10 +31,11 @@ import time
 from collections.abc import Callable, Sequence
 from functools import cache, partial
 from types import ModuleType
-from typing import Final, SupportsIndex
+from typing import Any, Final, SupportsIndex
 
 import kit
 from kit.host.child.command_loop import CommandSession
+from kit.host.child.import_hooks import on_import
 from kit.host.child.program_input import mark_reading
 from kit.host.child.student_module import StudentProgram, exit_status
 from kit.host.failure import Failure, FailureKind, StudentCodeError
@@ -54,6 +55,52 @@ _LAST_SIMULATED_S: Final = 315_532_800.0
 
 _PYTHON: Final = (os.path.dirname(os.__file__) + os.sep, os.path.dirname(kit.__file__) + os.sep, "<frozen")
 """Where the modules of Python and of the kit lie."""
+
+
+READING_NS: Final = 1_000
+"""How much later each reading of a stopwatch is than the one before, at least [ns]."""
+
+
+class _Progress:
+    """Readings of a stopwatch: each later than the one before, also when the simulated time is set back."""
+
+    def __init__(self) -> None:
+        self._offset_ns = self._now_ns = self._last_ns = 0
+
+    def read(self, now_ns: int) -> int:
+        """Returns the reading for a simulated time [ns]."""
+        if now_ns < self._now_ns:
+            self._offset_ns += self._now_ns - now_ns
+        self._now_ns = now_ns
+        self._last_ns = max(now_ns + self._offset_ns, self._last_ns + READING_NS)
+        return self._last_ns
+
+
+def _use_simulated_dates(module: Any, seconds: Callable[[], float]) -> None:
+    """Makes ``datetime.now`` and the like tell the date of a time of ``seconds``."""
+    wall_class = module.datetime
+
+    class DatetimeType(type):
+        """Its classes have every datetime as an instance, also those that C code makes."""
+
+        def __instancecheck__(cls, instance: object) -> bool:
+            return isinstance(instance, wall_class)
+
+    class datetime(wall_class, metaclass=DatetimeType):  # type: ignore[misc]  # noqa: N801 - the name that it is printed with
+        @classmethod
+        def now(cls, tz: Any = None) -> Any:
+            return cls.fromtimestamp(seconds(), tz)
+
+        @classmethod
+        def today(cls) -> Any:
+            return cls.fromtimestamp(seconds())
+
+        @classmethod
+        def utcnow(cls) -> Any:
+            return cls.fromtimestamp(seconds(), module.timezone.utc).replace(tzinfo=None)
+
+    datetime.__module__, datetime.__qualname__ = module.__name__, "datetime"
+    module.datetime = datetime
 
 
 def use_simulated_time(graph: Graph, libraries: Sequence[str] = ()) -> None:
@@ -103,19 +150,32 @@ def use_simulated_time(graph: Graph, libraries: Sequence[str] = ()) -> None:
         graph.count_read()
         return graph.now_ns
 
-    wall_monotonic, wall_monotonic_ns = time.monotonic, time.monotonic_ns
+    progress = _Progress()
 
-    def monotonic() -> float:
-        """The simulated time [s] for the program's own code, the wall clock's progress for that of libraries."""
-        return time_ns() / 1e9 if is_own_code(sys._getframe(1).f_code.co_filename) else wall_monotonic()
+    def replace_stopwatch(name: str) -> None:
+        """Replaces ``monotonic`` or ``perf_counter`` and what tells the same in nanoseconds."""
+        wall, wall_ns = getattr(time, name), getattr(time, f"{name}_ns")
 
-    def monotonic_ns() -> int:
-        """The same [ns]."""
-        return time_ns() if is_own_code(sys._getframe(1).f_code.co_filename) else wall_monotonic_ns()
+        def seconds() -> float:
+            """The simulated time [s] for the program's own code, the wall clock's progress for that of libraries."""
+            if is_own_code(sys._getframe(1).f_code.co_filename):
+                return progress.read(time_ns()) / 1e9
+            return float(wall())
 
+        def nanoseconds() -> int:
+            """The same [ns]."""
+            if is_own_code(sys._getframe(1).f_code.co_filename):
+                return progress.read(time_ns())
+            return int(wall_ns())
+
+        setattr(time, name, seconds)
+        setattr(time, f"{name}_ns", nanoseconds)
+
+    for name in ("monotonic", "perf_counter"):
+        replace_stopwatch(name)
+    on_import("datetime", lambda module: _use_simulated_dates(module, lambda: started + time_ns() / 1e9))
     time.time_ns = time_ns
     time.time = lambda: time_ns() / 1e9
-    time.monotonic, time.monotonic_ns = monotonic, monotonic_ns
     time.localtime = localtime
     time.gmtime = gmtime
     time.ctime = ctime
@@ -155,7 +215,13 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
                 _run_main(module, program)
     except SystemExit as stop:
         if exit_status(stop):
+            bridge.send_last_messages()
             raise
+    except MemoryError:
+        raise
+    except BaseException:
+        bridge.send_last_messages()
+        raise
     for thread in threading.enumerate():
         if thread is not threading.current_thread() and not thread.daemon:
             thread.join()

@@ -120,7 +120,8 @@ class Graph:
         self.wait_started = threading.Condition(self.lock)
         """Notified when a further thread begins to wait, and of every change; waiters use it."""
         self._changed = threading.Condition(self.lock)
-        self._is_waiter_running = False
+        self.is_waiter_running = False
+        """Whether a thread is in the waiter."""
         self._time_jump_count = 0
         self.time_jump_listeners: list[TimeJumpListener] = []
         self._driver_thread: int | None = None
@@ -271,7 +272,7 @@ class Graph:
         self.change_count += 1
         if self.waiting_threads:
             self._changed.notify_all()
-            if self._is_waiter_running:
+            if self.is_waiter_running:
                 self.wait_started.notify_all()  # a waiter that waits for other threads is not among them
 
     def _wait_once(self, until_ns: int | None) -> None:
@@ -279,18 +280,18 @@ class Graph:
         self.thread_state.reads = 0
         self.waiting_threads[me] = WaitingThread(until_ns, self.change_count, self.thread_state.is_pooled)
         try:
-            if self.waiter is None or self._is_waiter_running:
+            if self.waiter is None or self.is_waiter_running:
                 self.wait_started.notify_all()
                 timeout = None if until_ns is None or self.is_simulated else (until_ns - self.now_ns) / 1e9
                 self._changed.wait(timeout)
                 return
-            self._is_waiter_running = True
+            self.is_waiter_running = True
             self.lock.release()
             try:
                 self.waiter.wait(self, until_ns)
             finally:
                 self.lock.acquire()
-                self._is_waiter_running = False
+                self.is_waiter_running = False
                 self._changed.notify_all()
         finally:
             del self.waiting_threads[me]

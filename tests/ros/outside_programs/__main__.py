@@ -25,7 +25,7 @@ def main() -> None:
         outcome = run_program(program)
         working += not outcome.complaints
         if chosen.output:
-            print(*outcome.lines, sep="\n")
+            print(*(text for text, _ in outcome.lines), sep="\n")
         word = "does" if not outcome.complaints else "FAILS"
         print(f"{program.file.stem:34}{word:6} {'; '.join(outcome.complaints)}", flush=True)
     print(f"{working} of {len(programs)} do what their author means")

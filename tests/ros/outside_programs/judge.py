@@ -11,6 +11,7 @@ import math
 import re
 import tempfile
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -115,7 +116,8 @@ class Track:
 class Outcome:
     """What a program and its helpers did."""
 
-    lines: list[str] = field(default_factory=list)
+    lines: list[tuple[str, str]] = field(default_factory=list)
+    """What was printed, each line with its stream."""
     tracks: dict[str, Track] = field(default_factory=dict)
     published: dict[str, list[str]] = field(default_factory=dict)
     """The type of each message that the programs published, by topic."""
@@ -157,7 +159,7 @@ def run_program(program: OutsideProgram, seed: int = 0) -> Outcome:
 
     def on_output(line: LaunchOutputLine) -> None:
         if line.severity is None:
-            outcome.lines.append(line.text)
+            outcome.lines.append((line.text, line.stream))
         elif line.program.startswith(program_name) and (found := ending.match(line.text)):
             outcome.status = int(found[2] or 0)
 
@@ -191,6 +193,22 @@ def run_program(program: OutsideProgram, seed: int = 0) -> Outcome:
     return outcome
 
 
+def _first_missing(patterns: Sequence[str], lines: Sequence[tuple[str, str]]) -> str | None:
+    """Returns the first pattern that is not printed after those before it.
+
+    What is printed and what is logged are two streams, which have no common order: each has its own place.
+    """
+    rest = {name: "\n".join(text for text, stream in lines if stream == name) for name in ("out", "err")}
+    for pattern in patterns:
+        for stream, text in rest.items():
+            if match := re.search(pattern, text, re.MULTILINE):
+                rest[stream] = text[match.end() :]
+                break
+        else:
+            return pattern
+    return None
+
+
 def _track(outcome: Outcome, topic: str) -> Track:
     return outcome.tracks.setdefault(topic, Track())
 
@@ -212,15 +230,9 @@ def _complaints(program: OutsideProgram, outcome: Outcome, now_ns: int) -> list[
             found.append(f"{len(types)} messages on {topic}, not {wanted['count']}")
         if types and set(types) != {wanted["type"]}:
             found.append(f"{topic} of type {', '.join(sorted(set(types)))}, not {wanted['type']}")
-    rest = "\n".join(outcome.lines)
-    for pattern in expect.get("prints", ()):
-        match = re.search(pattern, rest, re.MULTILINE)
-        if match is None:
-            found.append(
-                f"never printed {pattern!r}; the last line was: {(outcome.lines or ['nothing'])[-1]}"
-            )
-            break
-        rest = rest[match.end() :]
+    if missing := _first_missing(expect.get("prints", ()), outcome.lines):
+        last = (outcome.lines or [("nothing", "out")])[-1][0]
+        found.append(f"never printed {missing!r}; the last line was: {last}")
     if "ends" in expect and expect["ends"] != (outcome.status is not None):
         found.append("it did not end" if expect["ends"] else f"it ended with status {outcome.status}")
     if "status" in expect and outcome.status != expect["status"]:
