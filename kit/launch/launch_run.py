@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 from kit.host.failure import StudentCodeError
 from kit.host.wire import Json
 from kit.launch.launch_file_process import LaunchFileProcess, LaunchTarget
-from kit.launch.processes import CommandProcess, Process, ProcessExit, ProcessStartError, ProgramUnavailable, suggest_fix
+from kit.launch.processes import (
+    CommandProcess,
+    Process,
+    ProcessExit,
+    ProcessStartError,
+    ProgramUnavailable,
+    suggest_fix,
+)
 from kit.launch.program_lookup import (
     INTERACTIVE_BOUNDS,
     LaunchBounds,

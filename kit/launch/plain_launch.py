@@ -107,18 +107,20 @@ def run_plain_launch(
         companion = make_companion(launch.graph)
         command_time = None
         if factor == MAXIMUM:
-            is_server = isinstance(companion, InspectionServer)
-            command_time = CommandTime(launch, companion.owed_answers if is_server else dict)
-        if companion is not None:
-            stack.callback(companion.close)
-            companions.append(companion)
+            clients = companion.owed_answers if isinstance(companion, InspectionServer) else dict
+            command_time = CommandTime(launch, clients)
         if launch.world is None:
             launch.start_processes()
             graph_only_run = GraphOnlyRun(launch.graph)
             graph_only_run.participants += [launch, *companions]
             schedule = Schedule(graph_only_run.step_size, factor=factor or REAL_TIME)
             _run_until_end(
-                launch, graph_only_run, schedule, limit, lambda: launch.world is not None or _is_idle(launch), command_time
+                launch,
+                graph_only_run,
+                schedule,
+                limit,
+                lambda: launch.world is not None or _is_idle(launch),
+                command_time,
             )
         if launch.world is not None and not launch.is_over:
             session = stack.enter_context(LaunchSession(launch, seed=seed))

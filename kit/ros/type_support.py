@@ -16,7 +16,7 @@ SrvResponseT = TypeVar("SrvResponseT")
 SrvEventT = TypeVar("SrvEventT")
 T = TypeVar("T")
 AllowableParameterValue: TypeAlias = (
-    None | bool | int | float | str | list[bytes] | list[bool] | list[int] | list[float] | list[str]
+    bool | int | float | str | list[bytes] | list[bool] | list[int] | list[float] | list[str] | None
 )
 AllowableParameterValueT = TypeVar("AllowableParameterValueT")
 

@@ -129,7 +129,9 @@ def main() -> None:
     names = real_names()
     unresolved = find_unresolved(names)
     absent = () if unresolved else find_absent(names)
-    print(f"{len(names) - len(unresolved)} of {len(names)} names of ROS 2 can be imported; {len(absent)} of them say at their use what they would need")
+    print(
+        f"{len(names) - len(unresolved)} of {len(names)} names of ROS 2 can be imported; {len(absent)} of them say at their use what they would need"
+    )
     for package in dict.fromkeys(module.partition(".")[0] for module, _ in names):
         count = sum(module.partition(".")[0] == package for module, _ in names)
         left = sum(name.partition(".")[0] == package for name in absent)

@@ -72,5 +72,3 @@ class LaunchIntrospector:
         """Returns the launch description as a text of many lines."""
         name = f"<{type(launch_description).__module__}.{type(launch_description).__name__}>"
         return "\n".join([name, *tree_like_indent(format_entities(launch_description.entities))])
-
-
