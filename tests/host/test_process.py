@@ -192,6 +192,32 @@ def test_what_never_comes_back_is_ended(
 
 
 @pytest.mark.long
+def test_a_busy_machine_stops_nobody(student: Student) -> None:
+    """Half a second of processor time takes longer than the limit by the wall clock, and is no more than it."""
+    file = student(
+        """
+        import time
+        def f():
+            began, wall = time.process_time(), time.perf_counter()
+            while time.process_time() - began < 0.5: pass
+            return time.perf_counter() - wall
+        """
+    )
+    busy = [
+        subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(3 * (os.cpu_count() or 1))
+    ]
+    try:
+        with StudentFunctions(
+            file, limits=dataclasses.replace(QUICK, reply_s=0.8, wall_factor=30)
+        ) as functions:
+            assert functions.call_batch("f", [{}])[0] > 0.5
+    finally:
+        for each in busy:
+            each.kill()
+            each.wait()
+
+
+@pytest.mark.long
 def test_a_file_that_never_loads_is_ended(student: Student) -> None:
     limits = dataclasses.replace(QUICK, start_s=1.5)
     failure = fail(student("x = 1\nwhile x:\n  x += 1"), limits)
