@@ -14,6 +14,7 @@ from textual.screen import Screen
 from kit.render.roles import COLOR_SCHEMES
 from kit.tui.input.driver import KeyDriver
 from kit.tui.terminal import TerminalDecision
+from kit.tui.textual_patches import fire_late_timers
 from kit.tui.theme import Theme, text_colors, textual_theme
 from kit.tui.widgets.text_rows import ASCII_ONLY
 
@@ -38,6 +39,7 @@ class KitApp(App[None]):
     """
 
     def __init__(self, terminal: TerminalDecision) -> None:
+        fire_late_timers()
         super().__init__(driver_class=KeyDriver, ansi_color=terminal.ansi)
         self.kit_theme = Theme.of(terminal)
         if terminal.ansi:
