@@ -18,9 +18,9 @@ from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import Final
 
+from kit.document.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.game.levels import levels_of_lesson
 from kit.school.lessons.checking import exercise_folder
-from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.lessons.reading import TEXT_WIDTH, lesson_names, lessons_folder, read_lesson, solutions_folder
 from kit.school.lessons.records import CommandKind, Exercise, Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths

@@ -14,13 +14,14 @@ from pathlib import Path
 
 import pytest
 
+from kit.document.code_lines import is_command
+from kit.document.rows import Row
 from kit.school.lessons.checking import exercise_file, install_exercise, read_solution
 from kit.school.lessons.reading import solutions_folder
 from kit.school.lessons.records import Lesson, LessonCommand, LessonStep
-from kit.school.lessons.shell_lines import fill_in_paths, is_command
+from kit.school.lessons.shell_lines import fill_in_paths
 from kit.tui.rows import lesson_rows
 from kit.tui.suspend import plain_lines
-from kit.tui.widgets.text_rows import Row
 from kit.workspace import Workspace, open_workspace
 from tests.tui.test_play_pty import User
 

@@ -11,6 +11,8 @@ from typing import Final, NamedTuple
 import click
 
 from kit.cli.plain import CommandError, InputBuffer, InputLines
+from kit.dialogue.actions import ACTIONS
+from kit.document.markup import parse_markup, plain_text, wrap_blocks
 from kit.geometry import whole_degrees
 from kit.host.file_watcher import FileWatcher
 from kit.render.encode import AsciiEncoder
@@ -21,7 +23,6 @@ from kit.school.lessons.defence import DefenceError
 from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
 from kit.school.lessons.graph_playback import graph_rows
 from kit.school.lessons.lesson_session import LessonSession
-from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.lessons.reading import TEXT_WIDTH
 from kit.school.lessons.records import (
     CommandKind,
@@ -37,7 +38,6 @@ from kit.school.lessons.shell_lines import fill_in_paths, second_terminal_here, 
 from kit.school.lessons.translation import missing_translation_text
 from kit.school.result import criterion_lines, points_text, replay_lines
 from kit.school.result import line_text as plain_line
-from kit.tui.actions import ACTIONS
 from kit.world.problems import WorldError
 
 FILE_POLL_S: Final = 0.2

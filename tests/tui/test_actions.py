@@ -18,7 +18,7 @@ from rich.cells import cell_len
 from textual.screen import Screen
 
 import kit.tui.screens
-from kit.tui.actions import ACTIONS, SHARED_IDS, ScreenAction, ScreenActions
+from kit.dialogue.actions import ACTIONS, SHARED_IDS, ScreenAction, ScreenActions
 from kit.tui.rows.key_rows import footer, help_page
 from kit.tui.screens.dialogs import WIDTH
 from kit.tui.screens.lesson import LessonScreen

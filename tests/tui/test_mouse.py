@@ -10,6 +10,7 @@ from textual import events
 from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
+from kit.document.rows import Row, row
 from kit.school.progress import ProgressJournal
 from kit.tui.rows.key_rows import footer, key_row
 from kit.tui.screens.dialogs import MessageDialog
@@ -18,7 +19,7 @@ from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.play import PlayScreen
 from kit.tui.screens.quiz import QuizScreen
 from kit.tui.screens.start import StartScreen
-from kit.tui.widgets.text_rows import Row, key_at, row
+from kit.tui.widgets.text_rows import key_at
 from tests.cases import every_case
 from tests.tui.lesson_stage import rows, seen, stage, text, until
 from tests.tui.test_play_pty import KIT, User

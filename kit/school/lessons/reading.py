@@ -11,10 +11,11 @@ from pathlib import Path
 from string import ascii_uppercase
 from typing import Final
 
+from kit.document.markup import MarkupError, parse_markup, wrap_blocks
 from kit.learning.environment.grid_world import GridMapError, GridRewards, GridWorld
 from kit.learning.training.grid_learner import GRID_ALGORITHMS, GridLearnerSettings
 from kit.plain_text import quoted, suggestion
-from kit.school.lessons.markup import MarkupError, markdown_to_markup, parse_markup, wrap_blocks
+from kit.school.lessons.markdown import markdown_to_markup
 from kit.school.lessons.records import (
     CommandKind,
     Exercise,

@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
+from kit.document.rows import Row, row
 from kit.school.game.challenge_answers import task_lines
 from kit.school.game.challenges import AnswerComparison, Challenge, Judgement
 from kit.school.game.player_progress import Medal
 from kit.school.lessons.reading import lesson_number
 from kit.school.lessons.shell_lines import shell_path
 from kit.tui.rows.level_rows import MEDAL_SIGNS, MEDAL_STYLES, TITLE_WIDTH, medal_row
-from kit.tui.widgets.text_rows import Row, row
 
 TITLE_COLUMNS: Final = TITLE_WIDTH + 8
 HEADER: Final = f"  {'challenge':<{TITLE_COLUMNS}} medal  lesson"

@@ -7,9 +7,9 @@ from typing import Final
 
 from rich.cells import cell_len
 
+from kit.document.rows import MARGIN, Row, StyledText, entry_rows, row, text_width
 from kit.school.survey import AnswerShape, SurveyQuestion
 from kit.tui.rows.quiz_rows import WIDEST_TEXT
-from kit.tui.widgets.text_rows import MARGIN, Row, StyledText, entry_rows, row, text_width
 
 POINT_WIDTH: Final = 12
 """Columns of a point of the scale where there is room."""

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from kit.document.rows import PLAIN, Row, row, spread
 from kit.msg.message import Message
 from kit.plain_text import counted
 from kit.render.graph import GraphElement, rate_text
@@ -20,7 +21,6 @@ from kit.ros.graph.snapshot import (
     ServiceState,
     TopicState,
 )
-from kit.tui.widgets.text_rows import PLAIN, Row, row, spread
 
 MARKED: Final = "key"
 """The style of the field that is chosen in a message."""

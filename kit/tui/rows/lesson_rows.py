@@ -11,12 +11,14 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
+from kit.document.code_lines import broken_command, is_command
+from kit.document.markup import TextStyle, parse_markup, wrap_blocks
+from kit.document.rows import MARGIN, TEXT_WIDTH, Row, entry_rows, row, spread, text_width
 from kit.school.game.levels import GameLevel, opened_levels_text
 from kit.school.lessons.catalogue import LessonEntry, LessonProgress
 from kit.school.lessons.checking import CheckReport
 from kit.school.lessons.glossary import GlossaryTerm
 from kit.school.lessons.lesson_session import LessonHint
-from kit.school.lessons.markup import TextStyle, parse_markup, wrap_blocks
 from kit.school.lessons.records import (
     CommandKind,
     Exercise,
@@ -26,9 +28,7 @@ from kit.school.lessons.records import (
     PredictionOption,
     StepKind,
 )
-from kit.school.lessons.shell_lines import broken_command, is_command
 from kit.school.result import TextRole, criterion_lines, points_text
-from kit.tui.widgets.text_rows import MARGIN, TEXT_WIDTH, Row, entry_rows, row, spread, text_width
 
 LONGEST_BAR: Final = 12
 LEAST_TITLE: Final = 8

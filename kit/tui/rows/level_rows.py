@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 from typing import Final
 
+from kit.document.rows import Row, row, spread
 from kit.plain_text import counted
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
@@ -25,7 +26,6 @@ from kit.school.game.player_progress import (
 )
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedGameState, SharedMode, SharedPhase
-from kit.tui.widgets.text_rows import Row, row, spread
 
 TITLE_WIDTH: Final = 24
 STAR, NO_STAR, SHUT = "*", ".", "-"

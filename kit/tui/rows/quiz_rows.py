@@ -9,6 +9,7 @@ import textwrap
 from collections.abc import Sequence
 from typing import Final
 
+from kit.document.rows import MARGIN, Row, entry_rows, row, text_width
 from kit.plain_text import counted
 from kit.school.lessons.defence import Defence, DefenceQuestion
 from kit.school.quiz.items import QuizItem
@@ -20,7 +21,6 @@ from kit.school.quiz.quiz_text import (
     verdict_text,
 )
 from kit.school.quiz.schedule import AnswerChoice, AnswerOutcome
-from kit.tui.widgets.text_rows import MARGIN, Row, entry_rows, row, text_width
 
 WIDEST: Final = 92
 """Columns of a question, however wide the terminal."""

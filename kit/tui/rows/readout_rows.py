@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
+from kit.document.rows import Row, StyledText, row, spread
 from kit.geometry import whole_degrees
 from kit.plain_text import format_clock
 from kit.run.pacing import MAXIMUM, PacingStatus
-from kit.tui.widgets.text_rows import Row, StyledText, row, spread
 
 if TYPE_CHECKING:
     from kit.learning.policies.agent_view import AgentView, RatedAction

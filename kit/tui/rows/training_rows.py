@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from kit.arrays import FloatArray
+from kit.dialogue.actions import ScreenActions
+from kit.document.rows import Row, row, spread
 from kit.plain_text import format_size
 from kit.render.curve import Axes, ChartPart, Curve, StackedCounts
 from kit.render.roles import Role
-from kit.tui.actions import ScreenActions
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import agent_panel
-from kit.tui.widgets.text_rows import Row, row, spread
 
 if TYPE_CHECKING:
     from kit.learning.environment.tasks import LearningTask

@@ -18,14 +18,15 @@ from textual.screen import ModalScreen
 from textual.widgets import Input, OptionList
 from textual.widgets.option_list import Option
 
+from kit.dialogue.actions import ScreenAction, ScreenActions
+from kit.document.rows import Row, broken, row, side_by_side
 from kit.render.roles import COLOR_SCHEMES
-from kit.tui.actions import ScreenAction, ScreenActions
 from kit.tui.input.driver import key_driver
 from kit.tui.input.modes import base_key
 from kit.tui.rows.key_rows import bindings, footer, help_page
 from kit.tui.terminal import MOUSE_VARIABLE
 from kit.tui.textual_patches import ActivePaintScreen
-from kit.tui.widgets.text_rows import Row, TextRows, broken, row, side_by_side
+from kit.tui.widgets.text_rows import TextRows
 
 if TYPE_CHECKING:
     from textual.app import App

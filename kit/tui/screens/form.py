@@ -14,17 +14,18 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.screen import Screen
 
+from kit.dialogue.actions import ScreenAction, ScreenActions, digits, letter
+from kit.document.rows import MARGIN, Row, row, spread, text_width, window
 from kit.school.form_session import PHASE_LABELS, FormSession, current_phase
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.school.survey import AnswerShape, AnswerValue, InvalidAnswer, parse_answer, read_form
-from kit.tui.actions import ScreenAction, ScreenActions, digits, letter
 from kit.tui.rows.form_rows import question_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.quiz_rows import WIDEST_TEXT, centred, left_column
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_field import AnswerField
-from kit.tui.widgets.text_rows import MARGIN, Row, TextRows, row, spread, text_width, window
+from kit.tui.widgets.text_rows import TextRows
 from kit.world.problems import WorldError
 
 ROWS_AROUND: Final = 3

@@ -9,14 +9,14 @@ from typing import ClassVar
 from textual import events, work
 from textual.binding import BindingType
 
+from kit.dialogue.actions import ScreenActions, letter
+from kit.document.rows import Row
 from kit.school.game import leaderboard
 from kit.school.game.drive_records import join_leaderboard
 from kit.school.progress import ProgressError, ProgressJournal
-from kit.tui.actions import ScreenActions, letter
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import MessageDialog, TextScreen, wrapped
-from kit.tui.widgets.text_rows import Row
 from kit.workspace import Workspace
 
 

@@ -9,6 +9,8 @@ from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
 
+from kit.dialogue.actions import ScreenAction, ScreenActions, digits, letter
+from kit.document.rows import Row, row
 from kit.inspection.sockets import sockets_folder
 from kit.run.scenario import Scenario
 from kit.school.lessons.lesson_session import LessonSession
@@ -17,7 +19,6 @@ from kit.school.lessons.shell_lines import TITLE as SECOND_TERMINAL
 from kit.school.lessons.shell_lines import fill_in_paths, second_terminal_here
 from kit.school.lessons.translation import missing_translation_text
 from kit.school.progress import ProgressError
-from kit.tui.actions import ScreenAction, ScreenActions, digits, letter
 from kit.tui.exercise_model import ExerciseModel
 from kit.tui.input.drive import DriveState
 from kit.tui.input.driver import KeyRepeated
@@ -38,7 +39,7 @@ from kit.tui.widgets.lesson_page import (
     PageLayout,
     PlaybackSceneView,
 )
-from kit.tui.widgets.text_rows import Row, RowsScreen, TextRows, row
+from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace
 

@@ -17,6 +17,8 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Container
 
+from kit.dialogue.actions import ScreenAction, ScreenActions, digits
+from kit.document.rows import Row, row, spread
 from kit.run.scenario import Scenario, find_scenario
 from kit.school.lessons.checking import ExerciseFilesError
 from kit.school.lessons.defence import Defence, DefenceError
@@ -25,7 +27,6 @@ from kit.school.lessons.records import Exercise, LessonScene, LessonStep
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.lessons.training_curves import CURVE_ROWS, ROOMY_CURVE_ROWS
 from kit.school.progress import ProgressError
-from kit.tui.actions import ScreenAction, ScreenActions, digits
 from kit.tui.exercise_model import ExerciseModel
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer, key_row
@@ -35,7 +36,7 @@ from kit.tui.suspend import edit_aside
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_page import LessonContent, LessonSceneView
-from kit.tui.widgets.text_rows import Row, TextRows, row, spread
+from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace
 

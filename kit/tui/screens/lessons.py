@@ -14,18 +14,19 @@ from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 
+from kit.dialogue.actions import ScreenActions
+from kit.document.rows import Row, row, spread
 from kit.school.game.levels import GameLevel, levels_of_lesson
 from kit.school.lessons.catalogue import LessonEntry
 from kit.school.lessons.records import Lesson
 from kit.school.progress import EventKind, ProgressError
 from kit.school.quiz.items import read_bank
-from kit.tui.actions import ScreenActions
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, TextScreen, wrapped
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, RowClicked, RowsScreen, TextRows, row, spread
+from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows
 from kit.tui.widgets.world_view import WorldView
 from kit.world.problems import WorldError
 

@@ -12,15 +12,16 @@ from textual.binding import BindingType
 from textual.containers import Horizontal
 from textual.message import Message
 
+from kit.dialogue.actions import ScreenAction, ScreenActions, digits
+from kit.document.rows import Row, row
 from kit.mapmaking.new_map import MapSketch, NewMap, SketchMark, Square
 from kit.render.encode import Frame
 from kit.render.roles import Role
-from kit.tui.actions import ScreenAction, ScreenActions, digits
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.frame_view import FrameView
-from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.text_rows import TextRows
 
 if TYPE_CHECKING:
     from kit.tui.theme import Theme

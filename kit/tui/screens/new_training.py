@@ -14,12 +14,13 @@ from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
 
-from kit.tui.actions import ScreenAction, ScreenActions
+from kit.dialogue.actions import ScreenAction, ScreenActions
+from kit.document.rows import row
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.training_rows import settings
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
-from kit.tui.widgets.text_rows import TextRows, row
+from kit.tui.widgets.text_rows import TextRows
 
 if TYPE_CHECKING:
     from kit.learning.training.runs import PresetName, RunConfig, TrainingRun

@@ -12,7 +12,7 @@ from textual import work
 from textual.binding import BindingType
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
-from kit.tui.actions import VIEW_IDS, ScreenAction, ScreenActions
+from kit.dialogue.actions import VIEW_IDS, ScreenAction, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.input.driver import key_driver
 from kit.tui.input.modes import named

@@ -14,6 +14,8 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.screen import Screen
 
+from kit.dialogue.actions import ScreenAction, ScreenActions, digits, letter
+from kit.document.rows import Row, row, spread, window
 from kit.school.lessons.reading import lesson_number, lesson_title
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.school.quiz.items import OPTION_COUNT, QuestionBank, QuizItem, read_bank
@@ -35,11 +37,10 @@ from kit.school.quiz.schedule import (
     answers_from_events,
     build_schedule,
 )
-from kit.tui.actions import ScreenAction, ScreenActions, digits, letter
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.quiz_rows import ROOMY_ROWS, centred, option_rows, question_rows, sure_rows, told_rows
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, TextScreen, wrapped
-from kit.tui.widgets.text_rows import Row, RowsScreen, TextRows, row, spread, window
+from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.world.problems import WorldError
 
 

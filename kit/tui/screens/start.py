@@ -14,8 +14,9 @@ from textual import work
 from textual.binding import BindingType
 from textual.screen import Screen
 
+from kit.dialogue.actions import ScreenAction, ScreenActions
+from kit.document.rows import Row, row, spread
 from kit.inspection.sockets import sockets_folder
-from kit.tui.actions import ScreenAction, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import base_key
 from kit.tui.rows.key_rows import bindings
@@ -23,7 +24,6 @@ from kit.tui.screens.dialogs import MessageDialog, PaletteCommand, wrapped
 from kit.tui.screens.play import TELEOP, PlayScreen
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, row, spread
 
 if TYPE_CHECKING:
     from kit.run.view import View

@@ -12,8 +12,9 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal
 
+from kit.dialogue.actions import ScreenAction, ScreenActions, letter
+from kit.document.rows import row, spread
 from kit.plain_text import counted, format_size
-from kit.tui.actions import ScreenAction, ScreenActions, letter
 from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import (
@@ -28,7 +29,7 @@ from kit.tui.screens.dialogs import (
 from kit.tui.screens.new_training import SWEEPS, NewTrainingScreen
 from kit.tui.screens.training import TrainingScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import RowsScreen, TextRows, row, spread
+from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.tui.widgets.training_preview import TrainingPreview
 
 if TYPE_CHECKING:

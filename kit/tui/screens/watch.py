@@ -11,8 +11,9 @@ from textual.app import ComposeResult
 from textual.containers import Horizontal
 from textual.message import Message
 
+from kit.dialogue.actions import ACTIONS, ScreenActions
+from kit.document.rows import Row, row
 from kit.run.pacing import MAXIMUM, REAL_TIME
-from kit.tui.actions import ACTIONS, ScreenActions
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import (
@@ -30,7 +31,7 @@ from kit.tui.rows.readout_rows import (
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
 from kit.tui.session_host import SessionHost
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, RowsScreen, TextRows, row
+from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:

@@ -18,10 +18,11 @@ from textual.message import Message
 from textual.widgets import TextArea
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers
+from kit.document.rows import Row, row
 from kit.host.failure import Failure
 from kit.tui.rows.key_rows import key_row
 from kit.tui.widgets.text_field import KitTextArea
-from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import write_atomically
 
 DRAFT_SUFFIX: Final = ".unsaved"

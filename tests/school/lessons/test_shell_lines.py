@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from kit.document.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.lessons.checking import exercise_file
-from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.shell_lines import expand_words, fill_in_paths, second_terminal_text, shell_path
 from kit.tui.rows import lesson_rows

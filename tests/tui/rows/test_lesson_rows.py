@@ -10,6 +10,7 @@ import pytest
 from rich.cells import cell_len
 
 from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
+from kit.document.rows import Row, row
 from kit.school.lessons.catalogue import LessonProgress, lesson_progress_from_events
 from kit.school.lessons.checking import CheckReport
 from kit.school.lessons.lesson_session import LessonHint
@@ -18,7 +19,6 @@ from kit.school.lessons.records import Lesson
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 from kit.tui.rows import lesson_rows
 from kit.tui.widgets.lesson_page import LEAST_PICTURE
-from kit.tui.widgets.text_rows import Row, row
 from tests.tui.lesson_folder import write_lessons
 from tests.tui.lesson_stage import row_text
 

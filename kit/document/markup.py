@@ -1,8 +1,7 @@
-"""The little markup of lessons' texts: paragraphs, lists, ``code``, **bold**, and code blocks indented by four blanks.
+"""The little markup of marked texts: paragraphs, lists, ``code``, **bold**, and code blocks indented by four blanks.
 
 Not a library, because the rows must wrap to a terminal's cells in the same way for the screen, the plain mode and
-the check that a text fits. Authors of other lessons write Markdown: it is put into this markup, links become their words and
-address, everything else its words. ``markdown_it`` comes with Textual.
+the check that a text fits.
 """
 
 from __future__ import annotations
@@ -13,9 +12,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
-
-from markdown_it import MarkdownIt
-from markdown_it.token import Token
 
 BLOCK_INDENT: Final = "    "
 BULLET: Final = "- "
@@ -101,7 +97,12 @@ def _wrap_block(block: MarkupBlock, width: int) -> list[StyledRow]:
     if block.kind == "code":
         return [(StyledText(BLOCK_INDENT + line, TextStyle.CODE),) for line in block.lines]
     first, rest = ("- ", "  ") if block.kind == "bullet" else ("", "")
-    return _wrap_styled(_split_styles(" ".join(block.lines)), width, first, rest)
+    return _wrap_styled(styled_pieces(block), width, first, rest)
+
+
+def styled_pieces(block: MarkupBlock) -> list[StyledText]:
+    """The words of a paragraph or an entry, in pieces of one style."""
+    return _split_styles(" ".join(block.lines))
 
 
 def _split_styles(text: str) -> list[StyledText]:
@@ -162,52 +163,3 @@ def _join_equal_styles(pieces: Sequence[StyledText]) -> StyledRow:
         else:
             joined.append(piece)
     return tuple(joined)
-
-
-def markdown_to_markup(text: str) -> str:
-    """Returns the same text in the markup that ``parse_markup`` reads.
-
-    >>> markdown_to_markup("# Walls\\n\\nA *laser* sees **walls**:\\n\\n1. near\\n2. far")
-    '**Walls**\\n\\nA laser sees **walls**:\\n\\n- near\\n- far'
-    """
-    tokens = MarkdownIt("commonmark").parse(text)
-    blocks: list[str] = []
-    is_item, in_heading = False, False
-    for token in tokens:
-        if token.type == "list_item_open":
-            is_item = True
-        elif token.type in ("heading_open", "heading_close"):
-            in_heading = token.type == "heading_open"
-        elif token.type in ("fence", "code_block"):
-            lines = token.content.rstrip("\n").splitlines()
-            blocks.append("\n".join(BLOCK_INDENT + line for line in lines))
-            is_item = False
-        elif token.type == "inline":
-            words = " ".join("".join(_inline(token.children or ())).split())
-            if in_heading:
-                words = f"**{words.replace('**', '')}**"
-            if is_item and blocks and blocks[-1].rpartition("\n")[2].startswith(BULLET):
-                blocks[-1] += f"\n{BULLET}{words}"
-            else:
-                blocks.append(f"{BULLET if is_item else ''}{words}")
-            is_item = False
-    return "\n\n".join(blocks)
-
-
-def _inline(tokens: Sequence[Token]) -> Iterator[str]:
-    address = ""
-    for token in tokens:
-        if token.type == "text":
-            yield token.content.replace("`", "'")
-        elif token.type == "code_inline":
-            yield f"`{token.content}`"
-        elif token.type in ("strong_open", "strong_close"):
-            yield "**"
-        elif token.type in ("softbreak", "hardbreak"):
-            yield " "
-        elif token.type == "link_open":
-            address = str(token.attrGet("href") or "")
-        elif token.type == "link_close":
-            yield f" ({address})" if address else ""
-        elif token.type == "image":
-            yield token.content

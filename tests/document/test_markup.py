@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.school.lessons.markup import MarkupError, TextStyle, parse_markup, plain_text, wrap_blocks
+from kit.document.markup import MarkupError, TextStyle, parse_markup, plain_text, wrap_blocks
 
 
 def shown(text: str, width: int = 40) -> list[str]:
