@@ -25,13 +25,15 @@ from kit.school.lessons.reading import TEXT_WIDTH, lesson_names, lessons_folder,
 from kit.school.lessons.records import CommandKind, Exercise, Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths
 from kit.school.quiz.items import QuizItem, read_bank
+from kit.school.quiz.quiz_dialogue import QuizDialogue
 from kit.tui.screens.lesson import LessonScreen
-from kit.tui.screens.quiz import QuizScreen
 from kit.workspace import Workspace
 from tests.tui.test_play_pty import User
 
 ACTIONS: Final = {
-    each.id: each for screen in (LessonScreen, QuizScreen) for each in screen.screen_actions.records
+    each.id: each
+    for actions in (LessonScreen.screen_actions, QuizDialogue.screen_actions())
+    for each in actions.records
 }
 LIMIT_S: Final = 300.0
 """A machine beside other work takes that long for a check that trains."""

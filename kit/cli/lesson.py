@@ -13,6 +13,7 @@ from kit.cli.full_screen import show_lesson, show_lessons
 from kit.cli.lesson_plain import PlainLesson
 from kit.cli.plain import HEIGHT, WIDTH, InputBuffer, PlainSession, run_plain_session
 from kit.controllers import find_controller, prepare_workspace
+from kit.document.layout import lines_of
 from kit.plain_text import counted, escape_controls, quoted, suggestion
 from kit.render.world_text import describe_scene, scene_rows
 from kit.run.episode import run_until, when_failed
@@ -22,7 +23,7 @@ from kit.run.session import Session
 from kit.run.view import ViewBuilder
 from kit.school.lessons.catalogue import list_lessons
 from kit.school.lessons.checking import ExerciseFilesError
-from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
+from kit.school.lessons.glossary import UnknownTerm, find_terms, glossary_blocks, read_glossary
 from kit.school.lessons.graph_playback import graph_rows
 from kit.school.lessons.learning_playback import plain_rows
 from kit.school.lessons.lesson_contract import check_contract, lesson_folders
@@ -264,5 +265,4 @@ def glossary_command(term: tuple[str, ...]) -> None:
         shown = find_terms(terms, " ".join(term)) if term else terms
     except (UnknownTerm, WorldError, FileNotFoundError) as error:
         options.fail(str(error))
-    for each in shown:
-        click.echo("\n".join(each.lines()))
+    click.echo("\n".join(lines_of(glossary_blocks(shown))))

@@ -12,6 +12,7 @@ import click
 
 from kit.cli.plain import CommandError, InputBuffer, InputLines
 from kit.dialogue.actions import ACTIONS
+from kit.document.layout import lines_of
 from kit.document.markup import parse_markup, plain_text, wrap_blocks
 from kit.geometry import whole_degrees
 from kit.host.file_watcher import FileWatcher
@@ -20,7 +21,7 @@ from kit.run.recording import RecordingError
 from kit.school.game.levels import opened_levels_text
 from kit.school.lessons.checking import CheckReport, has_other_files, submission_path
 from kit.school.lessons.defence import DefenceError
-from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
+from kit.school.lessons.glossary import UnknownTerm, find_terms, glossary_blocks, read_glossary
 from kit.school.lessons.graph_playback import graph_rows
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.reading import TEXT_WIDTH
@@ -476,8 +477,7 @@ def _glossary(term: str) -> None:
         shown = find_terms(terms, term) if term else terms
     except UnknownTerm as error:
         raise CommandError(str(error)) from None
-    for each in shown:
-        click.echo("\n".join(each.lines()))
+    click.echo("\n".join(lines_of(glossary_blocks(shown))))
 
 
 def _split_line(line: str) -> tuple[str, str]:

@@ -17,7 +17,6 @@ from kit.document.rows import MARGIN, TEXT_WIDTH, Row, entry_rows, row, spread, 
 from kit.school.game.levels import GameLevel, opened_levels_text
 from kit.school.lessons.catalogue import LessonEntry, LessonProgress
 from kit.school.lessons.checking import CheckReport
-from kit.school.lessons.glossary import GlossaryTerm
 from kit.school.lessons.lesson_session import LessonHint
 from kit.school.lessons.records import (
     CommandKind,
@@ -311,15 +310,6 @@ def _indented(text: str, style: str, width: int, indent: int = MARGIN + 5) -> li
 
 def _wrapped(text: str, width: int) -> list[str]:
     return [line for part in text.splitlines() for line in textwrap.wrap(part, text_width(width))]
-
-
-def glossary_rows(terms: Sequence[GlossaryTerm]) -> list[Row]:
-    """Each term in bold, its meaning below it, and a blank row between two."""
-    rows: list[Row] = []
-    for each in terms:
-        first, *rest = each.lines()
-        rows += [row(("  " + first, "bold")), *(row(line) for line in rest), row()]
-    return rows
 
 
 TITLE: Final = 46

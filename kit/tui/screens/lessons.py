@@ -15,6 +15,7 @@ from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 
 from kit.dialogue.actions import ScreenActions
+from kit.document.layout import lines_of
 from kit.document.rows import Row, row, spread
 from kit.school.game.levels import GameLevel, levels_of_lesson
 from kit.school.lessons.catalogue import LessonEntry
@@ -227,7 +228,7 @@ def _game(store: StudentStore) -> list[Row]:
 
 def _quiz(store: StudentStore) -> list[str]:
     from kit.school.quiz.quiz_session import local_now
-    from kit.school.quiz.quiz_text import scores_lines
+    from kit.school.quiz.quiz_text import scores_blocks
     from kit.school.quiz.schedule import answers_from_events, build_schedule
 
     events = store.progress().events()
@@ -238,4 +239,4 @@ def _quiz(store: StudentStore) -> list[str]:
     answers = answers_from_events(events)
     if not answers:
         return ["Nothing answered yet."]
-    return list(scores_lines(bank, answers, build_schedule(bank, events, local_now())))
+    return lines_of(scores_blocks(bank, answers, build_schedule(bank, events, local_now())))
