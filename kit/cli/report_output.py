@@ -101,8 +101,8 @@ def write_outputs(made: Document, outputs: ReportOutputs, *, printed: Document |
     ``printed``: what is printed instead of the whole.
     """
     from kit.document.files import document_to_html, document_to_json, plot_to_svg, table_to_csv
+    from kit.document.glyphs import ASCII_GLYPHS, BLOCK_GLYPHS
     from kit.document.layout import document_lines
-    from kit.document.plots import ASCII_GLYPHS, BLOCK_GLYPHS
 
     html_file, json_file = outputs.html_file, outputs.json_file
     to_terminal = json_file is not None and str(json_file) == "-"

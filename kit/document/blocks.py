@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
-from kit.render.scene import Scene
+if TYPE_CHECKING:
+    from kit.render.scene import Scene  # numpy, which few pages need
 
 Interval = tuple[float, float]
 """The lower and the upper bound of a value; a ``ConfidenceInterval`` is one."""

@@ -28,8 +28,8 @@ from kit.document.blocks import (
     Tone,
 )
 from kit.document.code_lines import broken_code
+from kit.document.glyphs import BLOCK_GLYPHS, WIDTH, PlotGlyphs
 from kit.document.markup import TextStyle, parse_markup, wrap_blocks
-from kit.document.plots import BLOCK_GLYPHS, WIDTH, PlotGlyphs, plot_lines
 from kit.document.rows import Row, StyledText, entry_rows, row
 from kit.document.tables import table_rows
 from kit.plain_text import printable_text, wrap
@@ -141,6 +141,8 @@ def _rows(block: Block, page: Page) -> list[Row]:
             head = f"  {printable_text(block.student)}: "
             return [row(line) for line in wrap(printable_text(block.text), page.width, head, " " * 6)]
         case BarChart() | Histogram() | ScatterPlot() | ScenePlot():
+            from kit.document.plots import plot_lines  # numpy, which few pages need
+
             return [row(line) for line in plot_lines(block, page.glyphs)]
     raise TypeError(f"{type(block).__name__} is placed with its margin")
 

@@ -4,38 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from kit.document.blocks import BarChart, Histogram, Plot, ScatterPlot, ScenePlot
+from kit.document.glyphs import BLOCK_GLYPHS, WIDTH, PlotGlyphs
 from kit.plain_text import printable_text, wrap
 from kit.render.encode import ENCODERS
 from kit.render.world_text import scene_rows
 
-WIDTH: Final = 79
 BAR_WIDTH: Final = 40
 SCATTER_SIZE: Final = (56, 15)
 """Columns and rows of the field in which points are drawn."""
 SCENE_ROWS: Final = 18
 """Most rows of a map."""
-
-
-@dataclass(frozen=True, slots=True)
-class PlotGlyphs:
-    """Characters that plots are drawn with."""
-
-    bars: tuple[str, ...]
-    """Bars of the first, second and third group, distinct in shape."""
-    point: str
-    line: str
-    encoder: str
-    """What maps are drawn with."""
-
-
-BLOCK_GLYPHS: Final = PlotGlyphs(bars=("█", "▒", "░"), point="o", line="·", encoder="braille")
-ASCII_GLYPHS: Final = PlotGlyphs(bars=("#", "=", "-"), point="o", line=".", encoder="ascii")
 
 
 def plot_lines(plot: Plot, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Iterator[str]:

@@ -11,8 +11,6 @@ from textual.binding import Binding, BindingType
 from textual.filter import DimFilter, LineFilter
 from textual.screen import Screen
 
-from kit.document.layout import Page, rows_of
-from kit.document.rows import MARGIN, TEXT_WIDTH
 from kit.render.roles import COLOR_SCHEMES
 from kit.tui.input.driver import KeyDriver
 from kit.tui.terminal import TerminalDecision
@@ -79,6 +77,8 @@ class KitApp(App[None]):
 
     def action_glossary(self) -> None:
         """Opens the glossary over any screen."""
+        from kit.document.layout import Page, rows_of
+        from kit.document.rows import MARGIN, TEXT_WIDTH
         from kit.school.lessons.glossary import glossary_blocks, read_glossary  # of no use to the first frame
         from kit.tui.screens.dialogs import TextScreen
 

@@ -25,8 +25,8 @@ from kit.document.blocks import (
     Table,
 )
 from kit.document.files import document_to_html, document_to_json, plot_to_svg, table_to_csv
+from kit.document.glyphs import ASCII_GLYPHS, BLOCK_GLYPHS
 from kit.document.layout import document_lines, lines_of
-from kit.document.plots import ASCII_GLYPHS, BLOCK_GLYPHS
 from kit.document.tables import MAX_CELL_LENGTH
 from kit.school.progress import EventKind
 from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
