@@ -119,10 +119,18 @@ def wrap(text: str, width: int, first: str = "", rest: str = "") -> list[str]:
     >>> wrap("see runs/turn-1/log.csv --set gamma", 12)
     ['see', 'runs/turn-1/', 'log.csv', '--set gamma']
     """
-    longest = max(width - max(len(first), len(rest)), 1)
-    words = [part for word in text.split() for part in _parts_of(word, longest)]
+    words = [
+        part
+        for number, word in enumerate(text.split())
+        for part in _parts_of(word, max(1, width - len(rest if number else first)))
+    ]
     return textwrap.wrap(
-        " ".join(words), width, initial_indent=first, subsequent_indent=rest, break_on_hyphens=False
+        " ".join(words),
+        width,
+        initial_indent=first,
+        subsequent_indent=rest,
+        break_on_hyphens=False,
+        break_long_words=False,
     ) or [first.rstrip()]
 
 

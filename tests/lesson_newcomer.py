@@ -21,18 +21,18 @@ from typing import Final
 from kit.document.markup import parse_markup, plain_text, wrap_blocks
 from kit.school.game.levels import levels_of_lesson
 from kit.school.lessons.checking import exercise_folder
+from kit.school.lessons.lesson_dialogue import LessonDialogue
 from kit.school.lessons.reading import TEXT_WIDTH, lesson_names, lessons_folder, read_lesson, solutions_folder
 from kit.school.lessons.records import CommandKind, Exercise, Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths
 from kit.school.quiz.items import QuizItem, read_bank
 from kit.school.quiz.quiz_dialogue import QuizDialogue
-from kit.tui.screens.lesson import LessonScreen
 from kit.workspace import Workspace
 from tests.tui.test_play_pty import User
 
 ACTIONS: Final = {
     each.id: each
-    for actions in (LessonScreen.screen_actions, QuizDialogue.screen_actions())
+    for actions in (LessonDialogue.screen_actions(), QuizDialogue.screen_actions())
     for each in actions.records
 }
 LIMIT_S: Final = 300.0

@@ -7,13 +7,14 @@ plain text, never HTML or markup.
 from __future__ import annotations
 
 import json
-import textwrap
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any, Final
 from xml.etree import ElementTree
 
 from grader.reports.cleaning import clean_line, escape_markdown, fenced_block, plain, xml_text
+from kit.document.layout import Page, lines_of
+from kit.plain_text import wrap
 from kit.school.result import (
     INDENT,
     VERDICT_TEXTS,
@@ -22,9 +23,8 @@ from kit.school.result import (
     GradingResult,
     GradingVerdict,
     Visibility,
-    criterion_lines,
+    criterion_blocks,
     format_points,
-    line_text,
     points_text,
     rounded_points,
 )
@@ -46,16 +46,16 @@ def _text_lines(result: GradingResult, hints: int) -> Iterator[str]:
     shown = GradingResult.from_dict(json.loads(write_json(result)))
     more_hints = f"For more help, add --hints {hints + 1}."
     for test in shown.tests:
-        for line in criterion_lines(test, WIDTH, hints=hints, more_hints=more_hints, log_lines=LOG_LINES):
-            yield line_text(line)
+        said = criterion_blocks(test, hints=hints, more_hints=more_hints, log_lines=LOG_LINES)
+        yield from lines_of(said, Page(WIDTH))
         if test.teacher_note:
             note = clean_line(f"With secret seeds: {test.teacher_note}", 600)
-            yield from textwrap.wrap(note, WIDTH, initial_indent=INDENT, subsequent_indent=INDENT)
+            yield from wrap(note, WIDTH, " " * INDENT, " " * INDENT)
     yield ""
     points = "No grade" if shown.points is None else f"{points_text(shown.points, shown.max_points)} points"
     yield f"{points}. {VERDICT_TEXTS[shown.verdict]}"
     for notice in shown.notices:
-        yield from textwrap.wrap(clean_line(notice), WIDTH)
+        yield from wrap(clean_line(notice), WIDTH)
     yield (
         f"level {shown.level}, seeds {shown.seeds}, "
         f"fingerprint {shown.submission[:8]}-{shown.assignment_version[:8]}"

@@ -14,7 +14,7 @@ from kit.cli import options
 from kit.cli.plain import InputBuffer, InputLines
 from kit.dialogue.dialogue import Action, Dialogue, Turn
 from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show, Tell, Type, Work
-from kit.document.blocks import Block
+from kit.document.blocks import Block, Text
 from kit.document.layout import HEARD, lines_of
 from kit.plain_text import wrap
 
@@ -23,6 +23,9 @@ POLL_S: Final = 0.2
 KEY_WIDTH: Final = 7
 NOT_TYPED: Final = ("Esc", "Enter")
 """Keys that are no sign in a line; another key of the same action is named there, if it has one."""
+
+AGAIN: Final = ("t", "text")
+"""What says everything of a place again, in every dialogue; a screen shows it all the time."""
 
 Way = Callable[[Any, InputBuffer], Any]
 """Shows what a dialogue asks a face to show, reading lines from the same input; returns what came of it."""
@@ -55,6 +58,7 @@ class _Conversation:
         self._place: object = self  # nothing has been said of any place
         self._said: list[list[str]] = []
         """The blocks of the place as they were said last."""
+        self._note: Text | None = None
         self._keys_said: list[str] = []
         self._is_left = False
 
@@ -86,8 +90,12 @@ class _Conversation:
             click.echo("")
             if dialogue.position:
                 _echo(wrap(dialogue.position[0].upper() + dialogue.position[1:], HEARD.width))
-        _say([*heard, *(block for block, said in zip(blocks, lines, strict=True) if said not in self._said)])
-        self._said = lines
+        new = [block for block, said in zip(blocks, lines, strict=True) if said not in self._said]
+        note = dialogue.note
+        if note is not None and note != self._note:
+            new.append(note)
+        _say([*heard, *new])
+        self._said, self._note = lines, note
         if with_keys:
             self._say_keys()
 
@@ -109,6 +117,7 @@ class _Conversation:
         for each in self._turn.possible():
             if each.is_for_lines:
                 _echo([f"{_keys(each, self._dialogue):<{KEY_WIDTH}} {each.keys.label:<12} {each.keys.help}"])
+        _echo([f"{AGAIN[0]:<{KEY_WIDTH}} {AGAIN[1]:<12} say everything here again"])
         click.echo("Type a key or its word, and Enter.")
 
     # What is done
@@ -130,6 +139,10 @@ class _Conversation:
             click.echo("> ", nl=False)
 
     def _take(self, line: str) -> None:
+        if line.strip().lower() in AGAIN and self._turn.find(AGAIN[0]) is None:
+            self._place, self._said, self._note, self._keys_said = self, [], None, []
+            self._show()
+            return
         effect, then = self._turn.enter(line)
         self._perform(effect)
         self._wait_while_busy()
@@ -186,7 +199,7 @@ class _Conversation:
                 self._place, self._said, self._keys_said = self, [], []
                 return attempt(closed)
             case Work(note, job, done):
-                _echo(wrap(note, HEARD.width))
+                _echo(wrap(note, HEARD.width) if note else [])
                 return attempt(lambda: done(job()))
             case Show(request, shown):
                 way = self._ways[type(request)]

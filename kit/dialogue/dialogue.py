@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Final, Generic, TypeVar
 
 from kit.dialogue.actions import ACTIONS, ScreenAction, ScreenActions
 from kit.dialogue.effects import Effect, Help, Leave, Remark
-from kit.document.blocks import Block, Tone
+from kit.document.blocks import Block, Text, Tone
 
 D = TypeVar("D", bound="Dialogue")
 
@@ -109,9 +109,9 @@ class Dialogue:
         return None
 
     @property
-    def note(self) -> str:
-        """Stands where remarks do, while there is none."""
-        return ""
+    def note(self) -> Text | None:
+        """Stands where remarks do, while there is none; said line by line when it is another than before."""
+        return None
 
     def opening(self) -> Sequence[Block]:
         """Said line by line before anything else."""
@@ -189,9 +189,11 @@ def help_action() -> Action[Any]:
     return Action(ACTIONS["help"], lambda dialogue: Help(), while_busy=True)
 
 
-def leave_action(run: Callable[..., Effect] = lambda dialogue: Leave()) -> Action[Any]:
+def leave_action(
+    run: Callable[..., Effect] = lambda dialogue: Leave(), word: Callable[[Any], str] | None = None
+) -> Action[Any]:
     """Esc and ``q``."""
-    return Action(ACTIONS["back"], run, while_busy=True)
+    return Action(ACTIONS["back"], run, word=word, while_busy=True)
 
 
 class Turn:

@@ -152,18 +152,16 @@ def _text_rows(block: Text, page: Page) -> list[Row]:
     text = printable_text(block.text)
     lead = f"{block.lead} " if block.lead and text else block.lead
     held = text + "\0" * len(block.tail)  # wrapped as one word, and taken off again
-    first, *others = wrap(
-        held, page.width, " " * (block.indent + len(lead)), " " * (block.indent + block.hang)
-    )
+    wrapped = wrap(held, page.width, " " * (block.indent + len(lead)), " " * (block.indent + block.hang))
+    first, *others = (line.rstrip("\0") for line in wrapped)
     made: list[Row] = [
         _parts(
             (" " * block.indent, ""), (lead, block.lead_tone), (first[block.indent + len(lead) :], block.tone)
         )
     ]
-    made += [_parts((line, block.tone)) for line in others]
+    made += [_parts((line, block.tone)) for line in others if line.strip()]
     if block.tail:
-        *before, (last, tone) = made[-1]
-        made[-1] = _parts(*before, (last.rstrip("\0"), tone), (block.tail, Tone.DIM))
+        made[-1] = _parts(*made[-1], (block.tail, Tone.DIM))
     return made
 
 

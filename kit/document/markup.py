@@ -124,14 +124,8 @@ def _wrap_styled(pieces: Sequence[StyledText], width: int, first: str, rest: str
     held = "".join(
         piece.text.replace(" ", "\0") if piece.style is TextStyle.CODE else piece.text for piece in pieces
     )
-    lines = textwrap.wrap(
-        held,
-        width,
-        initial_indent=first,
-        subsequent_indent=rest,
-        break_on_hyphens=False,
-        break_long_words=True,
-    )
+    wrapper = _PathWrapper(width, initial_indent=first, subsequent_indent=rest, break_on_hyphens=False)
+    lines = wrapper.wrap(held)
     rows: list[StyledRow] = []
     at = 0
     for index, line in enumerate(lines):
@@ -143,6 +137,20 @@ def _wrap_styled(pieces: Sequence[StyledText], width: int, first: str, rest: str
         at = end
         rows.append(_join_equal_styles(row))
     return rows
+
+
+class _PathWrapper(textwrap.TextWrapper):
+    """Breaks a word that is longer than a line behind a slash or a comma where it has one."""
+
+    def _handle_long_word(
+        self, reversed_chunks: list[str], cur_line: list[str], cur_len: int, width: int
+    ) -> None:
+        chunk, room = reversed_chunks[-1], max(1, width - cur_len)
+        cut = max(chunk.rfind(sign, 0, room) for sign in "/,\0") + 1
+        if not cut and cur_line:
+            return  # it begins on a line of its own
+        cur_line.append(chunk[: cut or room])
+        reversed_chunks[-1] = chunk[cut or room :]
 
 
 def _cut(pieces: Sequence[StyledText], begin: int, end: int) -> Iterator[StyledText]:

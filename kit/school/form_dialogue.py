@@ -86,15 +86,16 @@ class FormDialogue(Dialogue):
         return self.session.question is None
 
     @property
-    def note(self) -> str:
-        return "" if self.is_over else "Saved as you go on. Nobody sees it until you hand in your progress."
+    def note(self) -> Text | None:
+        said = "Saved as you go on. Nobody sees it until you hand in your progress."
+        return None if self.is_over else Text(said, Tone.DIM)
 
     def opening(self) -> Sequence[Block]:
         session = self.session
         count = session.count if session.asks_again else session.open_count
         return (
             Text(f"{self.title} ({PHASE_LABELS[session.phase]}): {counted(count, 'question')}."),
-            Text("Every answer is saved at once; Enter alone leaves a question blank.", is_tight=True),
+            Text("Enter alone leaves a question blank.", is_tight=True),
         )
 
     def farewell(self) -> Sequence[Block]:

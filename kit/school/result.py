@@ -8,12 +8,13 @@ grader neither gives nor takes points: the run has no grade.
 from __future__ import annotations
 
 import math
-import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from enum import Enum, StrEnum, auto
+from enum import StrEnum
 from types import MappingProxyType
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
+
+from kit.document.blocks import Block, Picture, Text, Tone
 
 SCHEMA: Final = 1
 
@@ -282,31 +283,11 @@ def format_points(points: float) -> str:
     return f"{points:.2f}".rstrip("0").rstrip(".")
 
 
-INDENT: Final = " " * 5
-MIN_WIDTH: Final = 20
+INDENT: Final = 5
+"""Columns by which what is said of a criterion stands to the right."""
 MAX_RATIONALE: Final = 600
 MAX_VALUE: Final = 300
 """Characters of an expected or actual value that are shown."""
-
-
-class TextRole(Enum):
-    """The role of a span in its line, by which a screen can colour it."""
-
-    PASSED = auto()
-    LOST = auto()
-    NOT_JUDGED = auto()
-    PLAIN = auto()
-    HEADING = auto()
-    DETAIL = auto()
-    HINT = auto()
-
-
-class TextSpan(NamedTuple):
-    text: str
-    role: TextRole
-
-
-TextLine = tuple[TextSpan, ...]
 
 MARKS: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
     {
@@ -332,42 +313,38 @@ VERDICT_TEXTS: Final[Mapping[GradingVerdict, str]] = MappingProxyType(
 )
 
 
-def line_text(line: TextLine) -> str:
-    """The line without its roles."""
-    return "".join(span.text for span in line)
-
-
 def points_text(points: float, max_points: float) -> str:
     """``2.5 of 4``"""
     return f"{format_points(points)} of {format_points(max_points)}"
 
 
-def criterion_lines(
-    criterion: CriterionResult, width: int, *, hints: int = 0, more_hints: str = "", log_lines: int = 0
-) -> Iterator[TextLine]:
-    """The lines of one criterion, at most ``width`` characters each: mark, title and points; of one that is not
-    passed also the rationale, the expected and the actual value, and the next steps.
+def criterion_blocks(
+    criterion: CriterionResult, *, hints: int = 0, more_hints: str = "", log_lines: int = 0
+) -> list[Block]:
+    """What is said of one criterion: mark, title and points; of one that is not passed also the rationale, the expected and
+    the actual value, and the next steps.
 
     ``hints``: how many of its hints to show. ``more_hints``: how to see more, shown where there are more.
     ``log_lines``: how many of the last lines that a crashed program printed to show.
     """
-    yield from _heading_lines(criterion, width)
+    blocks: list[Block] = [_heading(criterion)]
     if criterion.is_passed:
-        return
-    yield from _paragraph_lines(_shortened(criterion.rationale, MAX_RATIONALE), TextRole.PLAIN, width)
+        return blocks
+    if criterion.rationale:
+        blocks.append(_paragraph(_shortened(criterion.rationale, MAX_RATIONALE)))
     if criterion.actual:
         if criterion.expected:
-            yield from _paragraph_lines(f"expected: {_shortened(criterion.expected)}", TextRole.DETAIL, width)
-        yield from _paragraph_lines(f"actual:   {_shortened(criterion.actual)}", TextRole.DETAIL, width)
+            blocks.append(_value("expected:", criterion.expected))
+        blocks.append(_value("actual:  ", criterion.actual))
     for number, hint in enumerate(criterion.hints[:hints], 1):
-        yield from _paragraph_lines(f"Hint {number} of {len(criterion.hints)}: {hint}", TextRole.HINT, width)
+        blocks.append(_paragraph(f"Hint {number} of {len(criterion.hints)}: {hint}", Tone.BOLD))
     if more_hints and len(criterion.hints) > hints:
-        yield from _paragraph_lines(more_hints, TextRole.DETAIL, width)
+        blocks.append(_paragraph(more_hints, Tone.DIM))
     if log_lines and criterion.log:
-        yield (TextSpan(f"{INDENT}what the program printed:", TextRole.DETAIL),)
         # A character before each: no line of a report begins with what a student's program printed.
-        for line in criterion.log.splitlines()[-log_lines:]:
-            yield (TextSpan(f"{INDENT}| {line}", TextRole.DETAIL),)
+        printed = tuple(f"| {line}" for line in criterion.log.splitlines()[-log_lines:])
+        blocks += [_paragraph("what the program printed:", Tone.DIM), Picture(printed, INDENT, is_tight=True)]
+    return blocks
 
 
 def replay_lines(criteria: Sequence[CriterionResult]) -> list[str]:
@@ -376,39 +353,22 @@ def replay_lines(criteria: Sequence[CriterionResult]) -> list[str]:
     return picture.rstrip().splitlines()
 
 
-def _heading_lines(criterion: CriterionResult, width: int) -> Iterator[TextLine]:
-    mark = MARKS[criterion.status]
-    role = (
-        TextRole.PASSED
-        if criterion.is_passed
-        else TextRole.LOST
-        if criterion.is_judged
-        else TextRole.NOT_JUDGED
-    )
-    title_role = TextRole.PLAIN if criterion.is_passed else TextRole.HEADING
+def _heading(criterion: CriterionResult) -> Text:
+    if criterion.is_passed:
+        lead_tone, tone = Tone.GOOD, Tone.PLAIN
+    else:
+        lead_tone, tone = (Tone.BAD if criterion.is_judged else Tone.DIM), Tone.BOLD
     points = "" if criterion.is_withheld else f": {points_text(criterion.points, criterion.max_points)}"
     title = " ".join(criterion.title.split())
-    # The points stay with the title's last word: they are wrapped as one word, and taken off again.
-    wrapped = textwrap.wrap(
-        title + "\0" * len(points),
-        max(MIN_WIDTH, width),
-        initial_indent=" " * (len(mark) + 1),
-        subsequent_indent=INDENT,
-    )
-    for number, line in enumerate(wrapped):
-        text = line.rstrip("\0")
-        head: TextLine = (TextSpan(mark, role), TextSpan(" ", TextRole.PLAIN)) if number == 0 else ()
-        body = TextSpan(text[len(mark) + 1 :] if number == 0 else text, title_role)
-        tail: TextLine = (TextSpan(points, TextRole.DETAIL),) if number == len(wrapped) - 1 else ()
-        yield (*head, body, *tail)
+    return Text(title, tone, MARKS[criterion.status], lead_tone, points, hang=INDENT, is_tight=True)
 
 
-def _paragraph_lines(text: str, role: TextRole, width: int) -> Iterator[TextLine]:
-    for part in text.splitlines():
-        for line in textwrap.wrap(
-            part, max(MIN_WIDTH, width), initial_indent=INDENT, subsequent_indent=INDENT
-        ):
-            yield (TextSpan(line, role),)
+def _paragraph(text: str, tone: Tone = Tone.PLAIN) -> Text:
+    return Text(text, tone, indent=INDENT, is_tight=True)
+
+
+def _value(name: str, value: str) -> Text:
+    return Text(_shortened(value), Tone.DIM, name, Tone.DIM, indent=INDENT, is_tight=True)
 
 
 def _shortened(text: str, limit: int = MAX_VALUE) -> str:

@@ -21,10 +21,10 @@ import kit.school
 import kit.tui.screens
 from kit.dialogue.actions import ACTIONS, SHARED_IDS, ScreenAction, ScreenActions
 from kit.dialogue.dialogue import Dialogue
+from kit.school.lessons.lesson_dialogue import LessonDialogue
 from kit.tui.rows.key_rows import footer, help_page
 from kit.tui.screens.dialogs import WIDTH
 from kit.tui.screens.dialogue import screen_actions_of
-from kit.tui.screens.lesson import LessonScreen
 from tests.cases import every_case
 from tests.tui.lesson_stage import row_text
 
@@ -86,7 +86,7 @@ def test_contributing_prints_the_shared_actions() -> None:
 
 def test_every_screen_declares_its_actions() -> None:
     without = {kind.__name__ for kind in screen_classes() if not hasattr(kind, "screen_actions")}
-    assert without == {*SAY_THEIR_KEYS, "WatchScreen", "DialogueScreen"}
+    assert without == {*SAY_THEIR_KEYS, "WatchScreen", "DialogueScreen", "LessonScreen", "DefenceScreen"}
     for kinds in CLASSES.values():
         assert len({id(kind.screen_actions) for kind in kinds}) == 1  # type: ignore[attr-defined, unused-ignore]  # only screens that declare actions are among them
 
@@ -171,7 +171,7 @@ def test_the_line_of_keys_fits_and_names_the_way_out(name: str, width: int) -> N
 @pytest.mark.parametrize("width", [60, 80])
 @pytest.mark.parametrize("idle", [set(), {"predict", "drive_scene"}, {"questions", "drive"}])
 def test_the_lessons_line_of_keys_fits_whatever_is_possible(idle: set[str], width: int) -> None:
-    text = row_text(footer(LessonScreen.screen_actions, width, without=idle)).rstrip()
+    text = row_text(footer(screen_actions_of(LessonDialogue), width, without=idle)).rstrip()
     assert cell_len(text) <= width
     assert text.startswith("c check" if "predict" in idle else "1-4 predict")
 

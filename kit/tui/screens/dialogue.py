@@ -68,6 +68,10 @@ class DialogueScreen(RowsScreen[None]):
 
     def __init__(self, dialogue: Dialogue) -> None:
         super().__init__()
+        self.take(dialogue)
+
+    def take(self, dialogue: Dialogue) -> None:
+        """Shows this dialogue from now on."""
         self.dialogue = dialogue
         self.turn = Turn(dialogue)
         self.screen_actions = screen_actions_of(type(dialogue))
@@ -91,7 +95,7 @@ class DialogueScreen(RowsScreen[None]):
     def on_mount(self) -> None:
         if type(self.dialogue).poll is not Dialogue.poll:
             self.set_interval(POLL_S, self._poll)
-        self._look()
+        self.look()
 
     def on_unmount(self) -> None:
         self.dialogue.close()
@@ -120,10 +124,10 @@ class DialogueScreen(RowsScreen[None]):
         self._rows("body").show(body)
 
     def _body(self) -> list[Row]:
-        return [row(), *rows_of(self.dialogue.blocks(), self._page)]
+        return [row(), *rows_of(self.dialogue.blocks(), self._text_page)]
 
     @property
-    def _page(self) -> Page:
+    def _text_page(self) -> Page:
         is_roomy = self.size.height - ROWS_AROUND >= ROOMY_ROWS
         return Page(text_width(self.size.width, WIDEST - 2 * MARGIN), MARGIN, is_roomy=is_roomy)
 
@@ -158,8 +162,10 @@ class DialogueScreen(RowsScreen[None]):
         return spread(title, row((position, "dim")), self.size.width) if position else title
 
     def _remark(self) -> Row:
-        remark = self.turn.remark or Remark(self.dialogue.note, Tone.DIM)
-        return row((f"  {remark.text}", remark.tone)) if remark.text else row()
+        if self.turn.remark is not None:
+            return row((f"  {self.turn.remark.text}", self.turn.remark.tone))
+        note = self.dialogue.note
+        return row() if note is None else rows_of([note], Page(1000, MARGIN))[0]
 
     def _keys(self) -> Row:
         dialogue, possible = self.dialogue, {each.id: each for each in self.turn.possible()}
@@ -177,12 +183,12 @@ class DialogueScreen(RowsScreen[None]):
         }
         return footer(self.screen_actions, self.size.width, without=without, labels=labels, keys=keys)
 
-    def _look(self) -> None:
+    def look(self) -> None:
         """Shows everything, and brings what was just said into sight."""
         look, self._top = self.dialogue.look, 0
         if look is not None and self.size.width:
             blocks = list(self.dialogue.blocks())
-            placed = place(blocks, self._page)
+            placed = place(blocks, self._text_page)
             last_top = max(0, len(placed.rows) + 1 - max(1, self.size.height - ROWS_AROUND))
             self._top = min(placed.starts[blocks.index(look)], last_top)
         self.show()
@@ -190,7 +196,7 @@ class DialogueScreen(RowsScreen[None]):
     # Keys
 
     def on_key(self, event: events.Key) -> None:
-        if self._is_typing:
+        if self._is_typing or not self.takes_key(event.key):
             return
         if self.turn.find(event.key) is not None:
             event.stop()
@@ -199,6 +205,10 @@ class DialogueScreen(RowsScreen[None]):
         elif event.key in SCROLLS:
             event.stop()
             self.action_scroll(SCROLLS[event.key])
+
+    def takes_key(self, key: str) -> bool:
+        """Whether a key is the dialogue's."""
+        return True
 
     def action_press(self, key: str) -> None:
         """Does what a key of the dialogue means."""
@@ -209,17 +219,21 @@ class DialogueScreen(RowsScreen[None]):
         self.show()
 
     def _poll(self) -> None:
-        was_busy, remark = self.dialogue.busy, self.turn.remark
+        was_busy, remark = bool(self.dialogue.busy), self.turn.remark
         effect = self.turn.attempt(self.dialogue.poll)
-        self.turn.remark = self.turn.remark or remark
-        if effect is not None or was_busy or self.dialogue.busy:
+        is_busy = bool(self.dialogue.busy)
+        if was_busy == is_busy:  # what was said to the last key still stands
+            self.turn.remark = self.turn.remark or remark
+        if effect is not None or (was_busy and not is_busy):
             self._perform(effect)
+        elif is_busy:
+            self.show()
 
     def _perform(self, effect: Effect) -> None:
         """Carries out what an action has led to."""
         match effect:
             case None | Remark():
-                self._look()
+                self.look()
             case Leave():
                 self.action_back()
             case Help():
@@ -254,8 +268,9 @@ class DialogueScreen(RowsScreen[None]):
                 await self.app.push_screen_wait(self.screen_for(dialogue))
                 follows = then
             case Work(note, job, then):
-                self.turn.say(Remark(note, Tone.DIM))
-                self.show()
+                if note:
+                    self.turn.say(Remark(note, Tone.DIM))
+                    self.show()
                 result: list[Any] = []
                 failed = await to_thread(self.turn.attempt, lambda: result.append(job()))
                 if failed is not None or not result:

@@ -120,7 +120,7 @@ def test_its_commands_are_shown_before_they_run(lesson: Path, tmp_path: Path) ->
         await seen(pilot, "step 1 of")
         screen = pilot.app.screen
         assert isinstance(screen, LessonScreen)
-        screen.enter(screen.visit.find_step(2))
+        screen.dialogue.enter(screen.dialogue.session.find_step(2))
         await seen(pilot, "A list of maps")
         await pilot.press("o")
         await seen(pilot, "kit keys")
