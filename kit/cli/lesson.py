@@ -124,7 +124,7 @@ def command(
                 show_lesson(session, opened_workspace, terminal)
             click.echo(f"Line by line. {terminal.plain.reason}")
             dialogue = LessonDialogue(session)
-            dialogue.begin(_LineStage())
+            dialogue.begin(LineStage())
             run_dialogue(dialogue, _ways(opened_workspace))
     except (
         UnknownLesson,
@@ -229,7 +229,7 @@ def _run_command(request: RunCommand, workspace: Workspace) -> str | None:
     return ""
 
 
-class _LineStage:
+class LineStage:
     """Tells the scene of a step in words and a picture, its beginning and its end."""
 
     is_described = is_open = is_resting = True

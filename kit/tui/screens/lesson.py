@@ -10,7 +10,7 @@ from textual.app import ComposeResult
 from kit.dialogue.dialogue import Dialogue
 from kit.document.blocks import Block
 from kit.document.layout import Page, place, rows_of
-from kit.document.rows import MARGIN, Row, row, text_width
+from kit.document.rows import MARGIN, Row, row, spread, text_width
 from kit.inspection.sockets import sockets_folder
 from kit.run.scenario import find_scenario
 from kit.school.lessons.aside import plain_lines
@@ -226,8 +226,11 @@ class LessonScreen(DialogueScreen, DriveScreen):
         return Page(text_width(self._width), MARGIN)
 
     def _show_title(self) -> None:
-        ended = self.dialogue.has_ended
-        title = row() if ended else lesson_rows.title(self.dialogue.step, self._caption(), self.size.width)
+        width, caption = self.size.width, self._caption()
+        if self.dialogue.has_ended:
+            title = spread((), caption, width)
+        else:
+            title = lesson_rows.title(self.dialogue.step, caption, width)
         self._rows("title").show([title])
 
     def _caption(self) -> Row:
