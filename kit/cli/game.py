@@ -90,7 +90,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     kit game host two-doors --tag         two players: a race or tag
     kit game leaderboard                  the best times on this machine
 
-    A level can be driven once a level before it is finished or the lesson that prepares it is completed; the level of
+    A level can be driven once a level before it is finished or the lesson that opens it too is completed; the level of
     the day is always open. Driving by hand, your program and your agent win separate medals; gold needs a time near the reference drive's
     and no collisions. Each extra rule earns a star: no collisions, never standing still, one sensor, few lines of
     code, few training steps. The kit's own controllers demonstrate and earn nothing. A task used as a level (its first

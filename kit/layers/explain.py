@@ -109,14 +109,14 @@ def collision_step_text(
     for growth in step.growth:
         also = [name for name in growth.choices if name != growth.added]
         choice = f" ({join_with_and(also)} could have joined instead)" if also else ""
-        lines += say(f"{growth.added} collides with everyone so far: it joins{choice}.", indent="  ")
+        lines += say(f"{growth.added} collides with each of these: it joins{choice}.", indent="  ")
     lines += say(
-        f"Nobody {'else ' if step.growth else ''}collides with everyone. "
+        f"Nothing {'more ' if step.growth else ''}collides with each of them. "
         f"Layer {step.layer.name} = {members_text(case, step.layer.members)}.",
         indent="  ",
     )
-    struck = ", ".join(map(str, step.covered_edges))
-    lines += say(f"Strike {struck}. {left - len(step.covered_edges) or 'None'} left.", indent="  ")
+    struck, still = join_with_and(step.covered_edges), left - len(step.covered_edges)
+    lines += say(f"This covers {struck}; {counted(still, 'edge') if still else 'no edge'} left.", indent="  ")
     return lines
 
 

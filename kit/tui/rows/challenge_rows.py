@@ -44,7 +44,7 @@ def about_challenge(challenge: Challenge, medal: Medal, width: int) -> list[Row]
         row(
             ("best   ", "dim"),
             medal.title,
-            (f"   lesson {lesson_number(challenge.lesson)} prepares it", "dim"),
+            (f"   lesson {lesson_number(challenge.lesson)} teaches it", "dim"),
         ),
     ]
 

@@ -132,9 +132,9 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
         row((level.title, "bold"), f"  {level.story}"),
         row(("task   ", "dim"), level.hint),
         row(
-            ("needs  ", "dim"),
+            ("skill  ", "dim"),
             level.skill,
-            (f"   lesson {level.lesson_number} prepares it" if level.opened_by_lesson else "", "dim"),
+            (f"   lesson {level.lesson_number} opens it too" if level.opened_by_lesson else "", "dim"),
         ),
     ]
     if not progress.is_open:

@@ -94,7 +94,7 @@ class LevelsScreen(RowsScreen[None]):
         ("choose", "open", "hand_over", "agent", "replay", "hall_of_fame", "daily", "help", "back"),
         own=(
             letter("agent", "a", "agent", "let an agent that you trained drive the level"),
-            letter("hall_of_fame", "f", "fame", "show this machine's leaderboard"),
+            letter("hall_of_fame", "f", "leaderboard", "show this machine's leaderboard"),
             letter("daily", "d", "daily", "drive the level of the day, the same for everyone"),
         ),
     )  # fmt: skip

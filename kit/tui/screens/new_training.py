@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 ALL: Final = "all"
 OWN_REWARD: Final = "the task's own"
 PRESETS: Final[Mapping[PresetName, str]] = {
-    "kit": "the kit's: quick and sure",
+    "kit": "the kit's own: learns fast and reliably",
     "seed": "the dissertation's",
     "seed-text": "as its text has it",
 }
@@ -43,8 +43,8 @@ ABOUT: Final = {
     "algorithm": "how it is learned",
     "preset": "the algorithm's settings",
     "reward": "what a step earns: a file of yours needs a function reward()",
-    "seed": "of all chance: the same seed, the same training",
-    "trainings": "from how many seeds, this one and the next: several are a sweep",
+    "seed": "where random numbers start: the same seed, the same training",
+    "trainings": "how many, each with the next seed; more than one is a sweep",
 }
 SWEEP_SIZES: Final = {
     1: "one training, to be watched",

@@ -389,7 +389,7 @@ class TrainingScreen(RowsScreen[None]):
             return
         caption = self._rows("caption")
         if self.view is None:
-            caption.show([row(("drives from the first test on", "dim"))])
+            caption.show([row(("shown driving after its first test", "dim"))])
         else:
             caption.show([training_rows.caption(self.view, caption.size.width)])
             self._world.offer(self._newest_scene)

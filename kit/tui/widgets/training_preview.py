@@ -132,7 +132,9 @@ class TrainingPreview(Vertical):
         if self._problem:
             self._caption.show([row((self._problem[:width], "warn"))])
         elif view is None:
-            self._caption.show([row(("no policy yet: it drives from the first test on"[:width], "dim"))])
+            self._caption.show(
+                [row(("no policy yet: it is shown driving after its first test"[:width], "dim"))]
+            )
         else:
             self._caption.show([training_rows.caption(view, width)])
             self._world.offer(lambda: view.scene)
