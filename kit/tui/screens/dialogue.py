@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from textual import events, work
 from textual.app import ComposeResult
+from textual.geometry import Size
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.dialogue import Dialogue, Turn
@@ -79,6 +80,7 @@ class DialogueScreen(RowsScreen[None]):
         self._typed_place: object = self
         """The place whose text is in the field."""
         self._top = 0
+        self._body_height: int | str = "1fr"
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -95,6 +97,7 @@ class DialogueScreen(RowsScreen[None]):
     def on_mount(self) -> None:
         if type(self.dialogue).poll is not Dialogue.poll:
             self.set_interval(POLL_S, self._poll)
+        self._show_field()  # before the first frame, which would else be painted twice
         self.look()
 
     def on_unmount(self) -> None:
@@ -105,9 +108,14 @@ class DialogueScreen(RowsScreen[None]):
 
     # What is shown
 
+    @property
+    def room(self) -> Size:
+        """The size of the screen; before it has one that of the app, so that its first frame is whole."""
+        return self.size if self.size.width else self.app.size
+
     def show(self) -> None:
         """Everything, as it stands now. Rows that are the same cost nothing."""
-        if not self.size.width or not self.is_mounted:
+        if not self.is_attached:
             return
         self._show_body()
         self._rows("heading").show([self._heading()])
@@ -115,12 +123,13 @@ class DialogueScreen(RowsScreen[None]):
         self._rows("keys").show([self._keys()])
 
     def _show_body(self) -> None:
-        width, room = self.size.width, max(1, self.size.height - ROWS_AROUND)
+        width, room = self.room.width, max(1, self.room.height - ROWS_AROUND)
         self._show_field()
         body, self._top = window(self._body(), self._top, room)
         body = centred(body, width, room)
-        if self._field is not None:
-            self._rows("body").styles.height = len(body) if self._field.display else "1fr"
+        height = len(body) if self._field is not None and self._field.display else "1fr"
+        if height != self._body_height:  # setting a style lays out and paints the whole screen
+            self._body_height = self._rows("body").styles.height = height
         self._rows("body").show(body)
 
     def _body(self) -> list[Row]:
@@ -128,20 +137,21 @@ class DialogueScreen(RowsScreen[None]):
 
     @property
     def _text_page(self) -> Page:
-        is_roomy = self.size.height - ROWS_AROUND >= ROOMY_ROWS
-        return Page(text_width(self.size.width, WIDEST - 2 * MARGIN), MARGIN, is_roomy=is_roomy)
+        is_roomy = self.room.height - ROWS_AROUND >= ROOMY_ROWS
+        return Page(text_width(self.room.width, WIDEST - 2 * MARGIN), MARGIN, is_roomy=is_roomy)
 
     def _show_field(self) -> None:
         """The field in which a text is typed, with the text of this place."""
         field, entry = self._field, self.dialogue.entry
         if field is None:
             return
-        field.display = self._rows("below").display = entry is not None
+        if field.display != (entry is not None):
+            field.display = self._rows("below").display = entry is not None
         if entry is None:
             self._typed_place = self
             return
-        left = left_column(self.size.width) + MARGIN
-        right = max(0, self.size.width - left - text_width(self.size.width, WIDEST - 2 * MARGIN))
+        left = left_column(self.room.width) + MARGIN
+        right = max(0, self.room.width - left - text_width(self.room.width, WIDEST - 2 * MARGIN))
         field.styles.margin = (0, right, 0, left)
         if self._typed_place != self.dialogue.place:
             self._typed_place = self.dialogue.place
@@ -159,7 +169,7 @@ class DialogueScreen(RowsScreen[None]):
     def _heading(self) -> Row:
         title = row((self.dialogue.title, "bold"))
         position = self.dialogue.position
-        return spread(title, row((position, "dim")), self.size.width) if position else title
+        return spread(title, row((position, "dim")), self.room.width) if position else title
 
     def _remark(self) -> Row:
         if self.turn.remark is not None:
@@ -181,15 +191,15 @@ class DialogueScreen(RowsScreen[None]):
         keys = {
             each.id: each.shown_keys(dialogue) for each in possible.values() if each.shown_keys is not None
         }
-        return footer(self.screen_actions, self.size.width, without=without, labels=labels, keys=keys)
+        return footer(self.screen_actions, self.room.width, without=without, labels=labels, keys=keys)
 
     def look(self) -> None:
         """Shows everything, and brings what was just said into sight."""
         look, self._top = self.dialogue.look, 0
-        if look is not None and self.size.width:
+        if look is not None:
             blocks = list(self.dialogue.blocks())
             placed = place(blocks, self._text_page)
-            last_top = max(0, len(placed.rows) + 1 - max(1, self.size.height - ROWS_AROUND))
+            last_top = max(0, len(placed.rows) + 1 - max(1, self.room.height - ROWS_AROUND))
             self._top = min(placed.starts[blocks.index(look)], last_top)
         self.show()
 
@@ -258,7 +268,7 @@ class DialogueScreen(RowsScreen[None]):
         follows: Callable[[], Effect] = _nothing
         match effect:
             case Tell(title, blocks):
-                page = Page(text_width(self.size.width), MARGIN)
+                page = Page(text_width(self.room.width), MARGIN)
                 await self.app.push_screen_wait(TextScreen(title, [row(), *rows_of(blocks, page)]))
             case Choose(title, options, then, selected):
                 items = [PickerItem(str(at), name, text) for at, (name, text) in enumerate(options)]

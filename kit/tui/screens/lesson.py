@@ -166,8 +166,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
     # What is shown
 
     def show(self) -> None:
-        width, dialogue = self.size.width, self.dialogue
-        if not width or not self.is_mounted:
+        width, dialogue = self.room.width, self.dialogue
+        if not self.is_attached:
             return
         step, work, layout = dialogue.step, dialogue.work, self._layout
         file = (
@@ -206,7 +206,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
             file_line=max(work.error_line, work.changed_line) - 1 if work is not None and has_work else 0,
             log=[row("  ", line) for line in work.printed_lines] if work is not None and has_work else (),
         )
-        self._page.show(content, self.size.height - 3 - len(file) - len(status), layout)
+        self._page.show(content, self.room.height - 3 - len(file) - len(status), layout)
 
     def _word_rows(self) -> list[Row]:
         """The words of the step, and below them what is said to what the student did."""
@@ -226,7 +226,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         return Page(text_width(self._width), MARGIN)
 
     def _show_title(self) -> None:
-        width, caption = self.size.width, self._caption()
+        width, caption = self.room.width, self._caption()
         if self.dialogue.has_ended:
             title = spread((), caption, width)
         else:
@@ -270,7 +270,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
     @property
     def _width(self) -> int:
         """Width of the words."""
-        return self.size.width if self._layout is PageLayout.STACKED else min(self.size.width, BESIDE)
+        return self.room.width if self._layout is PageLayout.STACKED else min(self.room.width, BESIDE)
 
     @property
     def _playback_rows(self) -> int:
@@ -282,7 +282,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
     def _layout(self) -> PageLayout:
         if self._playback_rows:  # is low, and as wide as the screen
             return PageLayout.STACKED
-        return PageLayout.of(self.size.width, self.size.height, is_wide=self.has_class("-wide"))
+        return PageLayout.of(self.room.width, self.room.height, is_wide=self.has_class("-wide"))
 
     def look(self) -> None:
         """Shows everything, and brings what was just said into sight."""
