@@ -14,7 +14,7 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import Any, Final
 
-from kit.document.blocks import Block, Picture, Text, Tone
+from kit.document.blocks import Picture, Text, Tone
 
 SCHEMA: Final = 1
 
@@ -320,14 +320,14 @@ def points_text(points: float, max_points: float) -> str:
 
 def criterion_blocks(
     criterion: CriterionResult, *, hints: int = 0, more_hints: str = "", log_lines: int = 0
-) -> list[Block]:
+) -> list[Text | Picture]:
     """What is said of one criterion: mark, title and points; of one that is not passed also the rationale, the expected and
     the actual value, and the next steps.
 
     ``hints``: how many of its hints to show. ``more_hints``: how to see more, shown where there are more.
     ``log_lines``: how many of the last lines that a crashed program printed to show.
     """
-    blocks: list[Block] = [_heading(criterion)]
+    blocks: list[Text | Picture] = [_heading(criterion)]
     if criterion.is_passed:
         return blocks
     if criterion.rationale:

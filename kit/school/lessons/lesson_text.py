@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Final
 
@@ -73,7 +74,8 @@ def verdict_blocks(report: CheckReport, hints: Sequence[LessonHint]) -> list[Blo
     if report.problem:
         blocks.append(Text(report.problem, Tone.WARN if report.is_broken else Tone.BAD))
     for each in report.criteria:
-        blocks += criterion_blocks(each, hints=sum(hint.criterion.id == each.id for hint in hints))
+        first, *others = criterion_blocks(each, hints=sum(hint.criterion.id == each.id for hint in hints))
+        blocks += [first if blocks else replace(first, is_tight=False), *others]
     return blocks
 
 

@@ -60,12 +60,12 @@ def title(step: LessonStep, caption: Row, width: int) -> Row:
 
 def checking(seconds: float, progress: str = "") -> Row:
     """One line of a check that is running. ``progress``: what it is doing."""
-    return row((f" {seconds:.1f} s: {progress}" if progress else f" Checking ... {seconds:.1f} s", "bold"))
+    return row((f"  {seconds:.1f} s: {progress}" if progress else f"  Checking ... {seconds:.1f} s", "bold"))
 
 
 def file_rows(path: str, by_hand: bool, others: bool, width: int) -> list[Row]:
     """The whole path of what is edited, on as many rows as it needs. ``others``: there is more beside it."""
-    head = " Saved in " if by_hand else " Edit "
+    head = "  Saved in " if by_hand else "  Edit "
     tail = ", and the files beside it" if others else ""
     room = max(10, width - len(head))
     parts = _broken_path(path, room)
