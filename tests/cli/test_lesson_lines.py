@@ -69,7 +69,7 @@ def test_letters_and_words_lead_to_steps_and_others_do_nothing(tmp_path: Path) -
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    assert "'g' does nothing here" in done.stdout
+    assert "'g 1' does nothing here" in done.stdout
     assert done.stdout.count("Step 3 of") == 2  # by its number, and as the one before step 4
 
 

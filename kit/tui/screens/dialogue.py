@@ -104,7 +104,11 @@ class DialogueScreen(RowsScreen[None]):
         self.dialogue.close()
 
     def on_resize(self, event: events.Resize) -> None:
-        self.call_after_refresh(self.show)
+        self.call_after_refresh(self.look_again)
+
+    def look_again(self) -> None:
+        """Shows everything in another size of the screen."""
+        self.look()
 
     # What is shown
 
@@ -200,7 +204,7 @@ class DialogueScreen(RowsScreen[None]):
             blocks = list(self.dialogue.blocks())
             placed = place(blocks, self._text_page)
             last_top = max(0, len(placed.rows) + 1 - max(1, self.room.height - ROWS_AROUND))
-            self._top = min(placed.starts[blocks.index(look)], last_top)
+            self._top = min(placed.starts[blocks.index(look)] + 1, last_top)  # an empty row begins the page
         self.show()
 
     # Keys

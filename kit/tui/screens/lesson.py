@@ -293,6 +293,9 @@ class LessonScreen(DialogueScreen, DriveScreen):
         self._page.scroll_words_to(self._said_row)
         self._page.scroll_words_into_sight(self._look_row)
 
+    def look_again(self) -> None:
+        self.show()  # the words stay where they were scrolled to
+
     # What moves
 
     def on_playback_scene_view_updated(self) -> None:
