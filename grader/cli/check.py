@@ -75,7 +75,7 @@ def check(
     """
     from grader.cli.progress import shown_progress
     from grader.grading import GradingOptions, LevelTooLow, open_grading
-    from grader.reports import FORMATS
+    from grader.reports import FORMATS, STUDENT_FORMATS
     from grader.submission import read_submission
     from grader.submitted_files import SubmissionRefused
 
@@ -90,7 +90,10 @@ def check(
         if submission.note:
             click.echo(submission.note, err=True)
         with shown_progress(progress_descriptor) as show_progress:
-            grading_options = GradingOptions(grading_level, secret, show_progress=show_progress)
+            is_for_student = for_student or format_name in STUDENT_FORMATS
+            grading_options = GradingOptions(
+                grading_level, secret, secret and is_for_student, show_progress=show_progress
+            )
             with open_grading(assignment, submission, grading_options) as grading:
                 result = grading.result()
                 picture = _worst_picture(grading, replay)

@@ -53,6 +53,11 @@ from kit.world.problems import WorldError
 @options.level
 @options.secret
 @click.option(
+    "--examples",
+    is_flag=True,
+    help="With --secret: look for public runs that show students what only secret seeds show. Takes longer.",
+)
+@click.option(
     "--queue",
     "queue_folder",
     type=click.Path(file_okay=False, path_type=Path),
@@ -65,6 +70,7 @@ def cohort(
     folder: Path,
     level: int | None,
     secret: bool,
+    examples: bool,
     queue_folder: Path,
     jobs: int,
     executor: str,
@@ -91,7 +97,7 @@ def cohort(
         options.warn_of_short_seeds(assignment)
     queue = Queue(queue_folder.absolute())
     wanted = options.level_for_untrusted(assignment, level, secret=secret, runs_here=executor == "local")
-    grading_options = GradingOptions(wanted, secret, may_lower_level=False)
+    grading_options = GradingOptions(wanted, secret, secret and examples, may_lower_level=False)
     if secret and wanted < assignment.level:
         options.fail(
             f"Secret seeds are used at level {int(assignment.level)} or higher, not at {int(wanted)}."
