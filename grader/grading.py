@@ -26,7 +26,7 @@ from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
 from grader.submission import Submission
 from grader.submitted_files import YAML_ENDINGS, SubmissionRefused, reading_submission
 from grader.teacher_tests import run_teacher_tests
-from kit.host.failure import Failure, FailureKind
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level, shield_this_process
 from kit.host.sandbox.probe import highest_level_up_to
 from kit.school.result import (
@@ -97,6 +97,8 @@ class _ScoredEvidence:
     evidence: Evidence
     measure: float | None
     share: float
+    failure: Failure | None
+    """How the program failed, in a run or while it was measured; None if it did not."""
 
 
 class Grading:
@@ -220,15 +222,10 @@ class Grading:
         if not scored or (criterion.after is not None and not self._score(self._criterion(criterion.after))):
             return replace(blank, rationale="Graded with secret seeds when you hand in.")
         broken = next(
-            (
-                each
-                for each in scored
-                if status_of_failure(each.evidence.failure) is CriterionStatus.GRADER_ERROR
-            ),
-            None,
+            (each for each in scored if status_of_failure(each.failure) is CriterionStatus.GRADER_ERROR), None
         )
         if broken is not None:
-            return self._broken(criterion, str(broken.evidence.failure))
+            return self._broken(criterion, str(broken.failure))
         if criterion.after is not None and not any(
             each.share == 1.0 for each in self._score(self._criterion(criterion.after))
         ):
@@ -241,8 +238,8 @@ class Grading:
         status = (
             CriterionStatus.PASS if full else (CriterionStatus.PARTIAL if share > 0 else CriterionStatus.FAIL)
         )
-        if worst is not None and worst.evidence.failure is not None and share == 0.0:
-            status = status_of_failure(worst.evidence.failure)
+        if worst is not None and worst.failure is not None and share == 0.0:
+            status = status_of_failure(worst.failure)
         check = self._checks[criterion.check]
         rationale = "" if full else self._rationale(criterion, shown, worst)
         return replace(
@@ -337,9 +334,12 @@ class Grading:
 
     def _score_evidence(self, criterion: Criterion, evidence: Evidence, *, is_ready: bool) -> _ScoredEvidence:
         if evidence.failure is not None or not is_ready:
-            return _ScoredEvidence(evidence, None, 0.0)
-        measure = float(self._checks[criterion.check].measure(evidence, criterion.params))
-        return _ScoredEvidence(evidence, measure, criterion.anchors.share(measure))
+            return _ScoredEvidence(evidence, None, 0.0, evidence.failure)
+        try:
+            measure = float(self._checks[criterion.check].measure(evidence, criterion.params))
+        except StudentCodeError as error:  # what it returned takes longer to measure than a submission may
+            return _ScoredEvidence(evidence, None, 0.0, self._clock.explain(error.failure))
+        return _ScoredEvidence(evidence, measure, criterion.anchors.share(measure), evidence.failure)
 
     def _ready(self, criterion: Criterion) -> Callable[[Evidence], bool]:
         """Returns a predicate: did this evidence earn full points in the criterion that comes first?"""
@@ -361,13 +361,13 @@ class Grading:
                 if self._examples
                 else f"“{criterion.title}” is not met with the secret seeds of the grade. No example was looked for."
             )
-        evidence = worst.evidence
-        if evidence.failure is not None:
+        evidence, failure = worst.evidence, worst.failure
+        if failure is not None:
             if evidence.secret:
-                return f"{COARSE_RATIONALES[status_of_failure(evidence.failure)]} ({evidence.label})."
+                return f"{COARSE_RATIONALES[status_of_failure(failure)]} ({evidence.label})."
             # That a file cannot be read has nothing to do with where it would have been used.
-            is_unread = evidence.failure.kind in (FailureKind.SYNTAX, FailureKind.IMPORT)
-            text = f"{evidence.failure}" if is_unread else f"{evidence.failure} ({evidence.label})"
+            is_unread = failure.kind in (FailureKind.SYNTAX, FailureKind.IMPORT)
+            text = f"{failure}" if is_unread else f"{failure} ({evidence.label})"
             first = self._shown_before(criterion, text)
             return text if first is None else f"{SAME_MISTAKE} “{first.title}”."
         check = self._checks[criterion.check]
@@ -391,7 +391,7 @@ class Grading:
         read, or the mistake was described before: then that is all there is to mend."""
         if worst is None or worst.evidence.secret:
             return criterion.hints
-        if worst.evidence.failure is not None and (
+        if worst.failure is not None and (
             self.assignment.submit.endswith(YAML_ENDINGS) or rationale.startswith(SAME_MISTAKE)
         ):
             return ()
