@@ -53,7 +53,7 @@ _format_option = click.option(
 def check(
     file: Path,
     folder: Path,
-    level: int | None,
+    level: str | None,
     secret: bool,
     hints: int,
     format_name: str,
@@ -68,8 +68,8 @@ def check(
     \b
     grader check my_controller.py --assignment assignments/reach
 
-    FILE may be anybody's, so its programs run confined: at the assignment's level, at least 1. A machine that cannot do
-    that refuses. Your own program may run without: --level 0.
+    FILE may be anybody's, so its programs run confined: at the assignment's level, at least 1; with --secret at the highest
+    of this machine. A machine that cannot do that refuses. Your own program may run without: --level 0.
 
     Exit code: 0 passed; 1 not passed; 2 an argument is wrong or something is missing; 3 the grader failed, no grade.
     """
