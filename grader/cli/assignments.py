@@ -109,7 +109,7 @@ def checks(kind: str) -> None:
     help="Folder with the solution and the wrong solutions, if not FOLDER.",
 )
 @options.level
-def self_test(folder: Path, solutions: Path | None, level: int | None) -> None:
+def self_test(folder: Path, solutions: Path | None, level: str | None) -> None:
     """Test the assignment in FOLDER: the starter must run but not pass, the solution must earn all
     points, and each wrong solution must lose the criterion in its file name. Then print how likely a good submission
     is to fail by bad luck.

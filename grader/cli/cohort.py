@@ -53,6 +53,11 @@ from kit.world.problems import WorldError
 @options.level
 @options.secret
 @click.option(
+    "--examples",
+    is_flag=True,
+    help="With --secret: look for public runs that show students what only secret seeds show. Takes longer.",
+)
+@click.option(
     "--queue",
     "queue_folder",
     type=click.Path(file_okay=False, path_type=Path),
@@ -63,8 +68,9 @@ from kit.world.problems import WorldError
 def cohort(
     submissions: Path,
     folder: Path,
-    level: int | None,
+    level: str | None,
     secret: bool,
+    examples: bool,
     queue_folder: Path,
     jobs: int,
     executor: str,
@@ -76,7 +82,7 @@ def cohort(
     grader cohort handed_in --assignment tasks/one --queue grades --secret
     grader gradebook grades
 
-    You can interrupt it; run the same command to continue. At the end it lists the submissions that need your
+    Programs run at the highest confinement level of this machine; --level 1 takes less time. You can interrupt it; run the same command to continue. At the end it lists the submissions that need your
     attention.
 
     Exit code: 0 all submissions have a grade; 1 some cannot be read; 2 an argument is wrong; 3 the grader failed for
@@ -90,8 +96,10 @@ def cohort(
     if secret:
         options.warn_of_short_seeds(assignment)
     queue = Queue(queue_folder.absolute())
-    wanted = options.level_for_untrusted(assignment, level, secret=secret, runs_here=executor == "local")
-    grading_options = GradingOptions(wanted, secret, may_lower_level=False)
+    wanted = options.level_for_untrusted(
+        assignment, level, secret=secret, for_class=True, runs_here=executor == "local"
+    )
+    grading_options = GradingOptions(wanted, secret, secret and examples, may_lower_level=False)
     if secret and wanted < assignment.level:
         options.fail(
             f"Secret seeds are used at level {int(assignment.level)} or higher, not at {int(wanted)}."
@@ -151,7 +159,7 @@ def work(folder: Path, shard: str, jobs: int) -> None:
     queue = Queue(folder.absolute())
     try:
         secret = queue.grading_options().secret
-        options.level_for_untrusted(queue.assignment(), int(queue.level()), secret=secret)
+        options.level_for_untrusted(queue.assignment(), str(int(queue.level())), secret=secret)
         keys = queue.waiting(share)
         run_locally(queue, keys, jobs, lambda key: None)
     except (QueueError, OSError) as error:

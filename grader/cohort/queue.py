@@ -96,7 +96,11 @@ class Queue:
         return Level(self.manifest()["level"])
 
     def grading_options(self) -> GradingOptions:
-        return GradingOptions(self.level(), bool(self.manifest()["secret"]), may_lower_level=False)
+        """How every job is graded."""
+        manifest = self.manifest()
+        return GradingOptions(
+            self.level(), bool(manifest["secret"]), bool(manifest["examples"]), may_lower_level=False
+        )
 
     def entries(self) -> tuple[QueueEntry, ...]:
         return tuple(QueueEntry(**each) for each in self.manifest()["entries"])
@@ -145,7 +149,15 @@ class Queue:
 def job_key(submission: Submission, assignment: Assignment, options: GradingOptions) -> str:
     """Returns one name for everything that decides a result."""
     level = level_for_untrusted(assignment, options.level)
-    parts = (submission.digest, assignment.version, grader_version(), SCHEMA, options.secret, int(level))
+    parts = (
+        submission.digest,
+        assignment.version,
+        grader_version(),
+        SCHEMA,
+        options.secret,
+        options.examples,
+        int(level),
+    )
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
@@ -166,6 +178,7 @@ def prepare_queue(
         "assignment_version": assignment.version,
         "grader_version": grader_version(),
         "secret": options.secret,
+        "examples": options.examples,
         "level": int(level),
         "entries": [asdict(each) for each in entries],
     }

@@ -257,13 +257,19 @@ class LaunchCollector(CachingCollector):
         self._queries = ParameterQueries(_requested_parameters(assignment.criteria))
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        return self._records(criterion, secret=self._secret)
+
+    def public_evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        return self._records(criterion, secret=False)
+
+    def _records(self, criterion: Criterion, *, secret: bool) -> Sequence[Evidence]:
         chosen = criterion.params.runs
         return [
             self._collect(
                 (run.name, run.secret), partial(self._launch, run), LaunchRecord(run).label, secret=run.secret
             )
             for run in self._assignment.task.runs
-            if (not chosen or run.name in chosen) and (self._secret or not run.secret)
+            if (not chosen or run.name in chosen) and (secret or not run.secret)
         ]
 
     def _launch(self, run: LaunchCase) -> LaunchRecord:

@@ -132,6 +132,13 @@ class WorldCollector:
             return [first]
         return self._runs.evidence(criterion)
 
+    def public_evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        first = self._read_contents()
+        contents: WorldContents | None = first.content
+        if criterion.check not in RUN_CHECKS or contents is None or contents.world.problems:
+            return [first]
+        return self._runs.public_evidence(criterion)
+
     def collected(self) -> Sequence[Evidence]:
         return [*([] if self._read is None else [self._read]), *self._runs.collected()]
 

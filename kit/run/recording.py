@@ -10,7 +10,6 @@ import io
 import json
 import math
 import struct
-import zipfile
 from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -20,6 +19,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from kit.array_archives import read_arrays
 from kit.arrays import FloatArray, IntArray
 from kit.interruption import uninterrupted
 from kit.msg.conversion import from_dict, to_dict
@@ -180,6 +180,10 @@ def save_recording(recording: Recording, file: Path) -> None:
         write_atomically(file, data.getvalue())
 
 
+MAX_HEADER_BYTES: Final = 32 << 20
+"""Bytes of a recording's inputs and names: reading them takes ten times as much memory."""
+
+
 def load_recording(file: Path | str) -> Recording:
     """Reads a recording that ``kit run --record``, a race or ``run_episode`` wrote.
 
@@ -190,13 +194,14 @@ def load_recording(file: Path | str) -> Recording:
     100
     """
     file = Path(file)
-    data = file.read_bytes()
     try:
-        if not zipfile.is_zipfile(io.BytesIO(data)):  # of another file numpy says that pickle might read it
-            raise ValueError("no .npz file, or a part of one")
-        with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
-            recording = _recording_from_arrays(arrays)
+        arrays = read_arrays(file)
+        if len(arrays["header"]) > MAX_HEADER_BYTES:
+            raise ValueError(f"its inputs take more than {MAX_HEADER_BYTES >> 20} MiB")
+        recording = _recording_from_arrays(arrays)
         _check(recording)
+    except OSError:
+        raise
     except Exception as error:  # noqa: BLE001 - whatever a damaged archive makes zipfile, numpy and json raise
         raise RecordingError(f"{file}: not a recording of the kit, or damaged ({error}).") from None
     return recording

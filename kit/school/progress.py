@@ -20,6 +20,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, Final, Self
 
+from kit.plain_files import read_plain_file
 from kit.workspace import write_atomically
 
 FILE: Final = "progress.db"
@@ -315,10 +316,14 @@ def _keep_as(file: Path, backup: Path) -> None:
             os.replace(f"{file}{ending}", f"{backup}{ending}")  # noqa: PTH105 - the names are text with an ending
 
 
+MAX_EXPORT_BYTES: Final = 5_000_000
+"""Bytes of an exported file: many times what a student does in a year; reading takes ten times as much memory."""
+
+
 def read_export(file: Path) -> list[ProgressEvent]:
     """Reads the events of an exported file. Raises ProgressError if it is malformed."""
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
+        content = json.loads(read_plain_file(file, MAX_EXPORT_BYTES).decode())
     except OSError as error:
         raise ProgressError(f"{file}: cannot be read ({error.strerror}).") from None
     except (ValueError, RecursionError) as error:

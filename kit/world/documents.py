@@ -6,9 +6,7 @@ limit on its size.
 
 from __future__ import annotations
 
-import os
 import re
-import stat
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
@@ -16,6 +14,7 @@ from dataclasses import dataclass
 from functools import lru_cache, partial
 from pathlib import Path
 
+from kit.plain_files import read_plain_file
 from kit.plain_text import is_printable, quoted
 from kit.world.problems import Problem, ProblemCollector, WorldError
 from kit.world.records import SourceLocation
@@ -95,21 +94,9 @@ def read_bytes(path: Path, limit: int) -> bytes:
     if (collected := _READ_FILES.get()) is not None:
         collected.add(path)
     try:
-        with open(path, "rb", opener=_open_nonblocking) as file:
-            status = os.fstat(file.fileno())
-            if not stat.S_ISREG(status.st_mode):
-                raise UnusableFile("it is not a regular file")
-            content = file.read(limit + 1) if status.st_size <= limit else None
+        return read_plain_file(path, limit)
     except (OSError, ValueError) as error:
         raise UnusableFile(_error_text(error)) from error
-    if content is None or len(content) > limit:
-        raise UnusableFile(f"it is larger than {limit // 1_000_000} MB")
-    return content
-
-
-def _open_nonblocking(path: str, flags: int) -> int:
-    """Opens a named pipe at once too, where ``open`` would wait for a writer."""
-    return os.open(path, flags | os.O_NONBLOCK | os.O_CLOEXEC)
 
 
 def _resolve_links(path: Path) -> Path:
@@ -125,7 +112,7 @@ def _error_text(error: Exception) -> str:
     if isinstance(error, IsADirectoryError):
         return "it is a folder"
     if isinstance(error, OSError) and error.strerror:
-        return error.strerror.lower()
+        return error.strerror[:1].lower() + error.strerror[1:]
     return str(error).lower()
 
 

@@ -11,7 +11,7 @@ from typing import Final
 
 from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.private_folder import private_folder
-from kit.host.sandbox import bubblewrap, landlock
+from kit.host.sandbox import bubblewrap, landlock, namespaces
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
 
@@ -79,6 +79,11 @@ def _describe_limits() -> str:
     return "its own process and limits" + (", but not of memory (macOS)" if sys.platform == "darwin" else "")
 
 
+def _describe_filters() -> str:
+    disk = "limited" if namespaces.can_mount_scratch() else "measured ten times a second"
+    return f"Landlock (version {landlock.abi()}) and a filter of system calls; its disk is {disk}"
+
+
 def _describe_namespaces() -> str:
     by = " by bubblewrap" if bubblewrap.is_needed() else ""
     return f"namespaces{by}: no other process, no network and no other file exists for it"
@@ -87,7 +92,7 @@ def _describe_namespaces() -> str:
 _DESCRIPTIONS: Final[Mapping[Level, Callable[[], str]]] = MappingProxyType(
     {
         Level.LIMITED: _describe_limits,
-        Level.FILTERED: lambda: f"Landlock (version {landlock.abi()}) and a filter of system calls",
+        Level.FILTERED: _describe_filters,
         Level.SEPARATE: _describe_namespaces,
         Level.ANOTHER_USER: lambda: "a user of its own for every run",
     }

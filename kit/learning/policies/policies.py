@@ -21,6 +21,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from kit.array_archives import read_arrays
 from kit.arrays import BoolArray, Float32Array, IntArray
 from kit.learning.environment.tasks import LearningTask, TaskSpec
 from kit.workspace import write_atomically
@@ -454,12 +455,7 @@ def load_policy(file: Path | str) -> Policy:
     """
     file = Path(file)
     try:
-        data = file.read_bytes()
-        if not zipfile.is_zipfile(io.BytesIO(data)):  # of another file numpy says that pickle might read it
-            raise ValueError("no .npz file, or a part of one")
-        with np.load(io.BytesIO(data), allow_pickle=False) as stored:
-            arrays = {name: stored[name] for name in stored.files}
-        return _policy_from_arrays(arrays)
+        return _policy_from_arrays(read_arrays(file))
     except FileNotFoundError:
         raise
     except Exception as error:  # noqa: BLE001 - whatever a damaged archive makes numpy raise

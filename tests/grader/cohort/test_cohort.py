@@ -518,9 +518,13 @@ def test_a_class_is_not_graded_at_level_0_by_silence(tmp_path: Path) -> None:
     asked = one_of_a_class(tmp_path)
     code, told = verb("cohort", *asked)
     queue = Queue(tmp_path / "queue")
-    assert (code, queue.manifest()["level"], gradebook_rows(queue)[0].level) == (0, 1, 1)
-    assert "1 fail, at confinement level 1: " in told
-    assert json.loads(next((queue.folder / "results").iterdir()).read_bytes())["level"] == 1
+    highest = int(probe.highest_level())
+    assert highest >= 1
+    assert (code, queue.manifest()["level"], gradebook_rows(queue)[0].level) == (0, highest, highest)
+    assert f"1 fail, at confinement level {highest}: " in told
+    assert json.loads(next((queue.folder / "results").iterdir()).read_bytes())["level"] == highest
+    code, told = verb("cohort", *asked, "--level", "1")
+    assert (code, gradebook_rows(queue)[0].level) == (0, 1)
     code, told = verb("cohort", *asked, "--level", "0")
     assert (code, gradebook_rows(queue)[0].level) == (0, 0)
     assert "1 fail, at confinement level 0: " in told
@@ -545,7 +549,13 @@ def test_one_work_with_secrets_is_not_graded_at_level_0_by_silence(tmp_path: Pat
     folder, file = write_assignment(tmp_path / "quick", secret="seeds: {turn: [5]}"), tmp_path / "ada.py"
     file.write_text(FORWARD)
     asked = (file, "--assignment", folder, "--json")
-    for more, level in ((("--secret",), 1), (("--secret", "--level", "0"), 0), ((), 1)):
+    highest = int(probe.highest_level())
+    for more, level in (
+        (("--secret",), highest),
+        (("--secret", "--level", "0"), 0),
+        ((), 1),
+        (("--level", "highest"), highest),
+    ):
         code, told = verb("check", *asked, *more)
         result = told[told.index("{") :]  # before it, on standard error: that the secret seeds were not used
         assert (code, json.loads(result)["level"]) == (1, level)
