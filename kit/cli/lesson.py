@@ -244,7 +244,7 @@ def _drive_scene(
             find_controller("teleop", opened_workspace.controllers),
             seed=scene.seed,
             folder=opened_workspace.controllers,
-            record=Path(file),
+            record=options.recording_file(Path(file)),
             input_buffer=input_buffer,
         )
     )

@@ -25,6 +25,7 @@ from kit.tui.terminal import (
 from kit.workspace import Workspace, WorkspaceError, open_workspace
 
 if TYPE_CHECKING:
+    from kit.run.recording_file import RecordingFile
     from kit.school.progress import ProgressJournal
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
@@ -62,6 +63,21 @@ def open_journal(workspace: Workspace) -> ProgressJournal:
 def describe_os_error(error: OSError) -> str:
     """Formats an error with its file."""
     return f"{error.filename}: {error.strerror}" if error.filename and error.strerror else str(error)
+
+
+def recording_file(file: Path | None) -> RecordingFile | None:
+    """Opens the file of ``--record``, and says what was restored in its folder; ends the verb where it cannot be written."""
+    if file is None:
+        return None
+    from kit.run.recording_file import RecordingFile
+
+    try:
+        opened = RecordingFile(file)
+    except OSError as error:
+        fail(describe_os_error(error))
+    for notice in opened.notices:
+        click.echo(escape_controls(notice), err=True)
+    return opened
 
 
 def replace_unencodable(text: str) -> str:

@@ -16,7 +16,7 @@ from kit.host.program_terminal import ProgramTerminal, has_user_terminal, piped_
 from kit.inspection.server import InspectionServer
 from kit.inspection.sockets import sockets_folder
 from kit.interruption import ended_by_signals
-from kit.plain_text import counted
+from kit.plain_text import counted, escape_controls
 from kit.ros.bags import BagRecorder
 from kit.ros.graph.graph import Graph
 from kit.run.headless import RunSummary, run_headless
@@ -110,7 +110,7 @@ def command(
         )
     if bag is not None:
         options.explain_storage(storage)
-        participants.append(lambda graph: BagRecorder(graph, bag, storage=storage))
+        participants.append(lambda graph: _record_bag(graph, bag, storage))
     try:
         with ExitStack() as stack:
             if has_user_terminal():
@@ -124,7 +124,7 @@ def command(
                 seed=seed,
                 factor=speed or (REAL_TIME if serve else MAXIMUM),
                 until_reached=until_reached,
-                record=record,
+                record=options.recording_file(record),
                 participants=participants,
                 on_message=lambda record: click.echo(format_log(record), err=True),
                 streams=streams,
@@ -140,6 +140,13 @@ def command(
         raise SystemExit(INTERRUPTED)
     if summary.failure is not None:
         raise SystemExit(1)
+
+
+def _record_bag(graph: Graph, folder: Path, storage: Storage) -> BagRecorder:
+    recorder = BagRecorder(graph, folder, storage=storage)
+    for notice in recorder.notices:
+        click.echo(escape_controls(notice), err=True)
+    return recorder
 
 
 def format_summary(summary: RunSummary) -> str:
