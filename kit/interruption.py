@@ -57,7 +57,7 @@ def ended_by_signals() -> Iterator[None]:
         yield
     except SystemExit as stop:  # its class may say more, as ScreenClosed's does
         if received:
-            _write_out()
+            write_out()
             stop.code = 128 + received[0]
         raise
     except (KeyboardInterrupt, OSError):
@@ -67,7 +67,7 @@ def ended_by_signals() -> Iterator[None]:
         for number in replaced:
             signal.signal(number, signal.SIG_DFL)
     if received:
-        _write_out()
+        write_out()
         raise SystemExit(128 + received[0])
 
 
@@ -100,7 +100,7 @@ def uninterrupted() -> Iterator[None]:
             signal.raise_signal(waiting[0])
 
 
-def _write_out() -> None:
+def write_out() -> None:
     """Writes what the standard streams hold. What a terminal that is gone does not take is lost, without an error at the exit."""
     for stream in (sys.stdout, sys.stderr):
         try:

@@ -38,7 +38,7 @@ from grader.cohort.queue import (
 )
 from grader.grading import GradingOptions
 from grader.reports.cleaning import clean_line, spreadsheet_cell
-from kit.cli.options import executor_options
+from kit.cli.options import describe_error, executor_options
 from kit.host.job_executors import read_shard, serve_jobs
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
@@ -109,7 +109,7 @@ def cohort(
             elif executor == "local":
                 run_locally(queue, waiting, jobs, count)
     except (QueueError, ExecutorUnavailable, OSError) as error:
-        options.fail(str(error))
+        options.fail(describe_error(error))
     raise SystemExit(publish(queue))
 
 
@@ -155,7 +155,7 @@ def work(folder: Path, shard: str, jobs: int) -> None:
         keys = queue.waiting(share)
         run_locally(queue, keys, jobs, lambda key: None)
     except (QueueError, OSError) as error:
-        options.fail(str(error))
+        options.fail(describe_error(error))
     click.echo(f"{len(keys)} graded")
 
 
@@ -209,7 +209,7 @@ def gradebook(
         table = choose_submissions(table, submission_times, choose)
         before = None if against is None else read_json(against.read_text(encoding="utf-8"))
     except (WorldError, QueueError, ValueError, OSError) as error:
-        options.fail(str(error))
+        options.fail(describe_error(error))
     if timeless:
         named = ", ".join(map(clean_line, timeless[:5])) + (", ..." if len(timeless) > 5 else "")
         click.echo(f"{len(timeless)} without a time count as in time: {named}", err=True)

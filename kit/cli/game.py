@@ -240,7 +240,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                 _, seconds = begin_repair(journal, chosen, answers_folder(opened_workspace))
             judgement = judge(chosen, answer, opened_workspace.runs, seconds)
         except (LookupError, ChallengeError, RunError, OSError) as error:
-            options.fail(str(error))
+            options.fail(options.describe_error(error))
         record_judgement(journal, chosen, judgement)
         click.echo(f"{judgement.text}\n  {judgement.medal.title}")
 

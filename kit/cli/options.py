@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import click
 
+from kit.cli import NO_ROOM, describe_no_room
 from kit.plain_text import escape_controls
 from kit.tui.terminal import (
     COLOUR_CHOICES,
@@ -61,7 +62,9 @@ def open_journal(workspace: Workspace) -> ProgressJournal:
 
 
 def describe_os_error(error: OSError) -> str:
-    """Formats an error with its file."""
+    """Formats an error with its file, and the way out where there is no room."""
+    if error.errno in NO_ROOM:
+        return describe_no_room(error)
     return f"{error.filename}: {error.strerror}" if error.filename and error.strerror else str(error)
 
 
@@ -78,6 +81,11 @@ def recording_file(file: Path | None) -> RecordingFile | None:
     for notice in opened.notices:
         click.echo(escape_controls(notice), err=True)
     return opened
+
+
+def describe_error(error: Exception) -> str:
+    """What an error says, with the file where it is one of the system."""
+    return describe_os_error(error) if isinstance(error, OSError) else str(error)
 
 
 def replace_unencodable(text: str) -> str:

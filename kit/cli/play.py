@@ -10,7 +10,6 @@ import click
 from kit.cli import ScreenClosed, options
 from kit.cli.full_screen import run_screen
 from kit.controllers import find_controller, prepare_workspace
-from kit.interruption import ended_by_signals
 from kit.workspace import WorkspaceError
 
 if TYPE_CHECKING:
@@ -37,7 +36,6 @@ if TYPE_CHECKING:
 )
 @options.glyphs
 @options.color
-@ended_by_signals()
 def command(
     place: str,
     case: str | None,

@@ -15,7 +15,6 @@ from kit.controllers import find_controller
 from kit.host.program_terminal import ProgramTerminal, has_user_terminal, piped_streams
 from kit.inspection.server import InspectionServer
 from kit.inspection.sockets import sockets_folder
-from kit.interruption import ended_by_signals
 from kit.plain_text import counted, escape_controls
 from kit.ros.bags import BagRecorder
 from kit.ros.graph.graph import Graph
@@ -68,7 +67,6 @@ INTERRUPTED = 130
 @options.storage
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @options.workspace
-@ended_by_signals()
 def command(
     place: str,
     case: str | None,
