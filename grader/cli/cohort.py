@@ -174,7 +174,7 @@ def worker(folder: Path) -> None:
 @click.option(
     "--late",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="YAML file with due, grace_minutes, per_day, least, latest_days.",
+    help="YAML file with due, zone, grace_minutes, per_day, least, latest_days.",
 )
 @click.option(
     "--times",
@@ -198,10 +198,15 @@ def gradebook(
     folder: Path, late: Path | None, times: Path | None, choose: str, against: Path | None, as_json_text: bool
 ) -> None:
     """Print the gradebook of the queue FOLDER. The late rules and the choice among several submissions apply only to
-    this output; they are not saved."""
+    this output; they are not saved.
+
+    A date as `due` means the end of that day. Times need their offset (+01:00, Z) or a `zone` in the late rules, such as
+    Europe/Lisbon; standard error says how `due` was read.
+    """
     try:
         policy = None if late is None else read_policy(late)
-        submission_times = {} if times is None else read_submission_times(times)
+        zone = None if policy is None else policy.zone
+        submission_times = {} if times is None else read_submission_times(times, zone)
         table = gradebook_rows(Queue(folder.absolute()), policy, submission_times)
         timeless = (
             [row.name for row in table if row.name not in submission_times] if policy is not None else []
@@ -210,6 +215,8 @@ def gradebook(
         before = None if against is None else read_json(against.read_text(encoding="utf-8"))
     except (WorldError, QueueError, ValueError, OSError) as error:
         options.fail(describe_error(error))
+    if policy is not None:
+        click.echo(policy.due_text, err=True)
     if timeless:
         named = ", ".join(map(clean_line, timeless[:5])) + (", ..." if len(timeless) > 5 else "")
         click.echo(f"{len(timeless)} without a time count as in time: {named}", err=True)
