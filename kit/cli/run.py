@@ -11,7 +11,7 @@ import click
 
 from kit.cli import options
 from kit.cli.options import Storage
-from kit.controllers import find_controller
+from kit.controllers import find_controller, kit_controllers
 from kit.host.program_terminal import ProgramTerminal, has_user_terminal, piped_streams
 from kit.inspection.server import InspectionServer
 from kit.inspection.sockets import sockets_folder
@@ -26,6 +26,7 @@ from kit.run.view import format_log
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError
 
+STANDS_STILL_M = 0.01
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells have it."""
 
@@ -115,9 +116,10 @@ def command(
                 streams = stack.enter_context(ProgramTerminal(shows_output=False)).streams
             else:
                 streams = piped_streams()
+            driver = find_controller(controller, opened_workspace.controllers)
             summary = run_headless(
                 find_scenario(place, case, root),
-                find_controller(controller, opened_workspace.controllers),
+                driver,
                 steps=steps,
                 seed=seed,
                 factor=speed or (REAL_TIME if serve else MAXIMUM),
@@ -132,6 +134,10 @@ def command(
     except OSError as error:
         options.fail(options.describe_os_error(error))
     click.echo(json.dumps(summary.as_dict(), indent=2) if as_json else format_summary(summary))
+    is_own = driver.file not in {each.file for each in kit_controllers()}
+    if is_own or summary.metrics.distance_m < STANDS_STILL_M:  # the kit's controllers need not hear all
+        for mistake in summary.mistakes:
+            click.echo(mistake, err=True)
     if summary.interrupted:
         for kept in filter(None, (record, bag)):
             click.echo(f"What ran until then is in {kept}.", err=True)

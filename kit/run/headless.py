@@ -14,6 +14,7 @@ from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.host.program_terminal import ProgramStreams
 from kit.interruption import uninterrupted
+from kit.ros.graph.connections import ConnectionsReader
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
 from kit.run.episode import EndCondition, EndReason, run_until, when_failed, when_reached
@@ -51,6 +52,8 @@ class RunSummary:
     failure: Failure | None
     interrupted: bool = False
     """Whether Ctrl-C or a signal ended it."""
+    mistakes: tuple[str, ...] = ()
+    """Sentences about topics and services that the controller uses and that have no other end."""
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able; the same for the same run but for ``wall_s``."""
@@ -108,6 +111,7 @@ def run_headless(
         recorder = Recorder.for_scenario(scenario, runner.simulation, record)
         if record is not None:
             runner.observers.append(recorder)
+        connections = ConnectionsReader(session.graph)
         session.drive_with(controller)
         session.wait_until_driven()
         start = time.perf_counter()
@@ -138,6 +142,7 @@ def run_headless(
             wall,
             session.failure,
             interrupted,
+            connections.read().mistakes,
         )
 
 
