@@ -38,7 +38,7 @@ from grader.cohort.queue import (
 )
 from grader.grading import GradingOptions
 from grader.reports.cleaning import clean_line, spreadsheet_cell
-from kit.cli.options import executor_options
+from kit.cli.options import describe_error, executor_options
 from kit.host.job_executors import read_shard, serve_jobs
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
@@ -117,7 +117,7 @@ def cohort(
             elif executor == "local":
                 run_locally(queue, waiting, jobs, count)
     except (QueueError, ExecutorUnavailable, OSError) as error:
-        options.fail(str(error))
+        options.fail(describe_error(error))
     raise SystemExit(publish(queue))
 
 
@@ -163,7 +163,7 @@ def work(folder: Path, shard: str, jobs: int) -> None:
         keys = queue.waiting(share)
         run_locally(queue, keys, jobs, lambda key: None)
     except (QueueError, OSError) as error:
-        options.fail(str(error))
+        options.fail(describe_error(error))
     click.echo(f"{len(keys)} graded")
 
 
@@ -182,7 +182,7 @@ def worker(folder: Path) -> None:
 @click.option(
     "--late",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="YAML file with due, grace_minutes, per_day, least, latest_days.",
+    help="YAML file with due, zone, grace_minutes, per_day, least, latest_days.",
 )
 @click.option(
     "--times",
@@ -206,10 +206,15 @@ def gradebook(
     folder: Path, late: Path | None, times: Path | None, choose: str, against: Path | None, as_json_text: bool
 ) -> None:
     """Print the gradebook of the queue FOLDER. The late rules and the choice among several submissions apply only to
-    this output; they are not saved."""
+    this output; they are not saved.
+
+    A date as `due` means the end of that day. Times need their offset (+01:00, Z) or a `zone` in the late rules, such as
+    Europe/Lisbon; standard error says how `due` was read.
+    """
     try:
         policy = None if late is None else read_policy(late)
-        submission_times = {} if times is None else read_submission_times(times)
+        zone = None if policy is None else policy.zone
+        submission_times = {} if times is None else read_submission_times(times, zone)
         table = gradebook_rows(Queue(folder.absolute()), policy, submission_times)
         timeless = (
             [row.name for row in table if row.name not in submission_times] if policy is not None else []
@@ -217,7 +222,9 @@ def gradebook(
         table = choose_submissions(table, submission_times, choose)
         before = None if against is None else read_json(against.read_text(encoding="utf-8"))
     except (WorldError, QueueError, ValueError, OSError) as error:
-        options.fail(str(error))
+        options.fail(describe_error(error))
+    if policy is not None:
+        click.echo(policy.due_text, err=True)
     if timeless:
         named = ", ".join(map(clean_line, timeless[:5])) + (", ..." if len(timeless) > 5 else "")
         click.echo(f"{len(timeless)} without a time count as in time: {named}", err=True)

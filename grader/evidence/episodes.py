@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from grader.assignment import Shift, Trial
 from grader.evidence.contract import EpisodeSpec, EvidenceRecord
-from grader.evidence.drive_record import ConnectionsReader, GradedDrive, NodeConnections, TopicTraffic
+from grader.evidence.drive_record import GradedDrive, TopicTraffic
 from grader.evidence.service_calls import ServiceCaller
 from grader.evidence.submission_clock import SubmissionClock
 from kit.geometry import Pose
@@ -21,6 +21,7 @@ from kit.host.sandbox.limits import Limits
 from kit.host.wire import printable
 from kit.msg.message import Message, type_name
 from kit.msg.robot_kit_msgs import GetState
+from kit.ros.graph.connections import ConnectionsReader, NodeConnections
 from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph
 from kit.run.episode import EndReason, controller_arguments, run_until, when_failed, when_reached

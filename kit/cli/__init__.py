@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Mapping
+from contextlib import suppress
+from errno import EACCES, EDQUOT, EFBIG, EIO, EMFILE, ENAMETOOLONG, ENFILE, ENOSPC, EPERM, EROFS
 from importlib import import_module
 from types import MappingProxyType
 from typing import Any, Final, NoReturn
@@ -12,6 +14,7 @@ from typing import Any, Final, NoReturn
 import click
 
 import kit
+from kit.interruption import ended_by_signals, write_out
 
 VERBS: Final[dict[str, tuple[str, str]]] = {
     "start": ("kit.cli.start", "Open the kit: a robot and a menu (same as `kit` alone)."),
@@ -88,6 +91,23 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     ),
 }
 """Every verb: its module, with the name of its command where that is not ``command``, and its line in ``kit --help``."""
+
+
+NO_ROOM: Final = frozenset((ENOSPC, EDQUOT, EFBIG))
+REFUSED: Final = frozenset((EACCES, EPERM, EROFS, EIO, ENAMETOOLONG, EMFILE, ENFILE))
+
+
+def is_environment_error(error: OSError) -> bool:
+    """Whether an error is one of the disk, or of rights: nothing that the kit does wrong."""
+    return error.errno in NO_ROOM or (error.errno in REFUSED and error.filename is not None)
+
+
+def describe_no_room(error: OSError) -> str:
+    """A sentence about a full disk, and the way out."""
+    where = "what it prints or writes" if error.filename is None else error.filename
+    return (
+        f"{where} cannot be written: {error.strerror}. Free some space, or write elsewhere, and run it again."
+    )
 
 
 class ScreenClosed(SystemExit):
@@ -168,16 +188,37 @@ def main(ctx: click.Context) -> None:
 
 
 def run() -> NoReturn:
-    """Runs the command line as this process.
+    """Runs ``kit`` as this process."""
+    run_as_process(main, "kit")
+
+
+def run_as_process(command: click.Command, name: str) -> NoReturn:
+    """Runs a command line as this process, to whose end belongs that what it has written is out.
+
+    SIGTERM and SIGHUP end it as Ctrl-C does. Where the disk is full, or the folder another user's, one sentence says so in
+    place of a traceback; exit code 2.
 
     After a full screen Python does not take apart what was imported, which takes longer than to leave the screen: the
     process ends once its output is written. The screen has given the terminal back and removed what it made; the exit
     handlers of libraries do not run, which would take compiled code away from threads that are still in it.
     """
     try:
-        main(prog_name="kit")
+        with ended_by_signals():
+            try:
+                command(prog_name=name)
+            finally:
+                sys.stdout.flush()
     except ScreenClosed as closed:
-        sys.stdout.flush()
-        sys.stderr.flush()
+        write_out()
         os._exit(closed.code if isinstance(closed.code, int) else 0)
+    except OSError as error:
+        if not is_environment_error(error):
+            raise
+        with suppress(OSError):
+            text = (
+                describe_no_room(error) if error.errno in NO_ROOM else f"{error.filename}: {error.strerror}."
+            )
+            click.echo(f"{name}: {text}", err=True)
+        write_out()
+        raise SystemExit(2) from None
     raise SystemExit(0)  # a command that ends otherwise has said so by a SystemExit of its own

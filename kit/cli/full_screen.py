@@ -7,7 +7,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 
 from kit.cli import ScreenClosed, options
-from kit.interruption import ended_by_signals
 from kit.tui.terminal import TerminalDecision
 from kit.workspace import Workspace, open_workspace
 
@@ -34,8 +33,7 @@ def run_screen(
     """Runs the app with the screen that ``make_screen`` builds until the user leaves it.
 
     ``make_screen`` imports its screen itself: textual reads the environment when it is imported, and that is set
-    here first. Returns the screen, and the exit code: 0 unless the app failed or, in ``ended_by_signals``, a signal has
-    ended it. What the screen has made is there in every case.
+    here first. Returns the screen, and the exit code: 0 unless the app failed or a signal has ended it. What the screen has made is there in every case.
     """
     os.environ.update(terminal.environment())
     from kit.tui.app import KitApp
@@ -51,7 +49,6 @@ def run_screen(
     return screen, app.return_code or 0
 
 
-@ended_by_signals()
 def show_screen(terminal: TerminalDecision, make_screen: Callable[[KitApp], Screen[Any]]) -> NoReturn:
     """The same, for a verb that ends with its screen; at SIGTERM and SIGHUP too, after the screen has saved what it keeps."""
     _, code = run_screen(terminal, make_screen)

@@ -240,7 +240,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                 _, seconds = begin_repair(journal, chosen, answers_folder(opened_workspace))
             judgement = judge(chosen, answer, opened_workspace.runs, seconds)
         except (LookupError, ChallengeError, RunError, OSError) as error:
-            options.fail(str(error))
+            options.fail(options.describe_error(error))
         record_judgement(journal, chosen, judgement)
         click.echo(f"{judgement.text}\n  {judgement.medal.title}")
 
@@ -346,6 +346,7 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
     from kit.cli.plain import PlainSession, run_plain_session
     from kit.host.private_folder import private_folder
     from kit.run.recording import RecordingError, load_recording
+    from kit.run.recording_file import RecordingFile
     from kit.school.game.race import SEED, RaceReferee, judge_recording
 
     scenario = level.find_scenario()
@@ -368,7 +369,7 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
                 find_controller("teleop", opened_workspace.controllers),
                 seed=SEED,
                 folder=opened_workspace.controllers,
-                record=file,
+                record=RecordingFile(file),
                 prints_file=False,
                 observer=referee,
                 report=report,

@@ -321,7 +321,7 @@ def _drive_scene(request: Drive, opened_workspace: Workspace, input_buffer: Inpu
                 find_controller("teleop", opened_workspace.controllers),
                 seed=scene.seed,
                 folder=opened_workspace.controllers,
-                record=request.file,
+                record=options.recording_file(request.file),
                 input_buffer=input_buffer,
             )
         )

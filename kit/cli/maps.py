@@ -199,6 +199,7 @@ def _title(name: str) -> str:
 def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str | None) -> None:
     """Opens the sheet, and tells what was made of it. The drawing is kept beside the map, to be changed later."""
     from kit.mapmaking.new_map import MapSketch, read_drawing, write_map
+    from kit.mapmaking.sketch_draft import SketchDraft
 
     terminal = options.full_screen(
         "Drawing on the screen",
@@ -211,6 +212,9 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
         sketch = MapSketch.room(int(columns), int(rows), cell)
     except ValueError as error:
         raise click.UsageError(f"--size takes two numbers, such as 40x20 ({error}).") from None
+
+    draft = SketchDraft(folder)
+    sketch, note = (sketch, "") if draft.found is None else (draft.found, "as you left it, not saved")
 
     def save(drawn: MapSketch) -> NewMap:
         made = write_map(
@@ -225,11 +229,15 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
     def make_screen(app: KitApp) -> MapDrawingScreen:
         from kit.tui.screens.map_drawing import MapDrawingScreen
 
-        return MapDrawingScreen(app.kit_theme, folder.name, sketch, save)
+        return MapDrawingScreen(app.kit_theme, folder.name, sketch, save, note=note, keep=draft.keep)
 
     screen, code = run_screen(terminal, make_screen)
+    keeps = screen.saved is None and not screen.is_given_up
+    draft.close(keeps=keeps)
     if screen.saved is not None:
         _report(screen.saved, glyphs)
+    elif keeps and (note or screen.sketch != sketch):
+        click.echo(f"The map is not saved yet. `kit maps new {folder.name}` shows your drawing again.")
     else:
         click.echo("Nothing was saved.")
     raise ScreenClosed(code)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import click
 
+from kit.cli import NO_ROOM, describe_no_room
 from kit.plain_text import escape_controls
 from kit.tui.terminal import (
     COLOUR_CHOICES,
@@ -25,6 +26,7 @@ from kit.tui.terminal import (
 from kit.workspace import Workspace, WorkspaceError, open_workspace
 
 if TYPE_CHECKING:
+    from kit.run.recording_file import RecordingFile
     from kit.school.progress import ProgressJournal
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
@@ -60,8 +62,30 @@ def open_journal(workspace: Workspace) -> ProgressJournal:
 
 
 def describe_os_error(error: OSError) -> str:
-    """Formats an error with its file."""
+    """Formats an error with its file, and the way out where there is no room."""
+    if error.errno in NO_ROOM:
+        return describe_no_room(error)
     return f"{error.filename}: {error.strerror}" if error.filename and error.strerror else str(error)
+
+
+def recording_file(file: Path | None) -> RecordingFile | None:
+    """Opens the file of ``--record``, and says what was restored in its folder; ends the verb where it cannot be written."""
+    if file is None:
+        return None
+    from kit.run.recording_file import RecordingFile
+
+    try:
+        opened = RecordingFile(file)
+    except OSError as error:
+        fail(describe_os_error(error))
+    for notice in opened.notices:
+        click.echo(escape_controls(notice), err=True)
+    return opened
+
+
+def describe_error(error: Exception) -> str:
+    """What an error says, with the file where it is one of the system."""
+    return describe_os_error(error) if isinstance(error, OSError) else str(error)
 
 
 def replace_unencodable(text: str) -> str:

@@ -24,7 +24,8 @@ from kit.ros.log import LogRecord
 from kit.run.episode import EndCondition, EndReason, run_until
 from kit.run.lockstep import Observer
 from kit.run.pacing import MAXIMUM, REAL_TIME, Schedule
-from kit.run.recording import Recorder, save_recording
+from kit.run.recording import Recorder
+from kit.run.recording_file import RecordingFile
 from kit.run.scenario import Scenario, find_scenario
 from kit.run.session import Session
 from kit.run.view import ViewBuilder, format_log
@@ -144,7 +145,7 @@ class PlainSession:
         folder: Path,
         root: Path | None = None,
         socket_dir: Path | None = None,
-        record: Path | None = None,
+        record: RecordingFile | None = None,
         input_buffer: InputBuffer | None = None,
         prints_file: bool = True,
         observer: Observer | None = None,
@@ -256,9 +257,9 @@ class PlainSession:
             self.lines.close()
             self._close_world()
             if self._record is not None and self._recorder is not None:
-                save_recording(self._recorder.recording(), self._record)
+                self._record.complete(self._recorder.recording())
                 if self._prints_file:
-                    click.echo(f"Drive saved to {self._record}.")
+                    click.echo(f"Drive saved to {self._record.file}.")
 
     def _open(self, scenario: Scenario) -> Session:
         session = Session(scenario, seed=self._seed, always_scan=True, on_message=_print_log)
@@ -270,7 +271,7 @@ class PlainSession:
                 session.runner.participants.append(self._inspection_server)
         self._recorder: Recorder | None = None
         if self._record is not None:
-            self._recorder = Recorder.for_scenario(scenario, session.runner.simulation)
+            self._recorder = Recorder.for_scenario(scenario, session.runner.simulation, self._record)
             session.runner.observers.append(self._recorder)
         self._load_controller(session)
         return session

@@ -13,8 +13,10 @@ from kit.cli import learning_options, options
 from kit.cli.full_screen import show_screen
 from kit.learning.policies.policies import Policy, load_policy
 from kit.learning.training.runs import find_run
+from kit.plain_text import escape_controls
 from kit.run.animation import AnimationSettings, ExportError, count_frames, export_recording
 from kit.run.recording import Recording, RecordingError, load_recording, rerun
+from kit.run.recording_file import restore_recordings
 from kit.run.scenario import Scenario, find_recorded_scenario
 from kit.school.game.player_progress import find_playable_level
 from kit.school.game.two_players import CannotShare, recorded_scenario
@@ -96,6 +98,8 @@ def command(
 
     Exit code of --check: 0 the same run; 1 a different run; 2 the file or its world cannot be read.
     """
+    for notice in restore_recordings(file.absolute().parent) if not file.exists() else ():
+        click.echo(escape_controls(notice), err=True)
     try:
         recording = load_recording(file)
         scenario = _scenario(recording, file, root)

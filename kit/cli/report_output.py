@@ -164,6 +164,6 @@ def explained_errors() -> Iterator[None]:
     except BrokenPipeError:
         raise  # whoever read the output has enough; click ends quietly
     except OSError as error:
-        options.fail(f"{options.describe_os_error(error)}.")
+        options.fail(options.describe_os_error(error))
     except (ProgressError, WorldError) as error:
         options.fail(str(error))

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +19,7 @@ from kit.ros.node.node import Node
 from kit.ros.node.publisher import Publisher
 
 if TYPE_CHECKING:
-    from kit.ros.bags import Bag
+    from kit.ros.bags import Bag, BagRecorder
 
 
 @click.group()
@@ -59,7 +60,8 @@ def record(
     kit ros bag record -a -o my_drive
     kit ros bag record /static_laser /cmd_vel
     """
-    from kit.ros.bags import RECORDER, BagError, BagRecorder
+    from kit.ros.bag_storage import BagError
+    from kit.ros.bags import RECORDER, BagRecorder
 
     if every == bool(topics):
         exit_with_error("Give the topics to record, or -a for all of them.")
@@ -73,6 +75,9 @@ def record(
     try:
         recorder = BagRecorder(client.graph, folder, topics=chosen, storage=storage, node=node, hidden=hidden)
 
+        for notice in recorder.notices:
+            log(notice)
+
         def has_stopped() -> bool:
             recorder.exchange()
             for name in sorted(set(recorder.topics) - known):
@@ -80,15 +85,12 @@ def record(
                 known.add(name)
             return recorder.failure is not None
 
-        with recorder:
+        with _told(recorder, log, folder):
             has_stopped()
             for name in recorder.missing:
                 log(f"No node publishes '{name}' yet; waiting for it")
             log("Recording... press Ctrl-C to stop")
-            try:
-                client.graph.wait(has_stopped)
-            finally:
-                log(f"{recorder.count} messages in {folder}")
+            client.graph.wait(has_stopped)
     except BagError as problem:
         exit_with_error(str(problem))
 
@@ -134,7 +136,8 @@ def play(
     \b
     kit ros bag play my_drive --topics /cmd_vel
     """
-    from kit.ros.bags import BagError, read_messages
+    from kit.ros.bag_storage import BagError
+    from kit.ros.bags import read_messages
 
     bag = _read(folder)
     names = dict(entry.split(":=", 1) for entry in remap if ":=" in entry)
@@ -168,10 +171,25 @@ def play(
         exit_with_error(str(problem))
 
 
+@contextmanager
+def _told(recorder: BagRecorder, log: Callable[[str], object], folder: Path) -> Iterator[None]:
+    """Closes a recorder at the end, and says how many messages are kept."""
+    try:
+        with recorder:
+            yield
+    finally:
+        log(f"{recorder.count} messages in {folder}")
+
+
 def _read(folder: Path) -> Bag:
-    from kit.ros.bags import BagError, read_bag
+    """The summary of a bag, restored before if its recording was killed; ends the command where there is none."""
+    from kit.ros.bag_storage import BagError, restore_bags
+    from kit.ros.bags import read_bag
 
     try:
+        if not folder.exists():
+            for notice in restore_bags(folder.absolute().parent):
+                click.echo(notice, err=True)
         return read_bag(folder)
     except BagError as problem:
         exit_with_error(str(problem))

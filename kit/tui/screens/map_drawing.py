@@ -155,10 +155,22 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (60, "-wide")]  # noqa: RUF012 - Textual's own
 
     def __init__(
-        self, theme: Theme, name: str, sketch: MapSketch, save: Callable[[MapSketch], NewMap]
+        self,
+        theme: Theme,
+        name: str,
+        sketch: MapSketch,
+        save: Callable[[MapSketch], NewMap],
+        *,
+        note: str = "",
+        keep: Callable[[MapSketch], str] = lambda sketch: "",
     ) -> None:
-        """``save`` writes the map, called in another thread; ValueError and OSError are told and nothing is lost."""
+        """``save`` writes the map, called in another thread; ValueError and OSError are told and nothing is lost. ``note``:
+        what is said first. ``keep`` is called after each change, and returns what is to be said of it."""
         super().__init__()
+        self._note = note
+        self._keep = keep
+        self.is_given_up = False
+        """Whether the user has said that the drawing is not wanted."""
         self._name = name
         self._save = save
         self.sketch = sketch
@@ -181,7 +193,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
         yield TextRows(id="keys")
 
     def on_mount(self) -> None:
-        self.call_after_refresh(self._show)
+        self.call_after_refresh(self._show, self._note)
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show)
@@ -227,8 +239,8 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
     def _change(self, sketch: MapSketch, *, remembers: bool = True) -> None:
         if remembers and sketch != self.sketch:
             self._before = [*self._before, self.sketch][-MAX_UNDO:]
-        self.sketch = sketch
-        self._show()
+        is_changed, self.sketch = sketch != self.sketch, sketch
+        self._show(self._keep(sketch) if is_changed else "")
 
     # Keys and mouse
 
@@ -271,8 +283,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
 
     def action_undo(self) -> None:
         if self._before:
-            self.sketch = self._before.pop()
-            self._show()
+            self._change(self._before.pop(), remembers=False)
 
     @work(exclusive=True)
     async def action_save(self) -> None:
@@ -287,10 +298,11 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
 
     @work(exclusive=True)
     async def action_back(self) -> None:
-        if self._before:
+        if self._before or self._note:
             choices = [PickerItem("stay", "go on drawing"), PickerItem("leave", "leave without saving")]
             if await self.app.push_screen_wait(Picker("The map is not saved", choices)) != "leave":
                 return
+        self.is_given_up = True
         self._leave()
 
     def _leave(self) -> None:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
     from kit.run.lockstep import Observer
     from kit.run.place_driver import PlaceDriver
+    from kit.run.recording import RecordingStore
     from kit.run.scenario import Scenario
     from kit.run.session import Session
     from kit.tui.widgets.program_editor import ProgramEditor
@@ -79,9 +80,9 @@ class PlayScreen(WatchScreen):
         runs: Path,
         seed: int = 0,
         socket_dir: Path | None = None,
-        records: bool = False,
+        record: RecordingStore | None = None,
     ) -> None:
-        super().__init__(theme, case or place, seed=seed, socket_dir=socket_dir, records=records)
+        super().__init__(theme, case or place, seed=seed, socket_dir=socket_dir, store=record)
         self._theme = theme
         self._runs = runs
         self._folder = folder

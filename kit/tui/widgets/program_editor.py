@@ -15,6 +15,7 @@ from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.highlight import HighlightTheme, TokenType, highlight
 from textual.message import Message
+from textual.timer import Timer
 from textual.widgets import TextArea
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers
@@ -29,6 +30,10 @@ DRAFT_SUFFIX: Final = ".unsaved"
 """Ending of the file beside the program that keeps what was typed and not saved when the screen was left."""
 MAX_BYTES: Final = 1_000_000
 """A file larger than this is no program that anybody types."""
+
+
+DRAFT_INTERVAL_S: Final = 1.0
+"""What has been typed is on the disk after so long, saved or not [s]."""
 
 
 class ProgramFileError(Exception):
@@ -74,12 +79,16 @@ class ProgramFile:
         self._known = text
         self.drop_draft()
 
-    def keep_draft(self, text: str) -> None:
-        """Keeps what is not saved beside the file, for the next time. What cannot be kept is lost, silently: nobody looks
-        any more."""
-        with suppress(OSError):
+    def keep_draft(self, text: str) -> str:
+        """Keeps what is not saved beside the file, for the next time. Returns why that was not possible; empty if it was."""
+        try:
             if text != self._known:
                 write_atomically(self.draft_file, text.encode())
+            else:
+                self.draft_file.unlink(missing_ok=True)
+        except OSError as error:
+            return f"not on the disk: {error.strerror}"
+        return ""
 
     def drop_draft(self) -> None:
         """Forgets the draft."""
@@ -233,6 +242,7 @@ class ProgramEditor(Vertical):
         self._notice: Row = ()
         self._may_overwrite = False
         self.area = PythonTextArea()
+        self._draft_timer: Timer | None = None
 
     @property
     def program(self) -> ProgramFile:
@@ -264,8 +274,13 @@ class ProgramEditor(Vertical):
         self._show()
 
     def keep_draft(self) -> None:
-        """Keeps what is not saved."""
-        self._program.keep_draft(self.area.text)
+        """Keeps what is not saved, and says so where that is not possible."""
+        if self._draft_timer is not None:
+            self._draft_timer.stop()
+            self._draft_timer = None
+        if problem := self._program.keep_draft(self.area.text):
+            self._notice = row((problem, "bad"))
+            self._show()
 
     def save(self) -> None:
         """Saves; if somebody else has saved the file meanwhile, only when asked twice."""
@@ -306,6 +321,8 @@ class ProgramEditor(Vertical):
     def on_text_area_changed(self, event: TextArea.Changed) -> None:
         if not self.is_saved and not self._may_overwrite and self._program.draft is None:
             self._notice = ()
+        if self._draft_timer is None and not self.is_saved:
+            self._draft_timer = self.set_timer(DRAFT_INTERVAL_S, self.keep_draft)
         self._show()
 
     def on_descendant_focus(self) -> None:

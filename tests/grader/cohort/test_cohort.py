@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime, timedelta, tzinfo
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -33,6 +33,7 @@ from grader.cohort.gradebook import (
     as_json,
     changes,
     choose_submissions,
+    find_zone,
     gradebook_rows,
     parse_time,
     read_policy,
@@ -222,8 +223,8 @@ def test_late_rules_are_applied_when_the_table_is_made(queue: Queue, tmp_path: P
     for key in queue.waiting():
         grade_job(queue, key)
     policy_file, times_file = tmp_path / "late.yaml", tmp_path / "times.csv"
-    policy_file.write_text("due: 2026-11-30T12:00:00\nper_day: 0.5\n")
-    times_file.write_text("name,submitted\ns2,2026-11-30T13:00:00\ns1,2026-11-30T11:00:00\n")
+    policy_file.write_text("due: 2026-11-30T12:00:00Z\nper_day: 0.5\n")
+    times_file.write_text("name,submitted\ns2,2026-11-30T13:00:00Z\ns1,2026-11-30T11:00:00Z\n")
     results = {path.name: path.read_bytes() for path in (queue.folder / "results").iterdir()}
     table = {
         row.name: row
@@ -274,9 +275,9 @@ def test_a_submission_without_a_grade_is_not_passed_over() -> None:
 def test_the_gradebook_says_which_counts_and_who_has_no_time(queue: Queue, tmp_path: Path) -> None:
     times, late = tmp_path / "times.csv", tmp_path / "late.yaml"
     times.write_text(
-        "name,submitted,student\ns0,2026-11-30T11:00:00,ada\ns1,2026-11-29T11:00:00,ada\ns2,2026-11-29T11:00:00,\n"
+        "name,submitted,student\ns0,2026-11-30T11:00:00Z,ada\ns1,2026-11-29T11:00:00Z,ada\ns2,2026-11-29T11:00:00Z,\n"
     )
-    late.write_text("due: 2026-11-30T12:00:00\n")
+    late.write_text("due: 2026-11-30T12:00:00Z\n")
     book = ["gradebook", str(queue.folder), "--times", str(times), "--late", str(late), "--json"]
     done = CliRunner().invoke(main, book)
     assert done.exit_code == 0
@@ -284,7 +285,7 @@ def test_the_gradebook_says_which_counts_and_who_has_no_time(queue: Queue, tmp_p
     table = {row.name: row for row in gradebook.read_json(done.stdout)}
     assert list(table) == ["ada", "broken", "copy", "link", "s2"]
     assert table["ada"].note.startswith("s0, the latest of 2")
-    times.write_text("name,submitted\nnobody,2026-11-30T11:00:00\n")
+    times.write_text("name,submitted\nnobody,2026-11-30T11:00:00Z\n")
     done = CliRunner().invoke(main, book)
     assert (done.exit_code, "nobody" in done.stderr) == (2, True)
 
@@ -569,3 +570,72 @@ def test_a_machine_no_level_1_uses_no_secrets_unless_told(tmp_path: Path) -> Non
     code, told = verb("check", file, "--assignment", folder, "--secret")
     assert (code, "--level 0" in told) == (2, True)
     assert verb("check", file, "--assignment", folder, "--secret", "--level", "0")[0] == 1
+
+
+LISBON, BERLIN = find_zone("Europe/Lisbon"), find_zone("Europe/Berlin")
+
+
+@every_case(
+    ("text", "zone", "read"),
+    [
+        ("2026-03-28T23:59:00+01:00", None, "2026-03-28T22:59:00"),
+        ("2026-03-28T23:59:00Z", LISBON, "2026-03-28T23:59:00"),
+        ("2026-07-01 12:00", LISBON, "2026-07-01T11:00:00"),  # summer time
+        ("2026-07-01 12:00", find_zone("UTC"), "2026-07-01T12:00:00"),
+        ("2026-03-28", BERLIN, "2026-03-28T22:59:59"),  # the end of the day
+        ("2026-03-29", BERLIN, "2026-03-29T21:59:59"),  # of the day on which clocks change too
+        ("2026-07-01 12:00", None, "no time zone"),
+        ("2026-03-28", None, "no time zone"),
+        ("2026-03-29 02:30", BERLIN, "comes never"),
+        ("2026-10-25 02:30", BERLIN, "comes twice"),
+        ("2026-03-28 24:00", BERLIN, "must be a date and time"),
+        ("29/03/2026 23:59", BERLIN, "must be a date and time"),
+        ("03.04.2026", BERLIN, "must be a date and time"),
+    ],
+)
+def test_a_due_date_is_read_in_one_way_or_refused(text: str, zone: tzinfo | None, read: str) -> None:
+    try:
+        found = parse_time(text, zone, whole_day=True).astimezone(UTC).isoformat()
+    except ValueError as problem:
+        found = str(problem)
+    assert found.removesuffix("+00:00") == read or (read[0].isalpha() and read in found)
+
+
+def test_when_a_submission_came_needs_a_time_of_day() -> None:
+    with pytest.raises(ValueError, match="names a day and no time"):
+        parse_time("2026-03-28", BERLIN)
+
+
+@pytest.mark.parametrize(
+    ("rules", "kept"),
+    [
+        ("due: 2026-03-28\nzone: Europe/Lisbon\nper_day: 0.1\n", [1.0, 1.0, 0.8]),
+        ("due: 2026-03-28\nzone: Europe/Berlin\nper_day: 0.1\n", [1.0, 0.9, 0.8]),
+        ("due: 2026-03-28T23:30:00+01:00\nper_day: 0.1\n", [1.0, 0.9, 0.8]),
+    ],
+)
+def test_the_end_of_the_day_is_meant_and_said(tmp_path: Path, rules: str, kept: list[float]) -> None:
+    file, times = tmp_path / "late.yaml", tmp_path / "times.csv"
+    file.write_text(rules)
+    times.write_text(
+        "name,submitted\na,2026-03-28T22:30:00Z\nb,2026-03-28T22:59:59.5Z\nc,2026-03-30T12:00:00+02:00\n"
+    )
+    policy = read_policy(file)
+    submitted = read_submission_times(times, policy.zone)
+    assert [policy.kept(each.at) for each in submitted.values()] == pytest.approx(kept)
+    assert policy.due_text.startswith("due 2026-03-28 23:")
+
+
+@pytest.mark.parametrize(
+    "rules", ["due: 2026-07-01 12:00\n", "due: 2026-03-28\n", "due: 2026-03-28\nzone: Mars/Base\n"]
+)
+def test_a_due_date_in_no_zone_is_refused(tmp_path: Path, rules: str) -> None:
+    file = tmp_path / "late.yaml"
+    file.write_text(rules)
+    with pytest.raises(WorldError, match="zone"):
+        read_policy(file)
+
+
+def test_clocks_that_change_take_no_hour_from_a_student(tmp_path: Path) -> None:
+    policy = LatePolicy(parse_time("2026-03-28 23:00", BERLIN), per_day=0.1)
+    assert policy.kept(parse_time("2026-03-29 23:30", BERLIN)) == pytest.approx(0.9)  # 23.5 h later
