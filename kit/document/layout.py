@@ -30,7 +30,7 @@ from kit.document.blocks import (
 from kit.document.code_lines import broken_code
 from kit.document.markup import TextStyle, parse_markup, wrap_blocks
 from kit.document.plots import BLOCK_GLYPHS, WIDTH, PlotGlyphs, plot_lines
-from kit.document.rows import Row, StyledText, entry_rows, row
+from kit.document.rows import Row, StyledText, entry_rows, row, row_text
 from kit.document.tables import table_rows
 from kit.plain_text import printable_text, wrap
 
@@ -86,11 +86,6 @@ def rows_of(blocks: Sequence[Block], page: Page) -> list[Row]:
 def lines_of(blocks: Sequence[Block], page: Page = HEARD) -> list[str]:
     """The rows without tones."""
     return [row_text(each) for each in rows_of(blocks, page)]
-
-
-def row_text(parts: Row) -> str:
-    """The characters of a row, without blanks at its end."""
-    return "".join(text for text, _ in parts).rstrip()
 
 
 def document_lines(document: Document, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Iterator[str]:

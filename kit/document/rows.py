@@ -27,6 +27,11 @@ def row(*parts: str | StyledText) -> Row:
     return tuple((part, PLAIN) if isinstance(part, str) else part for part in parts)
 
 
+def row_text(parts: Row) -> str:
+    """The characters of a row, without blanks at its end."""
+    return "".join(text for text, _ in parts).rstrip()
+
+
 def spread(left: Row, right: Row, width: int) -> Row:
     """``left`` at the left edge and ``right`` at the right one; the left is cut where they meet."""
     used = sum(cell_len(text) for text, _ in right)
