@@ -27,6 +27,7 @@ from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once
 from grader.submitted_files import reading_submission
 from grader.task_files import read_task_choice
+from kit.document.layout import lines_of
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
 from kit.learning.environment.tasks import TaskSpec
@@ -116,7 +117,7 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
         outcome="tested",
         steps=sum(case.episodes for case in result.cases),
         explain_with=lambda name, params: _explain(result, name),
-        draw_with=lambda name: "\n".join(result.rows()),
+        draw_with=lambda name: "\n".join(lines_of([result.table()])),
     )
 
 

@@ -229,10 +229,10 @@ def _scale_rows(block: Scale, page: Page) -> list[Row]:
 def _table_rows(table: Table, page: Page) -> Iterator[Row]:
     if table.title:
         yield from (row(line) for line in wrap(printable_text(table.title), page.width))
-    placed = table_rows(table, page.width)
-    yield from placed.heads
-    for entry in placed.entries:
-        yield from entry
+    placed = table_rows(table, page.width - table.indent)
+    indent = row(" " * table.indent) if table.indent else ()
+    for each in (*placed.heads, *(each for entry in placed.entries for each in entry)):
+        yield (*indent, *each)
     if table.note:
         yield from (row(line) for line in wrap(printable_text(table.note), page.width))
 

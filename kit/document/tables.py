@@ -12,7 +12,7 @@ from kit.plain_text import COLUMN_GAP, fit_widths, printable_text, wrap
 
 MIN_TEXT_WIDTH: Final = 8
 """Columns that a column of words keeps when room is short."""
-MAX_CELL_LENGTH: Final = 120
+MAX_CELL_LENGTH: Final = 600
 LIST_MARGIN: Final = 3
 """Columns before the entries of a list: which one is chosen, and which are marked."""
 
