@@ -114,13 +114,20 @@ def wrap(text: str, width: int, first: str = "", rest: str = "") -> list[str]:
     """Wraps a text to lines of at most ``width`` characters, which begin with ``first`` and ``rest``; at least one line.
 
     It breaks at blanks alone, so that an option or a file name is never parted; a word that is longer than a line is broken
-    behind a slash or a comma where it has one.
+    behind a slash or a comma where it has one. A first word that fits on a later line alone begins there.
 
     >>> wrap("see runs/turn-1/log.csv --set gamma", 12)
     ['see', 'runs/turn-1/', 'log.csv', '--set gamma']
     """
-    longest = max(width - max(len(first), len(rest)), 1)
-    words = [part for word in text.split() for part in _parts_of(word, longest)]
+    room, longest = max(width - len(first), 1), max(width - len(rest), 1)
+    words = text.split()
+    if words and room < len(words[0]) <= longest:  # it fits where a line is less indented
+        return [first.rstrip(), *wrap(text, width, rest, rest)]
+    words = [
+        part
+        for number, word in enumerate(words)
+        for part in _parts_of(word, longest if number else min(room, longest))
+    ]
     return textwrap.wrap(
         " ".join(words), width, initial_indent=first, subsequent_indent=rest, break_on_hyphens=False
     ) or [first.rstrip()]

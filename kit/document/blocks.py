@@ -92,6 +92,7 @@ class Picture:
 
     lines: tuple[str, ...]
     indent: int = 2
+    tone: Tone = Tone.PLAIN
     is_tight: bool = False
 
 

@@ -127,7 +127,7 @@ def _rows(block: Block, page: Page) -> list[Row]:
             return _marked_rows(block, page)
         case Picture():
             indent = " " * block.indent
-            return [row(f"{indent}{line}".rstrip()) for line in block.lines]
+            return [row((f"{indent}{line}".rstrip(), block.tone)) for line in block.lines]
         case Table():
             return list(_table_rows(block, page))
         case Caution():
@@ -145,9 +145,8 @@ def _text_rows(block: Text, page: Page) -> list[Row]:
     text = printable_text(block.text)
     lead = f"{block.lead} " if block.lead and text else block.lead
     held = text + "\0" * len(block.tail)  # wrapped as one word, and taken off again
-    first, *others = wrap(
-        held, page.width, " " * (block.indent + len(lead)), " " * (block.indent + block.hang)
-    )
+    begin, later = " " * (block.indent + len(lead)), " " * (block.indent + block.hang)
+    first, *others = (line.replace("\0", "") for line in wrap(held, page.width, begin, later))
     made: list[Row] = [
         _parts(
             (" " * block.indent, ""), (lead, block.lead_tone), (first[block.indent + len(lead) :], block.tone)
@@ -155,8 +154,7 @@ def _text_rows(block: Text, page: Page) -> list[Row]:
     ]
     made += [_parts((line, block.tone)) for line in others]
     if block.tail:
-        *before, (last, tone) = made[-1]
-        made[-1] = _parts(*before, (last.rstrip("\0"), tone), (block.tail, Tone.DIM))
+        made[-1] = (*made[-1], (block.tail, Tone.DIM))
     return made
 
 
