@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Collection, Mapping, Sequence
 from itertools import pairwise
 from types import MappingProxyType
@@ -35,7 +34,7 @@ def no_trainings(tasks: Sequence[LearningTask], width: int, height: int) -> list
     rows = [*(row(f" {line}") for line in wrap(begin, width - 2)), row()]
     name_width = max((len(task.name) for task in tasks), default=0)
     for task in tasks:
-        summary = textwrap.shorten(task.summary, max(4, width - name_width - 4), placeholder=" ...")
+        (summary,) = wrap(task.summary, max(4, width - name_width - 4), most=1)
         rows.append(row((f" {task.name:{name_width}}", "bold"), f"  {summary}"))
     return rows[:height]
 
