@@ -11,9 +11,11 @@ import numpy as np
 
 from kit.arrays import FloatArray
 from kit.dialogue.actions import ScreenActions
+from kit.document.blocks import Text
+from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row, spread
 from kit.document.tables import list_rows
-from kit.plain_text import format_size, wrap
+from kit.plain_text import format_size
 from kit.render.curve import Axes, ChartPart, Curve, StackedCounts
 from kit.render.roles import Role
 from kit.tui.rows.key_rows import footer
@@ -31,12 +33,9 @@ def no_trainings(tasks: Sequence[LearningTask], width: int, height: int) -> list
     begin = (
         "No trainings yet. Press t to start one: choose a task, its cases, an algorithm, a reward, a seed."
     )
-    rows = [*(row(f" {line}") for line in wrap(begin, width - 2)), row()]
-    name_width = max((len(task.name) for task in tasks), default=0)
-    for task in tasks:
-        (summary,) = wrap(task.summary, max(4, width - name_width - 4), most=1)
-        rows.append(row((f" {task.name:{name_width}}", "bold"), f"  {summary}"))
-    return rows[:height]
+    from kit.learning.tasks.task_text import tasks_table
+
+    return rows_of([Text(begin), tasks_table(tasks)], Page(width=width - 2, margin=1))[:height]
 
 
 def training_list(
