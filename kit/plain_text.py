@@ -110,19 +110,25 @@ def printable_text(text: str) -> str:
     return "".join(c if is_printable(c) else " " if c.isspace() else "?" for c in text)
 
 
-def wrap(text: str, width: int, first: str = "", rest: str = "") -> list[str]:
+def wrap(text: str, width: int, first: str = "", rest: str = "", *, most: int | None = None) -> list[str]:
     """Wraps a text to lines of at most ``width`` characters, which begin with ``first`` and ``rest``; at least one line.
 
     It breaks at blanks alone, so that an option or a file name is never parted; a word that is longer than a line is broken
-    behind a slash or a comma where it has one.
+    behind a slash or a comma where it has one. A first word that fits on a later line alone begins there.
+    Where there are more than ``most`` lines, the last one ends with dots.
 
     >>> wrap("see runs/turn-1/log.csv --set gamma", 12)
     ['see', 'runs/turn-1/', 'log.csv', '--set gamma']
     """
+    room, longest = max(width - len(first), 1), max(width - len(rest), 1)
+    words = text.split()
+    if words and room < len(words[0]) <= longest:  # it fits where a line is less indented
+        below = None if most is None else max(most - 1, 1)
+        return [first.rstrip(), *wrap(text, width, rest, rest, most=below)][:most]
     words = [
         part
-        for number, word in enumerate(text.split())
-        for part in _parts_of(word, max(1, width - len(rest if number else first)))
+        for number, word in enumerate(words)
+        for part in _parts_of(word, longest if number else min(room, longest))
     ]
     return textwrap.wrap(
         " ".join(words),
@@ -131,6 +137,8 @@ def wrap(text: str, width: int, first: str = "", rest: str = "") -> list[str]:
         subsequent_indent=rest,
         break_on_hyphens=False,
         break_long_words=False,
+        max_lines=most,
+        placeholder=" ...",
     ) or [first.rstrip()]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kit.plain_text import format_size
+from kit.plain_text import format_size, wrap
 
 
 def test_a_size_has_the_unit_that_suits_it() -> None:
@@ -14,3 +14,9 @@ def test_a_size_up_to_a_tebibyte_fits_a_column_of_ten() -> None:
     for exponent in range(40):
         for size in (2**exponent - 1, 2**exponent, 1000 * 2**exponent // 999):
             assert len(format_size(size)) <= 10, size
+
+
+def test_a_first_word_is_whole_where_it_fits_on_a_later_line() -> None:
+    assert wrap("a-long-word b", 14, "[broken] ", "  ") == ["[broken]", "  a-long-word", "  b"]
+    assert wrap("ab cd", 14, "[broken] ", "  ") == ["[broken] ab cd"]
+    assert "".join(wrap("runs/" * 6, 14, "[broken] ", "  ")).replace(" ", "") == "[broken]" + "runs/" * 6

@@ -27,6 +27,7 @@ from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_o
 from grader.submitted_files import reading_submission
 from grader.task_files import read_task_choice
 from kit.array_archives import READ_ERRORS, check_arrays
+from kit.document.layout import lines_of
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
 from kit.learning.environment.tasks import TaskSpec
@@ -117,7 +118,7 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
         outcome="tested",
         steps=sum(case.episodes for case in result.cases),
         explain_with=lambda name, params: _explain(result, name),
-        draw_with=lambda name: "\n".join(result.rows()),
+        draw_with=lambda name: "\n".join(lines_of([result.table()])),
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from errno import EACCES, EDQUOT, EFBIG, EIO, EMFILE, ENAMETOOLONG, ENFILE, ENOSPC, EPERM, EROFS
 from importlib import import_module
@@ -115,10 +115,48 @@ class ScreenClosed(SystemExit):
 
 
 Verbs = Mapping[str, tuple[str, str]]
+_HELD: Final = "\ue000"
+"""In the place of a hyphen while click wraps a text: it would break an option there."""
+
+
+class WholeWordFormatter(click.HelpFormatter):
+    """Breaks the text of a command's help at blanks alone."""
+
+    def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
+        super().write_usage(prog, _held(args), prefix)
+
+    def write_text(self, text: str) -> None:
+        super().write_text(_held(text))
+
+    def write_dl(self, rows: Iterable[tuple[str, str]], col_max: int = 30, col_spacing: int = 2) -> None:
+        super().write_dl([(first, _held(second)) for first, second in rows], col_max, col_spacing)
+
+    def getvalue(self) -> str:
+        return super().getvalue().replace(_HELD, "-")
+
+
+def _held(text: str) -> str:
+    return text.replace("-", _HELD)
+
+
+class CommandContext(click.Context):
+    """What a command of the kit or the grader is called with."""
+
+    formatter_class = WholeWordFormatter
+
+
+def _prepared(command: click.Command) -> click.Command:
+    """The command, with its own commands, whose help is broken at blanks alone."""
+    command.context_class = CommandContext
+    for each in command.commands.values() if isinstance(command, click.Group) else ():
+        _prepared(each)
+    return command
 
 
 class LazyGroup(click.Group):
     """A group that imports a verb's module when the verb is used, and lists the verbs without importing any."""
+
+    context_class = CommandContext
 
     def __init__(
         self,
@@ -140,8 +178,7 @@ class LazyGroup(click.Group):
         if cmd_name not in self._verbs:
             return None
         module, _, name = self._verbs[cmd_name][0].partition(":")
-        command: click.Command = getattr(import_module(module), name or "command")
-        return command
+        return _prepared(getattr(import_module(module), name or "command"))
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]

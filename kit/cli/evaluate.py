@@ -11,13 +11,14 @@ from pathlib import Path
 import click
 
 from kit.cli import learning_options, options
+from kit.document.layout import Page, lines_of
 from kit.learning.environment.disturbances import UniformRange
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.evaluation import Evaluator, build_paths_scene, derive_seed, record_paths
 from kit.learning.policies.policies import Policy
 from kit.learning.policies.policy_node import create_policy_package, format_policy_node
-from kit.learning.policies.sweep import PolicySweep, find_kinds, format_sweep, sweep_csv
-from kit.learning.training.run_text import format_comparison
+from kit.learning.policies.sweep import PolicySweep, find_kinds, sweep_blocks, sweep_csv
+from kit.learning.training.run_text import comparison_tables
 from kit.learning.training.run_upkeep import draw_test_curves
 from kit.learning.training.runs import find_run
 from kit.render.encode import ENCODERS
@@ -142,7 +143,7 @@ def command(
                 )
             if place.disturbances:
                 click.echo(f"Under {place.disturbances}:")
-            click.echo("\n".join(result.rows()))
+            click.echo("\n".join(lines_of([result.table()])))
         if paths is not None or pictures is not None:
             _show_paths(found, place, paths or 10, pictures, seed, greedy=not sampled)
 
@@ -163,7 +164,8 @@ def _sweep(sweep: PolicySweep, title: str, csv_file: Path | None, as_json: bool)
         return
     click.echo(f"{title}: success rate, {points[0].episodes:,} episodes per value")
     columns = min(79, shutil.get_terminal_size().columns - 1)
-    click.echo("\n".join(format_sweep(points, ENCODERS["braille"](True), columns)))
+    blocks = sweep_blocks(points, ENCODERS["braille"](True), columns)
+    click.echo("\n".join(lines_of(blocks, Page(width=columns))))
 
 
 def _write_node(policy: Policy, file: Path) -> None:
@@ -236,7 +238,7 @@ def compare_command(
         if as_json:
             click.echo(json.dumps({name: result.as_dict() for name, result in results.items()}, indent=2))
         else:
-            click.echo("\n".join(format_comparison(results)))
+            click.echo("\n".join(lines_of(comparison_tables(results))))
         if curves:
             _draw(policies, workspace)
 

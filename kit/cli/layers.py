@@ -291,7 +291,7 @@ def explain(
         if on_screen:
             show_layers(task, Path(target).name)
         run = run_greedy(task.case)
-        echo_lines(words.wrap(task.case.title))
+        echo_lines(words.paragraph(task.case.title))
         echo_lines(to_plain_lines(draw_case(task.case, glyphs=choose_glyphs(glyphs))))
         echo_lines(["", "THE SLIDES' METHOD", ""])
         echo_lines(
@@ -364,7 +364,7 @@ def _patch(task: PlanningTask, world_plan: WorldPlan | None, also_shared: bool) 
 def show_plan(case: LayerCase, found: LayerPlan, world_plan: WorldPlan | None, time_limit: float) -> None:
     """Prints the plan as tables, its proof, the slides' method beside it, and relaxations where it is too large."""
     if world_plan is None:
-        echo_lines(words.wrap(case.title))
+        echo_lines(words.paragraph(case.title))
         echo_lines(words.plan_text(found))
         assignment, kept = found.assignment, 0
     else:

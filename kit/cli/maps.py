@@ -12,7 +12,8 @@ import click
 
 from kit.cli import ScreenClosed, options
 from kit.cli.full_screen import run_screen
-from kit.plain_text import table
+from kit.document.blocks import labelled_table
+from kit.document.layout import lines_of
 from kit.run.scenario import own_map_folder, scenario_on_map
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.catalogue import (
@@ -68,7 +69,7 @@ def command(ctx: click.Context) -> None:
 
 def _list() -> None:
     cards = all_maps()
-    click.echo("\n".join(table([(card.name, card.summary) for card in cards])))
+    click.echo("\n".join(lines_of([labelled_table((card.name, card.summary) for card in cards)])))
     own = _own_maps()
     if own:
         click.echo("\nYour own:")

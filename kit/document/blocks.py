@@ -7,6 +7,7 @@ as Markdown, CSV, JSON, HTML and SVG.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
@@ -91,6 +92,7 @@ class Picture:
 
     lines: tuple[str, ...]
     indent: int = 2
+    tone: Tone = Tone.PLAIN
     is_tight: bool = False
 
 
@@ -165,11 +167,22 @@ class Table:
     """Rows with the same first cell form a group: for readers it is shown once, in data formats on every row."""
     is_ruled: bool = True
     """Whether a line parts the heads from the rows."""
+    indent: int = 0
+    """Columns before its rows, below the title."""
     is_tight: bool = False
 
     def shows_first_cell(self, number: int) -> bool:
         """Whether the first cell of this row is shown to readers."""
         return not self.grouped or not number or self.rows[number][0] != self.rows[number - 1][0]
+
+
+def labelled_table(
+    rows: Iterable[tuple[Cell, ...]], title: str = "", *, indent: int = 0, is_tight: bool = False
+) -> Table:
+    """A table of texts without heads: names, and what is said of each."""
+    cells = tuple(rows)
+    columns = (Column("", CellStyle.TEXT),) * max(map(len, cells), default=1)
+    return Table("", title, columns, cells, indent=indent, is_tight=is_tight)
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,7 +30,7 @@ from kit.document.blocks import (
 from kit.document.code_lines import broken_code
 from kit.document.glyphs import BLOCK_GLYPHS, WIDTH, PlotGlyphs
 from kit.document.markup import TextStyle, parse_markup, wrap_blocks
-from kit.document.rows import Row, StyledText, entry_rows, row
+from kit.document.rows import Row, StyledText, entry_rows, row, row_text
 from kit.document.tables import table_rows
 from kit.plain_text import printable_text, wrap
 
@@ -88,11 +88,6 @@ def lines_of(blocks: Sequence[Block], page: Page = HEARD) -> list[str]:
     return [row_text(each) for each in rows_of(blocks, page)]
 
 
-def row_text(parts: Row) -> str:
-    """The characters of a row, without blanks at its end."""
-    return "".join(text for text, _ in parts).rstrip()
-
-
 def document_lines(document: Document, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Iterator[str]:
     """A whole document, line by line, 79 columns wide."""
     page = Page(glyphs=glyphs)
@@ -132,7 +127,7 @@ def _rows(block: Block, page: Page) -> list[Row]:
             return _marked_rows(block, page)
         case Picture():
             indent = " " * block.indent
-            return [row(f"{indent}{line}".rstrip()) for line in block.lines]
+            return [row((f"{indent}{line}".rstrip(), block.tone)) for line in block.lines]
         case Table():
             return list(_table_rows(block, page))
         case Caution():
@@ -152,8 +147,8 @@ def _text_rows(block: Text, page: Page) -> list[Row]:
     text = printable_text(block.text)
     lead = f"{block.lead} " if block.lead and text else block.lead
     held = text + "\0" * len(block.tail)  # wrapped as one word, and taken off again
-    wrapped = wrap(held, page.width, " " * (block.indent + len(lead)), " " * (block.indent + block.hang))
-    first, *others = (line.rstrip("\0") for line in wrapped)
+    begin, later = " " * (block.indent + len(lead)), " " * (block.indent + block.hang)
+    first, *others = (line.replace("\0", "") for line in wrap(held, page.width, begin, later))
     made: list[Row] = [
         _parts(
             (" " * block.indent, ""), (lead, block.lead_tone), (first[block.indent + len(lead) :], block.tone)
@@ -234,10 +229,10 @@ def _scale_rows(block: Scale, page: Page) -> list[Row]:
 def _table_rows(table: Table, page: Page) -> Iterator[Row]:
     if table.title:
         yield from (row(line) for line in wrap(printable_text(table.title), page.width))
-    placed = table_rows(table, page.width)
-    yield from placed.heads
-    for entry in placed.entries:
-        yield from entry
+    placed = table_rows(table, page.width - table.indent)
+    indent = row(" " * table.indent) if table.indent else ()
+    for each in (*placed.heads, *(each for entry in placed.entries for each in entry)):
+        yield (*indent, *each)
     if table.note:
         yield from (row(line) for line in wrap(printable_text(table.note), page.width))
 

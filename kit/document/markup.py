@@ -7,11 +7,12 @@ the check that a text fits.
 from __future__ import annotations
 
 import re
-import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
+
+from kit.plain_text import wrap
 
 BLOCK_INDENT: Final = "    "
 BULLET: Final = "- "
@@ -119,38 +120,28 @@ def _split_styles(text: str) -> list[StyledText]:
 
 
 def _wrap_styled(pieces: Sequence[StyledText], width: int, first: str, rest: str) -> list[StyledRow]:
-    """Wraps the characters, then gives them their styles back. Code is wrapped like words: a long one moves down whole."""
-    # A blank inside code must not be a place to break, nor be dropped at a line's end.
+    """Wraps the characters, then gives them their styles back. Code is wrapped like a word: it moves down whole, and is broken
+    at its blanks only where it is longer than a row."""
+    longest = width - len(rest)
     held = "".join(
-        piece.text.replace(" ", "\0") if piece.style is TextStyle.CODE else piece.text for piece in pieces
+        piece.text.replace(" ", "\0")
+        if piece.style is TextStyle.CODE and len(piece.text) <= longest
+        else piece.text
+        for piece in pieces
     )
-    wrapper = _PathWrapper(width, initial_indent=first, subsequent_indent=rest, break_on_hyphens=False)
-    lines = wrapper.wrap(held)
     rows: list[StyledRow] = []
     at = 0
-    for index, line in enumerate(lines):
+    for index, line in enumerate(wrap(held, width, first, rest)):
         lead = first if index == 0 else rest
         row = [StyledText(lead, TextStyle.PLAIN)] if lead else []
-        at = held.index(line.removeprefix(lead), at)  # past the blanks that the break swallowed
-        end = at + len(line) - len(lead)
+        end = at
+        for number, word in enumerate(line.removeprefix(lead).split()):
+            start = held.index(word, end)
+            at, end = (at if number else start), start + len(word)
         row += _cut(pieces, at, end)
         at = end
         rows.append(_join_equal_styles(row))
     return rows
-
-
-class _PathWrapper(textwrap.TextWrapper):
-    """Breaks a word that is longer than a line behind a slash or a comma where it has one."""
-
-    def _handle_long_word(
-        self, reversed_chunks: list[str], cur_line: list[str], cur_len: int, width: int
-    ) -> None:
-        chunk, room = reversed_chunks[-1], max(1, width - cur_len)
-        cut = max(chunk.rfind(sign, 0, room) for sign in "/,\0") + 1
-        if not cut and cur_line:
-            return  # it begins on a line of its own
-        cur_line.append(chunk[: cut or room])
-        reversed_chunks[-1] = chunk[cut or room :]
 
 
 def _cut(pieces: Sequence[StyledText], begin: int, end: int) -> Iterator[StyledText]:

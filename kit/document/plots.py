@@ -6,13 +6,9 @@ import math
 from collections.abc import Iterator
 from typing import Final
 
-import numpy as np
-
 from kit.document.blocks import BarChart, Histogram, Plot, ScatterPlot, ScenePlot
 from kit.document.glyphs import BLOCK_GLYPHS, WIDTH, PlotGlyphs
 from kit.plain_text import printable_text, wrap
-from kit.render.encode import ENCODERS
-from kit.render.world_text import scene_rows
 
 BAR_WIDTH: Final = 40
 SCATTER_SIZE: Final = (56, 15)
@@ -79,7 +75,8 @@ def _scatter_lines(scatter: ScatterPlot, glyphs: PlotGlyphs) -> Iterator[str]:
 
     if scatter.line is not None:
         slope, height = scatter.line
-        for x in np.linspace(left, right, columns):
+        for number in range(columns):
+            x = left + (right - left) * number / (columns - 1)
             y = slope * x + height
             if low <= y <= high:
                 row, column = place(x, y)
@@ -101,5 +98,8 @@ def _scatter_lines(scatter: ScatterPlot, glyphs: PlotGlyphs) -> Iterator[str]:
 
 
 def _scene_lines(plot: ScenePlot, glyphs: PlotGlyphs) -> Iterator[str]:
+    from kit.render.encode import ENCODERS  # in here, with numpy: most texts hold no map
+    from kit.render.world_text import scene_rows
+
     rows = scene_rows(plot.scene, WIDTH, SCENE_ROWS, ENCODERS[glyphs.encoder](True))
     yield from (row.rstrip() for row in rows if row.strip())

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import zip_longest
 from typing import Final
 
-from rich.cells import cell_len, set_cell_size
+from rich.cells import cell_len
 
 from kit.plain_text import wrap
 
@@ -15,6 +15,8 @@ MARGIN: Final = 2
 TEXT_WIDTH: Final = 76
 """Columns of a text where nothing else is said: longer lines are hard to read, however wide the terminal."""
 PLAIN: Final = ""
+CUT: Final = "… "
+"""Where a row is cut; a terminal that has no such sign shows two dots in the same two columns."""
 
 StyledText = tuple[str, str]
 """A text and its tone."""
@@ -27,16 +29,28 @@ def row(*parts: str | StyledText) -> Row:
     return tuple((part, PLAIN) if isinstance(part, str) else part for part in parts)
 
 
+def row_text(parts: Row) -> str:
+    """The characters of a row, without blanks at its end."""
+    return "".join(text for text, _ in parts).rstrip()
+
+
 def spread(left: Row, right: Row, width: int) -> Row:
-    """``left`` at the left edge and ``right`` at the right one; the left is cut where they meet."""
-    used = sum(cell_len(text) for text, _ in right)
-    kept: list[StyledText] = []
-    room = max(0, width - used - 1)
-    for text, style in left:
-        text = text if cell_len(text) <= room else set_cell_size(text, room)
-        room -= cell_len(text)
-        kept.append((text, style))
-    return (*kept, (" " * (room + 1), PLAIN), *right)
+    """``left`` at the left edge and ``right`` at the right one; the left is cut where they meet, and says so.
+
+    >>> row_text(spread(row("Lesson 3: ", ("Sensors", "bold")), row("2 of 5"), 22))
+    'Lesson 3: Sen…  2 of 5'
+    """
+    room = width - row_width(right) - 1
+    if row_width(left) > room:
+        has_sign = room > 2 * len(CUT)
+        fitting = broken(left, room - len(CUT) if has_sign else room)[0] if room > 1 else ()
+        left = (*fitting, (CUT, PLAIN)) if has_sign else fitting
+    return (*left, (" " * (max(0, room - row_width(left)) + 1), PLAIN), *right)
+
+
+def row_width(parts: Row) -> int:
+    """The columns that a row takes."""
+    return sum(cell_len(text) for text, _ in parts)
 
 
 def side_by_side(left: Sequence[Row], right: Sequence[Row], column: int) -> list[Row]:

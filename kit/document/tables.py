@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from typing import Final, NamedTuple
 
 from kit.document.blocks import Cell, CellStyle, Column, Table, Tone, ToneText, format_cell
-from kit.document.rows import Row, row
+from kit.document.rows import Row, row, row_text
 from kit.plain_text import COLUMN_GAP, fit_widths, printable_text, wrap
 
 MIN_TEXT_WIDTH: Final = 8
 """Columns that a column of words keeps when room is short."""
-MAX_CELL_LENGTH: Final = 120
+MAX_CELL_LENGTH: Final = 600
+LIST_MARGIN: Final = 3
+"""Columns before the entries of a list: which one is chosen, and which are marked."""
 
 
 class TableRows(NamedTuple):
@@ -43,6 +45,33 @@ def table_rows(table: Table, width: int) -> TableRows:
         for texts, told in zip(cells, table.rows, strict=True)
     )
     return TableRows(tuple(head), tuple(entries))
+
+
+def list_rows(table: Table, width: int, height: int, chosen: int, marked: Collection[int] = ()) -> list[Row]:
+    """A table from which an entry is chosen: its heads, and as many entries as there is room for, the chosen one among them.
+
+    ``marked``: the numbers of entries with a mark of their own.
+    """
+    if table.rows:
+        first, *others = table.rows[chosen]
+        shown = ToneText(format_cell(first, table.columns[0]), Tone.CHOSEN)
+        table = replace(table, rows=(*table.rows[:chosen], (shown, *others), *table.rows[chosen + 1 :]))
+    placed = table_rows(replace(table, is_ruled=False), width - LIST_MARGIN)
+    heads = [row((" " * LIST_MARGIN + row_text(each), Tone.DIM)) for each in placed.heads]
+    made: list[Row] = []
+    at = (0, 0)
+    for number, entry in enumerate(placed.entries):
+        if number == chosen:
+            at = (len(made), len(entry))
+        signs = row(
+            (">" if number == chosen else " ", Tone.BOLD), ("*" if number in marked else " ", Tone.WARN), " "
+        )
+        made += [
+            (*(signs if not level else row(" " * LIST_MARGIN)), *each) for level, each in enumerate(entry)
+        ]
+    room = max(1, height - len(heads))
+    first_row = max(0, min(at[0] + at[1] // 2 - room // 2, len(made) - room))
+    return [*heads, *made[first_row : first_row + room]]
 
 
 def without_spare_columns(table: Table, width: int) -> Table:

@@ -15,6 +15,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from kit.document.blocks import Picture, Text, Tone
+from kit.plain_text import printable_text
 
 SCHEMA: Final = 1
 
@@ -284,7 +285,7 @@ def format_points(points: float) -> str:
 
 
 INDENT: Final = 5
-"""Columns by which what is said of a criterion stands to the right."""
+"""Columns before what is said of a criterion below its title."""
 MAX_RATIONALE: Final = 600
 MAX_VALUE: Final = 300
 """Characters of an expected or actual value that are shown."""
@@ -321,8 +322,8 @@ def points_text(points: float, max_points: float) -> str:
 def criterion_blocks(
     criterion: CriterionResult, *, hints: int = 0, more_hints: str = "", log_lines: int = 0
 ) -> list[Text | Picture]:
-    """What is said of one criterion: mark, title and points; of one that is not passed also the rationale, the expected and
-    the actual value, and the next steps.
+    """One criterion: mark, title and points; of one that is not passed also the rationale, the expected and the actual value,
+    and the next steps.
 
     ``hints``: how many of its hints to show. ``more_hints``: how to see more, shown where there are more.
     ``log_lines``: how many of the last lines that a crashed program printed to show.
@@ -330,21 +331,23 @@ def criterion_blocks(
     blocks: list[Text | Picture] = [_heading(criterion)]
     if criterion.is_passed:
         return blocks
-    if criterion.rationale:
-        blocks.append(_paragraph(_shortened(criterion.rationale, MAX_RATIONALE)))
+    blocks.append(_paragraph(_shortened(criterion.rationale, MAX_RATIONALE)))
     if criterion.actual:
-        if criterion.expected:
-            blocks.append(_value("expected:", criterion.expected))
-        blocks.append(_value("actual:  ", criterion.actual))
-    for number, hint in enumerate(criterion.hints[:hints], 1):
-        blocks.append(_paragraph(f"Hint {number} of {len(criterion.hints)}: {hint}", Tone.BOLD))
-    if more_hints and len(criterion.hints) > hints:
+        values = (("expected:", criterion.expected), ("actual:  ", criterion.actual))
+        blocks += [_paragraph(_shortened(text), Tone.DIM, lead=name) for name, text in values if text]
+    of = len(criterion.hints)
+    blocks += [
+        _paragraph(text, Tone.BOLD, lead=f"Hint {number} of {of}:")
+        for number, text in enumerate(criterion.hints[:hints], 1)
+    ]
+    if more_hints and of > hints:
         blocks.append(_paragraph(more_hints, Tone.DIM))
     if log_lines and criterion.log:
         # A character before each: no line of a report begins with what a student's program printed.
-        printed = tuple(f"| {line}" for line in criterion.log.splitlines()[-log_lines:])
-        blocks += [_paragraph("what the program printed:", Tone.DIM), Picture(printed, INDENT, is_tight=True)]
-    return blocks
+        lines = tuple(f"| {printable_text(line)}" for line in criterion.log.splitlines()[-log_lines:])
+        blocks.append(_paragraph("what the program printed:", Tone.DIM))
+        blocks.append(Picture(lines, INDENT, Tone.DIM, is_tight=True))
+    return [each for each in blocks if not isinstance(each, Text) or each.text]
 
 
 def replay_lines(criteria: Sequence[CriterionResult]) -> list[str]:
@@ -354,21 +357,21 @@ def replay_lines(criteria: Sequence[CriterionResult]) -> list[str]:
 
 
 def _heading(criterion: CriterionResult) -> Text:
-    if criterion.is_passed:
-        lead_tone, tone = Tone.GOOD, Tone.PLAIN
-    else:
-        lead_tone, tone = (Tone.BAD if criterion.is_judged else Tone.DIM), Tone.BOLD
+    tone = Tone.GOOD if criterion.is_passed else Tone.BAD if criterion.is_judged else Tone.DIM
     points = "" if criterion.is_withheld else f": {points_text(criterion.points, criterion.max_points)}"
-    title = " ".join(criterion.title.split())
-    return Text(title, tone, MARKS[criterion.status], lead_tone, points, hang=INDENT, is_tight=True)
+    return Text(
+        " ".join(criterion.title.split()),
+        Tone.PLAIN if criterion.is_passed else Tone.BOLD,
+        lead=MARKS[criterion.status],
+        lead_tone=tone,
+        tail=points,
+        hang=INDENT,
+        is_tight=True,
+    )
 
 
-def _paragraph(text: str, tone: Tone = Tone.PLAIN) -> Text:
-    return Text(text, tone, indent=INDENT, is_tight=True)
-
-
-def _value(name: str, value: str) -> Text:
-    return Text(_shortened(value), Tone.DIM, name, Tone.DIM, indent=INDENT, is_tight=True)
+def _paragraph(text: str, tone: Tone = Tone.PLAIN, lead: str = "") -> Text:
+    return Text(text, tone, lead=lead, lead_tone=tone, indent=INDENT, is_tight=True)
 
 
 def _shortened(text: str, limit: int = MAX_VALUE) -> str:

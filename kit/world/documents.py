@@ -6,7 +6,6 @@ limit on its size.
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, suppress
@@ -216,7 +215,7 @@ class WorldDocuments:
             near = near_file(name, folder)
             section.error(f"{error}{f'. Did you mean {quoted(near)}?' if near else ''}", key)
             return None
-        if not os.path.exists(file) and (near := near_file(name, folder)):
+        if not Path(file).exists() and (near := near_file(name, folder)):
             section.error(f"{quoted(name)}: there is no such file. Did you mean {quoted(near)}?", key)
             return None
         return file

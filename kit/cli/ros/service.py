@@ -83,7 +83,8 @@ def call(client: InspectionClient, name: str, type_name: str, values: str, rate:
 
     \b
     kit ros service call /pause std_srvs/srv/Empty
-    kit ros service call /move_model flatland_msgs/srv/MoveModel "{name: serp, pose: {x: 0.5}}"
+    kit ros service call /move_model flatland_msgs/srv/MoveModel \\
+      "{name: serp, pose: {x: 0.5}}"
     """
     cls = find_or_exit(find_service, type_name)
     content = parse_fields(values)

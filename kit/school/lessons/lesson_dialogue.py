@@ -206,7 +206,7 @@ class LessonDialogue(Dialogue):
         said = self.said()
         match self._looks_at:
             case "hint":
-                hints = [each for each in said if isinstance(each, Text) and each.text.startswith("Hint ")]
+                hints = [each for each in said if isinstance(each, Text) and each.lead.startswith("Hint ")]
                 return hints[-1] if hints else None
             case "verdict":
                 lost = (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from asyncio import Event, get_running_loop, to_thread
 from collections.abc import Awaitable, Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -17,6 +16,7 @@ from textual.screen import Screen
 from kit.dialogue.actions import ScreenAction, ScreenActions
 from kit.document.rows import Row, row, spread
 from kit.inspection.sockets import sockets_folder
+from kit.plain_text import wrap
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import base_key
 from kit.tui.rows.key_rows import bindings
@@ -106,7 +106,7 @@ def _status(name: str, overview: StudentOverview | None) -> str:
 
 
 def _padded(text: str, rows: int, width: int) -> list[str]:
-    lines = textwrap.wrap(text, width, max_lines=rows, placeholder=" ...")
+    lines = wrap(text, width, most=rows)
     return lines + [""] * (rows - len(lines))
 
 

@@ -14,7 +14,7 @@ from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
 
-from kit.document.rows import PLAIN, Row
+from kit.document.rows import CUT, PLAIN, Row, row_width
 from kit.tui.textual_patches import ActivePaintScreen, Result, crop_left
 
 STYLES: Final = {
@@ -109,7 +109,7 @@ def changed_spans(old: Row, new: Row) -> list[tuple[int, int]]:
     if len(before) != len(after) or any(
         cell_len(char) != 1 for char, _ in (*before, *after) if char > "\xff"
     ):
-        return [(0, max(_width(old), _width(new)))]
+        return [(0, max(row_width(old), row_width(new)))]
     spans: list[tuple[int, int]] = []
     for column, (was, now) in enumerate(zip(before, after, strict=True)):
         if was != now:
@@ -122,10 +122,6 @@ def changed_spans(old: Row, new: Row) -> list[tuple[int, int]]:
 
 def _cells(parts: Row) -> list[tuple[str, str]]:
     return [(char, style) for text, style in parts for char in text]
-
-
-def _width(parts: Row) -> int:
-    return sum(cell_len(text) for text, _ in parts)
 
 
 class RowClicked(Message):
@@ -181,7 +177,7 @@ class TextRows(Widget):
             self.post_message(RowClicked(self, event.y, event.x))
 
     def get_content_width(self, container: Size, viewport: Size) -> int:
-        return max((sum(cell_len(text) for text, _ in parts) for parts in self._rows), default=0)
+        return max(map(row_width, self._rows), default=0)
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
         return len(self._rows)
@@ -189,7 +185,7 @@ class TextRows(Widget):
     def render_line(self, y: int) -> Strip:
         parts = self._rows[y] if y < len(self._rows) else ()
         if self.app.has_class(ASCII_ONLY):
-            parts = tuple((text.translate(_ASCII), style) for text, style in parts)
+            parts = tuple((".." if text == CUT else text.translate(_ASCII), style) for text, style in parts)
         # In the terminal's own colours a style says nothing of the background, which costs no bytes.
         paper = STYLES[PLAIN] if self.app.native_ansi_color else self.rich_style
         strip = Strip([Segment(text, paper + STYLES[style]) for text, style in parts if text])
