@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import sys
 from collections.abc import Iterable, Mapping
@@ -108,6 +109,14 @@ def describe_no_room(error: OSError) -> str:
     return (
         f"{where} cannot be written: {error.strerror}. Free some space, or write elsewhere, and run it again."
     )
+
+
+BAD_INPUT: Final = 2
+"""Exit code where an argument is wrong, or something cannot be read or written."""
+
+
+SIGNALLED: Final = 128
+"""Exit codes of what a signal has ended are above this, as shells have them."""
 
 
 class ScreenClosed(SystemExit):
@@ -243,11 +252,21 @@ def run_as_process(command: click.Command, name: str) -> NoReturn:
         with ended_by_signals():
             try:
                 command(prog_name=name)
-            finally:
+            except SystemExit as stop:
+                if stop.code == BAD_INPUT:  # and why has been said
+                    write_out()
                 sys.stdout.flush()
+                raise
     except ScreenClosed as closed:
         write_out()
         os._exit(closed.code if isinstance(closed.code, int) else 0)
+    except SystemExit as stop:
+        if not isinstance(stop.code, int) or stop.code <= SIGNALLED:
+            raise
+        # Python would kill itself by SIGINT, whatever the code, if an `exec` of a library's was interrupted on the way.
+        atexit._run_exitfuncs()
+        write_out()
+        os._exit(stop.code)
     except OSError as error:
         if not is_environment_error(error):
             raise
@@ -257,5 +276,5 @@ def run_as_process(command: click.Command, name: str) -> NoReturn:
             )
             click.echo(f"{name}: {text}", err=True)
         write_out()
-        raise SystemExit(2) from None
+        raise SystemExit(BAD_INPUT) from None
     raise SystemExit(0)  # a command that ends otherwise has said so by a SystemExit of its own

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import click
 
-from kit.cli import NO_ROOM, describe_no_room
+from kit.cli import BAD_INPUT, NO_ROOM, describe_no_room
 from kit.plain_text import escape_controls
 from kit.tui.terminal import (
     COLOUR_CHOICES,
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from kit.school.progress import ProgressJournal
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
-
-BAD_INPUT = 2
 
 Storage = Literal["mcap", "sqlite3"]
 """Kinds of bags."""

@@ -111,6 +111,8 @@ def command(
         )
 
     screen, code = run_screen(terminal, make_screen)
+    if screen.draft_problem:
+        click.echo(f"What you typed last and did not save is {screen.draft_problem}.", err=True)
     recording = screen.recording()
     if kept is not None and recording is not None:
         try:

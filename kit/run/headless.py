@@ -112,10 +112,12 @@ def run_headless(
         if record is not None:
             runner.observers.append(recorder)
         connections = ConnectionsReader(session.graph)
-        session.drive_with(controller)
-        session.wait_until_driven()
         start = time.perf_counter()
+        interrupted = False
         try:
+            session.drive_with(controller)
+            session.wait_until_driven()
+            start = time.perf_counter()
             interrupted = _run(
                 session,
                 fingerprint,
@@ -125,6 +127,8 @@ def run_headless(
                 output_interval=OUTPUT_INTERVAL if streams is None else INPUT_INTERVAL,
             )
             session.read_output()
+        except KeyboardInterrupt:  # before the controller drives
+            interrupted = True
         finally:  # also where a terminal is gone, or Ctrl-C comes twice
             wall = time.perf_counter() - start
             if record is not None:

@@ -174,7 +174,7 @@ class Training(Recorder):
         return ("-m", "kit.learning.training.worker", str(self._run.folder))
 
     def has_something(self) -> bool:
-        return len(self._run.events()) > 3
+        return len(self._run.events()) > 3 and self._run.newest_policy.exists()
 
     def kept(self) -> int:
         """Events; none where a policy is damaged."""

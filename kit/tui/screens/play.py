@@ -93,6 +93,8 @@ class PlayScreen(WatchScreen):
         self._strength = 1.0
         self._place_driver: PlaceDriver | None = None
         self._editor: ProgramEditor | None = None
+        self.draft_problem = ""
+        """Why what was typed and not saved could not be kept, once the screen has been left."""
         self._editor_keys = {
             keys for each in self.screen_actions.records if each.id in EDITOR_IDS for keys, _ in each.bindings
         }
@@ -235,7 +237,7 @@ class PlayScreen(WatchScreen):
 
     def on_unmount(self) -> None:
         if self._editor is not None:
-            self._editor.keep_draft()
+            self.draft_problem = self._editor.keep_draft()
 
     def _show(self) -> None:
         super()._show()

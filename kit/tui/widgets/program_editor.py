@@ -273,12 +273,15 @@ class ProgramEditor(Vertical):
         self.area.mark_line(None)
         self._show()
 
-    def keep_draft(self) -> None:
-        """Keeps what is not saved, and says so where that is not possible."""
+    def keep_draft(self) -> str:
+        """Keeps what is not saved. Returns why that was not possible; empty if it was."""
         if self._draft_timer is not None:
             self._draft_timer.stop()
             self._draft_timer = None
-        if problem := self._program.keep_draft(self.area.text):
+        return self._program.keep_draft(self.area.text)
+
+    def _keep_draft_and_say(self) -> None:
+        if problem := self.keep_draft():
             self._notice = row((problem, "bad"))
             self._show()
 
@@ -322,7 +325,7 @@ class ProgramEditor(Vertical):
         if not self.is_saved and not self._may_overwrite and self._program.draft is None:
             self._notice = ()
         if self._draft_timer is None and not self.is_saved:
-            self._draft_timer = self.set_timer(DRAFT_INTERVAL_S, self.keep_draft)
+            self._draft_timer = self.set_timer(DRAFT_INTERVAL_S, self._keep_draft_and_say)
         self._show()
 
     def on_descendant_focus(self) -> None:
