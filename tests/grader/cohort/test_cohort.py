@@ -6,6 +6,7 @@ import csv
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -24,6 +25,7 @@ from click.testing import CliRunner
 from grader import grading
 from grader.__main__ import main
 from grader.assignment import Assignment
+from grader.cli.cohort import publish
 from grader.cohort import gradebook
 from grader.cohort.gradebook import (
     RULES,
@@ -40,6 +42,7 @@ from grader.cohort.gradebook import (
     read_submission_times,
 )
 from grader.cohort.queue import (
+    MAX_RESULT_BYTES,
     ExecutorUnavailable,
     Queue,
     QueueError,
@@ -608,3 +611,49 @@ def test_a_note_gives_a_ci_service_no_command(tmp_path: Path) -> None:
     assert "all.py was taken as controller.py" in told
     assert "::" not in told
     assert "##[" not in told
+
+
+def test_a_result_that_cannot_be_a_jobs_is_no_result(tmp_path: Path, quick: Assignment) -> None:
+    """Of a worker of a cluster: malformed, too large, late, or another submission's. The job is graded again."""
+    folder = tmp_path / "in"
+    folder.mkdir()
+    (folder / "ada.py").write_text("1/0\n")
+    (folder / "bob.py").write_text("1/1 + None\n")
+    queue = Queue(tmp_path / "queue")
+    ada, bob = (entry.key for entry in prepare_queue(queue, folder, quick, TERMS))
+    assert ada is not None
+    assert bob is not None
+    for key in (ada, bob):
+        grade_job(queue, key)
+    good, others = queue.result_file(ada).read_bytes(), queue.result_file(bob).read_bytes()
+    assert queue.waiting() == ()
+    for wrong in (
+        b"",
+        b"null",
+        b"[]",
+        b"{}",
+        good[:-20],
+        b"[" * 200_000,
+        others,
+        re.sub(rb'"points": 0(\.0)?', b'"points": 100.0', good),
+        re.sub(rb'"points": 0(\.0)?', b'"points": NaN', good),
+        re.sub(rb'"points": 0(\.0)?', b'"points": -1', good),
+        re.sub(rb'"points": 0(\.0)?', b'"points": "6"', good),
+        re.sub(rb'"max_points": 1(\.0)?\b', b'"max_points": Infinity', good),
+        good.replace(b'"level": 0', b'"level": 3'),
+        good.replace(b'"seeds": "public"', b'"seeds": "public+secret"'),
+        good.replace(b'"tests": [', b'"tests": [7, '),
+        good + b" " * MAX_RESULT_BYTES,
+        b'{"unreadable": 7}',
+        b'{"unreadable": "x", "error": []}',
+    ):
+        assert wrong != good
+        queue.result_file(ada).write_bytes(wrong)
+        assert queue.waiting() == (ada,), (len(wrong), wrong[-200:], others == wrong)
+        assert publish(queue) == 0
+    queue.result_file(ada).unlink()
+    os.mkfifo(queue.result_file(ada))
+    assert queue.waiting() == (ada,)
+    queue.result_file(ada).unlink()
+    queue.result_file(ada).write_bytes(good)
+    assert queue.waiting() == ()

@@ -152,8 +152,8 @@ def test_broken_programs_are_named_and_end_no_ladder(tmp_path: Path) -> None:
 @pytest.mark.long
 def test_a_race_has_a_wall_clock(tmp_path: Path) -> None:
     """A program that waits within its time for each reply would stand there for as long as a race has ticks."""
-    slow = "import rclpy, time\nfrom rclpy.node import Node\nrclpy.init()\nnode = Node('slow')\n"
-    slow += "node.create_timer(0.01, lambda: time.sleep(0.2))\nrclpy.spin(node)\n"
+    slow = "import rclpy, select\nfrom rclpy.node import Node\nrclpy.init()\nnode = Node('slow')\n"
+    slow += "node.create_timer(0.01, lambda: select.select([], [], [], 0.2))\nrclpy.spin(node)\n"
     (tmp_path / "slow.py").write_text(slow)
     (race,) = race_all(find_programs(tmp_path), [find_level("left-turn")], wall_limit_s=1.0)
     assert not race.reached
