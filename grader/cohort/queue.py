@@ -9,11 +9,14 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import math
 import shutil
 import sys
+import unicodedata
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cache, partial
+from itertools import count
 from pathlib import Path
 from typing import Any, Final
 
@@ -27,10 +30,20 @@ from kit.host.job_executors import MAX_TRIES, JobPool, in_shard
 from kit.host.job_executors import ExecutorUnavailable as ExecutorUnavailable
 from kit.host.python_command import python_command
 from kit.host.sandbox.confinement import Level
-from kit.school.result import SCHEMA, CriterionResult, CriterionStatus, GradingResult, GradingVerdict
+from kit.plain_files import read_plain_file
+from kit.school.result import (
+    PUBLIC_SEEDS,
+    SCHEMA,
+    CriterionResult,
+    CriterionStatus,
+    GradingResult,
+    GradingVerdict,
+)
 from kit.workspace import make_private_folder, write_atomically
 
 MANIFEST: Final = "manifest.json"
+MAX_RESULT_BYTES: Final = 16 << 20
+"""Bytes of one result: a few hundred kilobytes with all that was printed."""
 
 
 class QueueError(Exception):
@@ -106,18 +119,29 @@ class Queue:
         return tuple(QueueEntry(**each) for each in self.manifest()["entries"])
 
     def result(self, key: str) -> GradingResult | None:
-        """Returns a job's result; None if there is none that can be read, so that it is graded again."""
+        """Returns a job's result; None if there is none that can be read, so that it is graded again.
+
+        Nor is one taken that is another job's, or whose points cannot be: a worker of a cluster may write anything.
+        """
         try:
-            return GradingResult.from_dict(json.loads(self.result_file(key).read_bytes()))
-        except (OSError, KeyError, TypeError, ValueError):
+            result = GradingResult.from_dict(
+                json.loads(read_plain_file(self.result_file(key), MAX_RESULT_BYTES))
+            )
+            is_possible = _key_of_result(result, examples=self.grading_options().examples) == key and all(
+                math.isfinite(test.max_points) and 0.0 <= test.points <= test.max_points
+                for test in result.tests
+            )
+        except (OSError, KeyError, TypeError, ValueError, AttributeError, RecursionError, OverflowError):
             return None
+        return result if is_possible else None
 
     def unreadable(self, key: str) -> UnreadableWork | None:
         """Returns why a job's work could not be read; None if it could, or has not been tried."""
         try:
-            return UnreadableWork(**json.loads(self.result_file(key).read_bytes()))
-        except (OSError, TypeError, ValueError):
+            work = UnreadableWork(**json.loads(read_plain_file(self.result_file(key), MAX_RESULT_BYTES)))
+        except (OSError, TypeError, ValueError, RecursionError):
             return None
+        return work if isinstance(work.unreadable, str) and isinstance(work.error, str) else None
 
     def is_waiting(self, key: str) -> bool:
         """True if a job has no result yet."""
@@ -149,15 +173,30 @@ class Queue:
 def job_key(submission: Submission, assignment: Assignment, options: GradingOptions) -> str:
     """Returns one name for everything that decides a result."""
     level = level_for_untrusted(assignment, options.level)
-    parts = (
+    return _key(
         submission.digest,
         assignment.version,
         grader_version(),
-        SCHEMA,
         options.secret,
         options.examples,
         int(level),
     )
+
+
+def _key_of_result(result: GradingResult, *, examples: bool) -> str:
+    """Returns the name of the job whose result this is."""
+    return _key(
+        result.submission,
+        result.assignment_version,
+        result.grader_version,
+        result.seeds != PUBLIC_SEEDS,
+        examples,
+        result.level,
+    )
+
+
+def _key(digest: str, assignment_version: str, version: str, secret: bool, examples: bool, level: int) -> str:
+    parts = (digest, assignment_version, version, SCHEMA, secret, examples, level)
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
@@ -193,10 +232,8 @@ def _entries(
     for path in sorted(cohort.iterdir()):
         if path.name.startswith(".") or path.name.lower() in IGNORED_NAMES:
             continue
-        name = submission_name(path)
-        if name in names:
-            name = path.name
-        names.add(name)
+        name = _unlike(names, submission_name(path), path.name)
+        names.add(_look(name))
         try:
             submission = read_submission(path, assignment.submit)
         except SubmissionUnreadable as unreadable:
@@ -211,6 +248,22 @@ def _entries(
             job = {"name": name, "main": submission.main, "files": files}
             write_atomically(queue.job(key), json.dumps(job).encode())
         yield QueueEntry(name, key, note=submission.note)
+
+
+def _unlike(looks: set[str], name: str, file_name: str) -> str:
+    """Returns a submission's name, or its file's, if that looks like no other; else one with a number."""
+    for candidate in (name, file_name):
+        if _look(candidate) not in looks:
+            return candidate
+    return next(each for number in count(2) if _look(each := f"{file_name} ({number})") not in looks)
+
+
+def _look(name: str) -> str:
+    """Returns what a reader takes a name for: without double blanks, letters of other widths, and what cannot be seen."""
+    shown = "".join(
+        sign for sign in unicodedata.normalize("NFKC", name) if sign.isprintable() or sign.isspace()
+    )
+    return " ".join(shown.split()).casefold()
 
 
 def _copy_assignment(queue: Queue, assignment: Assignment) -> None:

@@ -6,6 +6,7 @@ import csv
 import json
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -23,6 +24,8 @@ from click.testing import CliRunner
 
 from grader import grading
 from grader.__main__ import main
+from grader.assignment import Assignment
+from grader.cli.cohort import publish
 from grader.cohort import gradebook
 from grader.cohort.gradebook import (
     RULES,
@@ -40,6 +43,7 @@ from grader.cohort.gradebook import (
     read_submission_times,
 )
 from grader.cohort.queue import (
+    MAX_RESULT_BYTES,
     ExecutorUnavailable,
     Queue,
     QueueError,
@@ -639,3 +643,87 @@ def test_a_due_date_in_no_zone_is_refused(tmp_path: Path, rules: str) -> None:
 def test_clocks_that_change_take_no_hour_from_a_student(tmp_path: Path) -> None:
     policy = LatePolicy(parse_time("2026-03-28 23:00", BERLIN), per_day=0.1)
     assert policy.kept(parse_time("2026-03-29 23:30", BERLIN)) == pytest.approx(0.9)  # 23.5 h later
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("ada", "ada "),
+        ("ada lovelace", "ada\u00a0lovelace", "ada  lovelace"),
+        ("ada", "Ada"),
+        ("ada", "a\u200bda"),
+    ],
+)
+def test_no_two_names_of_a_class_look_alike(
+    names: tuple[str, ...], tmp_path: Path, quick: Assignment
+) -> None:
+    folder = tmp_path / "in"
+    for name in names:
+        (folder / name).mkdir(parents=True)
+        (folder / name / "controller.py").write_text(FORWARD)
+    entries = prepare_queue(Queue(tmp_path / "queue"), folder, quick, TERMS)
+    shown = {
+        " ".join("".join(c for c in each.name if c.isprintable() or c == "\u00a0").split()).casefold()
+        for each in entries
+    }
+    assert len(shown) == len(names), shown
+
+
+@pytest.mark.long
+def test_a_note_gives_a_ci_service_no_command(tmp_path: Path) -> None:
+    folder = write_assignment(tmp_path / "quick")
+    work = tmp_path / "in"
+    work.mkdir()
+    (work / "::error title=Passed::all.py").write_text("1/0\n")
+    (work / "##[add-mask]x.pdf").write_text("x")
+    code, told = verb("check", work, "--assignment", folder, "--level", "0")
+    assert code == 1
+    assert "all.py was taken as controller.py" in told
+    assert "::" not in told
+    assert "##[" not in told
+
+
+def test_a_result_that_cannot_be_a_jobs_is_no_result(tmp_path: Path, quick: Assignment) -> None:
+    """Of a worker of a cluster: malformed, too large, late, or another submission's. The job is graded again."""
+    folder = tmp_path / "in"
+    folder.mkdir()
+    (folder / "ada.py").write_text("1/0\n")
+    (folder / "bob.py").write_text("1/1 + None\n")
+    queue = Queue(tmp_path / "queue")
+    ada, bob = (entry.key for entry in prepare_queue(queue, folder, quick, TERMS))
+    assert ada is not None
+    assert bob is not None
+    for key in (ada, bob):
+        grade_job(queue, key)
+    good, others = queue.result_file(ada).read_bytes(), queue.result_file(bob).read_bytes()
+    assert queue.waiting() == ()
+    for wrong in (
+        b"",
+        b"null",
+        b"[]",
+        b"{}",
+        good[:-20],
+        b"[" * 200_000,
+        others,
+        re.sub(rb'"points": 0(\.0)?', b'"points": 100.0', good),
+        re.sub(rb'"points": 0(\.0)?', b'"points": NaN', good),
+        re.sub(rb'"points": 0(\.0)?', b'"points": -1', good),
+        re.sub(rb'"points": 0(\.0)?', b'"points": "6"', good),
+        re.sub(rb'"max_points": 1(\.0)?\b', b'"max_points": Infinity', good),
+        good.replace(b'"level": 0', b'"level": 3'),
+        good.replace(b'"seeds": "public"', b'"seeds": "public+secret"'),
+        good.replace(b'"tests": [', b'"tests": [7, '),
+        good + b" " * MAX_RESULT_BYTES,
+        b'{"unreadable": 7}',
+        b'{"unreadable": "x", "error": []}',
+    ):
+        assert wrong != good
+        queue.result_file(ada).write_bytes(wrong)
+        assert queue.waiting() == (ada,), (len(wrong), wrong[-200:], others == wrong)
+        assert publish(queue) == 0
+    queue.result_file(ada).unlink()
+    os.mkfifo(queue.result_file(ada))
+    assert queue.waiting() == (ada,)
+    queue.result_file(ada).unlink()
+    queue.result_file(ada).write_bytes(good)
+    assert queue.waiting() == ()
