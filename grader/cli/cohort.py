@@ -15,7 +15,7 @@ from grader.cohort.gradebook import (
     UNREADABLE,
     as_csv,
     as_json,
-    attention_lines,
+    attention_blocks,
     changes,
     choose_submissions,
     gradebook_rows,
@@ -39,6 +39,8 @@ from grader.cohort.queue import (
 from grader.grading import GradingOptions
 from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.cli.options import describe_error, executor_options
+from kit.document.blocks import CellStyle, Column, Table
+from kit.document.layout import lines_of
 from kit.host.job_executors import read_shard, serve_jobs
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
@@ -131,8 +133,8 @@ def publish(queue: Queue) -> int:
     if assignment.has_secrets and not queue.grading_options().secret:
         unjudged = unjudged_line(table, assignment.max_points)
         click.echo(" ".join(filter(None, ("Graded without --secret.", unjudged))))
-    for line in attention_lines(table):
-        click.echo(line)
+    if attention := attention_blocks(table):
+        click.echo("\n".join(lines_of(attention)))
     verdicts = {row.verdict for row in table}
     if "broken" in verdicts:
         return options.EXIT_BROKEN
@@ -296,9 +298,21 @@ def ladder(folder: Path, names: tuple[str, ...], as_csv: bool, unconfined: bool)
             numbers = [f"{number:.0f}" for number in (each.elo, *each.interval)]
             writer.writerow([place, spreadsheet_cell(each.program), *numbers, f"{each.wins:g}", each.races])
         return
-    click.echo(f"{'':>4} {'program':<28} {'Elo':>6} {'95 %':>14}   won")
-    for place, each in enumerate(rows, 1):
-        interval = f"{each.interval[0]:+.0f} to {each.interval[1]:+.0f}"
-        click.echo(
-            f"{place:>3}. {clean_line(each.program):<28.28} {each.elo:>+6.0f} {interval:>14}   {each.wins:g} of {each.races}"
+    columns = (
+        Column(""),
+        Column("program", CellStyle.TEXT),
+        Column("Elo"),
+        Column("95 %"),
+        Column("won"),
+    )
+    cells = tuple(
+        (
+            f"{place}.",
+            clean_line(each.program),
+            f"{each.elo:+.0f}",
+            "{:+.0f} to {:+.0f}".format(*each.interval),
+            f"{each.wins:g} of {each.races}",
         )
+        for place, each in enumerate(rows, 1)
+    )
+    click.echo("\n".join(lines_of([Table("ladder", "", columns, cells, is_ruled=False)])))

@@ -17,6 +17,7 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from grader.cohort.queue import Queue, QueueEntry, UnreadableWork
 from grader.reports.cleaning import clean_line, spreadsheet_cell
+from kit.document.blocks import Block, Text
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict, format_points
 from kit.world.documents import open_document
 
@@ -329,19 +330,22 @@ def summary(table: Sequence[GradebookRow]) -> str:
     return f"{text}, at confinement {word} {', '.join(map(str, levels))}"
 
 
-def attention_lines(table: Sequence[GradebookRow]) -> Iterator[str]:
-    """Yields a line for each submission that has no grade and why: first the unreadable ones, then the grader's faults."""
+def attention_blocks(table: Sequence[GradebookRow]) -> list[Block]:
+    """Each submission that has no grade and why: first the unreadable ones, then the grader's faults."""
     order = (UNREADABLE, GradingVerdict.BROKEN.value)
     rows = sorted(
         (row for row in table if row.verdict in order), key=lambda row: (order.index(row.verdict), row.name)
     )
     if not rows:
-        return
-    yield f"{len(rows)} {'has' if len(rows) == 1 else 'have'} no grade and need{'s' * (len(rows) == 1)} your attention:"
-    for row in rows[:MAX_LISTED]:
-        yield f"  {clean_line(row.name)}: {row.verdict}. {row.note}"
+        return []
+    verbs = ("has", "needs") if len(rows) == 1 else ("have", "need")
+    told = [f"{clean_line(row.name)}: {row.verdict}. {row.note}" for row in rows[:MAX_LISTED]]
     if len(rows) > MAX_LISTED:
-        yield f"  and {len(rows) - MAX_LISTED} more: see the gradebook"
+        told.append(f"and {len(rows) - MAX_LISTED} more: see the gradebook")
+    return [
+        Text(f"{len(rows)} {verbs[0]} no grade and {verbs[1]} your attention:"),
+        *(Text(each, indent=2, hang=2, is_tight=True) for each in told),
+    ]
 
 
 def unjudged_line(table: Sequence[GradebookRow], max_points: float) -> str:

@@ -15,6 +15,8 @@ from kit.cli import options
 from kit.cli.full_screen import show_levels, show_screen
 from kit.cli.shared_game import guest, host
 from kit.controllers import find_controller, prepare_workspace
+from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
+from kit.document.layout import lines_of
 from kit.plain_text import counted
 from kit.workspace import Workspace, WorkspaceError
 
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
     from kit.run.recording import Recording
     from kit.school.game.levels import GameLevel
-    from kit.school.game.player_progress import DriverFacts, GameSummary
+    from kit.school.game.player_progress import DriverFacts, GameSummary, Medal
     from kit.school.game.race import DriverKind, RaceFinish
     from kit.school.progress import ProgressJournal
     from kit.tui.app import KitApp
@@ -214,10 +216,11 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
     with _open_journal(workspace) as (journal, opened_workspace):
         if name is None:
             medals = challenge_medals(journal.events())
-            for each in all_challenges():
-                medal = medals.get(each.id, Medal.NONE)
-                sign = NO_STAR if medal is Medal.NONE else medal.title[0].upper()
-                click.echo(f"  {sign}  {each.id:<16} {each.title}. {each.story}")
+            rows = [
+                (_sign(medals.get(each.id, Medal.NONE)), each.id, f"{each.title}. {each.story}")
+                for each in all_challenges()
+            ]
+            click.echo("\n".join(lines_of([labelled_table(rows, indent=2)])))
             return
         try:
             chosen = find_challenge(name)
@@ -300,8 +303,7 @@ def leaderboard(workspace: Path | None) -> None:
 
     with _open_journal(workspace) as (_progress, _):
         found = read_entries(leaderboard_folder())
-        for line in (*leaderboard_standings(standings(found)), *leaderboard_times(found)):
-            click.echo("".join(text for text, _ in line).rstrip())
+        click.echo("\n".join(lines_of([*leaderboard_standings(standings(found)), leaderboard_times(found)])))
         if not has_joined(leaderboard_folder()):
             click.echo(
                 "You are not on it. `kit game join` adds your name and times; `kit game leave` removes them."
@@ -388,30 +390,40 @@ def _print_levels(summary: GameSummary) -> None:
     from kit.school.game.race import DriverKind
     from kit.tui.rows.level_rows import medal_counts
 
-    click.echo(
-        "Of each level: its number; the medals by hand, by your program and by your agent (G, S, B);\n"
-        "the stars of five extra rules; its name; your best times, or what opens it.\n"
-    )
+    blocks: list[Block] = [
+        Text(
+            "Of each level: its number; the medals by hand, by your program and by your agent (G, S, B); the stars of five "
+            "extra rules; its name; your best times, or what opens it."
+        )
+    ]
     found = summary.levels
     for world in all_worlds():
-        click.echo(f"{world.title}: {world.story}")
+        rows = []
         for number, each in enumerate(found, 1):
             if each.level.world != world.id:
                 continue
-            level, medals = each.level, ""
-            for driver in DriverKind:
-                medal = each.medals.get(driver, Medal.NONE)
-                medals += NO_STAR if medal is Medal.NONE else medal.title[0].upper()
+            level = each.level
+            medals = "".join(_sign(each.medals.get(driver, Medal.NONE)) for driver in DriverKind)
             stars = f"{STAR * each.star_count:{NO_STAR}<{len(ExtraRule)}}"
             times = ", ".join(f"{driver.phrase} {time:.2f} s" for driver, time in each.best_times.items())
             lesson = f", or after lesson {level.lesson_number}" if level.lesson_number else ""
             state = times if each.is_open else f"opens after {' or '.join(level.opened_by)}{lesson}"
-            click.echo(f"{number:>3}  {medals}  {stars}  {level.id:<18} {state}".rstrip())
+            rows.append((str(number), medals, stars, level.id, state))
+        columns = (Column(""), *[Column("", CellStyle.TEXT)] * 4)
+        blocks.append(Table(world.id, f"{world.title}: {world.story}", columns, tuple(rows), indent=1))
     won = sum(medal is not Medal.NONE for medal in summary.challenges)
-    click.echo(
+    challenges = (
         f"Challenges: {won} of {len(summary.challenges)} with a medal; `kit game challenge` lists them."
     )
-    click.echo(f"\n{medal_counts(summary)}. `kit game play NAME` drives a level by hand.")
+    ways = f"{medal_counts(summary)}. `kit game play NAME` drives a level by hand."
+    click.echo("\n".join(lines_of([*blocks, Text(challenges), Text(ways)])))
+
+
+def _sign(medal: Medal) -> str:
+    """The first letter of a medal."""
+    from kit.school.game.player_progress import Medal
+
+    return NO_STAR if medal is Medal.NONE else medal.title[0].upper()
 
 
 def _record_drive(

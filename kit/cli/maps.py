@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sys
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,7 @@ import click
 
 from kit.cli import ScreenClosed, options
 from kit.cli.full_screen import run_screen
-from kit.document.blocks import labelled_table
+from kit.document.blocks import Block, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.run.scenario import own_map_folder, scenario_on_map
 from kit.workspace import WorkspaceError, open_workspace
@@ -68,16 +69,20 @@ def command(ctx: click.Context) -> None:
 
 
 def _list() -> None:
-    cards = all_maps()
-    click.echo("\n".join(lines_of([labelled_table((card.name, card.summary) for card in cards)])))
-    own = _own_maps()
-    if own:
-        click.echo("\nYour own:")
-        for folder in own:
-            click.echo(f"  {folder}")
-    click.echo(
-        "\n`kit maps NAME` shows one, `kit play NAME` opens it, `kit maps --help` says how to make your own."
-    )
+    own = [(str(folder),) for folder in _own_maps()]
+    blocks: list[Block] = [
+        maps_table(all_maps()),
+        *([labelled_table(own, "Your own:", indent=2)] if own else []),
+        Text(
+            "`kit maps NAME` shows one, `kit play NAME` opens it, `kit maps --help` says how to make your own."
+        ),
+    ]
+    click.echo("\n".join(lines_of(blocks)))
+
+
+def maps_table(cards: Iterable[MapCard]) -> Table:
+    """The maps there are: a name, and what there is to do."""
+    return labelled_table((card.name, card.summary) for card in cards)
 
 
 def _own_maps() -> list[Path]:

@@ -14,7 +14,10 @@ from typing import Final, NamedTuple
 
 import click
 
+from kit.cli.maps import maps_table
 from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
+from kit.document.blocks import labelled_table
+from kit.document.layout import lines_of
 from kit.inspection.server import InspectionServer, open_inspection_server
 from kit.interruption import uninterrupted
 from kit.msg.geometry_msgs import Twist, Vector3
@@ -310,13 +313,12 @@ def _print_log(record: LogRecord) -> None:
 
 
 def _print_help(plain: PlainSession, words: Sequence[str]) -> None:
-    for verb in VERBS.values():
-        click.echo(f"{verb.usage:<28} {verb.summary}")
+    rows = [(verb.usage, verb.summary) for verb in VERBS.values()]
+    click.echo("\n".join(lines_of([labelled_table(rows)])))
 
 
 def _print_maps(plain: PlainSession, words: Sequence[str]) -> None:
-    for card in all_maps():
-        click.echo(f"{card.name}: {card.summary}")
+    click.echo("\n".join(lines_of([maps_table(all_maps())])))
 
 
 def _quit(plain: PlainSession, words: Sequence[str]) -> None:

@@ -12,6 +12,8 @@ import click
 from kit.cli import options
 from kit.cli.options import Storage
 from kit.controllers import find_controller, kit_controllers
+from kit.document.blocks import Picture, labelled_table
+from kit.document.layout import lines_of
 from kit.host.program_terminal import ProgramTerminal, has_user_terminal, piped_streams
 from kit.inspection.server import InspectionServer
 from kit.inspection.sockets import sockets_folder
@@ -153,6 +155,9 @@ def _record_bag(graph: Graph, folder: Path, storage: Storage) -> BagRecorder:
     return recorder
 
 
+FAILURE_INDENT = 13
+
+
 def format_summary(summary: RunSummary) -> str:
     """The summary as aligned lines for the terminal."""
     metrics = summary.metrics
@@ -180,8 +185,11 @@ def format_summary(summary: RunSummary) -> str:
         ("end", end),
         ("fingerprint", summary.fingerprint),
     ]
-    if summary.failure is not None:
-        rows.append(("stopped", str(summary.failure).replace("\n", "\n" + " " * 13)))
     if summary.interrupted:
         rows.append(("stopped", "by Ctrl-C or a signal"))
-    return "\n".join(f"{name:<12} {text}" for name, text in rows)
+    failure = [] if summary.failure is None else str(summary.failure).splitlines()
+    if failure:
+        rows.append(("stopped", failure[0]))
+    return "\n".join(
+        lines_of([labelled_table(rows), Picture(tuple(failure[1:]), indent=FAILURE_INDENT, is_tight=True)])
+    )

@@ -38,7 +38,7 @@ def table_rows(table: Table, width: int) -> TableRows:
     head = list(_placed_rows(heads, widths, table.columns, (Tone.PLAIN,) * len(heads))) if any(heads) else []
     if head and table.is_ruled:
         head.append(row(COLUMN_GAP.join("-" * each for each in widths)))
-    if table.grouped:
+    if table.grouped and cells:
         _share_first_cells(table, cells, widths[0])
     entries = (
         tuple(_placed_rows(texts, widths, table.columns, tuple(map(_tone, told))))

@@ -43,3 +43,5 @@ def test_marked_entries_have_a_mark_and_spare_columns_give_way() -> None:
 
 def test_no_entry_is_chosen_where_there_is_none() -> None:
     assert [row_text(each) for each in list_rows(table(()), 40, 5, 0)] == ["   run  steps  time"]
+    grouped = Table("none", "", (Column("", CellStyle.TEXT),), (), grouped=True)
+    assert list_rows(grouped, 40, 5, 0) == []
