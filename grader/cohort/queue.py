@@ -124,12 +124,12 @@ class Queue:
         Nor is one taken that is another job's, or whose points cannot be: a worker of a cluster may write anything.
         """
         try:
-            result = GradingResult.from_dict(
-                json.loads(read_plain_file(self.result_file(key), MAX_RESULT_BYTES))
-            )
+            content = json.loads(read_plain_file(self.result_file(key), MAX_RESULT_BYTES))
+            result = GradingResult.from_dict(content)
+            # As they are written: a record of a criterion holds no points that cannot be.
             is_possible = _key_of_result(result, examples=self.grading_options().examples) == key and all(
-                math.isfinite(test.max_points) and 0.0 <= test.points <= test.max_points
-                for test in result.tests
+                math.isfinite(test["max_points"]) and 0.0 <= test["points"] <= test["max_points"]
+                for test in content["tests"]
             )
         except (OSError, KeyError, TypeError, ValueError, AttributeError, RecursionError, OverflowError):
             return None
