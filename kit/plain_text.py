@@ -136,7 +136,6 @@ def wrap(text: str, width: int, first: str = "", rest: str = "", *, most: int | 
         initial_indent=first,
         subsequent_indent=rest,
         break_on_hyphens=False,
-        break_long_words=False,
         max_lines=most,
         placeholder=" ...",
     ) or [first.rstrip()]

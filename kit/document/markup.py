@@ -110,13 +110,16 @@ def _split_styles(text: str) -> list[StyledText]:
     pieces: list[StyledText] = []
     at = 0
     for match in _INLINE.finditer(text):
-        pieces.append(StyledText(text[at : match.start()], TextStyle.PLAIN))
-        pieces.append(
-            StyledText(match[1], TextStyle.CODE) if match[1] else StyledText(match[2], TextStyle.BOLD)
-        )
+        pieces.append(_words(text[at : match.start()], TextStyle.PLAIN))
+        pieces.append(StyledText(match[1], TextStyle.CODE) if match[1] else _words(match[2], TextStyle.BOLD))
         at = match.end()
-    pieces.append(StyledText(text[at:], TextStyle.PLAIN))
+    pieces.append(_words(text[at:], TextStyle.PLAIN))
     return [piece for piece in pieces if piece.text]
+
+
+def _words(text: str, style: TextStyle) -> StyledText:
+    """Words with single blanks between them."""
+    return StyledText(re.sub(" +", " ", text), style)
 
 
 def _wrap_styled(pieces: Sequence[StyledText], width: int, first: str, rest: str) -> list[StyledRow]:
@@ -124,9 +127,11 @@ def _wrap_styled(pieces: Sequence[StyledText], width: int, first: str, rest: str
     at its blanks only where it is longer than a row."""
     longest = width - len(rest)
     held = "".join(
-        piece.text.replace(" ", "\0")
-        if piece.style is TextStyle.CODE and len(piece.text) <= longest
-        else piece.text
+        piece.text
+        if piece.style is not TextStyle.CODE
+        else piece.text.replace(" ", "\0")
+        if len(piece.text) <= longest
+        else re.sub(" {2,}", lambda blanks: "\0" * len(blanks[0]), piece.text)
         for piece in pieces
     )
     rows: list[StyledRow] = []

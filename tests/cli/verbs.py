@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import click
 from click.testing import CliRunner, Result
 
 from kit.cli import main
@@ -9,7 +10,14 @@ from kit.cli import main
 
 def kit(*arguments: object, code: int = 0) -> Result:
     """The verb's result, which must have this exit code and no traceback."""
-    result = CliRunner().invoke(main, [str(each) for each in arguments], env={"COLUMNS": "80", "LINES": "24"})
+    return run_main(main, *arguments, code=code)
+
+
+def run_main(program: click.Command, *arguments: object, code: int = 0) -> Result:
+    """The same of any program, on a terminal of 80 columns."""
+    result = CliRunner().invoke(
+        program, [str(each) for each in arguments], env={"COLUMNS": "80", "LINES": "24"}
+    )
     assert result.exit_code == code, result.output
     assert "Traceback" not in result.output
     return result
