@@ -154,7 +154,7 @@ def _text_rows(block: Text, page: Page) -> list[Row]:
             (" " * block.indent, ""), (lead, block.lead_tone), (first[block.indent + len(lead) :], block.tone)
         )
     ]
-    made += [_parts((line, block.tone)) for line in others if line.strip()]
+    made += [_parts((line, block.tone)) for line in others]
     if block.tail:
         made[-1] = _parts(*made[-1], (block.tail, Tone.DIM))
     return made
