@@ -5,26 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
 
 import click
 
 from kit.cli import options
 from kit.cli.dialogue import run_dialogue
-from kit.cli.full_screen import show_screen
+from kit.cli.full_screen import show_dialogue
 from kit.document.blocks import Block, Text
 from kit.document.layout import lines_of
 from kit.school.form_dialogue import FormDialogue, shown_answer
 from kit.school.form_session import FormSession, current_phase
 from kit.school.progress import ProgressError
 from kit.school.survey import FormAnswers, SurveyForm, SurveyPhase, asked_questions, read_form
-from kit.tui.terminal import TerminalDecision
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError
-
-if TYPE_CHECKING:
-    from kit.tui.app import KitApp
-    from kit.tui.screens.dialogue import DialogueScreen
 
 
 @click.command()
@@ -71,16 +65,7 @@ def command(
             elif terminal.plain.value:
                 run_dialogue(FormDialogue(session))
             else:
-                _ask_on_full_screen(session, terminal)
-
-
-def _ask_on_full_screen(session: FormSession, terminal: TerminalDecision) -> NoReturn:
-    def make_screen(app: KitApp) -> DialogueScreen:
-        from kit.tui.screens.dialogue import DialogueScreen
-
-        return DialogueScreen(FormDialogue(session))
-
-    show_screen(terminal, make_screen)
+                show_dialogue(FormDialogue(session), terminal)
 
 
 def _show(form: SurveyForm, answers: FormAnswers, phases: list[SurveyPhase]) -> None:

@@ -13,11 +13,13 @@ from kit.workspace import Workspace, open_workspace
 if TYPE_CHECKING:
     from textual.screen import Screen
 
+    from kit.dialogue.dialogue import Dialogue
     from kit.layers.case_sources import PlanningTask
     from kit.school.game.levels import GameLevel
     from kit.school.lessons.lesson_session import LessonSession
     from kit.school.progress import ProgressJournal
     from kit.tui.app import KitApp
+    from kit.tui.screens.dialogue import DialogueScreen
     from kit.tui.screens.layers import LayersScreen
     from kit.tui.screens.lesson import LessonScreen
     from kit.tui.screens.lessons import LessonsScreen
@@ -53,6 +55,17 @@ def show_screen(terminal: TerminalDecision, make_screen: Callable[[KitApp], Scre
     """The same, for a verb that ends with its screen; at SIGTERM and SIGHUP too, after the screen has saved what it keeps."""
     _, code = run_screen(terminal, make_screen)
     raise ScreenClosed(code)
+
+
+def show_dialogue(dialogue: Dialogue, terminal: TerminalDecision) -> NoReturn:
+    """Asks on the full screen."""
+
+    def make_screen(app: KitApp) -> DialogueScreen:
+        from kit.tui.screens.dialogue import DialogueScreen
+
+        return DialogueScreen(dialogue)
+
+    show_screen(terminal, make_screen)
 
 
 def show_lesson(session: LessonSession, workspace: Workspace, terminal: TerminalDecision) -> NoReturn:

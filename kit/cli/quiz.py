@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
 
 import click
 
 from kit.cli import options
 from kit.cli.dialogue import run_dialogue
-from kit.cli.full_screen import show_screen
+from kit.cli.full_screen import show_dialogue
 from kit.document.blocks import Text
 from kit.document.layout import lines_of
 from kit.school.progress import FILE, ProgressError, ProgressEvent, ProgressJournal
@@ -33,13 +32,8 @@ from kit.school.quiz.quiz_text import (
     today_line,
 )
 from kit.school.quiz.schedule import answers_from_events, build_schedule
-from kit.tui.terminal import TerminalDecision
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError
-
-if TYPE_CHECKING:
-    from kit.tui.app import KitApp
-    from kit.tui.screens.dialogue import DialogueScreen
 
 
 @click.command()
@@ -92,7 +86,7 @@ def command(
             elif terminal.plain.value:
                 run_dialogue(QuizDialogue(session))
             else:
-                _ask_on_full_screen(session, terminal)
+                show_dialogue(QuizDialogue(session), terminal)
     except ProgressError as error:
         options.fail(str(error))
 
@@ -146,12 +140,3 @@ def _print_finished(session: QuizSession) -> None:
     else:
         blocks = [Text(today_line(schedule)), *(schedule_blocks(schedule) if schedule.topics else ())]
     click.echo("\n".join(lines_of(blocks)))
-
-
-def _ask_on_full_screen(session: QuizSession, terminal: TerminalDecision) -> NoReturn:
-    def make_screen(app: KitApp) -> DialogueScreen:
-        from kit.tui.screens.dialogue import DialogueScreen
-
-        return DialogueScreen(QuizDialogue(session))
-
-    show_screen(terminal, make_screen)

@@ -100,7 +100,7 @@ class Dialogue:
 
     @property
     def place(self) -> object:
-        """Is another where everything is said anew: another question, another step."""
+        """Is another at another question or step: line by line the position and ``heard`` are said there."""
         return None
 
     @property

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, Final
 
 import pytest
@@ -22,6 +23,8 @@ from kit.dialogue.effects import Effect, Leave, Tell
 from kit.document.layout import lines_of
 from kit.school.form_dialogue import FormDialogue
 from kit.school.form_session import FormSession
+from kit.school.lessons.defence import Defence, DefenceQuestion
+from kit.school.lessons.defence_dialogue import DefenceDialogue
 from kit.school.lessons.lesson_dialogue import LessonDialogue
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.reading import read_lesson
@@ -93,7 +96,32 @@ class LessonCase(QuizCase):
         return not dialogue.busy and (dialogue.is_answer_shown or dialogue.is_waiting)
 
 
-CASES: Final = {"quiz": QuizCase(), "form": FormCase(), "lesson": LessonCase()}
+class DefenceCase(LessonCase):
+    """Three questions about a program, without the picture of its run."""
+
+    unused = ()
+
+    def dialogue(self, journal: ProgressJournal, folder: Path) -> Dialogue:
+        session = self.session(journal, folder)
+        run = SimpleNamespace(track=lambda robot: [(1.0, 2.0, 0.5)])
+        questions = tuple(
+            DefenceQuestion(f"What about {number}?", ("this", "that", "neither")[: 2 + number % 2], 1)
+            for number in range(3)
+        )
+        defence = Defence(run, SimpleNamespace(robot="robot"), questions)  # type: ignore[arg-type]  # stand-ins
+        return DefenceDialogue(session, session.lesson.exercises[-1], defence)
+
+    def screen(self, theme: Theme, journal: ProgressJournal, folder: Path) -> DialogueScreen:
+        return DialogueScreen(self.dialogue(journal, folder))
+
+    def shown(self, dialogue: Dialogue) -> list[str]:
+        return lines_of(dialogue.blocks())
+
+    def is_settled(self, dialogue: Dialogue) -> bool:
+        return True
+
+
+CASES: Final = {"quiz": QuizCase(), "form": FormCase(), "lesson": LessonCase(), "defence": DefenceCase()}
 
 
 def walk(case: QuizCase, dialogue: type[Dialogue], seed: int, count: int = 25) -> list[str]:

@@ -267,7 +267,8 @@ class LessonDialogue(Dialogue):
         blocks += [Marked(text), *command_blocks(filled)]
         if self.work is not None and self.stage.is_described:
             others = ", and the files beside it" if self.work.has_others else ""
-            blocks.append(Text(f"Your file: {shell_path(self.work.edited_file)}{others}"))
+            # On one line, however long, so that it can be copied.
+            blocks.append(Picture((f"Your file: {shell_path(self.work.edited_file)}{others}",), indent=0))
         return blocks
 
     def asked(self) -> list[Block]:

@@ -65,7 +65,7 @@ def checking(seconds: float, progress: str = "") -> Row:
 
 def file_rows(path: str, by_hand: bool, others: bool, width: int) -> list[Row]:
     """The whole path of what is edited, on as many rows as it needs. ``others``: there is more beside it."""
-    head = "  Saved in " if by_hand else "  Edit "
+    head = " Saved in " if by_hand else " Edit "
     tail = ", and the files beside it" if others else ""
     room = max(10, width - len(head))
     parts = _broken_path(path, room)

@@ -99,7 +99,7 @@ def test_nothing_is_wider_than_the_screen(lesson: Lesson, stand: LessonProgress,
 def test_a_long_path_is_there_to_the_last_character() -> None:
     path = "/home/" + "ada" * 60 + "/controller.py"
     rows = lesson_rows.file_rows(path, False, False, 80)
-    assert "".join(row_text(row)[7:] for row in rows) == path
+    assert "".join(row_text(row)[6:] for row in rows) == path
 
 
 def test_a_long_command_can_be_copied_and_typed_as_it_stands() -> None:
