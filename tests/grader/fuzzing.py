@@ -188,7 +188,8 @@ def _with_changed_member(content: bytes, rng: random.Random) -> bytes:
         case 1:
             members[_other_word(name.encode(), rng).decode(errors="replace") + "x"] = members[name]
         case 2 if name.endswith(".npy"):
-            members[name] = _odd_array(members[name], rng)
+            with np.errstate(all="ignore"):  # numbers that the type cannot hold are meant
+                members[name] = _odd_array(members[name], rng)
         case _:
             members[name] = rng.choice(MUTATIONS)(members[name], rng)
     made = io.BytesIO()
