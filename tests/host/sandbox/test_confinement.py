@@ -27,8 +27,7 @@ from kit.host.node_process import NodeProcess
 from kit.host.sandbox import landlock, seccomp
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import MIB
-from kit.host.sandbox.namespaces import can_mount_scratch
-from kit.host.sandbox.probe import SandboxSupport, highest_level, probe_levels
+from kit.host.sandbox.probe import SandboxSupport, can_mount_scratch, highest_level, probe_levels
 from kit.host.student_functions import StudentFunctions
 from kit.msg.geometry_msgs import Twist
 from kit.msg.sensor_msgs import LaserScan
