@@ -34,3 +34,11 @@ def read_plain_file(file: Path | str, limit: int) -> bytes:
     if content is None or len(content) > limit:
         raise OSError(errno.EFBIG, f"it is larger than {limit / 1e6:.3g} MB", str(file))
     return content
+
+
+def is_file_there(file: Path) -> bool:
+    """Returns whether there is a file of this name; False for what cannot be a name, where ``Path.is_file`` raises."""
+    try:
+        return file.is_file()
+    except (OSError, ValueError):
+        return False

@@ -22,7 +22,7 @@ import traceback
 import zipfile
 from array import array
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -188,7 +188,9 @@ def _with_changed_member(content: bytes, rng: random.Random) -> bytes:
         case 1:
             members[_other_word(name.encode(), rng).decode(errors="replace") + "x"] = members[name]
         case 2 if name.endswith(".npy"):
-            members[name] = _odd_array(members[name], rng)
+            # Numbers that a type cannot hold are meant; where there is no conversion at all, the array stays as it is.
+            with np.errstate(all="ignore"), suppress(ValueError, TypeError):
+                members[name] = _odd_array(members[name], rng)
         case _:
             members[name] = rng.choice(MUTATIONS)(members[name], rng)
     made = io.BytesIO()

@@ -45,6 +45,7 @@ from kit.learning.tasks.learning_task import (
     WallGoal,
     read_curriculum,
 )
+from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import WORLD_FILE, MapCard, UnknownMap, allowed_root_of, find_map
 from kit.world.documents import MAX_YAML_BYTES, AllowedRoot, UnusableFile, WorldDocuments, read_text
@@ -165,7 +166,7 @@ class _TaskReader:
             try:
                 card = find_map(name)
                 cards.append(replace(card, world_file=card.folder / world_file))
-                if not cards[-1].world_file.is_file():
+                if not is_file_there(cards[-1].world_file):
                     section.error(f"the map {name} has no file {quoted(world_file)}", "world_file")
             except UnknownMap as error:
                 section.error(f"{error}; for a file of your own write world: FILE", "maps")
@@ -180,7 +181,7 @@ class _TaskReader:
             return ()
         if file.is_dir():
             file /= "world.yaml"
-        if not file.is_file():
+        if not is_file_there(file):
             section.error(f"there is no file {quoted(str(file), 200)}", "world")
             return ()
         names = section.names("robots") if section.has("robots") else ("serp",)
@@ -210,7 +211,7 @@ class _TaskReader:
             except UnusableFile as error:
                 section.error(str(error), "file")
                 return SUCCESS_REWARD, None
-            if not file.is_file():
+            if not is_file_there(file):
                 section.error(f"there is no file {quoted(str(file), 200)}", "file")
             return SUCCESS_REWARD, file
         if section.has("name"):
