@@ -13,12 +13,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from enum import Enum, StrEnum, auto
 from types import MappingProxyType
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, TypeVar
+
+from kit.field_types import check_field_types
 
 SCHEMA: Final = 1
 
 PUBLIC_SEEDS: Final = "public"
 """The name of the public sets of seeds; see ``GradingResult.seeds``."""
+WITH_SECRET: Final = "public+secret"
+"""The same with the secret ones."""
 
 MAX_LOG_LENGTH: Final = 4000
 """Characters of a program's output that are kept with a criterion."""
@@ -228,11 +232,12 @@ class GradingResult:
         if content["schema"] != SCHEMA:
             raise ValueError(f"a result of schema {content['schema']}; this version reads schema {SCHEMA}")
         given = {key: content[key] for key in cls.__slots__ if key not in _OWN_READING}
+        check_field_types(cls, {**given, "notices": content["notices"]})
         return cls(
             **given,
             tests=tuple(_criterion_from_dict(each) for each in content["tests"]),
             notices=tuple(content["notices"]),
-            timing=GradingTiming(**content["timing"]),
+            timing=_checked(GradingTiming, content["timing"]),
         )
 
     def without_secrets(self) -> GradingResult:
@@ -261,15 +266,22 @@ def _criterion_from_dict(content: Mapping[str, Any]) -> CriterionResult:
     if content["is_withheld"]:
         status = content["status"] or CriterionStatus.SKIPPED
         content = {**content, "status": status, "points": 0.0, "max_points": 0.0}
-    return CriterionResult(
-        **{
-            **content,
-            "status": CriterionStatus(content["status"]),
-            "visibility": Visibility(content["visibility"]),
-            "hints": tuple(content["hints"]),
-            "episodes": tuple(EpisodeSummary(**each) for each in content["episodes"]),
-        }
-    )
+    read = {
+        **content,
+        "status": CriterionStatus(content["status"]),
+        "visibility": Visibility(content["visibility"]),
+        "episodes": tuple(_checked(EpisodeSummary, each) for each in content["episodes"]),
+    }
+    check_field_types(CriterionResult, read)
+    return CriterionResult(**{**read, "hints": tuple(content["hints"])})
+
+
+R = TypeVar("R")
+
+
+def _checked(record: type[R], content: Mapping[str, Any]) -> R:
+    check_field_types(record, content)
+    return record(**content)
 
 
 def rounded_points(points: float) -> float:

@@ -17,6 +17,7 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from importlib.util import find_spec
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner
@@ -47,6 +48,7 @@ from grader.cohort.queue import (
     grade_one_job,
     job_key,
     prepare_queue,
+    record_incident,
     run_locally,
     run_on_dask,
     run_on_slurm,
@@ -324,6 +326,8 @@ class Future:
         self._problem = problem
 
     def exception(self) -> Exception | None:
+        if isinstance(self._problem, LookupError):  # what Dask does for a task that was cancelled
+            raise self._problem
         return self._problem
 
 
@@ -333,9 +337,16 @@ class StandIn:
     class KilledWorker(Exception):
         """What Dask says when a task has ended several workers."""
 
-    def __init__(self, deadly: str) -> None:
+    def __init__(self, deadly: str, problem: Exception | None = None) -> None:
         self.deadly = deadly
-        self.as_completed = list
+        self.problem = problem or self.KilledWorker()
+        self.has_workers = True
+
+    def wait(self, futures: list[Future], *, timeout: float | None, return_when: str) -> SimpleNamespace:
+        assert timeout is not None, "a cluster that stands still is not waited for"
+        if not self.has_workers:
+            raise TimeoutError
+        return SimpleNamespace(done=futures[:1], not_done=futures[1:])
 
     def Client(self, address: str) -> StandIn:
         assert address == "tcp://cluster:1"
@@ -349,8 +360,8 @@ class StandIn:
 
     def submit(self, function: Callable[..., str], *names: str, **options: object) -> Future:
         assert all(isinstance(each, str) for each in names)
-        problem = self.KilledWorker() if names[-1] == self.deadly else None
-        if problem is None:
+        problem = self.problem if names[-1] == self.deadly else None
+        if problem is None and self.has_workers:
             function(*names)
         return Future(problem)
 
@@ -369,6 +380,30 @@ def test_a_cluster_gets_names_alone_and_outlives_a_job_that_kills(
     assert [verdict is GradingVerdict.BROKEN for verdict in verdicts] == [False, True, False, False]
     with pytest.raises(ExecutorUnavailable, match="--cluster"):
         run_on_dask(queue, keys, "", done.append)
+
+
+@pytest.mark.parametrize(
+    "problem", [OSError(28, "No space left on device"), LookupError("cancelled")], ids=str
+)
+def test_a_job_that_fails_on_the_cluster_costs_no_other_job_its_result(
+    problem: Exception, queue: Queue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keys = queue.waiting()
+    monkeypatch.setitem(sys.modules, "distributed", StandIn(keys[0], problem))  # type: ignore[arg-type]
+    monkeypatch.setattr("grader.cohort.queue.grade_job", record_incident)
+    done: list[str] = []
+    with pytest.raises(ExecutorUnavailable, match=r"1 of 4 jobs failed .*the same command"):
+        run_on_dask(queue, keys, "tcp://cluster:1", done.append)
+    assert sorted(done) == sorted(keys)
+    assert queue.waiting() == keys[:1]
+
+
+def test_a_cluster_without_workers_is_not_waited_for(queue: Queue, monkeypatch: pytest.MonkeyPatch) -> None:
+    cluster = StandIn("none")
+    cluster.has_workers = False
+    monkeypatch.setitem(sys.modules, "distributed", cluster)  # type: ignore[arg-type]  # a stand-in
+    with pytest.raises(ExecutorUnavailable, match="does the scheduler have workers"):
+        run_on_dask(queue, queue.waiting(), "tcp://cluster:1", lambda key: None)
 
 
 @pytest.mark.long
