@@ -158,6 +158,11 @@ def open_common_folder(folder: Path) -> str:
     status = folder.lstat()
     if not stat.S_ISDIR(status.st_mode):
         return "is not a folder"
+    if status.st_uid not in (0, os.geteuid()):
+        return (
+            "belongs to another user, who may remove or close what is there. An administrator makes one for all: "
+            f"sudo install -d -o root -m 1777 {folder}"
+        )
     if status.st_mode & stat.S_IWOTH and not status.st_mode & stat.S_ISVTX:
         return "any user may replace what is there; `chmod +t` on it prevents that"
     return ""

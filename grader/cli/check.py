@@ -88,7 +88,7 @@ def check(
     try:
         submission = read_submission(file, assignment.submit)
         if submission.note:
-            click.echo(submission.note, err=True)
+            options.warn(f"Note: {submission.note}")
         with shown_progress(progress_descriptor) as show_progress:
             is_for_student = for_student or format_name in STUDENT_FORMATS
             grading_options = GradingOptions(

@@ -22,8 +22,15 @@ EXIT_BROKEN: Final = 3
 
 def fail(message: str, code: int = EXIT_BAD_INPUT) -> NoReturn:
     """Ends the verb with this message on standard error."""
-    click.echo(message, err=True)
+    warn(message)
     raise SystemExit(code)
+
+
+def warn(message: str) -> None:
+    """Prints a message on standard error: it may hold a student's words, and that of a CI job is read for commands."""
+    from grader.reports.cleaning import plain
+
+    click.echo(plain(message), err=True)
 
 
 assignment: Decorator = click.option(

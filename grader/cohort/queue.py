@@ -11,9 +11,11 @@ import hashlib
 import json
 import shutil
 import sys
+import unicodedata
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cache, partial
+from itertools import count
 from pathlib import Path
 from typing import Any, Final
 
@@ -235,10 +237,8 @@ def _entries(
     for path in sorted(cohort.iterdir()):
         if path.name.startswith(".") or path.name.lower() in IGNORED_NAMES:
             continue
-        name = submission_name(path)
-        if name in names:
-            name = path.name
-        names.add(name)
+        name = _unlike(names, submission_name(path), path.name)
+        names.add(_look(name))
         try:
             submission = read_submission(path, assignment.submit)
         except SubmissionUnreadable as unreadable:
@@ -253,6 +253,22 @@ def _entries(
             job = {"name": name, "main": submission.main, "files": files}
             write_atomically(queue.job(key), json.dumps(job).encode())
         yield QueueEntry(name, key, note=submission.note)
+
+
+def _unlike(looks: set[str], name: str, file_name: str) -> str:
+    """Returns a submission's name, or its file's, if that looks like no other; else one with a number."""
+    for candidate in (name, file_name):
+        if _look(candidate) not in looks:
+            return candidate
+    return next(each for number in count(2) if _look(each := f"{file_name} ({number})") not in looks)
+
+
+def _look(name: str) -> str:
+    """Returns what a reader takes a name for: without double blanks, letters of other widths, and what cannot be seen."""
+    shown = "".join(
+        sign for sign in unicodedata.normalize("NFKC", name) if sign.isprintable() or sign.isspace()
+    )
+    return " ".join(shown.split()).casefold()
 
 
 def _copy_assignment(queue: Queue, assignment: Assignment) -> None:

@@ -162,6 +162,8 @@ class TopicTraffic:
     count: int
     nodes: tuple[str, ...] = ()
     """Full names of the nodes that published it."""
+    per_second: Mapping[int, int] = field(default_factory=dict)
+    """Messages in each second of the episode in which there were some."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,6 +194,10 @@ class GradedDrive:
     """The ticks at which the robot began to touch something."""
     connections: NodeConnections = field(default_factory=NodeConnections)
     """The program's nodes at the end; empty for a program that stopped, and for a drive by hand."""
+    printed_at: tuple[int, ...] = ()
+    """The second of the episode in which each line was printed."""
+    ahead: Mapping[str, FloatArray] = field(default_factory=dict)
+    """By a laser's topic, (k, 2): the time of each scan [s] and its range straight ahead [m]; nan where nothing was met."""
 
     @property
     def steps(self) -> int:

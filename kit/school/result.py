@@ -273,7 +273,10 @@ def _criterion_from_dict(content: Mapping[str, Any]) -> CriterionResult:
         "episodes": tuple(_checked(EpisodeSummary, each) for each in content["episodes"]),
     }
     check_field_types(CriterionResult, read)
-    return CriterionResult(**{**read, "hints": tuple(content["hints"])})
+    criterion = CriterionResult(**{**read, "hints": tuple(content["hints"])})
+    if criterion.points != content["points"] or criterion.max_points != content["max_points"]:
+        raise ValueError(f"{content['points']} of {content['max_points']} points")
+    return criterion
 
 
 R = TypeVar("R")

@@ -19,6 +19,7 @@ from click.testing import CliRunner
 from grader.__main__ import main
 from grader.ci import WORKFLOWS, GitSource, warnings, workflow
 from grader.reading import read_assignment
+from kit.host.sandbox import probe
 from tests.cases import every_case
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 

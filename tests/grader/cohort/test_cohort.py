@@ -24,6 +24,7 @@ from click.testing import CliRunner
 
 from grader import grading
 from grader.__main__ import main
+from grader.assignment import Assignment
 from grader.cohort import gradebook
 from grader.cohort.gradebook import (
     RULES,
@@ -604,3 +605,41 @@ def test_a_machine_no_level_1_uses_no_secrets_unless_told(tmp_path: Path) -> Non
     code, told = verb("check", file, "--assignment", folder, "--secret")
     assert (code, "--level 0" in told) == (2, True)
     assert verb("check", file, "--assignment", folder, "--secret", "--level", "0")[0] == 1
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("ada", "ada "),
+        ("ada lovelace", "ada\u00a0lovelace", "ada  lovelace"),
+        ("ada", "Ada"),
+        ("ada", "a\u200bda"),
+    ],
+)
+def test_no_two_names_of_a_class_look_alike(
+    names: tuple[str, ...], tmp_path: Path, quick: Assignment
+) -> None:
+    folder = tmp_path / "in"
+    for name in names:
+        (folder / name).mkdir(parents=True)
+        (folder / name / "controller.py").write_text(FORWARD)
+    entries = prepare_queue(Queue(tmp_path / "queue"), folder, quick, TERMS)
+    shown = {
+        " ".join("".join(c for c in each.name if c.isprintable() or c == "\u00a0").split()).casefold()
+        for each in entries
+    }
+    assert len(shown) == len(names), shown
+
+
+@pytest.mark.long
+def test_a_note_gives_a_ci_service_no_command(tmp_path: Path) -> None:
+    folder = write_assignment(tmp_path / "quick")
+    work = tmp_path / "in"
+    work.mkdir()
+    (work / "::error title=Passed::all.py").write_text("1/0\n")
+    (work / "##[add-mask]x.pdf").write_text("x")
+    code, told = verb("check", work, "--assignment", folder, "--level", "0")
+    assert code == 1
+    assert "all.py was taken as controller.py" in told
+    assert "::" not in told
+    assert "##[" not in told

@@ -70,6 +70,8 @@ DAMAGES: dict[str, Callable[[dict[str, Any]], Any]] = {
     "a text for criteria": lambda content: content | {"tests": "passed"},
     "more points": lambda content: content | {"tests": [content["tests"][0] | {"max_points": 1e6}, *content["tests"][1:]]},
     "points in words": lambda content: content | {"tests": [content["tests"][0] | {"points": "all"}]},
+    "negative points": lambda content: content | {"tests": [content["tests"][0] | {"points": -1.0}, *content["tests"][1:]]},
+    "points beyond the most": lambda content: content | {"tests": [content["tests"][0] | {"points": 99.0}, *content["tests"][1:]]},
     "points without end": lambda content: content | {"tests": [content["tests"][0] | {"points": 10**400}]},
     "a list for a title": lambda content: content | {"tests": [content["tests"][0] | {"title": ["x"]}]},
     "hints in one text": lambda content: content | {"tests": [content["tests"][0] | {"hints": "abc"}]},

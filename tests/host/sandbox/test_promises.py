@@ -17,6 +17,7 @@ from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import is_level_available
 from kit.host.sandbox.promises import PROMISES, Promise, markdown_table, promises_since
 from kit.host.student_functions import StudentFunctions
+from tests.grader import test_returned_numbers, test_secrets
 from tests.host import test_forgery, test_process, test_states
 from tests.host.conftest import LINUX, QUICK, Student
 from tests.host.sandbox import test_confinement, test_grants
@@ -30,6 +31,7 @@ TRIALS: Final[Mapping[str, str]] = MappingProxyType(
     {
         "stat": "return os.stat(secret).st_size",
         "list": "return os.stat(f'/proc/{grader}').st_nlink",
+        "load": "return sum(os.getloadavg()) + os.sysconf('SC_AVPHYS_PAGES')",
     }
 )
 """By promise: what returns more than 0 where the level does not prevent it."""
@@ -52,6 +54,11 @@ TESTS: Final[Mapping[str, tuple[Callable[..., Any], ...]]] = MappingProxyType(
             test_forgery.test_a_forged_answer_ends_the_process,
         ),
         "solutions": (test_grants.test_every_package_but_ours_can_be_read,),
+        "numbers": (
+            test_returned_numbers.test_a_calculation_ends_with_the_submissions_time,
+            test_returned_numbers.test_what_takes_too_long_to_measure_is_the_submissions_timeout,
+        ),
+        "order": (test_secrets.test_nothing_that_a_student_reads_of_is_run_after_a_secret_run,),
         "disk": (test_confinement.test_a_separate_program_is_alone_and_its_disk_is_small,),
         "threads": (test_confinement.test_threads_are_counted,),
         "user": (test_confinement.test_two_runs_have_two_users,),
@@ -73,7 +80,7 @@ def find_promise(key: str) -> Promise:
 
 
 def test_every_promise_is_tried() -> None:
-    here = {*TRIALS, "access times", "locks"}
+    here = {*TRIALS, "access times", "locks", "cache"}
     keys = [*here, *TESTS, *test_confinement.ATTACKS_BY_PROMISE]
     assert sorted(keys) == sorted(promise.key for promise in PROMISES)
     for key in test_confinement.ATTACKS_BY_PROMISE:
@@ -141,6 +148,43 @@ def test_a_lock_is_seen_by_another_program_at_every_level(student: Student, leve
     ):
         got = [functions.call_batch("lock", [{}]) for functions in (first, second)]
     assert (got == [[1.0], [1.0]]) == find_promise("locks").holds_at(level)
+
+
+@pytest.mark.long
+@LINUX
+def test_what_of_a_file_is_in_memory_is_seen_by_a_later_program_at_every_level(
+    student: Student, tmp_path: Path, level: Level
+) -> None:
+    """One reads the file, or does not; the other counts the pages that it waits for. So the table promises no less than is so."""
+    data = student("", "data.bin")
+    pages, size = 64, 64 * 4096 * 16
+    data.write_bytes(os.urandom(size))
+    file = student(
+        f"""
+        import mmap, resource
+        def read():
+            with open({str(data)!r}, "rb") as opened: return len(opened.read())
+        def waited():
+            with open({str(data)!r}, "rb") as opened:
+                mapped = mmap.mmap(opened.fileno(), 0, prot=mmap.PROT_READ)
+                before = resource.getrusage(resource.RUSAGE_SELF).ru_majflt
+                total = sum(mapped[place] for place in range(0, {size}, {size // pages})) * 0
+                return total + resource.getrusage(resource.RUSAGE_SELF).ru_majflt - before
+        """
+    )
+    seen = []
+    for is_read in (False, True):
+        with data.open("rb") as opened:
+            os.fsync(opened.fileno())
+            os.posix_fadvise(opened.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)
+        with StudentFunctions(file, limits=QUICK, level=level) as functions:
+            if is_read:
+                functions.call_batch("read", [{}])
+        with StudentFunctions(file, limits=QUICK, level=level) as functions:
+            seen += functions.call_batch("waited", [{}])
+    if seen[0] == 0:
+        pytest.skip("this file system keeps its files in memory")
+    assert (seen[1] < seen[0]) != find_promise("cache").holds_at(level)
 
 
 if __name__ == "__main__":
