@@ -31,6 +31,7 @@ from kit.host.sandbox.confinement import Level, shield_this_process
 from kit.host.sandbox.probe import highest_level_up_to
 from kit.school.result import (
     PUBLIC_SEEDS,
+    WITH_SECRET,
     CriterionResult,
     CriterionStatus,
     EpisodeSummary,
@@ -168,7 +169,7 @@ class Grading:
             public_version=self.assignment.public_version,
             submission=self.submission.digest,
             grader_version=grader_version(),
-            seeds="public+secret" if self._secret else PUBLIC_SEEDS,
+            seeds=WITH_SECRET if self._secret else PUBLIC_SEEDS,
             level=int(self._collector.level),
             platform=_platform(),
             tests=tests,

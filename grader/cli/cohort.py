@@ -13,6 +13,7 @@ import click
 from grader.cli import options
 from grader.cohort.gradebook import (
     UNREADABLE,
+    WAITING,
     as_csv,
     as_json,
     attention_blocks,
@@ -87,8 +88,8 @@ def cohort(
     Programs run at the highest confinement level of this machine; --level 1 takes less time. You can interrupt it; run the same command to continue. At the end it lists the submissions that need your
     attention.
 
-    Exit code: 0 all submissions have a grade; 1 some cannot be read; 2 an argument is wrong; 3 the grader failed for
-    some.
+    Exit code: 0 all submissions have a grade, or wait for shards; 1 some cannot be read; 2 an argument is wrong; 3 the
+    grader failed for some, or a worker left no result for some.
     """
 
     def count(key: str) -> None:
@@ -120,11 +121,12 @@ def cohort(
                 run_locally(queue, waiting, jobs, count)
     except (QueueError, ExecutorUnavailable, OSError) as error:
         options.fail(describe_error(error))
-    raise SystemExit(publish(queue))
+    raise SystemExit(publish(queue, is_graded=executor != "none"))
 
 
-def publish(queue: Queue) -> int:
-    """Writes the gradebook into the queue folder, lists who has no grade, and returns the exit code."""
+def publish(queue: Queue, *, is_graded: bool) -> int:
+    """Writes the gradebook into the queue folder, lists who has no grade, and returns the exit code. ``is_graded``: every job
+    should have a result by now."""
     table = gradebook_rows(queue)
     write_atomically(queue.folder / "gradebook.csv", as_csv(table).encode())
     write_atomically(queue.folder / "gradebook.json", as_json(table).encode())
@@ -136,6 +138,11 @@ def publish(queue: Queue) -> int:
     if attention := attention_blocks(table):
         click.echo("\n".join(lines_of(attention)))
     verdicts = {row.verdict for row in table}
+    if is_graded and WAITING in verdicts:
+        click.echo(
+            "A worker left no result for some, one that cannot be read, or another job's: run the same command to grade them."
+        )
+        return options.EXIT_BROKEN
     if "broken" in verdicts:
         return options.EXIT_BROKEN
     return options.EXIT_FAILED if UNREADABLE in verdicts else 0

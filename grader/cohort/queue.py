@@ -9,7 +9,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-import math
 import shutil
 import sys
 import unicodedata
@@ -25,15 +24,16 @@ from grader.grading import GradingOptions, grade, grader_version, level_for_untr
 from grader.reading import read_assignment
 from grader.submission import Submission, read_submission, submission_name
 from grader.submitted_files import IGNORED_NAMES, SubmissionRefused, SubmissionUnreadable
+from kit.field_types import check_field_types
 from kit.host import job_executors
-from kit.host.job_executors import MAX_TRIES, JobPool, in_shard
+from kit.host.job_executors import MAX_TRIES, JobPool, in_shard, read_result
 from kit.host.job_executors import ExecutorUnavailable as ExecutorUnavailable
 from kit.host.python_command import python_command
 from kit.host.sandbox.confinement import Level
-from kit.plain_files import read_plain_file
 from kit.school.result import (
     PUBLIC_SEEDS,
     SCHEMA,
+    WITH_SECRET,
     CriterionResult,
     CriterionStatus,
     GradingResult,
@@ -42,8 +42,6 @@ from kit.school.result import (
 from kit.workspace import make_private_folder, write_atomically
 
 MANIFEST: Final = "manifest.json"
-MAX_RESULT_BYTES: Final = 16 << 20
-"""Bytes of one result: a few hundred kilobytes with all that was printed."""
 
 
 class QueueError(Exception):
@@ -119,29 +117,40 @@ class Queue:
         return tuple(QueueEntry(**each) for each in self.manifest()["entries"])
 
     def result(self, key: str) -> GradingResult | None:
-        """Returns a job's result; None if there is none that can be read, so that it is graded again.
-
-        Nor is one taken that is another job's, or whose points cannot be: a worker of a cluster may write anything.
-        """
+        """Returns a job's result; None if there is none that can be read and is this job's, so that it is graded again."""
         try:
-            content = json.loads(read_plain_file(self.result_file(key), MAX_RESULT_BYTES))
-            result = GradingResult.from_dict(content)
-            # As they are written: a record of a criterion holds no points that cannot be.
-            is_possible = _key_of_result(result, examples=self.grading_options().examples) == key and all(
-                math.isfinite(test["max_points"]) and 0.0 <= test["points"] <= test["max_points"]
-                for test in content["tests"]
-            )
-        except (OSError, KeyError, TypeError, ValueError, AttributeError, RecursionError, OverflowError):
+            result = GradingResult.from_dict(read_result(self.result_file(key)))
+        except (OSError, KeyError, TypeError, ValueError):
             return None
-        return result if is_possible else None
+        return result if self._is_result_of(key, result) else None
+
+    def _is_result_of(self, key: str, result: GradingResult) -> bool:
+        """Whether a worker has graded this job, and not another submission, at another level, by another assignment."""
+        keys = (
+            _key_of(
+                result.submission,
+                result.assignment_version,
+                result.grader_version,
+                is_secret=result.seeds == WITH_SECRET,
+                has_examples=has_examples,
+                level=result.level,
+            )
+            for has_examples in (False, True)
+        )
+        if key not in keys:
+            return False
+        assignment = _assignment(self.folder, result.assignment_version)
+        wanted = [(each.id, each.points) for each in assignment.tests]
+        return [(each.id, each.max_points) for each in result.tests] == wanted
 
     def unreadable(self, key: str) -> UnreadableWork | None:
         """Returns why a job's work could not be read; None if it could, or has not been tried."""
         try:
-            work = UnreadableWork(**json.loads(read_plain_file(self.result_file(key), MAX_RESULT_BYTES)))
-        except (OSError, TypeError, ValueError, RecursionError):
+            content = read_result(self.result_file(key))
+            check_field_types(UnreadableWork, content)
+            return UnreadableWork(**content)
+        except (OSError, KeyError, TypeError, ValueError):
             return None
-        return work if isinstance(work.unreadable, str) and isinstance(work.error, str) else None
 
     def is_waiting(self, key: str) -> bool:
         """True if a job has no result yet."""
@@ -158,9 +167,16 @@ class Queue:
         return Submission(content["name"], content["main"], files)
 
     def save_result(self, key: str, result: GradingResult) -> None:
+        """Saves a job's result. One without a grade never takes the place of a grade, however late it comes."""
+        if result.verdict is GradingVerdict.BROKEN and self._has_grade(key):
+            return
         write_atomically(
             self.result_file(key), (json.dumps(result.as_dict(), allow_nan=False) + "\n").encode()
         )
+
+    def _has_grade(self, key: str) -> bool:
+        known = self.result(key)
+        return known is not None and known.verdict is not GradingVerdict.BROKEN
 
     def save_unreadable(self, key: str, refused: SubmissionRefused) -> None:
         """Saves instead of a result that the work cannot be read."""
@@ -172,31 +188,20 @@ class Queue:
 
 def job_key(submission: Submission, assignment: Assignment, options: GradingOptions) -> str:
     """Returns one name for everything that decides a result."""
-    level = level_for_untrusted(assignment, options.level)
-    return _key(
+    return _key_of(
         submission.digest,
         assignment.version,
         grader_version(),
-        options.secret,
-        options.examples,
-        int(level),
+        is_secret=options.secret,
+        has_examples=options.examples,
+        level=int(level_for_untrusted(assignment, options.level)),
     )
 
 
-def _key_of_result(result: GradingResult, *, examples: bool) -> str:
-    """Returns the name of the job whose result this is."""
-    return _key(
-        result.submission,
-        result.assignment_version,
-        result.grader_version,
-        result.seeds != PUBLIC_SEEDS,
-        examples,
-        result.level,
-    )
-
-
-def _key(digest: str, assignment_version: str, version: str, secret: bool, examples: bool, level: int) -> str:
-    parts = (digest, assignment_version, version, SCHEMA, secret, examples, level)
+def _key_of(
+    submission: str, assignment: str, grader: str, *, is_secret: bool, has_examples: bool, level: int
+) -> str:
+    parts = (submission, assignment, grader, SCHEMA, is_secret, has_examples, level)
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
@@ -310,6 +315,11 @@ def _grade_job(queue: Queue, key: str) -> GradingResult:
     return result
 
 
+def _limit_s(queue: Queue) -> float:
+    """How long a worker may take for one job [s]: after that it counts as standing still."""
+    return MAX_TRIES * (queue.assignment().submission_limit_s + GRACE_S)
+
+
 class WorkerPool(JobPool):
     """Runs ``jobs`` worker processes. A worker that dies, or stands still, costs its job one try and nothing else."""
 
@@ -320,13 +330,14 @@ class WorkerPool(JobPool):
             jobs,
             on_done,
             partial(record_incident, queue),
-            MAX_TRIES * (queue.assignment().submission_limit_s + GRACE_S),
+            _limit_s(queue),
         )
 
 
 def record_incident(queue: Queue, key: str) -> None:
-    """Saves for a job that it has no grade, because its worker died every time."""
-    queue.save_result(key, _incident_result(queue, key))
+    """Saves for a job that it has no grade, because its worker died every time; unless it had saved the result before."""
+    if queue.is_waiting(key):
+        queue.save_result(key, _incident_result(queue, key))
 
 
 def _incident_result(queue: Queue, key: str) -> GradingResult:
@@ -346,7 +357,7 @@ def _incident_result(queue: Queue, key: str) -> GradingResult:
         assignment.version,
         submission.digest,
         grader_version(),
-        "public+secret" if options.secret else "public",
+        WITH_SECRET if options.secret else PUBLIC_SEEDS,
         int(options.level or 0),
         sys.platform,
         tests,
@@ -375,7 +386,7 @@ def run_on_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callab
     Only keys are sent. A job that repeatedly kills its worker gets no grade; the others go on.
     """
     lost = partial(record_incident, queue)
-    job_executors.run_on_dask(queue.folder, grade_one_job, keys, address, on_done, lost)
+    job_executors.run_on_dask(queue.folder, grade_one_job, keys, address, on_done, lost, _limit_s(queue))
 
 
 def grade_one_job(folder: str, key: str) -> str:

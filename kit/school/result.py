@@ -12,15 +12,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from kit.document.blocks import Picture, Text, Tone
+from kit.field_types import check_field_types
 from kit.plain_text import printable_text
 
 SCHEMA: Final = 1
 
 PUBLIC_SEEDS: Final = "public"
 """The name of the public sets of seeds; see ``GradingResult.seeds``."""
+WITH_SECRET: Final = "public+secret"
+"""The same with the secret ones."""
 
 MAX_LOG_LENGTH: Final = 4000
 """Characters of a program's output that are kept with a criterion."""
@@ -230,11 +233,12 @@ class GradingResult:
         if content["schema"] != SCHEMA:
             raise ValueError(f"a result of schema {content['schema']}; this version reads schema {SCHEMA}")
         given = {key: content[key] for key in cls.__slots__ if key not in _OWN_READING}
+        check_field_types(cls, {**given, "notices": content["notices"]})
         return cls(
             **given,
             tests=tuple(_criterion_from_dict(each) for each in content["tests"]),
             notices=tuple(content["notices"]),
-            timing=GradingTiming(**content["timing"]),
+            timing=_checked(GradingTiming, content["timing"]),
         )
 
     def without_secrets(self) -> GradingResult:
@@ -263,15 +267,25 @@ def _criterion_from_dict(content: Mapping[str, Any]) -> CriterionResult:
     if content["is_withheld"]:
         status = content["status"] or CriterionStatus.SKIPPED
         content = {**content, "status": status, "points": 0.0, "max_points": 0.0}
-    return CriterionResult(
-        **{
-            **content,
-            "status": CriterionStatus(content["status"]),
-            "visibility": Visibility(content["visibility"]),
-            "hints": tuple(content["hints"]),
-            "episodes": tuple(EpisodeSummary(**each) for each in content["episodes"]),
-        }
-    )
+    read = {
+        **content,
+        "status": CriterionStatus(content["status"]),
+        "visibility": Visibility(content["visibility"]),
+        "episodes": tuple(_checked(EpisodeSummary, each) for each in content["episodes"]),
+    }
+    check_field_types(CriterionResult, read)
+    criterion = CriterionResult(**{**read, "hints": tuple(content["hints"])})
+    if criterion.points != content["points"] or criterion.max_points != content["max_points"]:
+        raise ValueError(f"{content['points']} of {content['max_points']} points")
+    return criterion
+
+
+R = TypeVar("R")
+
+
+def _checked(record: type[R], content: Mapping[str, Any]) -> R:
+    check_field_types(record, content)
+    return record(**content)
 
 
 def rounded_points(points: float) -> float:

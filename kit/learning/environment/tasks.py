@@ -5,13 +5,12 @@ The kit's are the files of the folder ``tasks``. Where the seed's text and its c
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from pathlib import Path
-from types import UnionType
-from typing import Any, Final, Literal, Union, get_args, get_origin, get_type_hints
+from typing import Any, Final, Literal
 
+from kit.field_types import check_field_types
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.disturbances import Disturbances
 from kit.learning.environment.rewards import REWARD_SCALE, REWARDS
@@ -95,33 +94,6 @@ TASKS: Final = (
     WHEELCHAIRS_SEED_49_WIDE,
 )
 """Those of the dissertation, and what the kit made of them."""
-
-
-def check_field_types(record: type, values: Mapping[str, Any]) -> None:
-    """Raises ValueError unless every value, as JSON gives it, has the type that the dataclass declares for it."""
-    for name, value in values.items():
-        if not _is_of_type(value, _field_types(record)[name]):
-            raise ValueError(f"{name} cannot be {quoted(repr(value)[:60])}")
-
-
-@cache
-def _field_types(record: type) -> dict[str, Any]:
-    return get_type_hints(record)
-
-
-def _is_of_type(value: Any, declared: Any) -> bool:
-    origin, inner = get_origin(declared), get_args(declared)
-    if origin in (Union, UnionType):
-        return any(_is_of_type(value, each) for each in inner)
-    if origin is Literal:
-        return value in inner
-    if origin is dict:
-        return type(value) is dict and all(_is_of_type(each, inner[1]) for each in value.values())
-    if origin in (list, tuple):
-        return type(value) in (list, tuple) and all(_is_of_type(each, inner[0]) for each in value)
-    if declared is float:
-        return type(value) in (int, float)
-    return type(value) is declared
 
 
 @dataclass(frozen=True, slots=True)

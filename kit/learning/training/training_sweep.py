@@ -26,7 +26,8 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from kit.document.blocks import Cell, CellStyle, Column, Table
-from kit.host.job_executors import in_shard
+from kit.field_types import check_field_types
+from kit.host.job_executors import in_shard, read_result
 from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.policies.evaluation import Evaluator, derive_seed
@@ -163,8 +164,10 @@ class TrainingSweep:
     def result(self, key: str) -> SweepResult | None:
         """None if there is none that can be read."""
         try:
-            return SweepResult(**json.loads((self.folder / "results" / f"{key}.json").read_bytes()))
-        except (OSError, TypeError, ValueError):
+            content = read_result(self._result_file(key))
+            check_field_types(SweepResult, content)
+            return SweepResult(**content)
+        except (OSError, KeyError, TypeError, ValueError):
             return None
 
     def run_of(self, entry: SweepEntry) -> TrainingRun:
@@ -217,8 +220,9 @@ class TrainingSweep:
         self._save(key, result)
 
     def record_loss(self, key: str) -> None:
-        """Saves that a training's process died every time it was tried."""
-        self._save(key, SweepResult(problem="its process died twice; is there enough memory?"))
+        """Saves that a training's process died every time it was tried, unless it had saved its result before."""
+        if self.result(key) is None:
+            self._save(key, SweepResult(problem="its process died twice; is there enough memory?"))
 
     def _train(self, run: TrainingRun, interrupted: Callable[[], bool]) -> str:
         """Trains to the end; why it failed."""
@@ -241,7 +245,10 @@ class TrainingSweep:
         )
 
     def _save(self, key: str, result: SweepResult) -> None:
-        write_atomically(self.folder / "results" / f"{key}.json", json.dumps(asdict(result)).encode())
+        write_atomically(self._result_file(key), json.dumps(asdict(result)).encode())
+
+    def _result_file(self, key: str) -> Path:
+        return self.folder / "results" / f"{key}.json"
 
 
 def combine(

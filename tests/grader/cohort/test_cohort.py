@@ -6,7 +6,6 @@ import csv
 import json
 import os
 import random
-import re
 import shutil
 import signal
 import subprocess
@@ -18,6 +17,7 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta, tzinfo
 from importlib.util import find_spec
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner
@@ -25,7 +25,6 @@ from click.testing import CliRunner
 from grader import grading
 from grader.__main__ import main
 from grader.assignment import Assignment
-from grader.cli.cohort import publish
 from grader.cohort import gradebook
 from grader.cohort.gradebook import (
     RULES,
@@ -43,7 +42,6 @@ from grader.cohort.gradebook import (
     read_submission_times,
 )
 from grader.cohort.queue import (
-    MAX_RESULT_BYTES,
     ExecutorUnavailable,
     Queue,
     QueueError,
@@ -52,6 +50,7 @@ from grader.cohort.queue import (
     grade_one_job,
     job_key,
     prepare_queue,
+    record_incident,
     run_locally,
     run_on_dask,
     run_on_slurm,
@@ -329,6 +328,8 @@ class Future:
         self._problem = problem
 
     def exception(self) -> Exception | None:
+        if isinstance(self._problem, LookupError):  # what Dask does for a task that was cancelled
+            raise self._problem
         return self._problem
 
 
@@ -338,9 +339,16 @@ class StandIn:
     class KilledWorker(Exception):
         """What Dask says when a task has ended several workers."""
 
-    def __init__(self, deadly: str) -> None:
+    def __init__(self, deadly: str, problem: Exception | None = None) -> None:
         self.deadly = deadly
-        self.as_completed = list
+        self.problem = problem or self.KilledWorker()
+        self.has_workers = True
+
+    def wait(self, futures: list[Future], *, timeout: float | None, return_when: str) -> SimpleNamespace:
+        assert timeout is not None, "a cluster that stands still is not waited for"
+        if not self.has_workers:
+            raise TimeoutError
+        return SimpleNamespace(done=futures[:1], not_done=futures[1:])
 
     def Client(self, address: str) -> StandIn:
         assert address == "tcp://cluster:1"
@@ -354,8 +362,8 @@ class StandIn:
 
     def submit(self, function: Callable[..., str], *names: str, **options: object) -> Future:
         assert all(isinstance(each, str) for each in names)
-        problem = self.KilledWorker() if names[-1] == self.deadly else None
-        if problem is None:
+        problem = self.problem if names[-1] == self.deadly else None
+        if problem is None and self.has_workers:
             function(*names)
         return Future(problem)
 
@@ -374,6 +382,30 @@ def test_a_cluster_gets_names_alone_and_outlives_a_job_that_kills(
     assert [verdict is GradingVerdict.BROKEN for verdict in verdicts] == [False, True, False, False]
     with pytest.raises(ExecutorUnavailable, match="--cluster"):
         run_on_dask(queue, keys, "", done.append)
+
+
+@pytest.mark.parametrize(
+    "problem", [OSError(28, "No space left on device"), LookupError("cancelled")], ids=str
+)
+def test_a_job_that_fails_on_the_cluster_costs_no_other_job_its_result(
+    problem: Exception, queue: Queue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keys = queue.waiting()
+    monkeypatch.setitem(sys.modules, "distributed", StandIn(keys[0], problem))  # type: ignore[arg-type]
+    monkeypatch.setattr("grader.cohort.queue.grade_job", record_incident)
+    done: list[str] = []
+    with pytest.raises(ExecutorUnavailable, match=r"1 of 4 jobs failed .*the same command"):
+        run_on_dask(queue, keys, "tcp://cluster:1", done.append)
+    assert sorted(done) == sorted(keys)
+    assert queue.waiting() == keys[:1]
+
+
+def test_a_cluster_without_workers_is_not_waited_for(queue: Queue, monkeypatch: pytest.MonkeyPatch) -> None:
+    cluster = StandIn("none")
+    cluster.has_workers = False
+    monkeypatch.setitem(sys.modules, "distributed", cluster)  # type: ignore[arg-type]  # a stand-in
+    with pytest.raises(ExecutorUnavailable, match="does the scheduler have workers"):
+        run_on_dask(queue, queue.waiting(), "tcp://cluster:1", lambda key: None)
 
 
 @pytest.mark.long
@@ -681,49 +713,3 @@ def test_a_note_gives_a_ci_service_no_command(tmp_path: Path) -> None:
     assert "all.py was taken as controller.py" in told
     assert "::" not in told
     assert "##[" not in told
-
-
-def test_a_result_that_cannot_be_a_jobs_is_no_result(tmp_path: Path, quick: Assignment) -> None:
-    """Of a worker of a cluster: malformed, too large, late, or another submission's. The job is graded again."""
-    folder = tmp_path / "in"
-    folder.mkdir()
-    (folder / "ada.py").write_text("1/0\n")
-    (folder / "bob.py").write_text("1/1 + None\n")
-    queue = Queue(tmp_path / "queue")
-    ada, bob = (entry.key for entry in prepare_queue(queue, folder, quick, TERMS))
-    assert ada is not None
-    assert bob is not None
-    for key in (ada, bob):
-        grade_job(queue, key)
-    good, others = queue.result_file(ada).read_bytes(), queue.result_file(bob).read_bytes()
-    assert queue.waiting() == ()
-    for wrong in (
-        b"",
-        b"null",
-        b"[]",
-        b"{}",
-        good[:-20],
-        b"[" * 200_000,
-        others,
-        re.sub(rb'"points": 0(\.0)?', b'"points": 100.0', good),
-        re.sub(rb'"points": 0(\.0)?', b'"points": NaN', good),
-        re.sub(rb'"points": 0(\.0)?', b'"points": -1', good),
-        re.sub(rb'"points": 0(\.0)?', b'"points": "6"', good),
-        re.sub(rb'"max_points": 1(\.0)?\b', b'"max_points": Infinity', good),
-        good.replace(b'"level": 0', b'"level": 3'),
-        good.replace(b'"seeds": "public"', b'"seeds": "public+secret"'),
-        good.replace(b'"tests": [', b'"tests": [7, '),
-        good + b" " * MAX_RESULT_BYTES,
-        b'{"unreadable": 7}',
-        b'{"unreadable": "x", "error": []}',
-    ):
-        assert wrong != good
-        queue.result_file(ada).write_bytes(wrong)
-        assert queue.waiting() == (ada,), (len(wrong), wrong[-200:], others == wrong)
-        assert publish(queue) == 0
-    queue.result_file(ada).unlink()
-    os.mkfifo(queue.result_file(ada))
-    assert queue.waiting() == (ada,)
-    queue.result_file(ada).unlink()
-    queue.result_file(ada).write_bytes(good)
-    assert queue.waiting() == ()
