@@ -123,12 +123,15 @@ def _wrap_styled(pieces: Sequence[StyledText], width: int, first: str, rest: str
     """Wraps the characters, then gives them their styles back. Code is wrapped like a word: it moves down whole, and is broken
     at its blanks only where it is longer than a row."""
     longest = width - len(rest)
-    held = "".join(
-        piece.text.replace(" ", "\0")
-        if piece.style is TextStyle.CODE and len(piece.text) <= longest
-        else piece.text
-        for piece in pieces
-    )
+    held, placed = "", []
+    for piece in pieces:
+        if piece.style is TextStyle.CODE and len(piece.text) <= longest:
+            held += piece.text.replace(" ", "\0")
+        else:  # as ``wrap`` leaves it, so that a row is as wide as its line
+            text = " ".join(f"|{piece.text}|".split())[1:-1]
+            piece = StyledText(text.lstrip() if held.endswith(" ") else text, piece.style)
+            held += piece.text
+        placed.append(piece)
     rows: list[StyledRow] = []
     at = 0
     for index, line in enumerate(wrap(held, width, first, rest)):
@@ -138,7 +141,7 @@ def _wrap_styled(pieces: Sequence[StyledText], width: int, first: str, rest: str
         for number, word in enumerate(line.removeprefix(lead).split()):
             start = held.index(word, end)
             at, end = (at if number else start), start + len(word)
-        row += _cut(pieces, at, end)
+        row += _cut(placed, at, end)
         at = end
         rows.append(_join_equal_styles(row))
     return rows
