@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import textwrap
 import unicodedata
 from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -14,6 +15,10 @@ MIN_COLUMN_WIDTH = 12
 """Table columns are not made narrower than this, even if the table exceeds its width."""
 COLUMN_GAP = "  "
 INDENT = "  "
+_WORD = re.compile(r"(?:[^\s`]|`[^`\s](?:[^`\n]*[^`\s])?`)+(?!\S)|\S+")
+"""A word, or words between backticks with what touches them."""
+_HELD = "\x1f"
+"""In the place of a blank at which a line is not broken."""
 MAX_KNOWN_NAMES = 12
 """Names that ``suggestion`` lists when none of them is close."""
 
@@ -113,15 +118,19 @@ def printable_text(text: str) -> str:
 def wrap(text: str, width: int, first: str = "", rest: str = "", *, most: int | None = None) -> list[str]:
     """Wraps a text to lines of at most ``width`` characters, which begin with ``first`` and ``rest``; at least one line.
 
-    It breaks at blanks alone, so that an option or a file name is never parted; a word that is longer than a line is broken
-    behind a slash or a comma where it has one. A first word that fits on a later line alone begins there.
+    It breaks at blanks alone, so that an option or a file name is never parted, and between backticks only what is longer than
+    a line; a word that is longer than a line is broken behind a slash or a comma where it has one. A first word that fits on a later line alone begins there.
     Where there are more than ``most`` lines, the last one ends with dots.
 
     >>> wrap("see runs/turn-1/log.csv --set gamma", 12)
     ['see', 'runs/turn-1/', 'log.csv', '--set gamma']
     """
     room, longest = max(width - len(first), 1), max(width - len(rest), 1)
-    words = text.split()
+    words = [
+        part
+        for word in _WORD.findall(text)
+        for part in ([word.replace(" ", _HELD)] if len(word) <= longest else word.split())
+    ]
     if words and room < len(words[0]) <= longest:  # it fits where a line is less indented
         below = None if most is None else max(most - 1, 1)
         return [first.rstrip(), *wrap(text, width, rest, rest, most=below)][:most]
@@ -130,7 +139,7 @@ def wrap(text: str, width: int, first: str = "", rest: str = "", *, most: int | 
         for number, word in enumerate(words)
         for part in _parts_of(word, longest if number else min(room, longest))
     ]
-    return textwrap.wrap(
+    lines = textwrap.wrap(
         " ".join(words),
         width,
         initial_indent=first,
@@ -138,7 +147,8 @@ def wrap(text: str, width: int, first: str = "", rest: str = "", *, most: int | 
         break_on_hyphens=False,
         max_lines=most,
         placeholder=" ...",
-    ) or [first.rstrip()]
+    )
+    return [line.replace(_HELD, " ") for line in lines] or [first.rstrip()]
 
 
 def _parts_of(word: str, longest: int) -> Iterator[str]:

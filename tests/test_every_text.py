@@ -8,6 +8,7 @@ import shlex
 from collections.abc import Iterator, Sequence
 
 import click
+import pytest
 
 from grader.__main__ import main as grader_main
 from grader.kinds.contract import kind_names
@@ -162,14 +163,23 @@ PRINTED = [
     ("kit", "maps"),
     ("kit", "doctor"),
     ("kit", "layers", "example"),
+    ("kit", "layers", "explain", "slides-lasers"),
     ("kit", "game", "--plain"),
+    ("kit", "game", "challenge"),
+    ("kit", "game", "leaderboard"),
+    ("kit", "progress"),
     ("kit", "study"),
+    ("kit", "study", "3.5"),
     *(("grader", "checks", kind) for kind in kind_names()),
 ]
 
 
+@pytest.mark.long
 @every_case("words", PRINTED)
 def test_what_commands_print(words: Sequence[str]) -> None:
     output = run_main(kit_main if words[0] == "kit" else grader_main, *words[1:]).output
-    wide = [line for line in output.splitlines() if len(line) > WIDTH]
-    assert wide == [], words
+    lines = output.splitlines()
+    assert [line for line in lines if len(line) > WIDTH] == [], words
+    assert [line for line in lines if re.search(r"\w-$", line)] == [], (
+        "an option or a word is broken at its hyphen"
+    )

@@ -141,9 +141,7 @@ def self_test(folder: Path, solutions: Path | None, level: str | None) -> None:
         options.fail(str(error))
     chances = tuple(unfair_fail_odds(assignment, secret=assignment.has_secrets))
     if chances:
-        click.echo(
-            "\nProbability that a submission fails by bad luck, if each episode succeeds with probability"
-        )
+        title = "Probability that a submission fails by bad luck, if each episode succeeds with probability"
         columns = (Column("", CellStyle.TEXT), *(Column(f"{success:.0%}") for success in SUCCESS_RATES))
         odds = tuple(
             (
@@ -152,7 +150,7 @@ def self_test(folder: Path, solutions: Path | None, level: str | None) -> None:
             )
             for each in chances
         )
-        click.echo("\n".join(lines_of([Table("odds", "", columns, odds, is_ruled=False)])))
+        click.echo("\n" + "\n".join(lines_of([Table("odds", title, columns, odds, is_ruled=False)])))
     raise SystemExit(options.EXIT_FAILED if failed else 0)
 
 

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import click
 
+from kit.cli.options import on_terminal
+
 if TYPE_CHECKING:
     from grader.assignment import Assignment
     from kit.host.sandbox.confinement import Level
@@ -22,7 +24,7 @@ EXIT_BROKEN: Final = 3
 
 def fail(message: str, code: int = EXIT_BAD_INPUT) -> NoReturn:
     """Ends the verb with this message on standard error."""
-    warn(message)
+    warn(on_terminal(message))
     raise SystemExit(code)
 
 

@@ -138,7 +138,7 @@ def command(
         else:
             click.echo(f"{title}: trained on {found.trained_on.title}, {found.steps:,} steps")
             if found.trained_on.has_changed and task is None:
-                click.echo(
+                options.say(
                     f"{found.trained_on.task} has changed since; this tests the task as it was. --task selects the new one."
                 )
             if place.disturbances:
@@ -172,7 +172,7 @@ def _write_node(policy: Policy, file: Path) -> None:
     write_atomically(file, format_policy_node(policy).encode())
     task = policy.trained_on.resolve()
     where = task.maps[0] if task.maps else task.map_cards[0].world_file
-    click.echo(f"{file}: `kit play {where} --controller {file}` runs it here, `python3 {file}` on a robot.")
+    options.say(f"{file}: `kit play {where} --controller {file}` runs it here, `python3 {file}` on a robot.")
 
 
 def _make_package(policy: Policy, name: str, destination: Path | None, workspace: Path | None) -> None:
@@ -182,7 +182,7 @@ def _make_package(policy: Policy, name: str, destination: Path | None, workspace
         options.fail(str(problem))
     where = folder if destination else name
     click.echo(f"{folder}: `kit launch {where} simulation.launch.py` runs it here.")
-    click.echo(
+    options.say(
         f"On a robot: copy it into ~/ros2_ws/src, `colcon build`, then `ros2 launch {name} {name}.launch.py "
         "scan_topic:=/scan cmd_vel_topic:=/cmd_vel`. It needs rclpy and numpy."
     )

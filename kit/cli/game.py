@@ -305,7 +305,7 @@ def leaderboard(workspace: Path | None) -> None:
         found = read_entries(leaderboard_folder())
         click.echo("\n".join(lines_of([*leaderboard_standings(standings(found)), leaderboard_times(found)])))
         if not has_joined(leaderboard_folder()):
-            click.echo(
+            options.say(
                 "You are not on it. `kit game join` adds your name and times; `kit game leave` removes them."
             )
 
@@ -323,7 +323,7 @@ def join(workspace: Path | None, name: str | None) -> None:
         if not player_name or not player_name.isprintable():
             options.fail("Give a name: `kit game join --name Ada`.")
         join_leaderboard(journal, opened_workspace, player_name)
-        click.echo(
+        options.say(
             f"{player_name} is on the leaderboard of this machine ({leaderboard_folder()}). `kit game leave` undoes it."
         )
 
@@ -456,7 +456,7 @@ def _record_drive(
     if record.previous_best is not None and finish.reached:
         click.echo(f"Your best before: {record.previous_best:.2f} s.")
     if record.is_best:
-        click.echo(
+        options.say(
             f"Your best so far {driver.phrase}; to replay it: kit game replay {level.command_name} --driver {driver}"
         )
     reference = reference_seconds(level)

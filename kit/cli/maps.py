@@ -127,7 +127,7 @@ def _show_card(card: MapCard, glyphs: str | None) -> None:
     click.echo("\n".join(scene_rows(scene, columns - 1, max(10, rows - 6), ENCODERS[chosen](True))))
     for case in card.cases:
         x, y, theta = case.start
-        click.echo(
+        options.say(
             f"{case.name}: from ({x:g}, {y:g}, {theta:g} rad) to within {case.target_radius:g} m of "
             f"({case.target[0]:g}, {case.target[1]:g})"
         )
@@ -386,7 +386,7 @@ def _report(made: NewMap, glyphs: str | None) -> None:
     assert card is not None  # just written
     _show_card(card, glyphs)
     x, y = made.route.narrowest
-    click.echo(
+    options.say(
         f"The path from start to target is {made.route.length:.1f} m long; its narrowest passage, {made.route.width:.2f} m wide, "
         f"is at ({x:.2f}, {y:.2f})."
     )

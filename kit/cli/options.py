@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sys
 from collections.abc import Callable
 from functools import reduce
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, NoReturn
 import click
 
 from kit.cli import BAD_INPUT, NO_ROOM, describe_no_room
-from kit.plain_text import escape_controls
+from kit.plain_text import escape_controls, wrap
 from kit.tui.terminal import (
     COLOUR_CHOICES,
     GLYPH_CHOICES,
@@ -31,14 +32,40 @@ if TYPE_CHECKING:
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
+SENTENCE_WIDTH = 78
+"""Columns of sentences that are printed."""
+
 Storage = Literal["mcap", "sqlite3"]
 """Kinds of bags."""
 
 
 def fail(message: str) -> NoReturn:
     """Prints ``message`` on standard error and ends the verb with exit code 2."""
-    click.echo(escape_controls(message), err=True)
+    click.echo(on_terminal(escape_controls(message)), err=True)
     raise SystemExit(BAD_INPUT)
+
+
+def say(text: str, *, err: bool = False) -> None:
+    """Prints sentences, in lines that fit a terminal of 80 columns."""
+    click.echo("\n".join(line for part in text.splitlines() for line in wrap(part, SENTENCE_WIDTH)), err=err)
+
+
+def on_terminal(message: str) -> str:
+    """The lines of an error's message, broken between words where a terminal shows them; a log keeps each whole."""
+    if not sys.stderr.isatty():
+        return message
+    columns = min(shutil.get_terminal_size().columns, SENTENCE_WIDTH + 2)
+    return "\n".join(
+        part
+        for line in message.splitlines()
+        for part in (
+            wrap(line, columns, _indent_of(line), _indent_of(line)) if len(line) > columns else [line]
+        )
+    )
+
+
+def _indent_of(line: str) -> str:
+    return line[: len(line) - len(line.lstrip())]
 
 
 def environment_variable(text: str) -> tuple[str, str]:
@@ -210,7 +237,7 @@ storage: Decorator = click.option(
 def explain_storage(kind: Storage) -> None:
     """Prints which ROS 2 distributions read such a bag."""
     if kind == "mcap":
-        click.echo(
+        say(
             "The bag is in MCAP format. ROS 2 Humble needs a plugin to read it; `-s sqlite3` needs none.",
             err=True,
         )

@@ -143,7 +143,7 @@ def command(
         if again.poses.shape == recording.poses.shape
         else [0]
     )
-    click.echo(
+    options.say(
         f"not the same run: the poses differ from row {differing_rows[0]} on. Has the world changed since?"
     )
     raise SystemExit(1)

@@ -314,6 +314,6 @@ def _print_crosstable(sweep: TrainingSweep, failed: Sequence[str], *, as_json: b
         number, compare = printed_means(sweep.entries()[0].config.choice.task)
         click.echo("\n".join(lines_of(crosstable_tables(columns, compare))))
         if compare:
-            click.echo(f"dissertation: means of its Table {number}; `kit study {number}` shows every cell.")
+            options.say(f"dissertation: means of its Table {number}; `kit study {number}` shows every cell.")
     if waiting := len(sweep.waiting()) - len(failed):
         click.echo(f"{waiting} of {len(sweep.entries())} trainings have no result yet.")

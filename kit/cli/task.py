@@ -72,7 +72,7 @@ def new(name: str, source: str) -> None:
         own = workspace_task_file(name)
         found_by_name = file.parent.name == name or (own is not None and own.samefile(file))
         shown = name if found_by_name else file
-        click.echo(f"{file}: edit it; `kit task check {shown}` checks it, `kit train {shown}` trains it.")
+        options.say(f"{file}: edit it; `kit task check {shown}` checks it, `kit train {shown}` trains it.")
 
 
 @command.command()
@@ -136,7 +136,7 @@ def unpack(archive: Path, dest: Path) -> None:
             file = unpack_task(archive, dest)
         except TaskArchiveError as error:
             options.fail(str(error))
-        click.echo(
+        options.say(
             f"{file}: valid; `kit task show {file.parent}` shows it, `kit train {file.parent}` trains it."
         )
 

@@ -132,7 +132,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
                 break
             time.sleep(0.1)
     except KeyboardInterrupt:
-        click.echo(
+        options.say(
             f"\n{run.name} continues training. `kit watch {run.name}` shows it again, `kit runs {run.name} --stop` stops it."
         )
         return
@@ -140,7 +140,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
         if not once or not run.is_active:
             if run.last_log_line:
                 click.echo(run.last_log_line)
-            click.echo(
+            options.say(
                 f"{run.name} was interrupted. `kit train --resume {run.name}` continues from its last checkpoint."
             )
     elif ended.how == "failed":

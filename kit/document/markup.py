@@ -110,30 +110,28 @@ def _split_styles(text: str) -> list[StyledText]:
     pieces: list[StyledText] = []
     at = 0
     for match in _INLINE.finditer(text):
-        pieces.append(_words(text[at : match.start()], TextStyle.PLAIN))
-        pieces.append(StyledText(match[1], TextStyle.CODE) if match[1] else _words(match[2], TextStyle.BOLD))
+        pieces.append(StyledText(text[at : match.start()], TextStyle.PLAIN))
+        pieces.append(
+            StyledText(match[1], TextStyle.CODE) if match[1] else StyledText(match[2], TextStyle.BOLD)
+        )
         at = match.end()
-    pieces.append(_words(text[at:], TextStyle.PLAIN))
+    pieces.append(StyledText(text[at:], TextStyle.PLAIN))
     return [piece for piece in pieces if piece.text]
-
-
-def _words(text: str, style: TextStyle) -> StyledText:
-    """Words with single blanks between them."""
-    return StyledText(re.sub(" +", " ", text), style)
 
 
 def _wrap_styled(pieces: Sequence[StyledText], width: int, first: str, rest: str) -> list[StyledRow]:
     """Wraps the characters, then gives them their styles back. Code is wrapped like a word: it moves down whole, and is broken
     at its blanks only where it is longer than a row."""
     longest = width - len(rest)
-    held = "".join(
-        piece.text
-        if piece.style is not TextStyle.CODE
-        else piece.text.replace(" ", "\0")
-        if len(piece.text) <= longest
-        else re.sub(" {2,}", lambda blanks: "\0" * len(blanks[0]), piece.text)
-        for piece in pieces
-    )
+    held, placed = "", []
+    for piece in pieces:
+        if piece.style is TextStyle.CODE and len(piece.text) <= longest:
+            held += piece.text.replace(" ", "\0")
+        else:  # as ``wrap`` leaves it, so that a row is as wide as its line
+            text = " ".join(f"|{piece.text}|".split())[1:-1]
+            piece = StyledText(text.lstrip() if held.endswith(" ") else text, piece.style)
+            held += piece.text
+        placed.append(piece)
     rows: list[StyledRow] = []
     at = 0
     for index, line in enumerate(wrap(held, width, first, rest)):
@@ -143,7 +141,7 @@ def _wrap_styled(pieces: Sequence[StyledText], width: int, first: str, rest: str
         for number, word in enumerate(line.removeprefix(lead).split()):
             start = held.index(word, end)
             at, end = (at if number else start), start + len(word)
-        row += _cut(pieces, at, end)
+        row += _cut(placed, at, end)
         at = end
         rows.append(_join_equal_styles(row))
     return rows

@@ -13,11 +13,10 @@ def kit(*arguments: object, code: int = 0) -> Result:
     return run_main(main, *arguments, code=code)
 
 
-def run_main(program: click.Command, *arguments: object, code: int = 0) -> Result:
-    """The same of any program, on a terminal of 80 columns."""
-    result = CliRunner().invoke(
-        program, [str(each) for each in arguments], env={"COLUMNS": "80", "LINES": "24"}
-    )
+def run_main(command: click.Command, *arguments: object, code: int = 0) -> Result:
+    """Likewise, of the command line of the kit or the grader."""
+    words = [str(each) for each in arguments]
+    result = CliRunner().invoke(command, words, env={"COLUMNS": "80", "LINES": "24"})
     assert result.exit_code == code, result.output
     assert "Traceback" not in result.output
     return result

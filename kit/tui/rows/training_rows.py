@@ -35,7 +35,10 @@ def no_trainings(tasks: Sequence[LearningTask], width: int, height: int) -> list
     )
     from kit.learning.tasks.task_text import tasks_table
 
-    return rows_of([Text(begin), tasks_table(tasks)], Page(width=width - 2, margin=1))[:height]
+    rows = rows_of([Text(begin), tasks_table(tasks)], Page(width=width - 2, margin=1))
+    if len(rows) <= height:
+        return rows
+    return [*rows[: max(0, height - 1)], row((" ... and more: kit task list", "dim"))]
 
 
 def training_list(
