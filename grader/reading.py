@@ -101,7 +101,7 @@ def default_submission_limit_s(trials: tuple[Trial, ...], limits: Limits) -> flo
 
     Each simulated second is granted a second of wall clock, of which it usually takes a tenth.
     """
-    one_process_s = limits.start_s + (limits.total_s or 0.0)
+    one_process_s = limits.start_wall_s + (limits.total_s or 0.0)
     if not trials:
         return max(DEFAULT_SUBMISSION_LIMIT_S, one_process_s)
     episodes_s = sum(

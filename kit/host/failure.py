@@ -77,7 +77,7 @@ class StudentCodeError(Exception):
         self.failure = failure
 
 
-Budget: TypeAlias = Literal["start", "reply", "total"]
+Budget: TypeAlias = Literal["start", "start wall", "reply", "reply wall", "total"]
 
 
 def timed_out(budget: Budget, limit_s: float, where: StackPosition | None) -> Failure:
@@ -85,8 +85,10 @@ def timed_out(budget: Budget, limit_s: float, where: StackPosition | None) -> Fa
     function = f"{where.function}()" if where and where.function != "<module>" else "the program"
     kept = "kept the program from starting" if function != "the program" else "did not start"
     message = {
-        "start": f"{function} {kept} within {limit_s:g} s.",
-        "reply": f"{function} did not return within {limit_s:g} s.",
+        "start": f"{function} {kept} within {limit_s:g} s of processor time.",
+        "start wall": f"{function} {kept} within {limit_s:g} s.",
+        "reply": f"{function} did not return within {limit_s:g} s of processor time.",
+        "reply wall": f"{function} did not return within {limit_s:g} s.",
         "total": f"the program used up its total time of {limit_s:g} s.",
     }[budget]
     hint = "Is it very slow?" if budget == "total" else "Is there a loop or a wait that never ends?"

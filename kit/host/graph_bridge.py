@@ -284,6 +284,11 @@ class ChildBridge(GraphBridge):
                 self.graph.advance(now_ns)
                 self.apply_events(events)
 
+    def send_last_messages(self) -> None:
+        """Sends what a program has published before it failed: in an answer of its own, since a failure has no events."""
+        if self.has_ticked and self.pending and not self.graph.is_waiter_running:
+            self.next_tick(self.graph.now_ns + 1)
+
     def end(self) -> None:
         """Answers that the program has ended."""
         with self._uninterrupted():

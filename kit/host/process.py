@@ -10,6 +10,7 @@ Every process is a cold start, 0.09 s of processor time. None is kept warm and f
 from __future__ import annotations
 
 import hashlib
+import math
 import os
 import select
 import socket
@@ -53,13 +54,17 @@ from kit.host.sandbox import bubblewrap
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level, SandboxConfig
 from kit.host.sandbox.grants import ReadGrants, find_grants, library_folders, loader_folders
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, KIB, Limits
-from kit.host.sandbox.reaper import end_descendants, remove_folder
+from kit.host.sandbox.reaper import descendants, end_descendants, remove_folder
 from kit.host.wire import HEADER, Json, ProtocolError, decode, encode
 
 Role: TypeAlias = Literal["node", "functions", "launch"]
 
 MAX_SOURCE: Final = 512 * KIB
 """Bytes of a student's file."""
+ROS_DISTRO: Final = "jazzy"
+"""The distribution that programs read in their environment: the one whose messages and names the kit follows."""
+CHECK_S: Final = 0.02
+"""How long to wait at least before the processor time is read again [s]."""
 STACK_DUMP_S: Final = 1.0
 """How long to wait, after a deadline, for the stack dump of the child's Python [s]."""
 SHUTDOWN_S: Final = 3.0
@@ -144,7 +149,12 @@ class StudentProcess:
         self._limits = limits
         self._level = level
         self._home_folder = self._file.parent if package is None else package.folder
-        self._start_fields = {**start, **_read_program(self._file), "reply_s": limits.reply_s}
+        self._start_fields = {
+            **start,
+            **_read_program(self._file),
+            "reply_s": limits.reply_s,
+            "reply_wall_s": limits.reply_wall_s,
+        }
         self._start_fields["has_input"] = streams is not None and streams.stdin is not None
         seed = start.get("seed")
         if isinstance(seed, int):
@@ -200,8 +210,9 @@ class StudentProcess:
         self._poller = select.poll()
         for descriptor in (self._pipe.fileno(), *self._streams):
             self._poller.register(descriptor, select.POLLIN)
-        self._deadline = time.monotonic() + limits.start_s
-        self._start_left_s = limits.start_s
+        self._processor_clock: int | None = None
+        self._deadline = time.monotonic() + limits.start_wall_s
+        self._start_used_s = 0.0
         self._first_answer: Frame | None = None
 
     def __enter__(self) -> Self:
@@ -224,17 +235,21 @@ class StudentProcess:
         """Returns the first answer; None if it has not come within ``wait_s`` [s], by default the limit."""
         until = self._deadline if wait_s is None else min(self._deadline, time.monotonic() + wait_s)
         while self._first_answer is None:
-            frame = self._receive(until)
+            # Nothing has been used before the student's code is there.
+            left_s = self._limits.start_s - self._processor_s()
+            frame = self._receive(min(until, time.monotonic() + max(CHECK_S, left_s)))
             if isinstance(frame, Confined):
                 self._send_program(frame)
             elif isinstance(frame, ConfinementRefused):
                 raise self.fail(confinement_unavailable(self._level, frame.reason))
             elif frame is not None:
                 self._first_answer = self._check_answer(frame)
-                self._start_left_s = max(0.001, self._deadline - time.monotonic())
-            elif time.monotonic() >= self._deadline:
+                self._start_used_s = self._processor_s()
+            elif self._processor_s() >= self._limits.start_s:
                 self._fail_timeout("start", self._limits.start_s)
-            else:
+            elif time.monotonic() >= self._deadline:
+                self._fail_timeout("start wall", self._limits.start_wall_s)
+            elif time.monotonic() >= until:
                 return None
         return self._first_answer
 
@@ -242,7 +257,9 @@ class StudentProcess:
         """Sends the student's code, and what it needs to start, to a child that is confined."""
         if frame.level != self._level:
             raise self.fail(protocol_violation("another level of confinement than was asked for"))
-        self._start_fields["start_s"] = max(0.001, self._deadline - time.monotonic())
+        self._processor_clock = _processor_clock(self._process.pid)
+        self._start_fields["start_s"] = self._limits.start_s
+        self._start_fields["start_wall_s"] = max(0.001, self._deadline - time.monotonic())
         self._unsent += encode(["start", 0, self._start_fields])
         self._start_fields = {}
         self._state = self._starting_state
@@ -250,26 +267,54 @@ class StudentProcess:
     def continue_start(self, kind: str, *content: Json) -> Frame:
         """Sends a command whose answer belongs to the start, and so has what is left of its time. Raises
         StudentCodeError."""
+        left_s = max(CHECK_S, self._limits.start_s - self._start_used_s)
         self._send_command(kind, *content)
-        frame = self._receive(time.monotonic() + self._start_left_s)
-        if frame is None:
-            self._fail_timeout("start", self._limits.start_s)
+        frame = self._receive_within(left_s, self._limits.start_wall_s, "start")
         return self._check_answer(frame)
 
     def request(self, kind: str, *content: Json) -> Frame:
         """Sends one command and waits for its answer. Raises StudentCodeError."""
+        limits = self._limits
         self._send_command(kind, *content)
+        if limits.total_s is not None and self._waited_s >= limits.total_s:
+            self._fail_timeout("total", limits.total_s)
         began = time.monotonic()
-        remaining_s = float("inf") if self._limits.total_s is None else self._limits.total_s - self._waited_s
-        if remaining_s <= 0 and self._limits.total_s is not None:
-            self._fail_timeout("total", self._limits.total_s)
-        frame = self._receive(began + min(self._limits.reply_s, remaining_s))
-        self._waited_s += time.monotonic() - began
-        if frame is None and remaining_s < self._limits.reply_s and self._limits.total_s is not None:
-            self._fail_timeout("total", self._limits.total_s)
-        if frame is None:
-            self._fail_timeout("reply", self._limits.reply_s)
-        return self._check_answer(frame)
+        try:
+            return self._check_answer(self._receive_within(limits.reply_s, limits.reply_wall_s, "reply"))
+        finally:
+            self._waited_s += time.monotonic() - began
+
+    def _receive_within(self, processor_s: float, wall_s: float, budget: Literal["start", "reply"]) -> Frame:
+        """Returns the answer to a command. Ends a child that uses more processor time, or wall clock, before it answers.
+        Raises StudentCodeError."""
+        began, used_before_s = time.monotonic(), self._processor_s()
+        total_s = self._limits.total_s
+        left_s = math.inf if total_s is None or budget == "start" else total_s - self._waited_s
+        end, pause_s = began + min(wall_s, left_s), processor_s
+        while True:
+            frame = self._receive(min(end, time.monotonic() + pause_s))
+            if frame is not None:
+                return frame
+            if self._processor_clock is None:  # nothing but the wall clock is known
+                used_s = time.monotonic() - began
+            else:
+                used_s = self._processor_s() - used_before_s
+            if used_s >= processor_s:
+                self._fail_timeout(budget, processor_s)
+            if time.monotonic() >= end:
+                if total_s is not None and left_s < wall_s:
+                    self._fail_timeout("total", total_s)
+                self._fail_timeout("start wall" if budget == "start" else "reply wall", wall_s)
+            pause_s = max(CHECK_S, processor_s - used_s)
+
+    def _processor_s(self) -> float:
+        """Returns the processor time that the student's process has used [s]; 0 where it cannot be known."""
+        if self._processor_clock is None:
+            return 0.0
+        try:
+            return time.clock_gettime(self._processor_clock)
+        except OSError:  # it has ended
+            return 0.0
 
     def _send_command(self, kind: str, *content: Json) -> None:
         assert self._first_answer is not None, "a command before wait_started"
@@ -425,6 +470,15 @@ class StudentProcess:
         raise self.fail(timed_out(budget, limit_s, self._last_position()))
 
 
+def _processor_clock(supervisor: int) -> int | None:
+    """Returns the number of the clock of the processor time of the student's process, the last one below its supervisor.
+
+    None on other systems than Linux. The number is the kernel's for a process, as of clock_getcpuclockid(3).
+    """
+    below = descendants(supervisor)
+    return (~below[-1] << 3) | 2 if below else None
+
+
 def _read_program(file: Path) -> dict[str, Json]:
     """Reads the student's file, once: this version runs, whatever is saved later."""
     try:
@@ -467,6 +521,9 @@ def process_environment(scratch: str) -> dict[str, str]:
         "LANG": "C.UTF-8",
         "PYTHONHASHSEED": "0",
         "PYTHONUTF8": "1",
+        "ROS_VERSION": "2",
+        "ROS_PYTHON_VERSION": "3",
+        "ROS_DISTRO": ROS_DISTRO,
         # One thread each: more would differ between machines, and each reserves memory.
         "OMP_NUM_THREADS": "1",
         "OPENBLAS_NUM_THREADS": "1",

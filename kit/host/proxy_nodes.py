@@ -15,7 +15,7 @@ arrives at them is passed on instead of being queued for a callback. Both sides 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 from typing import Any, Final, Protocol, TypeVar, cast
 
 from kit.host.wire import MAX_ID, MAX_NAME, Json, ProtocolError, integer, items, text
@@ -32,7 +32,7 @@ from kit.msg.message import Service as Definition
 from kit.ros.exceptions import NameValidationException
 from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
 from kit.ros.execution.context import context_of
-from kit.ros.graph.directory import NodeEntry
+from kit.ros.graph.directory import NodeEntry, TopicSubscription
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.naming import validate_full_topic_name, validate_namespace, validate_node_name
 from kit.ros.node.client import Client
@@ -109,6 +109,19 @@ class _ProxyEndpoint:
 
     def discard_queue(self) -> None:
         self._listener.on_discard(self._remote_number)
+
+
+class ProxyPublisher(Publisher[Any]):
+    """A publisher of the other side's. Its own subscriptions have what it keeps already: it has sent it to them there."""
+
+    def __init__(self, others: Container[NodeEntry], *args: Any) -> None:
+        """``others``: the nodes of the other side."""
+        self._others = others
+        super().__init__(*args)
+
+    def send_history_to(self, subscription: TopicSubscription) -> None:
+        if subscription.handle not in self._others:
+            super().send_history_to(subscription)
 
 
 class ProxySubscription(_ProxyEndpoint, Subscription[Any]):
@@ -238,7 +251,7 @@ class ProxyNodes:
         number = self._check_new(identity)
         if kind == "publisher":
             quiet = PublisherEventCallbacks(use_default_callbacks=False)
-            publisher: Publisher[Any] = Publisher(handle, cls, name, profile, quiet)
+            publisher: Publisher[Any] = ProxyPublisher(self._handles, handle, cls, name, profile, quiet)
             handle.publishers.append(publisher)
             self._endpoints[number] = publisher
         else:

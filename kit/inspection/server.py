@@ -35,6 +35,8 @@ class ClientConnection:
         self, connection: FramedSocket, graph: Graph, world: str, wake: Callable[[], object]
     ) -> None:
         self._connection = connection
+        self.pid = connection.peer_process
+        """Process id of the client; None where it cannot be known."""
         self._graph = graph
         self._wake = wake
         self._bridge = ParentBridge(graph, shares_interfaces=True)
@@ -55,6 +57,11 @@ class ClientConnection:
         }
         self._questions.put(["start", 0, start])
         threading.Thread(target=self._serve, name="inspection-client", daemon=True).start()
+
+    @property
+    def owes_answer(self) -> bool:
+        """Whether it has been sent something that it has not answered yet, or is about to be."""
+        return self._is_asked or self._bridge.has_pending
 
     def exchange(self) -> bool:
         """Applies the client's answer if one has come, and sends what is new. True if the client sent something.
@@ -186,6 +193,10 @@ class InspectionServer:
     def client_count(self) -> int:
         """The number of connected clients."""
         return len(self._clients)
+
+    def owed_answers(self) -> dict[int, bool]:
+        """Returns the connected programs by process id, and whether the world waits for the answer of each."""
+        return {client.pid: client.owes_answer for client in self._clients if client.pid is not None}
 
     def exchange(self) -> bool:
         """Adds new clients and exchanges messages with all of them, without waiting. True if any client sent

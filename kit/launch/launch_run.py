@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 from kit.host.failure import StudentCodeError
 from kit.host.wire import Json
 from kit.launch.launch_file_process import LaunchFileProcess, LaunchTarget
-from kit.launch.processes import Process, ProcessExit, ProcessStartError, ProgramUnavailable, suggest_fix
+from kit.launch.processes import (
+    CommandProcess,
+    Process,
+    ProcessExit,
+    ProcessStartError,
+    ProgramUnavailable,
+    suggest_fix,
+)
 from kit.launch.program_lookup import (
     INTERACTIVE_BOUNDS,
     LaunchBounds,
@@ -229,6 +236,12 @@ class Launch:
         )
 
     @property
+    def commands(self) -> list[CommandProcess]:
+        """The processes that run by the wall clock, and not in the lock-step."""
+        processes = (running.process for running in self._running.values())
+        return [process for process in processes if isinstance(process, CommandProcess)]
+
+    @property
     def has_timers(self) -> bool:
         """True if the launch file has timers that are not due yet."""
         return self._launch_file.wake_ns is not None
@@ -244,6 +257,8 @@ class Launch:
         has_sent = False
         for running in list(self._running.values()):
             has_sent |= running.process.exchange()
+        if has_sent and any(running.process.poll() is not None for running in self._running.values()):
+            self._poll_processes()  # in the tick in which it ends, however long that takes
         return has_sent
 
     def interrupt(self, reason: str) -> None:
@@ -278,7 +293,9 @@ class Launch:
             events, self._events = self._events, []
             self._advance_launch_file(events)
             try:
-                self._start_waiting()
+                # Time stands still until they are there: they are in step from the tick in which they were due.
+                for started in self._start_waiting():
+                    started.wait_until_started()
             except ProcessStartError as problem:
                 self._record_failure(str(problem))
                 self._end_all_processes()
@@ -310,10 +327,12 @@ class Launch:
                 self._log(f"everything is stopped: {request.reason}")
                 self._end_all_processes()
 
-    def _start_waiting(self, which: Callable[[StartRequest], bool] = lambda request: True) -> None:
+    def _start_waiting(self, which: Callable[[StartRequest], bool] = lambda request: True) -> list[Process]:
+        """Starts the processes that wait to be started, and returns them. Raises ProcessStartError."""
         chosen = [request for request in self._waiting if which(request)]
         self._waiting = [request for request in self._waiting if not which(request)]
         max_processes = self._start_context.bounds.max_processes
+        started: list[Process] = []
         for request in chosen:
             self._started += 1
             if max_processes is not None and self._started > max_processes:
@@ -324,8 +343,10 @@ class Launch:
                 self._log(f"skipped: {problem}", "WARN", name=request.name)
                 continue
             self._running[request.number] = _RunningProcess(request, process)
+            started.append(process)
             self._events.append(["started", request.number, process.pid])
             self._log(f"process started with pid [{process.pid}]", name=request.name)
+        return started
 
     def _record_exit(self, number: int, running: _RunningProcess, ended: ProcessExit) -> None:
         pid, name = running.process.pid, running.request.name
@@ -398,7 +419,11 @@ class GraphOnlyRun:
         self.step_size = step_size
         self.participants: list[Participant] = []
 
+    def exchange_until_idle(self) -> None:
+        """Runs callbacks and exchanges messages until nothing is due; time stands still."""
+        exchange_until_idle(self.graph, self.participants)
+
     def tick(self) -> None:
         """Exchanges messages until no participant has any; then advances the time by a step."""
-        exchange_until_idle(self.graph, self.participants)
+        self.exchange_until_idle()
         self.graph.advance(self.graph.now_ns + round(self.step_size * 1e9))

@@ -7,12 +7,15 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from kit.inspection.server import InspectionServer
+from kit.launch.command_time import CommandTime
 from kit.launch.launch_run import GraphOnlyRun, Launch
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
-from kit.run.episode import EndCondition, EndReason, Tickable, run_until, when
+from kit.run.episode import EndCondition, EndReason, run_until, when
 from kit.run.lockstep import ClosableParticipant, Participant
 from kit.run.pacing import MAXIMUM, REAL_TIME, Schedule
+from kit.run.runner import Runner
 from kit.run.scenario import scenario_in_file
 from kit.run.session import Session
 
@@ -102,16 +105,22 @@ def run_plain_launch(
         launch.graph.log.sink = log
         companions: list[Participant] = []
         companion = make_companion(launch.graph)
-        if companion is not None:
-            stack.callback(companion.close)
-            companions.append(companion)
+        command_time = None
+        if factor == MAXIMUM:
+            clients = companion.owed_answers if isinstance(companion, InspectionServer) else dict
+            command_time = CommandTime(launch, clients)
         if launch.world is None:
             launch.start_processes()
             graph_only_run = GraphOnlyRun(launch.graph)
             graph_only_run.participants += [launch, *companions]
             schedule = Schedule(graph_only_run.step_size, factor=factor or REAL_TIME)
             _run_until_end(
-                launch, graph_only_run, schedule, limit, lambda: launch.world is not None or _is_idle(launch)
+                launch,
+                graph_only_run,
+                schedule,
+                limit,
+                lambda: launch.world is not None or _is_idle(launch),
+                command_time,
             )
         if launch.world is not None and not launch.is_over:
             session = stack.enter_context(LaunchSession(launch, seed=seed))
@@ -121,18 +130,30 @@ def run_plain_launch(
             session.runner.on_rate = lambda rate: schedule.set_factor(rate * step_size)
             session.runner.participants += companions
             launch.start_processes()
-            _run_until_end(launch, session.runner, schedule, limit, lambda: False)
+            _run_until_end(launch, session.runner, schedule, limit, lambda: False, command_time)
 
 
 def _run_until_end(
-    launch: Launch, run: Tickable, schedule: Schedule, limit: LaunchLimit, is_done: Callable[[], bool]
+    launch: Launch,
+    run: Runner | GraphOnlyRun,
+    schedule: Schedule,
+    limit: LaunchLimit,
+    is_done: Callable[[], bool],
+    command_time: CommandTime | None,
 ) -> None:
+    """``command_time``: None where the run is paced."""
+
+    def before_tick(number: int) -> None:
+        if command_time is not None:
+            command_time.wait(run.exchange_until_idle)
+        limit.count_tick()
+
     ends = (
         when(lambda: launch.is_over or is_done()),
         EndCondition(EndReason.LIMIT, lambda: limit.is_reached(launch.graph.now_ns)),
     )
     try:
-        run_until(run, ends=ends, schedule=schedule, before_tick=lambda number: limit.count_tick())
+        run_until(run, ends=ends, schedule=schedule, before_tick=before_tick)
     except KeyboardInterrupt:
         launch.interrupt("ctrl-c")
         raise

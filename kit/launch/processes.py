@@ -222,8 +222,16 @@ class CommandProcess(_UnsteppedProcess):
     is_builtin = False
 
     def __init__(
-        self, command: Sequence[str], *, shell: bool, environment: Mapping[str, str], cwd: Path
+        self,
+        command: Sequence[str],
+        *,
+        shell: bool,
+        environment: Mapping[str, str],
+        cwd: Path,
+        is_of_kit: bool = False,
     ) -> None:
+        """``is_of_kit``: it is, or calls, a command of the kit's, which connects to the world."""
+        self.is_of_kit = is_of_kit
         self._process = subprocess.Popen(
             " ".join(command) if shell else list(command),
             shell=shell,

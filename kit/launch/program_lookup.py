@@ -353,15 +353,21 @@ def _start_command(request: StartRequest, context: StartContext) -> Process:
             return _start_program(
                 installed[1], installed[2], replace(request, command=tuple(command[1:])), context
             )
-    if name == "ros2" and not request.shell:
+    is_ros2 = name == "ros2" and not request.shell
+    names_ros2 = request.shell and _NAMES_ROS2.search(" ".join(command)) is not None
+    if is_ros2:
         context.log(f"{request.name}: `kit ros` replaces `ros2`")
         command = python_command("kit", "ros", *command[1:])
-    elif request.shell and _NAMES_ROS2.search(" ".join(command)):
+    elif names_ros2:
         context.log(f"{request.name}: `kit ros` replaces `ros2`")
         command = [f'ros2() {{ {shlex.join(python_command("kit", "ros"))} "$@"; }};', *command]
     try:
         return CommandProcess(
-            command, shell=request.shell, environment=_environment(request, context), cwd=cwd
+            command,
+            shell=request.shell,
+            environment=_environment(request, context),
+            cwd=cwd,
+            is_of_kit=is_ros2 or names_ros2,
         )
     except OSError as problem:
         raise ProcessStartError(

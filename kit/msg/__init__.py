@@ -8,6 +8,7 @@ a module for each ROS package in ``definitions``, and ``install_ros_imports`` ad
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Mapping, Sequence
 from importlib.machinery import ModuleSpec
@@ -17,6 +18,8 @@ from typing import Any
 _DEFINITIONS = os.path.join(os.path.dirname(__file__), "definitions")
 _SHIPPED = {package: os.path.join(_DEFINITIONS, package) for package in os.listdir(_DEFINITIONS)}
 """The folders of the packages whose definitions are shipped, by their names."""
+RENAMED_PACKAGES = {"turtlesim_msgs": "turtlesim"}
+"""Packages whose interfaces are those of another one, by a name that ROS 2 has given them since."""
 _PARTS = ("msg", "srv", "action")
 
 
@@ -60,14 +63,25 @@ class _RosFinder:
         self, name: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
         package, _, part = name.partition(".")
+        if not part and package in RENAMED_PACKAGES:
+            return _package_spec(name)
+        package = RENAMED_PACKAGES.get(package, package)
         if package not in self._folders:
             return None
         if not part:
             return _package_spec(name) if package in _SHIPPED else None
+        part, _, generated = part.partition(".")
+        if generated:  # as rosidl makes them: geometry_msgs.msg._twist
+            is_found = part in _PARTS and self._has_generated(package, part, generated)
+            return ModuleSpec(name, _loader(package, part)) if is_found else None
         if part not in _PARTS or not _has_definitions(self._folders[package], part):
             return None
-        loader: Any = _InterfaceLoader(package, (part,))
-        return ModuleSpec(name, loader, is_package=True)
+        return ModuleSpec(name, _loader(package, part), is_package=True)
+
+    def _has_generated(self, package: str, part: str, module: str) -> bool:
+        """Whether rosidl would make this module: the name of an interface, ``_laser_scan`` for LaserScan."""
+        names = (file.removesuffix(f".{part}") for file in _definition_files(self._folders[package], part))
+        return module in {f"_{_snake_case(name)}" for name in names}
 
 
 class _PackageFinder:
@@ -110,11 +124,26 @@ def _package_spec(name: str) -> ModuleSpec:
     return ModuleSpec(name, loader, is_package=True)
 
 
+def _loader(package: str, part: str) -> Any:
+    """Makes a loader of one kind of a package's interfaces."""
+    return _InterfaceLoader(package, (part,))
+
+
 def _has_definitions(folder: str, part: str) -> bool:
+    return bool(_definition_files(folder, part))
+
+
+def _definition_files(folder: str, part: str) -> list[str]:
     try:
-        return any(file.endswith(f".{part}") for file in os.listdir(os.path.join(folder, part)))
+        return [file for file in os.listdir(os.path.join(folder, part)) if file.endswith(f".{part}")]
     except OSError:  # a package need not have each kind
-        return False
+        return []
+
+
+def _snake_case(name: str) -> str:
+    """Returns the name of the module that rosidl makes for an interface: ``laser_scan``, ``tf_message``, ``pose2_d``."""
+    name = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
+    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
 
 
 sys.meta_path.append(_KitFinder())

@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any, Final, cast
 
+from kit.msg import RENAMED_PACKAGES
 from kit.msg.class_builder import Interface, build_interface
 from kit.msg.definition_parser import SECTIONS, DefinitionError
 from kit.msg.definition_writer import (
@@ -33,7 +34,7 @@ from kit.msg.message import Action, Field, Message, Service, make_message_class,
 _MAX_DEPTH: Final = 50
 """How deep messages may be nested in each other."""
 
-_CUSTOM_PACKAGES: Final = frozenset({"flatland_msgs", "robot_kit_msgs"})
+_CUSTOM_PACKAGES: Final = frozenset({"flatland_msgs", "robot_kit_msgs", "turtlebot3_msgs"})
 # Gone from ROS 2 since Lyrical, but Flatland's services use it.
 _CUSTOM_TYPES: Final = frozenset({"geometry_msgs/msg/Pose2D"})
 _ACTION_PARTS: Final = {
@@ -221,8 +222,9 @@ def find_interface(name: str) -> Interface:
     Raises UnknownInterface, naming the nearest one, and DefinitionError if its text cannot be read.
     """
     parts = name.split("/")
+    parts[0] = RENAMED_PACKAGES.get(parts[0], parts[0])
     if len(parts) == 3:
-        found = _registry.find(name)
+        found = _registry.find("/".join(parts))
         if found is not None:
             return found
     elif len(parts) == 2:

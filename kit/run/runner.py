@@ -15,6 +15,7 @@ from typing import Any, Final, Protocol
 
 from kit.msg import builtin_interfaces, flatland_msgs, geometry_msgs, robot_kit_msgs, std_srvs
 from kit.ros.execution.task import Future
+from kit.ros.graph.directory import WORLD_NODE_NAME
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node, create_graph_node
 from kit.run.lockstep import Observer, Participant, exchange_until_idle
@@ -48,7 +49,7 @@ class Runner:
         self._paused_steps: list[
             tuple[int, Future[None]]
         ] = []  # ticks still to make, and the future of the last
-        self._node = create_graph_node(graph, "flatland_server")
+        self._node = create_graph_node(graph, WORLD_NODE_NAME)
         graph.reserved_names.add(self._node.handle.full_name)
         self._endpoints: dict[TopicEndpoint, Callable[[], object]] = {}  # what destroys each again
         self._publishers: dict[str, Callable[[Any], None]] = {}
@@ -152,6 +153,27 @@ class Runner:
             accept = partial(self.accept, endpoint.topic)
             subscription = self._node.create_subscription(endpoint.type, endpoint.topic, accept, 10)
             self._endpoints[endpoint] = partial(self._node.destroy_subscription, subscription)
+            if endpoint.type is geometry_msgs.Twist:
+                topic = self.graph.directory.topics[subscription.topic_name]
+                topic.on_other_type = partial(self._accept_stamped, endpoint)
+
+    def _accept_stamped(self, endpoint: TopicEndpoint, given: type[Any]) -> None:
+        """Subscribes to commands with a stamp too, once they are published: today's bases take them in that form."""
+        if given is not geometry_msgs.TwistStamped:
+            return
+        destroy_first = self._endpoints[endpoint]
+        stamped = self._node.create_subscription(
+            geometry_msgs.TwistStamped,
+            endpoint.topic,
+            lambda message: self.accept(endpoint.topic, message.twist),
+            10,
+        )
+
+        def destroy_both() -> None:
+            destroy_first()
+            self._node.destroy_subscription(stamped)
+
+        self._endpoints[endpoint] = destroy_both
 
     def _disconnect(self, endpoint: TopicEndpoint) -> None:
         self._endpoints.pop(endpoint)()

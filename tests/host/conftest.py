@@ -20,7 +20,7 @@ class Student(Protocol):
     def __call__(self, source: str, name: str = "work.py") -> Path: ...
 
 
-QUICK = Limits(start_s=20.0, reply_s=1.0, memory=600 * MIB, output=4096, frame=64 * 1024)
+QUICK = Limits(start_s=20.0, reply_s=1.0, wall_factor=5.0, memory=600 * MIB, output=4096, frame=64 * 1024)
 """Short deadlines, but no shorter than a busy machine needs for honest code."""
 
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="needs Linux's /proc")

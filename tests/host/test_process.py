@@ -176,20 +176,19 @@ def test_a_failure_deep_in_a_library_names_the_students_line(student: Student) -
         ("def f():\n  g()\ndef g():\n  sum(iter(int, 1))", (4,), "g()"),
         ("import signal\ndef f():\n  signal.signal(signal.SIGTERM, signal.SIG_IGN)\n  while 1: pass", (4,), "f()"),
         ("class Sticky:\n  def __del__(self):\n    while 1: pass\ndef f():\n  Sticky()", (3,), "__del__()"),
-        ("import signal\ndef f():\n  signal.signal(signal.SIGALRM, signal.SIG_IGN)\n  while 1: pass", (None,), "the program"),
+        ("import signal\ndef f():\n  for number in (signal.SIGALRM, signal.SIGPROF):\n    signal.signal(number, signal.SIG_IGN)\n  while 1: pass", (None,), "the program"),
         ("import re\ndef f():\n  re.match('(a+)+$', 'a' * 60 + 'b')", (3,), "f()"),
     ],
 )  # fmt: skip
 def test_what_never_comes_back_is_ended(
     student: Student, source: str, line: tuple[int | None, ...], function: str
 ) -> None:
-    limits = dataclasses.replace(QUICK, reply_s=0.4)
-    began = time.monotonic()
+    limits = dataclasses.replace(QUICK, reply_s=0.4, wall_factor=10)
     failure = fail(student(source), limits)
-    assert time.monotonic() - began < 5
     assert failure.kind is FailureKind.TIMEOUT
     assert failure.line in line
-    assert failure.message.startswith(f"{function} did not return within 0.4 s")
+    limit = "4 s" if "sleep" in source else "0.4 s of processor time"
+    assert failure.message.startswith(f"{function} did not return within {limit}.")
 
 
 @pytest.mark.long
@@ -319,7 +318,7 @@ def test_bytes_that_dribble_do_not_extend_the_deadline(student: Student) -> None
         "        os.write(pipe(), bytes([byte])); time.sleep(0.1)"
     )
     began = time.monotonic()
-    assert fail(file).kind is FailureKind.TIMEOUT
+    assert fail(file, dataclasses.replace(QUICK, wall_factor=2.0)).kind is FailureKind.TIMEOUT
     assert time.monotonic() - began < 5
 
 

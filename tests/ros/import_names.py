@@ -6,6 +6,7 @@
 - empty: imported with the module, and in its ``__all__``
 - ``unlisted``: likewise, but not in ``__all__``: ``rclpy.lifecycle.Node`` is not to be taken for the one of ``rclpy.node``
 - ``late``: imported when it is first used, so that it costs no program's start; not in ``__all__``
+- ``absent``: a name of ROS 2 that the kit does not have; the ``source`` says what it would need, and whoever uses it is told
 
 The name ``*`` stands for all names of the module ``source``. A package that offers no name of its own needs no row. The files
 are what editors and type checkers read; a test compares them with the table.
@@ -21,10 +22,11 @@ from textwrap import indent
 from typing import Final, NamedTuple
 
 from kit.ros import NAMES_FOLDER
+from kit.ros.late_names import ABSENT
 
 TABLE: Final = Path(__file__).with_name("import_names.csv")
 LINE_LENGTH: Final = 110
-KINDS: Final = ("", "unlisted", "late")
+KINDS: Final = ("", "unlisted", "late", "absent")
 
 
 class ImportName(NamedTuple):
@@ -88,10 +90,11 @@ def _module_text(module: str, names: Sequence[ImportName]) -> str:
     parts = [
         f'"""{module} of ROS 2, as this project offers it."""\n\n# Made by: python -m tests.ros.import_names\n'
     ]
-    late = [row for row in names if row.kind == "late"]
-    now = [row for row in names if row.kind != "late"]
+    late = [row for row in names if row.kind in ("late", "absent")]
+    now = [row for row in names if row.kind not in ("late", "absent")]
     if late:
-        parts.append("from typing import TYPE_CHECKING\n")
+        needs_any = any(row.kind == "absent" for row in late)
+        parts.append(f"from typing import TYPE_CHECKING{', Any' * needs_any}\n")
     if imports := "".join(_import_lines([*now, *([_LATE_FUNCTION] if late else [])])):
         parts.append(imports)
     if listed := [row.name for row in now if not row.kind]:
@@ -124,8 +127,12 @@ def _import_lines(names: Sequence[ImportName]) -> Iterator[str]:
 
 def _late_text(names: Sequence[ImportName]) -> str:
     """The text that imports names at their first use. Type checkers, which import nothing, read plain imports."""
-    seen = indent("".join(_import_lines(names)), "    ")
-    sources = "".join(f'        "{row.name}": "{row.source}",\n' for row in names)
+    there = [row for row in names if row.kind != "absent"]
+    seen = indent("".join(_import_lines(there)), "    ")
+    seen += "".join(f"    {row.name}: Any\n" for row in names if row.kind == "absent")
+    sources = "".join(
+        f'        "{row.name}": "{ABSENT * (row.kind == "absent")}{row.source}",\n' for row in names
+    )
     return (
         f"if TYPE_CHECKING:\n{seen}else:\n    _LATE_NAMES = {{\n{sources}    }}\n\n"
         "    def __getattr__(name):\n        return import_late_name(__name__, _LATE_NAMES, name)\n"

@@ -1,8 +1,11 @@
-"""Prints how many of 178 public ROS 2 programs find here the names that they import.
+"""Prints how many of 178 public ROS 2 programs find here the names that they import, and how many of ROS 2's own are here.
 
 ``ros_names.csv`` lists, for each program, the modules and names that it imports, what it reaches as attributes of
 ``rclpy`` after a plain ``import rclpy``, and the kinds of interfaces that its own package defines. A program counts
 as resolved if all of that is found: ``python -m tests.ros.names``, with ``-v`` also what each of the others lacks.
+
+``real_names.csv`` lists the names that rclpy, launch, launch_ros, launch_testing, tf2_ros and message_filters have in Humble,
+Jazzy and Rolling, by module: those that a module defines and those that it imports and so offers too.
 """
 
 from __future__ import annotations
@@ -17,8 +20,10 @@ from pathlib import Path
 from typing import Final
 
 from kit.ros import install_import_names
+from kit.ros.late_names import is_absent_name
 
 TABLE: Final = Path(__file__).with_name("ros_names.csv")
+REAL_NAMES: Final = Path(__file__).with_name("real_names.csv")
 
 OWN_INTERFACES: Final = frozenset({"msg", "srv", "action"})
 """The kinds of interfaces that a package may define itself; ``tests/launch/test_own_interfaces.py`` runs such packages."""
@@ -70,6 +75,26 @@ def read_programs() -> tuple[Program, ...]:
     return tuple(Program(int(number), *(tuple(cell.split()) for cell in cells)) for number, *cells in rows)
 
 
+def real_names() -> tuple[tuple[str, str], ...]:
+    """ROS 2's own names, as pairs of module and name."""
+    with REAL_NAMES.open(encoding="utf-8", newline="") as file:
+        return tuple(dict.fromkeys((row["module"], row["name"]) for row in csv.DictReader(file)))
+
+
+def find_unresolved(names: Sequence[tuple[str, str]]) -> list[str]:
+    """The names that cannot be imported. The import names must be installed."""
+    return [f"{module}.{name}" for module, name in names if not _resolves(module, name)]
+
+
+def find_absent(names: Sequence[tuple[str, str]]) -> list[str]:
+    """The names that are no more than a class which says what they would need."""
+    return [
+        f"{module}.{name}"
+        for module, name in names
+        if is_absent_name(getattr(import_module(module), name, None))
+    ]
+
+
 def find_missing(programs: Sequence[Program]) -> dict[int, list[str]]:
     """What each program lacks, by its number. The import names must be installed."""
     missing = {program.number: program.missing_attributes() for program in programs}
@@ -101,6 +126,16 @@ def main() -> None:
     print("missing, by the number of programs:")
     for name, count in Counter(name for names in missing.values() for name in names).most_common():
         print(f"{count:4d}  {name}")
+    names = real_names()
+    unresolved = find_unresolved(names)
+    absent = () if unresolved else find_absent(names)
+    print(
+        f"{len(names) - len(unresolved)} of {len(names)} names of ROS 2 can be imported; {len(absent)} of them say at their use what they would need"
+    )
+    for package in dict.fromkeys(module.partition(".")[0] for module, _ in names):
+        count = sum(module.partition(".")[0] == package for module, _ in names)
+        left = sum(name.partition(".")[0] == package for name in absent)
+        print(f"{count - left:4d} of {count} in {package}")
 
 
 if __name__ == "__main__":

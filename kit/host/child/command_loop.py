@@ -47,6 +47,7 @@ def enable_stack_dumps(descriptor: int) -> None:
     """Makes Python dump the stack of every thread on a crash and on a timeout; the parent reads it there."""
     faulthandler.enable(descriptor)
     faulthandler.register(signal.SIGALRM, descriptor)
+    faulthandler.register(signal.SIGPROF, descriptor)
     faulthandler.register(signal.SIGXCPU, descriptor, chain=True)
 
 
@@ -60,12 +61,13 @@ class CommandSession:
         self._open = False
         self._final_answer: tuple[Json, ...] | None = None
         self.interrupts = DeferredInterrupts()
-        self.reply_s = 0.0
-        """How long an answer may take [s]."""
+        self.reply_s = self.reply_wall_s = 0.0
+        """How long an answer may take, by processor time and by the wall clock [s]."""
 
-    def set_deadline(self, seconds: float) -> None:
-        """Makes Python dump its stacks after ``seconds`` without an answer; 0 switches that off."""
-        signal.setitimer(signal.ITIMER_REAL, seconds)
+    def set_deadline(self, processor_s: float, wall_s: float) -> None:
+        """Makes Python dump its stacks after so long without an answer, by either clock; 0 switches that off."""
+        signal.setitimer(signal.ITIMER_PROF, processor_s)
+        signal.setitimer(signal.ITIMER_REAL, wall_s)
 
     def next_command(self) -> list[Json]:
         """Waits for the next command; returns its kind and its content, without its number."""
@@ -79,7 +81,7 @@ class CommandSession:
             self._seq, self._open = seq, True
         if self._final_answer is not None:
             self._finish(*self._final_answer)
-        self.set_deadline(self.reply_s)
+        self.set_deadline(self.reply_s, self.reply_wall_s)
         return [kind, *content]
 
     def answer(self, kind: str, *content: Json) -> None:
@@ -102,7 +104,7 @@ class CommandSession:
 
     def _send_answer(self, kind: str, *content: Json) -> bool:
         """Sends an answer; returns False if no command is open: then the first such answer is kept for the next one."""
-        self.set_deadline(0)
+        self.set_deadline(0, 0)
         for stream in (sys.stdout, sys.stderr):
             with suppress(AttributeError, OSError, ValueError):  # the program may have closed or replaced it
                 stream.flush()

@@ -1,22 +1,4 @@
-"""Runs a ROS 2 program in the child: its nodes are in a graph whose time and messages come from the kit.
-
-The clocks of the program follow the world's time, where that is what the program means. Where that is simulated:
-
-====================================  ==============================================================================
-``node.get_clock().now()``, timers    simulated time, from 0 at the world's start
-``time.time``, ``time.time_ns``       the same simulated time, so that they can be compared with a message's stamp
-``time.sleep``                        waits in simulated time
-``time.localtime``, ``time.gmtime``,  with a simulated time as argument: the date and hour at which the program was
-``time.ctime``                        started, plus that time; else as ever. So files get a real date (a zip archive
-                                      refuses one before 1980).
-``datetime.now``, ``date.today``      the wall clock: a date, not for measuring
-``time.monotonic``,                   the wall clock's progress: right for measuring how long a computation takes,
-``time.perf_counter``                 wrong for measuring how long the robot moves. The standard library's own
-                                      time-outs (threads, queues, sockets) are built on them.
-====================================  ==============================================================================
-
-On a robot all of them show the wall clock.
-"""
+"""Runs a ROS 2 program in the child: its nodes are in a graph whose time and messages come from the kit."""
 
 from __future__ import annotations
 
@@ -27,10 +9,11 @@ import time
 from collections.abc import Callable
 from functools import partial
 from types import ModuleType
-from typing import Final, SupportsIndex
+from typing import Final
 
 from kit.host.child.command_loop import CommandSession
 from kit.host.child.program_input import mark_reading
+from kit.host.child.simulated_time import use_simulated_time
 from kit.host.child.student_module import StudentProgram, exit_status
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.graph_bridge import ChildBridge
@@ -40,54 +23,6 @@ from kit.ros import SHIMS_FOLDER, install_import_names
 from kit.ros.execution.context import set_default_graph_finder
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
-
-Seconds = float | SupportsIndex | None
-
-_LAST_SIMULATED_S: Final = 315_532_800.0
-"""1980-01-01. A simulated time is before it, a date of the wall clock is not [s]."""
-
-
-def use_simulated_time(graph: Graph) -> None:
-    """Replaces functions of the module ``time`` in this process, as the table above says.
-
-    A controller that uses them then behaves the same at every speed.
-    """
-
-    def sleep(seconds: float) -> None:
-        """Waits in simulated time."""
-        if seconds < 0:
-            raise ValueError("sleep length must be non-negative")
-        graph.wait(lambda: False, graph.now_ns + int(seconds * 1e9), what="time.sleep()")
-
-    started = time.time()
-    wall_localtime, wall_gmtime = time.localtime, time.gmtime
-
-    def as_date(seconds: Seconds) -> float | None:
-        """A simulated time as a time of the wall clock; None, which means now, stays None."""
-        if seconds is None:
-            return None
-        number = float(seconds)
-        return started + number if 0 <= number < _LAST_SIMULATED_S else number
-
-    def localtime(seconds: Seconds = None, /) -> time.struct_time:
-        """The local date and time; a simulated time counts from the program's start."""
-        return wall_localtime(as_date(seconds))
-
-    def gmtime(seconds: Seconds = None, /) -> time.struct_time:
-        """The date and time in UTC; a simulated time counts from the program's start."""
-        return wall_gmtime(as_date(seconds))
-
-    def ctime(seconds: Seconds = None, /) -> str:
-        """The local date and time as text; a simulated time counts from the program's start."""
-        return time.asctime(localtime(seconds))
-
-    time.sleep = sleep  # type: ignore[assignment]  # for any number, where the stub has a list of kinds
-    time.time_ns = lambda: graph.now_ns
-    time.time = lambda: graph.now_ns / 1e9
-    time.localtime = localtime
-    time.gmtime = gmtime
-    time.ctime = ctime
-
 
 SWITCH_S: Final = 0.0005
 """How long one of a package's threads may keep the interpreter while others want it [s]."""
@@ -102,7 +37,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     sys.argv = [program.file, *start["args"]]
     bridge = ChildBridge(session, start["now"], uninterrupted=session.interrupts.deferred)
     set_default_graph_finder(lambda: bridge.graph)
-    use_simulated_time(bridge.graph)
+    use_simulated_time(bridge.graph, start["libraries"])
     if start["has_input"]:
         session.interrupts.install()
         waiter = bridge.graph.waiter
@@ -110,7 +45,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
         mark_reading(partial(waiter.waiting_for_user, bridge.graph))
     bridge.graph.directory.replaced_names = frozenset(start.get("replaced", ()))
     if start["events"] is None:
-        _begin_when_needed(bridge, session, start["start_s"])
+        _begin_when_needed(bridge, session, start["start_s"], start["start_wall_s"])
     else:
         bridge.apply_events(start["events"])
     try:
@@ -123,7 +58,13 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
                 _run_main(module, program)
     except SystemExit as stop:
         if exit_status(stop):
+            bridge.send_last_messages()
             raise
+    except MemoryError:
+        raise
+    except BaseException:
+        bridge.send_last_messages()
+        raise
     for thread in threading.enumerate():
         if thread is not threading.current_thread() and not thread.daemon:
             thread.join()
@@ -132,18 +73,21 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     bridge.end()
 
 
-def _begin_when_needed(bridge: ChildBridge, session: CommandSession, start_s: float) -> None:
+def _begin_when_needed(
+    bridge: ChildBridge, session: CommandSession, start_s: float, start_wall_s: float
+) -> None:
     """Makes the program wait for the parent's graph when it first needs one: so a file that cannot be loaded needs none.
 
-    ``start_s``: how long the program may take to start [s], the wait for the parent not counted.
+    ``start_s``, ``start_wall_s``: how long the program may take to start, by processor time and by the wall clock [s], the
+    wait for the parent not counted.
     """
-    began = time.monotonic()
+    began = time.process_time()
 
     def find_graph() -> Graph:
         if not bridge.has_ticked:
-            left_s = start_s - (time.monotonic() - began)
+            left_s = start_s - (time.process_time() - began)
             bridge.next_tick(None)
-            session.set_deadline(max(SWITCH_S, left_s))
+            session.set_deadline(max(SWITCH_S, left_s), start_wall_s)
         return bridge.graph
 
     set_default_graph_finder(find_graph)

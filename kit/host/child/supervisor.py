@@ -20,21 +20,17 @@ import threading
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from importlib.machinery import ModuleSpec, PathFinder
-from types import ModuleType
-from typing import TYPE_CHECKING, NoReturn, cast
+from typing import NoReturn
 
 from kit.host.child import function_calls
 from kit.host.child.command_loop import CommandChannel, CommandSession, enable_stack_dumps
+from kit.host.child.import_hooks import on_import
 from kit.host.child.student_module import STDERR, StudentProgram, explain
 from kit.host.sandbox import confinement
 from kit.host.sandbox.limits import INTERVAL_S, PAUSE_PER_COUNT, exceeds_disk_limit
 from kit.host.sandbox.namespaces import unmount_scratch
 from kit.host.sandbox.reaper import end_descendants, remove_folder
 from kit.host.wire import LOST_PIPE, OVER_DISK_LIMIT
-
-if TYPE_CHECKING:
-    from importlib.abc import Loader
 
 PIPE = 0
 """The pipe to the kit comes in place of the standard input."""
@@ -209,8 +205,8 @@ def _run_program(role: str, channel: CommandChannel, dumps: int = STDERR) -> NoR
     enable_stack_dumps(dumps)
     session = CommandSession(channel)
     _, start = session.next_command()
-    session.set_deadline(start["start_s"])
-    session.reply_s = start["reply_s"]
+    session.set_deadline(start["start_s"], start["start_wall_s"])
+    session.reply_s, session.reply_wall_s = start["reply_s"], start["reply_wall_s"]
     program = StudentProgram(start["file"], start["source"].encode("latin-1"), start.get("folder"))
 
     def thread_has_failed(problem: threading.ExceptHookArgs) -> None:
@@ -255,35 +251,4 @@ def _add_site_names() -> None:
 def _seed_random(seed: int) -> None:
     """Seeds ``random`` now, and ``numpy.random`` when and if the program imports it."""
     random.seed(seed)
-    sys.meta_path.insert(0, _NumpySeeder(seed))
-
-
-class _NumpySeeder:
-    """Import hook (finder and loader) that seeds numpy's global generator once numpy is loaded."""
-
-    def __init__(self, seed: int) -> None:
-        self._seed = seed
-        self._loader: Loader | None = None
-
-    def find_spec(
-        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
-    ) -> ModuleSpec | None:
-        if name != "numpy":
-            return None
-        sys.meta_path.remove(self)
-        spec = PathFinder.find_spec(name, path, target)
-        if spec is not None and spec.loader is not None:
-            self._loader = spec.loader
-            spec.loader = cast("Loader", self)
-        return spec
-
-    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
-        assert self._loader is not None
-        return self._loader.create_module(spec)
-
-    def exec_module(self, module: ModuleType) -> None:
-        assert self._loader is not None
-        assert module.__spec__ is not None
-        module.__spec__.loader = module.__loader__ = self._loader
-        self._loader.exec_module(module)
-        module.random.seed(self._seed % 2**32)
+    on_import("numpy", lambda numpy: numpy.random.seed(seed % 2**32))

@@ -1,4 +1,8 @@
-"""Limits of a student process, and what counts against that of its disk. Times are seconds of wall clock unless they say CPU."""
+"""Limits of a student process, and what counts against that of its disk.
+
+Where a reply or the start is waited for, processor time counts, so that a busy machine stops nobody; a longer limit by the wall
+clock ends what neither computes nor answers. The limit of all waiting together is of the wall clock.
+"""
 
 from __future__ import annotations
 
@@ -18,9 +22,11 @@ class Limits:
     """Limits of one process. The defaults are for interactive use: generous, there to stop accidents."""
 
     start_s: float = 20.0
-    """Until the code is loaded and waits for the first time. Importing large packages happens here."""
+    """Processor time until the code is loaded and waits for the first time. Importing large packages happens here."""
     reply_s: float = 3.0
-    """Until each complete reply."""
+    """Processor time until each complete reply."""
+    wall_factor: float = 10.0
+    """How many times as long the start and a reply may take by the wall clock."""
     total_s: float | None = None
     """Limit for all waiting for replies together; None: no limit."""
     cpu_s: int | None = None
@@ -45,6 +51,20 @@ class Limits:
     kept: int | None = None
     """Bytes of messages that are kept for the child in the kit's process: those of its publishers for subscriptions that
     come later, and requests that it has not answered; None: no limit."""
+
+    @property
+    def start_wall_s(self) -> float:
+        """Limit of the start by the wall clock [s]."""
+        return self._wall_limit(self.start_s)
+
+    @property
+    def reply_wall_s(self) -> float:
+        """Limit of each reply by the wall clock [s]."""
+        return self._wall_limit(self.reply_s)
+
+    def _wall_limit(self, processor_s: float) -> float:
+        wall_s = self.wall_factor * processor_s
+        return wall_s if self.total_s is None else max(processor_s, min(wall_s, self.total_s))
 
 
 INTERACTIVE_LIMITS: Final = Limits()

@@ -82,7 +82,10 @@ def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | N
 
 def ok(*, context: Context | None = None) -> bool:
     """True between init and shutdown."""
-    return (context or get_default_context()).ok()
+    asked = context or get_default_context()
+    if asked.ok():
+        asked.graph.count_read()
+    return asked.ok()
 
 
 def create_node(

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
 
 from kit.msg.message import type_name
 from kit.ros.node.qos import (
@@ -21,6 +21,11 @@ from kit.ros.node.qos import (
 
 if TYPE_CHECKING:
     from kit.ros.log import LoggerSettings, RcutilsLogger
+
+WORLD_NODE_NAME: Final = "flatland_server"
+STAMPED_COMMAND: Final = ("geometry_msgs/msg/TwistStamped", "geometry_msgs/msg/Twist")
+"""The types of a publisher and of a subscription of the world's node that do not match and yet drive a robot: the world takes
+commands in either form, as bases of older and of newer distributions do, and subscribes to the second when it is published."""
 
 
 class GraphNode(Protocol):
@@ -153,6 +158,8 @@ class Topic:
         self.name = name
         self.publishers: list[TopicPublisher] = []
         self.subscriptions: list[TopicSubscription] = []
+        self.on_other_type: Callable[[type[Any]], None] | None = None
+        """Called with the type of a new publisher that no subscription has: whoever takes it may subscribe."""
         self._subscribed = subscribed
 
     @property
@@ -164,6 +171,9 @@ class Topic:
         return sorted({type_name(msg_type) for msg_type in types})
 
     def add_publisher(self, publisher: TopicPublisher) -> None:
+        is_taken = any(each.msg_type is publisher.msg_type for each in self.subscriptions)
+        if self.on_other_type is not None and not is_taken:
+            self.on_other_type(publisher.msg_type)
         self.publishers.append(publisher)
         self._route(publisher)
         self._count_matches()
@@ -231,6 +241,9 @@ def _report_mismatch(publisher: TopicPublisher, subscription: TopicSubscription)
         return
     topic = publisher.topic_name
     if isinstance(mismatch, str):
+        types = (type_name(publisher.msg_type), type_name(subscription.msg_type))
+        if subscription.handle.name == WORLD_NODE_NAME and types == STAMPED_COMMAND:
+            return
         warning = f"topic '{topic}' has two types, nothing will be received: {mismatch}"
         publisher.events.report_incompatible_type(warning)
         subscription.events.report_incompatible_type(warning)

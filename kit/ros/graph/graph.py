@@ -40,6 +40,10 @@ MAX_CALLBACKS = 10_000
 MAX_POLLS = 100
 """How often a program may poll without waiting at one instant before it must wait all the same: otherwise
 ``while rclpy.ok(): rclpy.spin_once(node, timeout_sec=0)`` would keep the time from advancing."""
+MAX_READS = 100
+"""How often a thread may read the clock without waiting before each further ``READS_PER_STEP`` reads let a step of the
+simulated time pass. So a loop that waits until the clock shows a time ends, and takes as many reads on every machine."""
+READS_PER_STEP = 10
 
 
 class Waiter(Protocol):
@@ -116,7 +120,8 @@ class Graph:
         self.wait_started = threading.Condition(self.lock)
         """Notified when a further thread begins to wait, and of every change; waiters use it."""
         self._changed = threading.Condition(self.lock)
-        self._is_waiter_running = False
+        self.is_waiter_running = False
+        """Whether a thread is in the waiter."""
         self._time_jump_count = 0
         self.time_jump_listeners: list[TimeJumpListener] = []
         self._driver_thread: int | None = None
@@ -225,16 +230,37 @@ class Graph:
         ``ready`` is called with the lock held. Raises WouldDeadlock, naming ``what``, if time and messages
         cannot advance while the calling thread waits.
         """
+        state = self.thread_state
         with self.lock:
             jumps = self._time_jump_count
-            while not ready():
-                if until_ns is not None and (self.now_ns >= until_ns or jumps != self._time_jump_count):
-                    if self._is_polling_too_often():
-                        self._wait_once(until_ns)
-                    return False
-                self._raise_if_deadlock(what)
-                self._wait_once(until_ns)
-            return True
+            state.is_waiting = True
+            try:
+                while not ready():
+                    if until_ns is not None and (self.now_ns >= until_ns or jumps != self._time_jump_count):
+                        if self._is_polling_too_often():
+                            self._wait_once(until_ns)
+                        return False
+                    self._raise_if_deadlock(what)
+                    self._wait_once(until_ns)
+                return True
+            finally:
+                state.is_waiting = False
+
+    def count_read(self) -> None:
+        """To be called when a program reads the clock, or asks whether something has happened, of its own accord.
+
+        A program that does so again and again without waiting waits by that: see ``MAX_READS``.
+        """
+        if self.waiter is None or self._simulated_ns is None:
+            return
+        state = self.thread_state
+        if state.is_waiting:
+            return
+        state.reads = reads = state.reads + 1
+        if reads > MAX_READS and reads % READS_PER_STEP == 0:
+            now = self._simulated_ns
+            self.wait(lambda: self.now_ns != now, now + 1)
+            state.reads = reads
 
     def notify(self) -> None:
         """Wakes all waiting threads so that they re-check their condition."""
@@ -246,25 +272,26 @@ class Graph:
         self.change_count += 1
         if self.waiting_threads:
             self._changed.notify_all()
-            if self._is_waiter_running:
+            if self.is_waiter_running:
                 self.wait_started.notify_all()  # a waiter that waits for other threads is not among them
 
     def _wait_once(self, until_ns: int | None) -> None:
         me = threading.get_ident()
+        self.thread_state.reads = 0
         self.waiting_threads[me] = WaitingThread(until_ns, self.change_count, self.thread_state.is_pooled)
         try:
-            if self.waiter is None or self._is_waiter_running:
+            if self.waiter is None or self.is_waiter_running:
                 self.wait_started.notify_all()
                 timeout = None if until_ns is None or self.is_simulated else (until_ns - self.now_ns) / 1e9
                 self._changed.wait(timeout)
                 return
-            self._is_waiter_running = True
+            self.is_waiter_running = True
             self.lock.release()
             try:
                 self.waiter.wait(self, until_ns)
             finally:
                 self.lock.acquire()
-                self._is_waiter_running = False
+                self.is_waiter_running = False
                 self._changed.notify_all()
         finally:
             del self.waiting_threads[me]

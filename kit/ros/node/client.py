@@ -177,6 +177,7 @@ class Client(Entity, Generic[Request, Response]):
 
     def service_is_ready(self) -> bool:
         """True if a node serves it."""
+        self._graph.count_read()
         return self._graph.directory.find_server(self.service_name, self.srv_type) is not None
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:

@@ -125,8 +125,9 @@ class Clock:
         return self._graph or get_default_context().graph
 
     def now(self) -> Time:
-        """The time now."""
+        """The time now. A program that reads it again and again without waiting lets simulated time pass."""
         graph = self.graph
+        graph.count_read()
         if self._clock_type is ClockType.STEADY_TIME and not graph.is_simulated:
             return Time(nanoseconds=time.monotonic_ns(), clock_type=self._clock_type)
         return Time(nanoseconds=graph.now_ns, clock_type=self._clock_type)

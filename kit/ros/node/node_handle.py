@@ -218,10 +218,12 @@ class NodeGraphMethods:
 
     def count_publishers(self, topic_name: str) -> int:
         name = self.resolve_topic_name(topic_name, only_expand=True)
+        self.handle.graph.count_read()
         return sum(1 for _ in self.handle.graph.directory.publishers(name))
 
     def count_subscribers(self, topic_name: str) -> int:
         name = self.resolve_topic_name(topic_name, only_expand=True)
+        self.handle.graph.count_read()
         return sum(1 for _ in self.handle.graph.directory.subscriptions(name))
 
     def count_clients(self, service_name: str) -> int:

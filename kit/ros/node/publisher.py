@@ -103,6 +103,7 @@ class Publisher(Destroyable, Generic[M]):
     def get_subscription_count(self) -> int:
         """The number of subscriptions that receive its messages."""
         self._check_not_destroyed()
+        self._graph.count_read()
         return len(self.routes)
 
     def wait_for_all_acked(self, timeout: Duration = _NO_TIMEOUT) -> bool:

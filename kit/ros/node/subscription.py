@@ -85,6 +85,7 @@ class Subscription(Entity, Generic[M]):
     def get_publisher_count(self) -> int:
         """The number of publishers whose messages it receives."""
         self._check_not_destroyed()
+        self._graph.count_read()
         return sum(
             self in publisher.routes for publisher in self._graph.directory.publishers(self.topic_name)
         )

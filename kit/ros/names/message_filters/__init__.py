@@ -2,6 +2,9 @@
 
 # Made by: python -m tests.ros.import_names
 
+from typing import TYPE_CHECKING
+
+from kit.ros.late_names import import_late_name
 from kit.ros.message_filters import (
     ApproximateTimeSynchronizer,
     Cache,
@@ -11,3 +14,20 @@ from kit.ros.message_filters import (
 )
 
 __all__ = ["ApproximateTimeSynchronizer", "Cache", "SimpleFilter", "Subscriber", "TimeSynchronizer"]
+
+if TYPE_CHECKING:
+    from enum import reduce as reduce
+    from kit.ros.log import LoggingSeverity as LoggingSeverity
+    from kit.ros.node.clock import ROSClock as ROSClock
+    from kit.ros.node.time import Duration as Duration, Time as Time
+else:
+    _LATE_NAMES = {
+        "Duration": "kit.ros.node.time:Duration",
+        "LoggingSeverity": "kit.ros.log:LoggingSeverity",
+        "ROSClock": "kit.ros.node.clock:ROSClock",
+        "Time": "kit.ros.node.time:Time",
+        "reduce": "enum:reduce",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

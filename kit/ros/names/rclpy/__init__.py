@@ -2,7 +2,7 @@
 
 # Made by: python -m tests.ros.import_names
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from kit.ros.execution.client_library import (
     InitContextManager,
@@ -43,6 +43,8 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from kit.ros.execution.executors import Executor as Executor
+    from kit.ros.node.node import Node as Node
     from rclpy import (
         action as action,
         callback_groups as callback_groups,
@@ -90,8 +92,12 @@ if TYPE_CHECKING:
         wait_for_message as wait_for_message,
         waitable as waitable,
     )
+    install_signal_handlers: Any
+    uninstall_signal_handlers: Any
 else:
     _LATE_NAMES = {
+        "Executor": "kit.ros.execution.executors:Executor",
+        "Node": "kit.ros.node.node:Node",
         "action": "rclpy.action",
         "callback_groups": "rclpy.callback_groups",
         "client": "rclpy.client",
@@ -109,6 +115,7 @@ else:
         "guard_condition": "rclpy.guard_condition",
         "handle": "rclpy.handle",
         "impl": "rclpy.impl",
+        "install_signal_handlers": "!rclpy's library in C, in whose place the kit has a graph of its own",
         "lifecycle": "rclpy.lifecycle",
         "logging": "rclpy.logging",
         "node": "rclpy.node",
@@ -129,6 +136,7 @@ else:
         "timer": "rclpy.timer",
         "topic_endpoint_info": "rclpy.topic_endpoint_info",
         "topic_or_service_is_hidden": "rclpy.topic_or_service_is_hidden",
+        "uninstall_signal_handlers": "!rclpy's library in C, in whose place the kit has a graph of its own",
         "utilities": "rclpy.utilities",
         "validate_full_topic_name": "rclpy.validate_full_topic_name",
         "validate_namespace": "rclpy.validate_namespace",

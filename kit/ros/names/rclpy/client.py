@@ -2,7 +2,48 @@
 
 # Made by: python -m tests.ros.import_names
 
+from typing import TYPE_CHECKING
+
+from kit.ros.late_names import import_late_name
 from kit.ros.node.client import Client
 from kit.ros.node.service_introspection import ServiceIntrospectionState
 
 __all__ = ["Client", "ServiceIntrospectionState"]
+
+if TYPE_CHECKING:
+    from kit.ros.execution.callback_groups import CallbackGroup as CallbackGroup
+    from kit.ros.execution.context import Context as Context
+    from kit.ros.execution.task import Future as Future
+    from kit.ros.node.clock import Clock as Clock
+    from kit.ros.node.qos import QoSProfile as QoSProfile
+    from kit.ros.type_support import (
+        Srv as Srv,
+        SrvEventT as SrvEventT,
+        SrvRequestT as SrvRequestT,
+        SrvRequestT as _SrvTypeRequest,
+        SrvResponseT as SrvResponseT,
+        SrvResponseT as _SrvTypeResponse,
+        SrvT as _SrvType,
+    )
+
+    SrvType = _SrvType
+    SrvTypeRequest = _SrvTypeRequest
+    SrvTypeResponse = _SrvTypeResponse
+else:
+    _LATE_NAMES = {
+        "CallbackGroup": "kit.ros.execution.callback_groups:CallbackGroup",
+        "Clock": "kit.ros.node.clock:Clock",
+        "Context": "kit.ros.execution.context:Context",
+        "Future": "kit.ros.execution.task:Future",
+        "QoSProfile": "kit.ros.node.qos:QoSProfile",
+        "Srv": "kit.ros.type_support:Srv",
+        "SrvEventT": "kit.ros.type_support:SrvEventT",
+        "SrvRequestT": "kit.ros.type_support:SrvRequestT",
+        "SrvResponseT": "kit.ros.type_support:SrvResponseT",
+        "SrvType": "kit.ros.type_support:SrvT",
+        "SrvTypeRequest": "kit.ros.type_support:SrvRequestT",
+        "SrvTypeResponse": "kit.ros.type_support:SrvResponseT",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

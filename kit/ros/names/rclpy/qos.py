@@ -2,6 +2,9 @@
 
 # Made by: python -m tests.ros.import_names
 
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.late_names import import_late_name
 from kit.ros.node.qos import (
     DurabilityPolicy,
     HistoryPolicy,
@@ -53,3 +56,24 @@ __all__ = [
     "qos_profile_system_default",
     "qos_profile_unknown",
 ]
+
+if TYPE_CHECKING:
+    from enum import Enum as Enum, IntEnum as IntEnum
+    from kit.ros.node.time import Duration as Duration
+    DeadlineBestAvailable: Any
+    LivelinessLeaseDurationeBestAvailable: Any
+    QoSPolicyEnum: Any
+    qos_policy_name_from_kind: Any
+else:
+    _LATE_NAMES = {
+        "DeadlineBestAvailable": "!rclpy's library in C, in whose place the kit has a graph of its own",
+        "Duration": "kit.ros.node.time:Duration",
+        "Enum": "enum:Enum",
+        "IntEnum": "enum:IntEnum",
+        "LivelinessLeaseDurationeBestAvailable": "!rclpy's library in C, in whose place the kit has a graph of its own",
+        "QoSPolicyEnum": "!rclpy's library in C, in whose place the kit has a graph of its own",
+        "qos_policy_name_from_kind": "!rclpy's library in C, in whose place the kit has a graph of its own",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

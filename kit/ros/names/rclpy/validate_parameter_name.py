@@ -2,6 +2,19 @@
 
 # Made by: python -m tests.ros.import_names
 
+from typing import TYPE_CHECKING
+
 from kit.ros.graph.naming import validate_parameter_name
+from kit.ros.late_names import import_late_name
 
 __all__ = ["validate_parameter_name"]
+
+if TYPE_CHECKING:
+    from kit.ros.exceptions import InvalidParameterException as InvalidParameterException
+else:
+    _LATE_NAMES = {
+        "InvalidParameterException": "kit.ros.exceptions:InvalidParameterException",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

@@ -2,6 +2,9 @@
 
 # Made by: python -m tests.ros.import_names
 
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.late_names import import_late_name
 from kit.ros.lifecycle import (
     LifecycleNode,
     LifecycleNode as _Node,
@@ -30,3 +33,13 @@ __all__ = [
     "SimpleManagedEntity",
     "TransitionCallbackReturn",
 ]
+
+if TYPE_CHECKING:
+    NodeMixin: Any
+else:
+    _LATE_NAMES = {
+        "NodeMixin": "!rclpy's library in C, in whose place the kit has a graph of its own",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

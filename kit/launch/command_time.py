@@ -1,0 +1,67 @@
+"""Lets simulated time pass for the commands of a launch file, in a run that goes as fast as it can.
+
+A program with nodes is in the lock-step; a command (``echo``, ``ros2 service call``) runs by the wall clock. So that it takes
+the same simulated time on every machine, the world stands still while it works: a command of ``kit ros`` until it has connected,
+and then whenever the world waits for its answer; any other command for a while, in which most have ended. One that goes on takes
+as much simulated time as it takes of the wall clock.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from typing import Final
+
+from kit.launch.launch_run import Launch
+from kit.launch.processes import CommandProcess
+
+START_S: Final = 20.0
+"""How long the world waits for a command of ``kit ros``, to connect or to answer [s]."""
+COMMAND_S: Final = 1.0
+"""How long it waits for another command to end [s]."""
+PAUSE_S: Final = 0.002
+"""How long it waits between two looks [s]."""
+
+
+class CommandTime:
+    """Decides before each tick whether it must wait for a command."""
+
+    def __init__(self, launch: Launch, clients: Callable[[], Mapping[int, bool]]) -> None:
+        """``clients``: the programs that are connected to the world, by process id, and whether each owes it an answer."""
+        self._launch, self._clients = launch, clients
+        self._seen: dict[int, tuple[float, int]] = {}
+        """When each command was first seen, on the monotonic clock [s] and in simulated time [ns], by process id."""
+        self._answered_s: dict[int, float] = {}
+        """When each was last found not to owe an answer [s]."""
+
+    def wait(self, exchange: Callable[[], object]) -> None:
+        """Calls ``exchange``, which exchanges messages while time stands still, until no command must be waited for."""
+        while self._must_wait():
+            exchange()
+            time.sleep(PAUSE_S)
+
+    def _must_wait(self) -> bool:
+        commands = self._launch.commands
+        if not commands:
+            return False
+        now_s = time.monotonic()
+        owing: dict[int, bool] = {}
+        for pid, owes in self._clients().items():
+            with suppress(OSError):  # it has ended
+                owing[os.getpgid(pid)] = owes
+        return any(self._is_waited_for(command, owing, now_s) for command in commands)
+
+    def _is_waited_for(self, command: CommandProcess, owing: Mapping[int, bool], now_s: float) -> bool:
+        now_ns = self._launch.graph.now_ns
+        began_s, began_ns = self._seen.setdefault(command.pid, (now_s, now_ns))
+        if command.poll() is not None:
+            return True  # until the launch has taken note
+        if not command.is_of_kit:
+            taken_s = now_s - began_s
+            return taken_s < COMMAND_S or (now_ns - began_ns) / 1e9 > taken_s
+        if owing.get(command.pid) is False:
+            self._answered_s[command.pid] = now_s
+            return False
+        return now_s - self._answered_s.get(command.pid, began_s) < START_S

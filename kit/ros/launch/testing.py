@@ -1,0 +1,60 @@
+"""What launch files for ``launch_testing`` use outside their tests; the tests themselves are not run by ``kit launch``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any, Final, TypeVar
+
+from kit.ros.launch.context import LaunchContext
+from kit.ros.launch.entity import Action, LaunchDescriptionEntity
+from kit.ros.launch.processes import ExecuteProcess
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+EXIT_OK: Final = 0
+EXIT_SIGINT: Final = 130
+EXIT_SIGQUIT: Final = 131
+EXIT_SIGKILL: Final = 137
+EXIT_SIGSEGV: Final = 139
+EXIT_FORCED: Final = 1
+DEFAULT_ATTEMPTS: Final = 5
+
+
+class ReadyToTest(Action):
+    """Says that tests may begin: ``kit launch`` goes on without a word, as ``ros2 launch`` does."""
+
+    def execute(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity] | None:
+        return None
+
+
+class KeepAliveProc(ExecuteProcess):
+    """A process that does nothing until the launch ends."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(cmd=["sleep", "infinity"], name="keep_alive", **kwargs)
+
+
+def post_shutdown_test() -> Callable[[type], type]:
+    """Marks a class of tests that would run after the processes have ended."""
+
+    def mark(cls: type) -> type:
+        cls.__post_shutdown_test__ = True  # type: ignore[attr-defined]  # what launch_testing looks for
+        return cls
+
+    return mark
+
+
+def keep_alive(function: Function) -> Function:
+    """Marks a launch description whose processes would be kept running for its tests."""
+    function.__launch_test_keep_alive__ = True  # type: ignore[attr-defined]  # likewise
+    return function
+
+
+def ready_to_test_action_timeout(timeout: float) -> Callable[[Function], Function]:
+    """Marks a launch description with how long its tests would wait for ReadyToTest [s]."""
+
+    def mark(function: Function) -> Function:
+        function.__ready_to_test_action_timeout__ = timeout  # type: ignore[attr-defined]  # likewise
+        return function
+
+    return mark

@@ -1,0 +1,21 @@
+"""launch.actions.push_launch_configurations of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from typing import TYPE_CHECKING
+
+from kit.ros.late_names import import_late_name
+
+if TYPE_CHECKING:
+    from kit.ros.launch.context import LaunchContext as LaunchContext
+    from kit.ros.launch.entity import Action as Action
+    from kit.ros.launch.settings import PushLaunchConfigurations as PushLaunchConfigurations
+else:
+    _LATE_NAMES = {
+        "Action": "kit.ros.launch.entity:Action",
+        "LaunchContext": "kit.ros.launch.context:LaunchContext",
+        "PushLaunchConfigurations": "kit.ros.launch.settings:PushLaunchConfigurations",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

@@ -1,0 +1,28 @@
+"""launch.launch_description_sources.python_launch_description_source of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.late_names import import_late_name
+
+if TYPE_CHECKING:
+    from kit.ros.launch.actions import (
+        LaunchDescriptionSource as LaunchDescriptionSource,
+        LaunchDescriptionSource as _PythonLaunchDescriptionSource,
+    )
+    from kit.ros.launch.substitutions import SomeText as _SomeSubstitutionsType
+
+    PythonLaunchDescriptionSource = _PythonLaunchDescriptionSource
+    SomeSubstitutionsType = _SomeSubstitutionsType
+    get_launch_description_from_python_launch_file: Any
+else:
+    _LATE_NAMES = {
+        "LaunchDescriptionSource": "kit.ros.launch.actions:LaunchDescriptionSource",
+        "PythonLaunchDescriptionSource": "kit.ros.launch.actions:LaunchDescriptionSource",
+        "SomeSubstitutionsType": "kit.ros.launch.substitutions:SomeText",
+        "get_launch_description_from_python_launch_file": "!launch's own process, in whose place `kit launch FILE` runs launch files",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

@@ -1,0 +1,17 @@
+"""launch.logging.handlers of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.late_names import import_late_name
+
+if TYPE_CHECKING:
+    with_per_logger_formatting: Any
+else:
+    _LATE_NAMES = {
+        "with_per_logger_formatting": "!launch's own process, in whose place `kit launch FILE` runs launch files",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

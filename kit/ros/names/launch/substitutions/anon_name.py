@@ -1,0 +1,29 @@
+"""launch.substitutions.anon_name of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.late_names import import_late_name
+
+if TYPE_CHECKING:
+    from kit.ros.launch.context import LaunchContext as LaunchContext
+    from kit.ros.launch.substitutions import (
+        AnonName as AnonName,
+        SomeText as _SomeSubstitutionsType,
+        Substitution as Substitution,
+    )
+
+    SomeSubstitutionsType = _SomeSubstitutionsType
+    expose_substitution: Any
+else:
+    _LATE_NAMES = {
+        "AnonName": "kit.ros.launch.substitutions:AnonName",
+        "LaunchContext": "kit.ros.launch.context:LaunchContext",
+        "SomeSubstitutionsType": "kit.ros.launch.substitutions:SomeText",
+        "Substitution": "kit.ros.launch.substitutions:Substitution",
+        "expose_substitution": "!launch's own process, in whose place `kit launch FILE` runs launch files",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

@@ -1,0 +1,31 @@
+"""launch.substitutions.launch_log_dir of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.late_names import import_late_name
+
+if TYPE_CHECKING:
+    from kit.ros.launch.context import LaunchContext as LaunchContext
+    from kit.ros.launch.substitutions import (
+        LaunchLogDir as LaunchLogDir,
+        SomeText as _SomeSubstitutionsType,
+        Substitution as Substitution,
+    )
+
+    SomeSubstitutionsType = _SomeSubstitutionsType
+    expose_substitution: Any
+    launch_logging_config: Any
+else:
+    _LATE_NAMES = {
+        "LaunchContext": "kit.ros.launch.context:LaunchContext",
+        "LaunchLogDir": "kit.ros.launch.substitutions:LaunchLogDir",
+        "SomeSubstitutionsType": "kit.ros.launch.substitutions:SomeText",
+        "Substitution": "kit.ros.launch.substitutions:Substitution",
+        "expose_substitution": "!launch's own process, in whose place `kit launch FILE` runs launch files",
+        "launch_logging_config": "!launch's own process, in whose place `kit launch FILE` runs launch files",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

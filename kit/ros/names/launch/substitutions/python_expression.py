@@ -1,0 +1,31 @@
+"""launch.substitutions.python_expression of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.late_names import import_late_name
+
+if TYPE_CHECKING:
+    from kit.ros.launch.context import LaunchContext as LaunchContext
+    from kit.ros.launch.normalization import ensure_argument_type as ensure_argument_type
+    from kit.ros.launch.substitutions import (
+        PythonExpression as PythonExpression,
+        SomeText as _SomeSubstitutionsType,
+        Substitution as Substitution,
+    )
+
+    SomeSubstitutionsType = _SomeSubstitutionsType
+    expose_substitution: Any
+else:
+    _LATE_NAMES = {
+        "LaunchContext": "kit.ros.launch.context:LaunchContext",
+        "PythonExpression": "kit.ros.launch.substitutions:PythonExpression",
+        "SomeSubstitutionsType": "kit.ros.launch.substitutions:SomeText",
+        "Substitution": "kit.ros.launch.substitutions:Substitution",
+        "ensure_argument_type": "kit.ros.launch.normalization:ensure_argument_type",
+        "expose_substitution": "!launch's own process, in whose place `kit launch FILE` runs launch files",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

@@ -1,0 +1,17 @@
+"""launch.substitutions.substitution_failure of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from typing import TYPE_CHECKING
+
+from kit.ros.late_names import import_late_name
+
+if TYPE_CHECKING:
+    from kit.ros.launch.substitutions import SubstitutionFailure as SubstitutionFailure
+else:
+    _LATE_NAMES = {
+        "SubstitutionFailure": "kit.ros.launch.substitutions:SubstitutionFailure",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

@@ -1,0 +1,20 @@
+"""launch.substitutions.text_substitution of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from typing import TYPE_CHECKING
+
+from kit.ros.late_names import import_late_name
+
+if TYPE_CHECKING:
+    from kit.ros.launch.context import LaunchContext as LaunchContext
+    from kit.ros.launch.substitutions import Substitution as Substitution, TextSubstitution as TextSubstitution
+else:
+    _LATE_NAMES = {
+        "LaunchContext": "kit.ros.launch.context:LaunchContext",
+        "Substitution": "kit.ros.launch.substitutions:Substitution",
+        "TextSubstitution": "kit.ros.launch.substitutions:TextSubstitution",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

@@ -1,0 +1,37 @@
+"""launch_ros.actions.composable_node_container of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.late_names import import_late_name
+
+if TYPE_CHECKING:
+    from kit.ros.launch.context import LaunchContext as LaunchContext
+    from kit.ros.launch.entity import Action as Action
+    from kit.ros.launch.processes import (
+        ComposableNode as ComposableNode,
+        ComposableNodeContainer as ComposableNodeContainer,
+        Node as Node,
+    )
+    from kit.ros.launch.substitutions import SomeText as _SomeSubstitutionsType
+
+    SomeSubstitutionsType = _SomeSubstitutionsType
+    Entity: Any
+    Parser: Any
+    expose_action: Any
+else:
+    _LATE_NAMES = {
+        "Action": "kit.ros.launch.entity:Action",
+        "ComposableNode": "kit.ros.launch.processes:ComposableNode",
+        "ComposableNodeContainer": "kit.ros.launch.processes:ComposableNodeContainer",
+        "Entity": "!launch's own process, in whose place `kit launch FILE` runs launch files",
+        "LaunchContext": "kit.ros.launch.context:LaunchContext",
+        "Node": "kit.ros.launch.processes:Node",
+        "Parser": "!launch's own process, in whose place `kit launch FILE` runs launch files",
+        "SomeSubstitutionsType": "kit.ros.launch.substitutions:SomeText",
+        "expose_action": "!launch's own process, in whose place `kit launch FILE` runs launch files",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

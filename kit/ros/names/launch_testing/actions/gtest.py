@@ -1,0 +1,23 @@
+"""launch_testing.actions.gtest of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.late_names import import_late_name
+
+if TYPE_CHECKING:
+    from kit.ros.launch.substitutions import SomeText as _SomeSubstitutionsType
+
+    SomeSubstitutionsType = _SomeSubstitutionsType
+    GTest: Any
+    Test: Any
+else:
+    _LATE_NAMES = {
+        "GTest": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "SomeSubstitutionsType": "kit.ros.launch.substitutions:SomeText",
+        "Test": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

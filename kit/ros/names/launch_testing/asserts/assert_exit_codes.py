@@ -1,0 +1,33 @@
+"""launch_testing.asserts.assert_exit_codes of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.late_names import import_late_name
+
+if TYPE_CHECKING:
+    from kit.ros.launch.testing import (
+        EXIT_FORCED as EXIT_FORCED,
+        EXIT_OK as EXIT_OK,
+        EXIT_SIGINT as EXIT_SIGINT,
+        EXIT_SIGKILL as EXIT_SIGKILL,
+        EXIT_SIGQUIT as EXIT_SIGQUIT,
+        EXIT_SIGSEGV as EXIT_SIGSEGV,
+    )
+    assertExitCodes: Any
+    resolveProcesses: Any
+else:
+    _LATE_NAMES = {
+        "EXIT_FORCED": "kit.ros.launch.testing:EXIT_FORCED",
+        "EXIT_OK": "kit.ros.launch.testing:EXIT_OK",
+        "EXIT_SIGINT": "kit.ros.launch.testing:EXIT_SIGINT",
+        "EXIT_SIGKILL": "kit.ros.launch.testing:EXIT_SIGKILL",
+        "EXIT_SIGQUIT": "kit.ros.launch.testing:EXIT_SIGQUIT",
+        "EXIT_SIGSEGV": "kit.ros.launch.testing:EXIT_SIGSEGV",
+        "assertExitCodes": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "resolveProcesses": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

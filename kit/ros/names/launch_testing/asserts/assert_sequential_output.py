@@ -1,0 +1,23 @@
+"""launch_testing.asserts.assert_sequential_output of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.late_names import import_late_name
+
+if TYPE_CHECKING:
+    from contextlib import contextmanager as contextmanager
+    SequentialTextChecker: Any
+    assertSequentialStdout: Any
+    resolveProcesses: Any
+else:
+    _LATE_NAMES = {
+        "SequentialTextChecker": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "assertSequentialStdout": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "contextmanager": "contextlib:contextmanager",
+        "resolveProcesses": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

@@ -1,0 +1,21 @@
+"""launch_testing.junitxml of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.late_names import import_late_name
+
+if TYPE_CHECKING:
+    unittestCaseToXml: Any
+    unittestResultToXml: Any
+    unittestResultsToXml: Any
+else:
+    _LATE_NAMES = {
+        "unittestCaseToXml": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "unittestResultToXml": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "unittestResultsToXml": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

@@ -1,0 +1,17 @@
+"""launch_testing.pytest.hookspecs of ROS 2, as this project offers it."""
+
+# Made by: python -m tests.ros.import_names
+
+from typing import TYPE_CHECKING, Any
+
+from kit.ros.late_names import import_late_name
+
+if TYPE_CHECKING:
+    pytest_launch_collect_makemodule: Any
+else:
+    _LATE_NAMES = {
+        "pytest_launch_collect_makemodule": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+    }
+
+    def __getattr__(name):
+        return import_late_name(__name__, _LATE_NAMES, name)

@@ -1,0 +1,1 @@
+from kit.msg.turtlebot3_msgs import Patrol as Patrol
