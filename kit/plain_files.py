@@ -34,3 +34,14 @@ def read_plain_file(file: Path | str, limit: int) -> bytes:
     if content is None or len(content) > limit:
         raise OSError(errno.EFBIG, f"it is larger than {limit / 1e6:.3g} MB", str(file))
     return content
+
+
+def is_file(path: Path) -> bool:
+    """Returns whether there is a file of this name, which somebody else may have written: of one that is too long or holds a null,
+    ``Path.is_file`` raises an error."""
+    return os.path.isfile(path)  # noqa: PTH113
+
+
+def is_folder(path: Path) -> bool:
+    """Returns whether there is a folder of this name, as ``is_file`` does."""
+    return os.path.isdir(path)  # noqa: PTH112

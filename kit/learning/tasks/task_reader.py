@@ -45,6 +45,7 @@ from kit.learning.tasks.learning_task import (
     WallGoal,
     read_curriculum,
 )
+from kit.plain_files import is_file, is_folder
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import WORLD_FILE, MapCard, UnknownMap, allowed_root_of, find_map
 from kit.world.documents import MAX_YAML_BYTES, AllowedRoot, UnusableFile, WorldDocuments, read_text
@@ -164,11 +165,14 @@ class _TaskReader:
         for name in names:
             try:
                 card = find_map(name)
-                cards.append(replace(card, world_file=card.folder / world_file))
-                if not cards[-1].world_file.is_file():
+                file = AllowedRoot.of_folder(card.folder).resolve(world_file, card.folder)
+                cards.append(replace(card, world_file=file))
+                if not is_file(file):
                     section.error(f"the map {name} has no file {quoted(world_file)}", "world_file")
             except UnknownMap as error:
                 section.error(f"{error}; for a file of your own write world: FILE", "maps")
+            except UnusableFile as error:
+                section.error(str(error), "world_file")
         return names, tuple(cards)
 
     def _own_world(self) -> tuple[MapCard, ...]:
@@ -178,9 +182,9 @@ class _TaskReader:
         except UnusableFile as error:
             section.error(str(error), "world")
             return ()
-        if file.is_dir():
+        if is_folder(file):
             file /= "world.yaml"
-        if not file.is_file():
+        if not is_file(file):
             section.error(f"there is no file {quoted(str(file), 200)}", "world")
             return ()
         names = section.names("robots") if section.has("robots") else ("serp",)
@@ -210,7 +214,7 @@ class _TaskReader:
             except UnusableFile as error:
                 section.error(str(error), "file")
                 return SUCCESS_REWARD, None
-            if not file.is_file():
+            if not is_file(file):
                 section.error(f"there is no file {quoted(str(file), 200)}", "file")
             return SUCCESS_REWARD, file
         if section.has("name"):
