@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import sys
 import time
@@ -11,13 +10,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from functools import cache
-from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-import grader
-import kit
 from grader.assignment import MAX_HINTS, Assignment, Criterion, KnownMistake, SeedSet
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
 from grader.evidence.submission_clock import SubmissionClock
@@ -26,6 +21,7 @@ from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
 from grader.submission import Submission
 from grader.submitted_files import YAML_ENDINGS, SubmissionRefused, reading_submission
 from grader.teacher_tests import run_teacher_tests
+from grader.version import grader_version
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level, shield_this_process
 from kit.host.sandbox.probe import highest_level_up_to
@@ -39,7 +35,6 @@ from kit.school.result import (
     GradingTiming,
     Visibility,
 )
-from kit.world.catalogue import maps_folder
 
 SAME_MISTAKE: Final = "The same mistake as in"
 """How the feedback on a mistake begins that an earlier criterion has described."""
@@ -574,45 +569,3 @@ def _finite(measure: float | None) -> float | None:
 
 def _platform() -> str:
     return f"{sys.platform}, Python {sys.version_info.major}.{sys.version_info.minor}"
-
-
-DISTRIBUTION: Final = "robot_learning_kit"
-UNUSED_PARTS: Final = ("cli", "tui", "school", "study", "data")
-"""Parts of the kit that no grading runs through; an installation's maps in ``data`` count as maps."""
-USED_FILES: Final = ("school/result.py",)
-"""What grading uses of these parts all the same."""
-
-
-@cache
-def grader_version() -> str:
-    """Returns the package version with a digest of the code and maps that grading depends on.
-
-    The version alone is not enough: an updated checkout keeps it, and older results would pass for current ones.
-    """
-    digest = hashlib.sha256()
-    for name, file in _source_files():
-        content = file.read_bytes()
-        digest.update(repr((name, len(content))).encode())
-        digest.update(content)
-    return f"{_package_version()}+{digest.hexdigest()[:12]}"
-
-
-def _source_files() -> Iterator[tuple[str, Path]]:
-    for package in (grader, kit):
-        folder = Path(package.__path__[0])
-        for file in sorted(folder.rglob("*.py")):
-            name = file.relative_to(folder)
-            is_used = name.parts[0] not in UNUSED_PARTS or name.as_posix() in USED_FILES
-            if package is grader or is_used:
-                yield f"{package.__name__}/{name.as_posix()}", file
-    for file in sorted(path for path in maps_folder().rglob("*") if path.is_file()):
-        yield f"maps/{file.relative_to(maps_folder()).as_posix()}", file
-
-
-def _package_version() -> str:
-    """Returns the installed version, by the name of the folder that an installation writes: ``importlib.metadata`` would
-    import a parser of e-mails for it."""
-    for entry in filter(None, sys.path):
-        for found in sorted(Path(entry).glob(f"{DISTRIBUTION}-*.dist-info")):
-            return found.name.removeprefix(f"{DISTRIBUTION}-").removesuffix(".dist-info")
-    return "unknown"

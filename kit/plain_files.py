@@ -36,12 +36,9 @@ def read_plain_file(file: Path | str, limit: int) -> bytes:
     return content
 
 
-def is_file(path: Path) -> bool:
-    """Returns whether there is a file of this name, which somebody else may have written: of one that is too long or holds a null,
-    ``Path.is_file`` raises an error."""
-    return os.path.isfile(path)  # noqa: PTH113
-
-
-def is_folder(path: Path) -> bool:
-    """Returns whether there is a folder of this name, as ``is_file`` does."""
-    return os.path.isdir(path)  # noqa: PTH112
+def is_file_there(file: Path) -> bool:
+    """Returns whether there is a file of this name; False for what cannot be a name, where ``Path.is_file`` raises."""
+    try:
+        return file.is_file()
+    except (OSError, ValueError):
+        return False

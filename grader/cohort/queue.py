@@ -20,10 +20,11 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.assignment import Assignment
-from grader.grading import GradingOptions, grade, grader_version, level_for_untrusted
+from grader.grading import GradingOptions, grade, level_for_untrusted
 from grader.reading import read_assignment
 from grader.submission import Submission, read_submission, submission_name
 from grader.submitted_files import IGNORED_NAMES, SubmissionRefused, SubmissionUnreadable
+from grader.version import grader_version
 from kit.field_types import check_field_types
 from kit.host import job_executors
 from kit.host.job_executors import MAX_TRIES, JobPool, in_shard, read_result

@@ -148,12 +148,15 @@ def _own_world_file(name: str, root: Path | None = None) -> Path | None:
     """The world file that a name stands for, where it is not that of a map of the kit's."""
     if name in map_names():
         return None
-    path = expand_home(name)
-    if root is None and not path.exists():
-        path = own_map_folder(name) or path
-    if path.is_dir():
-        path = path / WORLD_FILE
-    return path.absolute() if path.is_file() or path.suffix in (".yaml", ".yml") else None
+    try:
+        path = expand_home(name)
+        if root is None and not path.exists():
+            path = own_map_folder(name) or path
+        if path.is_dir():
+            path = path / WORLD_FILE
+        return path.absolute() if path.is_file() or path.suffix in (".yaml", ".yml") else None
+    except (OSError, ValueError):  # what cannot be a file's name is no map's either
+        return None
 
 
 def own_map_folder(name: str) -> Path | None:

@@ -18,8 +18,7 @@ from grader.reading import read_assignment
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.namespaces import can_mount_scratch
-from kit.host.sandbox.probe import highest_level_up_to
+from kit.host.sandbox.probe import can_mount_scratch, highest_level_up_to
 from kit.school.result import CriterionStatus, GradingResult
 
 TOKEN = "735192468013"

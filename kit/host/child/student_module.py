@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import builtins
 import errno
-import linecache
 import os
 import re
 import sys
@@ -200,6 +199,8 @@ def _innermost_call(trace: TracebackType | None) -> str:
         trace = trace.tb_next
     if trace is None:
         return "That"
+    import linecache  # here: only a mistake needs it
+
     code = trace.tb_frame.f_code
     first, last, begin, end = next(islice(code.co_positions(), trace.tb_lasti // 2, None), (None,) * 4)
     line = linecache.getline(code.co_filename, first or 0)

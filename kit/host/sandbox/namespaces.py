@@ -8,19 +8,11 @@ from __future__ import annotations
 
 import ctypes
 import os
-import subprocess
-import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
-from kit.host.private_folder import private_folder
 from kit.host.sandbox import libc
-
-_KIT = str(Path(__file__).parents[3])
-TRIAL_S = 20.0
-"""How long a trial may take [s]."""
 
 _NEW_MOUNT, _NEW_UTS, _NEW_IPC, _NEW_USER, _NEW_PID, _NEW_NET = (
     0x00020000, 0x04000000, 0x08000000, 0x10000000, 0x20000000, 0x40000000,
@@ -49,21 +41,6 @@ def mount_scratch(scratch: str, room: int, files: int) -> bool:
         return False
     os.chdir(scratch)
     return True
-
-
-@cache
-def can_mount_scratch() -> bool:
-    """Returns whether ``mount_scratch`` works on this machine. Tried once, by a process of its own."""
-    with private_folder() as folder:
-        call = f"mount_scratch({str(folder)!r}, 1 << 20, 10)"
-        trial = f"import sys; sys.path.insert(0, {_KIT!r}); import kit.host.sandbox.namespaces as n; sys.exit(not n.{call})"
-        try:
-            done = subprocess.run(
-                [sys.executable, "-S", "-P", "-c", trial], capture_output=True, timeout=TRIAL_S, check=False
-            )
-        except (OSError, subprocess.TimeoutExpired):
-            return False
-        return done.returncode == 0
 
 
 def unmount_scratch(scratch: str) -> None:

@@ -36,8 +36,8 @@ ALLOWED: Final[dict[str, CallNumbers]] = {
     "flock": (73, 32), "sendfile": (40, 71), "copy_file_range": (326, 285), "rename": (82, None),
     "renameat": (264, 38), "renameat2": (316, 276), "mkdir": (83, None), "mkdirat": (258, 34), "rmdir": (84, None),
     "link": (86, None), "linkat": (265, 37), "symlink": (88, None), "symlinkat": (266, 36), "unlink": (87, None),
-    "unlinkat": (263, 35), "mknod": (133, None), "mknodat": (259, 33), "getxattr": (191, 8), "lgetxattr": (192, 9),
-    "fgetxattr": (193, 10), "listxattr": (194, 11), "llistxattr": (195, 12), "flistxattr": (196, 13),
+    "unlinkat": (263, 35), "mknod": (133, None), "mknodat": (259, 33),
+    "fgetxattr": (193, 10), "flistxattr": (196, 13),
     # Descriptors, pipes and waiting.
     "dup": (32, 23), "dup2": (33, None), "dup3": (292, 24), "close_range": (436, 436), "pipe": (22, None),
     "pipe2": (293, 59), "eventfd": (284, None), "eventfd2": (290, 19), "select": (23, None), "pselect6": (270, 72),
@@ -112,6 +112,7 @@ DENIED: Final[dict[str, tuple[int | None, int | None]]] = {
     # What Landlock does not restrict about files.
     "chmod": (90, None), "fchmod": (91, 52), "fchmodat": (268, 53), "fchmodat2": (452, 452),
     "chown": (92, None), "lchown": (94, None), "fchown": (93, 55), "fchownat": (260, 54),
+    "getxattr": (191, 8), "lgetxattr": (192, 9), "listxattr": (194, 11), "llistxattr": (195, 12),
     "setxattr": (188, 5), "lsetxattr": (189, 6), "fsetxattr": (190, 7), "removexattr": (197, 14),
     "lremovexattr": (198, 15), "fremovexattr": (199, 16), "utime": (132, None), "utimes": (235, None),
     "futimesat": (261, None), "utimensat": (280, 88), "truncate": (76, 45), "name_to_handle_at": (303, 264),
@@ -145,10 +146,29 @@ class Architecture(NamedTuple):
 
 ARCHITECTURES: Final = {"x86_64": Architecture(0xC000003E, 0), "aarch64": Architecture(0xC00000B7, 1)}
 
-SET_OWNER, SET_SIGNAL, SET_OWNER_EX, SET_LEASE, NOTIFY, SET_PIPE_SIZE = 8, 10, 15, 1024, 1026, 1031
-"""Commands of ``fcntl``. Who owns a descriptor is sent a signal of the program's choice, whatever ``kill`` may do; a
-lease on a file that can be read makes every other process wait for 45 s that opens it; a folder's notices tell what
-others read there; a pipe's memory is counted by no limit."""
+DESCRIPTOR_COMMANDS: Final = (
+    0,
+    1,
+    2,
+    3,
+    4,
+    5,
+    6,
+    7,
+    9,
+    16,
+    36,
+    37,
+    38,
+    1024 + 1,
+    1024 + 6,
+    1024 + 8,
+    1024 + 10,
+)
+"""The only commands of ``fcntl``: F_DUPFD, F_GETFD, F_SETFD, F_GETFL, F_SETFL, F_GETLK, F_SETLK, F_SETLKW, F_GETOWN,
+F_GETOWN_EX, F_OFD_GETLK, F_OFD_SETLK, F_OFD_SETLKW, F_GETLEASE, F_DUPFD_CLOEXEC, F_GETPIPE_SZ, F_GET_SEALS. Of the others, one has
+other processes signalled, one makes them wait for 45 s that open a file, one tells what they read, one widens pipes beyond
+every limit, and one leaves a hint with the file itself, which a later program can read."""
 TERMINAL_STATE, TERMINAL_STATE_2, WINDOW_SIZE, BYTES_TO_READ, NOT_BLOCKING, CLOSE_ON_EXEC, KEEP_ON_EXEC = (
     0x5401, 0x802C542A, 0x5413, 0x541B, 0x5421, 0x5451, 0x5450,
 )  # fmt: skip
@@ -187,7 +207,6 @@ class CheckedCall(NamedTuple):
 
 def checked_calls(own_process: int) -> dict[str, CheckedCall]:
     """Returns the calls that depend on an argument. ``own_process``: the process that may be signalled and limited."""
-    refused_commands = (SET_OWNER, SET_SIGNAL, SET_OWNER_EX, SET_LEASE, NOTIFY, SET_PIPE_SIZE)
     requests = (
         TERMINAL_STATE,
         TERMINAL_STATE_2,
@@ -198,7 +217,7 @@ def checked_calls(own_process: int) -> dict[str, CheckedCall]:
         KEEP_ON_EXEC,
     )
     return {
-        "fcntl": CheckedCall((72, 25), 1, refused_commands, are_allowed=False),
+        "fcntl": CheckedCall((72, 25), 1, DESCRIPTOR_COMMANDS, are_allowed=True),
         "ioctl": CheckedCall((16, 29), 1, requests, are_allowed=True),
         "madvise": CheckedCall((28, 233), 2, (MAKE_COLD, PAGE_OUT), are_allowed=False),
         "fadvise64": CheckedCall((221, 223), 3, (DROP_FROM_MEMORY,), are_allowed=False),

@@ -19,7 +19,7 @@ from kit.learning.tasks.learning_task import StartVariation as StartVariation
 from kit.learning.tasks.learning_task import UnknownTask as UnknownTask
 from kit.learning.tasks.own_files import workspace_task_file
 from kit.learning.tasks.task_reader import TASK_FILE, read_task, task_name
-from kit.plain_files import is_file, is_folder
+from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.workspace import expand_home
 
@@ -52,9 +52,9 @@ def find_task_file(name: str) -> Path | None:
     if name in names:
         return None
     path = expand_home(name)
-    if is_folder(path) and is_file(path / TASK_FILE):
+    if is_file_there(path / TASK_FILE):
         return path / TASK_FILE
-    if is_file(path):
+    if is_file_there(path):
         return path
     if path.suffix in (".yaml", ".yml") or len(path.parts) > 1:
         raise UnknownTask(f"there is no file {quoted(name, 200)}")

@@ -45,7 +45,7 @@ from kit.learning.tasks.learning_task import (
     WallGoal,
     read_curriculum,
 )
-from kit.plain_files import is_file, is_folder
+from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import WORLD_FILE, MapCard, UnknownMap, allowed_root_of, find_map
 from kit.world.documents import MAX_YAML_BYTES, AllowedRoot, UnusableFile, WorldDocuments, read_text
@@ -167,7 +167,7 @@ class _TaskReader:
                 card = find_map(name)
                 file = AllowedRoot.of_folder(card.folder).resolve(world_file, card.folder)
                 cards.append(replace(card, world_file=file))
-                if not is_file(file):
+                if not is_file_there(file):
                     section.error(f"the map {name} has no file {quoted(world_file)}", "world_file")
             except UnknownMap as error:
                 section.error(f"{error}; for a file of your own write world: FILE", "maps")
@@ -182,9 +182,9 @@ class _TaskReader:
         except UnusableFile as error:
             section.error(str(error), "world")
             return ()
-        if is_folder(file):
+        if is_file_there(file / "world.yaml"):
             file /= "world.yaml"
-        if not is_file(file):
+        if not is_file_there(file):
             section.error(f"there is no file {quoted(str(file), 200)}", "world")
             return ()
         names = section.names("robots") if section.has("robots") else ("serp",)
@@ -214,7 +214,7 @@ class _TaskReader:
             except UnusableFile as error:
                 section.error(str(error), "file")
                 return SUCCESS_REWARD, None
-            if not is_file(file):
+            if not is_file_there(file):
                 section.error(f"there is no file {quoted(str(file), 200)}", "file")
             return SUCCESS_REWARD, file
         if section.has("name"):

@@ -22,7 +22,7 @@ from types import SimpleNamespace
 import pytest
 from click.testing import CliRunner
 
-from grader import grading
+from grader import version
 from grader.__main__ import main
 from grader.assignment import Assignment
 from grader.cohort import gradebook
@@ -170,14 +170,14 @@ def test_another_grader_grades_anew(queue: Queue, tmp_path: Path, monkeypatch: p
     """Its code may be brought up to date without another version number."""
     for key in queue.waiting():
         grade_job(queue, key)
-    assert grading.grader_version() == grading.grader_version.__wrapped__()
-    seen = list(grading._source_files())
+    assert version.grader_version() == version.grader_version.__wrapped__()
+    seen = list(version._source_files())
     assert {name.partition("/")[0] for name, _ in seen} == {"grader", "kit", "maps"}
     edited = tmp_path / "edited.py"
     edited.write_text(seen[0][1].read_text() + "# another line\n")
-    monkeypatch.setattr(grading, "_source_files", lambda: [(seen[0][0], edited), *seen[1:]])
-    other = grading.grader_version.__wrapped__()
-    assert other != grading.grader_version()
+    monkeypatch.setattr(version, "_source_files", lambda: [(seen[0][0], edited), *seen[1:]])
+    other = version.grader_version.__wrapped__()
+    assert other != version.grader_version()
     monkeypatch.setattr("grader.cohort.queue.grader_version", lambda: other)
     prepare_queue(queue, tmp_path / "in", queue.assignment(), TERMS)
     assert len(queue.waiting()) == 4

@@ -27,8 +27,7 @@ from kit.host.node_process import NodeProcess
 from kit.host.sandbox import landlock, seccomp
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import MIB
-from kit.host.sandbox.namespaces import can_mount_scratch
-from kit.host.sandbox.probe import SandboxSupport, highest_level, probe_levels
+from kit.host.sandbox.probe import SandboxSupport, can_mount_scratch, highest_level, probe_levels
 from kit.host.student_functions import StudentFunctions
 from kit.msg.geometry_msgs import Twist
 from kit.msg.sensor_msgs import LaserScan
@@ -66,6 +65,7 @@ ATTACKS_BY_PROMISE = {
         "read the passwords' file": "return len(open('/etc/passwd').read())",
         "read through a link": "os.symlink(secret, 'link'); return len(open('link').read())",
         "read through a hard link": "os.link(secret, 'link'); return len(open('link').read())",
+        "read an attribute outside": "return 1 + len(os.listxattr(secret))",
         "open a file by handle": "return 1 + call(304, 265, 3, None, 0)",
     },
     "write": {
@@ -85,6 +85,7 @@ ATTACKS_BY_PROMISE = {
         "change a file's time": "os.utime(secret, (0, 0)); return 1",
         "change a file's owner": "os.chown(secret, os.getuid(), os.getgid()); return 1",
         "read a file's flags": "flags = ctypes.c_long(); return 1 + call(16, 29, os.open(__file__, 0), 0x80086601, ctypes.byref(flags))",
+        "leave a hint with a file": "import fcntl; return len(fcntl.fcntl(os.open(__file__, 0), 1036, (3).to_bytes(8, 'little')))",
         "set a file's flags": "flags = ctypes.c_long(0x40); return 1 + call(16, 29, os.open(__file__, 0), 0x40086602, ctypes.byref(flags))",
     },
     "start": {
@@ -219,7 +220,7 @@ def test_without_confinement_the_attacks_do_work(student: Student, tmp_path: Pat
         "watch what others open", "have the grader signalled by a pipe", "have the grader signalled by a socket",
         "choose the signal of a pipe", "live on after the kit", "use up the machine's requests",
         "use up its user's signals", "leave pages in a pipe", "copy a pipe's pages", "move pages into a pipe",
-        "widen a pipe", "reserve the disk beyond every limit", "send a file that nobody sees", "lock memory",
+        "widen a pipe", "leave a hint with a file", "read an attribute outside", "reserve the disk beyond every limit", "send a file that nobody sees", "lock memory",
         "use large pages again",
     )  # fmt: skip
     record = {"secret": str(secret), "grader": os.getpid()}
