@@ -8,7 +8,14 @@ from pathlib import Path
 import pytest
 
 from kit.controllers import find_controller, prepare_workspace, user_controllers
-from kit.workspace import WorkspaceError, check_writable, expand_home, open_workspace, write_atomically
+from kit.workspace import (
+    WorkspaceError,
+    check_writable,
+    expand_home,
+    open_common_folder,
+    open_workspace,
+    write_atomically,
+)
 
 
 def test_the_folder_is_the_one_named_else_the_environments_else_in_the_home(
@@ -77,3 +84,14 @@ def test_only_files_are_controllers(tmp_path: Path) -> None:
     assert [each.name for each in user_controllers(tmp_path)] == ["bytes", "deep"]
     with pytest.raises(LookupError):
         find_controller("pipe.py", tmp_path)
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can make somebody else's folder")
+def test_a_common_folder_of_another_user_is_refused(tmp_path: Path) -> None:
+    """Whoever owns it may remove what others put there, whatever its mode."""
+    folder = tmp_path / "hall"
+    assert open_common_folder(folder) == ""
+    os.chown(folder, 65534, 65534)
+    assert "belongs to another user" in open_common_folder(folder)
+    os.chown(folder, 0, 0)
+    assert open_common_folder(folder) == ""

@@ -21,7 +21,7 @@ from kit.host.failure import StudentCodeError
 from kit.host.sandbox import grants
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import MIB, Limits
-from kit.host.sandbox.probe import is_level_available
+from kit.host.sandbox.probe import can_mount_scratch, is_level_available
 from kit.host.sandbox.promises import PROMISES, Promise, markdown_table, promises_since
 from kit.host.sandbox.reaper import descendants
 from kit.host.student_functions import StudentFunctions
@@ -324,6 +324,38 @@ def test_solutions_can_be_read_where_they_are_not_hidden(
         with StudentFunctions(file, limits=QUICK, level=Level.FILTERED) as functions:
             gained.append(functions.call_batch("f", [{}])[0] > 0)
     assert gained == [False, True]
+
+
+@pytest.mark.long
+@LINUX
+def test_files_that_nobody_sees_fill_a_disk_that_is_not_their_own(
+    student: Student, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At level 1 where the kit may not mount: the table says so."""
+    if not can_mount_scratch():
+        pytest.skip("at level 1 this machine only measures")
+    file = student(
+        """
+        import mmap, os
+        kept = []
+        def fill():
+            try:
+                for _ in range(20):
+                    with open("x", "w+b") as file:
+                        file.write(bytes(1 << 20)); file.flush()
+                        kept.append(mmap.mmap(file.fileno(), 4096))
+                        os.unlink("x")
+            except OSError: pass
+            return len(kept)
+        """
+    )
+    limits, filled = replace(QUICK, scratch=8 * MIB, open_files=200), []
+    for _ in range(2):
+        with StudentFunctions(file, limits=limits, level=Level.FILTERED) as functions:
+            filled += functions.call_batch("fill", [{}])
+        without(monkeypatch, "confinement.namespaces.mount_scratch = lambda *folder: False; ")
+    assert filled[0] <= 8
+    assert filled[1] == 20
 
 
 def test_every_promise_of_level_1_is_tried_without_its_defence() -> None:
