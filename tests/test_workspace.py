@@ -10,7 +10,14 @@ from pathlib import Path
 import pytest
 
 from kit.controllers import find_controller, prepare_workspace, user_controllers
-from kit.workspace import WorkspaceError, check_writable, expand_home, open_workspace, write_atomically
+from kit.workspace import (
+    WorkspaceError,
+    check_writable,
+    expand_home,
+    open_common_folder,
+    open_workspace,
+    write_atomically,
+)
 
 
 def test_the_folder_is_the_one_named_else_the_environments_else_in_the_home(
@@ -109,3 +116,14 @@ def test_a_pipe_and_a_device_are_written_to_and_not_replaced(tmp_path: Path) -> 
         out.flush()
         subprocess.run([sys.executable, "-c", code], stdout=out, check=True)
     assert (tmp_path / "out").read_bytes() == b"one two"
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can make somebody else's folder")
+def test_a_common_folder_of_another_user_is_refused(tmp_path: Path) -> None:
+    """Whoever owns it may remove what others put there, whatever its mode."""
+    folder = tmp_path / "hall"
+    assert open_common_folder(folder) == ""
+    os.chown(folder, 65534, 65534)
+    assert "belongs to another user" in open_common_folder(folder)
+    os.chown(folder, 0, 0)
+    assert open_common_folder(folder) == ""

@@ -40,9 +40,11 @@ class PolicyError(Exception):
 
 
 def _check_numbers(array: NDArray[Any], dimensions: int) -> None:
-    """Raises ValueError unless it is an array of floating-point numbers with this many dimensions."""
+    """Raises ValueError unless it is an array of finite floating-point numbers with this many dimensions."""
     if array.ndim != dimensions or array.dtype.kind != "f":
         raise ValueError(f"an array of shape {array.shape} and type {array.dtype}")
+    if not np.isfinite(array).all():
+        raise ValueError("an array with numbers that are not finite")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -129,6 +131,10 @@ class PolicyNetwork:
 
     def scores(self, observations: Float32Array, memory: Float32Array) -> tuple[Float32Array, Float32Array]:
         """(n, outputs) and the next memory (n, 2, h), from (n, inputs) and the last one."""
+        with np.errstate(over="ignore", invalid="ignore"):  # weights of a damaged file may be as large as any
+            return self._scores(observations, memory)
+
+    def _scores(self, observations: Float32Array, memory: Float32Array) -> tuple[Float32Array, Float32Array]:
         x = observations
         if self.lstm is not None:
             x, memory = self.lstm.step(x, memory)

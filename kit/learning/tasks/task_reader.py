@@ -165,11 +165,14 @@ class _TaskReader:
         for name in names:
             try:
                 card = find_map(name)
-                cards.append(replace(card, world_file=card.folder / world_file))
-                if not is_file_there(cards[-1].world_file):
+                file = AllowedRoot.of_folder(card.folder).resolve(world_file, card.folder)
+                cards.append(replace(card, world_file=file))
+                if not is_file_there(file):
                     section.error(f"the map {name} has no file {quoted(world_file)}", "world_file")
             except UnknownMap as error:
                 section.error(f"{error}; for a file of your own write world: FILE", "maps")
+            except UnusableFile as error:
+                section.error(str(error), "world_file")
         return names, tuple(cards)
 
     def _own_world(self) -> tuple[MapCard, ...]:
@@ -179,7 +182,7 @@ class _TaskReader:
         except UnusableFile as error:
             section.error(str(error), "world")
             return ()
-        if file.is_dir():
+        if is_file_there(file / "world.yaml"):
             file /= "world.yaml"
         if not is_file_there(file):
             section.error(f"there is no file {quoted(str(file), 200)}", "world")

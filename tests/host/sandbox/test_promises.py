@@ -6,16 +6,24 @@
 from __future__ import annotations
 
 import os
+import signal
 from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
 import pytest
 
+from kit.host import process
+from kit.host.failure import StudentCodeError
+from kit.host.sandbox import grants
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.probe import is_level_available
+from kit.host.sandbox.limits import MIB, Limits
+from kit.host.sandbox.probe import can_mount_scratch, is_level_available
 from kit.host.sandbox.promises import PROMISES, Promise, markdown_table, promises_since
+from kit.host.sandbox.reaper import descendants
 from kit.host.student_functions import StudentFunctions
 from tests.grader import test_returned_numbers, test_secrets
 from tests.host import test_forgery, test_process, test_states
@@ -185,6 +193,173 @@ def test_what_of_a_file_is_in_memory_is_seen_by_a_later_program_at_every_level(
     if seen[0] == 0:
         pytest.skip("this file system keeps its files in memory")
     assert (seen[1] < seen[0]) != find_promise("cache").holds_at(level)
+
+
+NO_FILTER = "confinement.seccomp.install = lambda **options: None; "
+NO_LANDLOCK = "confinement.landlock.restrict = lambda *granted: None; "
+NO_LIMITS = "confinement._limit = lambda config: None; "
+WITHOUT_DEFENCE: Final[Mapping[str, tuple[str, tuple[str, ...]]]] = MappingProxyType(
+    {
+        "read": (NO_LANDLOCK, ("read a file outside", "list a folder outside", "read through a link")),
+        "write": (NO_LANDLOCK, ("write a file outside", "make a file outside", "change its own source")),
+        "attributes": (NO_FILTER, ("change a file's rights", "change a file's time", "read a file's flags")),
+        "start": (NO_FILTER + NO_LANDLOCK, ("start a program", "spawn a program")),
+        "network": (NO_FILTER, ("send over UDP", "open a local socket")),
+        "processes": (
+            NO_FILTER + NO_LANDLOCK + NO_LIMITS,
+            ("signal the grader", "signal by descriptor", "use up the machine's requests", "use up its user's signals"),
+        ),
+        "rights": (NO_FILTER, ("make a namespace",)),
+        "kernel": (NO_FILTER, ("use a keyring",)),
+        "uncounted": (
+            NO_FILTER,
+            ("use memory that nobody counts", "use shared memory", "leave pages in a pipe", "widen a pipe"),
+        ),
+    }
+)  # fmt: skip
+"""By promise: what takes its defence away in a process that is confined to level 1 in all else, and attacks that then work."""
+
+
+@pytest.mark.long
+@LINUX
+@pytest.mark.parametrize("key", WITHOUT_DEFENCE)
+def test_a_promise_is_broken_where_its_defence_is_taken_away(
+    student: Student, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, key: str
+) -> None:
+    """So each row rests on the defence that is thought to hold it, and its test would see that this is gone."""
+    if not is_level_available(Level.FILTERED):
+        pytest.skip("not on this machine")
+    secret = tmp_path / "solution.txt"
+    record = {"secret": str(secret), "grader": os.getpid()}
+    taken_away, attacks = WITHOUT_DEFENCE[key]
+    start = process._START
+    gained: dict[str, list[str]] = {}
+    for prelude in ("", f"from kit.host.sandbox import confinement; {taken_away}"):
+        monkeypatch.setattr(process, "_START", start.replace("os._exit(", f"{prelude}os._exit("))
+        gained[prelude] = []
+        for name in attacks:
+            secret.write_text("forty-two")
+            (tmp_path / "solution.txt.new").unlink(missing_ok=True)
+            file = test_confinement._attack_file(student)
+            with StudentFunctions(file, limits=QUICK, level=Level.FILTERED) as functions:
+                number = list(test_confinement.ATTACKS).index(name)
+                if functions.call_batch(f"attack{number}", [record]) != [0.0]:
+                    gained[prelude].append(name)
+    assert list(gained.values()) == [[], list(attacks)]
+
+
+def without(monkeypatch: pytest.MonkeyPatch, taken_away: str) -> None:
+    """Takes something away in the processes that are started from now on."""
+    prelude = f"from kit.host.sandbox import confinement; {taken_away}"
+    monkeypatch.setattr(process, "_START", process._START.replace("os._exit(", f"{prelude}os._exit("))
+
+
+@pytest.mark.long
+@LINUX
+@pytest.mark.parametrize(
+    ("body", "limits"),
+    [
+        ("x = bytearray(400 << 20); return 1", replace(QUICK, memory=300 * MIB, reply_s=10)),
+        (
+            "until = time.process_time() + 1.6\n    while time.process_time() < until: pass\n    return 1",
+            replace(QUICK, cpu_s=1, reply_s=20),
+        ),
+    ],
+    ids=["memory", "time"],
+)
+def test_a_limit_is_exceeded_where_it_is_not_set(
+    student: Student, monkeypatch: pytest.MonkeyPatch, body: str, limits: Limits
+) -> None:
+    file = student(f"import time\ndef f():\n    {body}\n")
+    with StudentFunctions(file, limits=limits) as functions, pytest.raises(StudentCodeError):
+        functions.call_batch("f", [{}])
+    without(monkeypatch, NO_LIMITS)
+    with StudentFunctions(file, limits=limits) as functions:
+        assert functions.call_batch("f", [{}]) == [1.0]
+
+
+@pytest.mark.long
+@LINUX
+def test_a_daemon_is_left_behind_where_nobody_ends_it(
+    student: Student, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    without(monkeypatch, "supervisor.end_descendants = lambda *processes: None; ")
+    before = set(descendants(os.getpid()))
+    marker = f"daemon-of-{tmp_path}"
+    try:
+        with pytest.raises(AssertionError):
+            test_process.test_a_daemon_is_not_left_behind(student, tmp_path)
+    finally:
+        for found in Path("/proc").glob("[0-9]*/cmdline"):
+            with suppress(OSError):
+                if marker.encode() in found.read_bytes() and int(found.parent.name) not in before:
+                    os.kill(int(found.parent.name), signal.SIGKILL)
+
+
+def test_the_kits_environment_is_inherited_where_it_is_not_replaced(
+    student: Student, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(process, "process_environment", lambda scratch: {**os.environ, "HOME": scratch})
+    with pytest.raises(StudentCodeError, match="py:4: AssertionError"):  # the line that looks for it
+        test_process.test_nothing_of_ours_is_in_its_surroundings(student, monkeypatch)
+
+
+@LINUX
+def test_solutions_can_be_read_where_they_are_not_hidden(
+    student: Student, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not is_level_available(Level.FILTERED):
+        pytest.skip("not on this machine")
+    solution = next((Path(__file__).parents[2] / "solutions").rglob("solution.py"))
+    file = student(
+        f"def f():\n    try: return len(open({str(solution)!r}).read())\n    except OSError: return 0\n"
+    )
+    gained = []
+    for hides in (True, False):
+        if not hides:
+            monkeypatch.setattr(grants, "_hidden_paths", list)
+            monkeypatch.setattr(grants, "_last_installed", None)
+            monkeypatch.syspath_prepend(str(Path(__file__).parents[3]))
+            monkeypatch.setattr(grants, "library_folders", lambda: [str(Path(__file__).parents[3])])
+        with StudentFunctions(file, limits=QUICK, level=Level.FILTERED) as functions:
+            gained.append(functions.call_batch("f", [{}])[0] > 0)
+    assert gained == [False, True]
+
+
+@pytest.mark.long
+@LINUX
+def test_files_that_nobody_sees_fill_a_disk_that_is_not_their_own(
+    student: Student, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At level 1 where the kit may not mount: the table says so."""
+    if not can_mount_scratch():
+        pytest.skip("at level 1 this machine only measures")
+    file = student(
+        """
+        import mmap, os
+        kept = []
+        def fill():
+            try:
+                for _ in range(20):
+                    with open("x", "w+b") as file:
+                        file.write(bytes(1 << 20)); file.flush()
+                        kept.append(mmap.mmap(file.fileno(), 4096))
+                        os.unlink("x")
+            except OSError: pass
+            return len(kept)
+        """
+    )
+    limits, filled = replace(QUICK, scratch=8 * MIB, open_files=200), []
+    for _ in range(2):
+        with StudentFunctions(file, limits=limits, level=Level.FILTERED) as functions:
+            filled += functions.call_batch("fill", [{}])
+        without(monkeypatch, "confinement.namespaces.mount_scratch = lambda *folder: False; ")
+    assert filled[0] <= 8
+    assert filled[1] == 20
+
+
+def test_every_promise_of_level_1_is_tried_without_its_defence() -> None:
+    assert set(WITHOUT_DEFENCE) == set(test_confinement.ATTACKS_BY_PROMISE)
 
 
 if __name__ == "__main__":
