@@ -109,6 +109,9 @@ def run_plain_launch(
         if factor == MAXIMUM:
             clients = companion.owed_answers if isinstance(companion, InspectionServer) else dict
             command_time = CommandTime(launch, clients)
+        if companion is not None:
+            stack.callback(companion.close)
+            companions.append(companion)
         if launch.world is None:
             launch.start_processes()
             graph_only_run = GraphOnlyRun(launch.graph)

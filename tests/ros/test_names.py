@@ -12,8 +12,9 @@ import pytest
 from kit.msg.interfaces import PACKAGES, interfaces
 from kit.msg.message import Message, Service
 from kit.ros import NAMES_FOLDER
+from kit.ros.late_names import is_absent_name
 from tests.cases import every_case
-from tests.ros.names import find_missing, read_programs
+from tests.ros.names import find_absent, find_missing, find_unresolved, read_programs, real_names
 
 FOLDER = Path(NAMES_FOLDER)
 MODULES = sorted(
@@ -50,6 +51,58 @@ def test_a_package_of_messages_has_all_of_them(package: str) -> None:
         if ours:
             named = importlib.import_module(f"{package}.{part}")
             assert {name: getattr(named, name) for name in named.__all__} == ours
+
+
+@pytest.mark.usefixtures("import_names")
+def test_every_name_of_ros_2_s_own_modules_is_here_or_says_what_it_would_need() -> None:
+    """Those that a module defines, and those that it imports and so offers too."""
+    names = real_names()
+    assert len(names) > 2000
+    assert find_unresolved(names) == []
+    absent = find_absent(names)
+    rclpy = [name for name in absent if name.startswith(("rclpy.", "tf2_ros.", "message_filters."))]
+    assert len(rclpy) <= 81
+    assert len(absent) <= 532
+
+
+@pytest.mark.usefixtures("import_names")
+def test_a_name_that_the_kit_does_not_have_can_be_imported_but_not_used() -> None:
+    from launch import LaunchService
+    from rclpy.clock import ClockHandle
+
+    class Mine(ClockHandle): ...
+
+    def annotated(handle: ClockHandle | None) -> None: ...
+
+    for use in (LaunchService, Mine, lambda: LaunchService.run):
+        with pytest.raises(NotImplementedError, match="is not in the kit: it needs"):
+            use()
+
+
+@pytest.mark.usefixtures("import_names")
+@every_case(
+    "module, name",
+    [
+        ("rclpy.time", "Duration"),
+        ("rclpy.node", "Parameter"),
+        ("rclpy.node", "MutuallyExclusiveCallbackGroup"),
+        ("rclpy.action.client", "GoalStatus"),
+        ("rclpy.parameter", "ParameterType"),
+        ("launch.actions.execute_process", "ExecuteProcess"),
+        ("geometry_msgs.msg._twist", "Twist"),
+        ("sensor_msgs.msg._laser_scan", "LaserScan"),
+        ("tf2_msgs.msg._tf_message", "TFMessage"),
+        ("std_srvs.srv._set_bool", "SetBool"),
+        ("turtlesim_msgs.msg", "Pose"),
+        ("turtlesim_msgs.srv", "Spawn"),
+        ("turtlebot3_msgs.srv", "Sound"),
+    ],
+)
+def test_a_name_that_a_module_offers_too_is_the_same_class(module: str, name: str) -> None:
+    found = getattr(importlib.import_module(module), name)
+    assert isinstance(found, type)
+    assert found.__name__ == name
+    assert not is_absent_name(found)
 
 
 @pytest.mark.sampled(4)

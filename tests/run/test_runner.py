@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kit.msg.flatland_msgs import ChangeRate, DeleteModel, MoveModel, SpawnModel
-from kit.msg.geometry_msgs import Pose2D, Twist, Vector3
+from kit.msg.geometry_msgs import Pose2D, Twist, TwistStamped, Vector3
 from kit.msg.robot_kit_msgs import GetState, Reset, Step
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String
@@ -61,6 +61,21 @@ def test_a_key_reaches_the_wheels_within_the_tick(maze: World) -> None:
     runner.tick()
     after = runner.simulation.pose("serp")
     assert np.hypot(after.x - before.x, after.y - before.y) == pytest.approx(0.005, rel=1e-6)
+
+
+def test_a_command_with_a_stamp_drives_too(maze: World) -> None:
+    """The topic has the second type only where somebody publishes it."""
+    runner = build(maze)
+    directory = runner.graph.directory
+    assert directory.topics["/cmd_vel"].type_names == ["geometry_msgs/msg/Twist"]
+    node = create_graph_node(runner.graph, "driver")
+    publisher = node.create_publisher(TwistStamped, "/cmd_vel", 10)
+    publisher.publish(TwistStamped(twist=forward()))
+    before = runner.simulation.pose("serp")
+    runner.tick()
+    after = runner.simulation.pose("serp")
+    assert np.hypot(after.x - before.x, after.y - before.y) == pytest.approx(0.005, rel=1e-6)
+    assert len(directory.topics["/cmd_vel"].type_names) == 2
 
 
 def test_a_scan_is_heard_in_the_next_tick(maze: World) -> None:

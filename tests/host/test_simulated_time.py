@@ -1,0 +1,141 @@
+"""Time that a program waits for passes, however it waits, and by as many readings of a clock on every machine."""
+
+from __future__ import annotations
+
+from kit.host.node_process import NodeProcess
+from kit.msg.std_msgs import String
+from kit.ros.graph.graph import MAX_READS, Graph
+from kit.ros.node.node import create_graph_node
+from kit.run.lockstep import exchange_until_idle
+from tests.host.conftest import QUICK, Student
+
+TICK_NS = 10_000_000
+
+PROGRAM = """
+import asyncio, datetime, queue, threading, time
+import rclpy
+from rclpy.node import Node
+from rclpy.time import Duration
+from std_msgs.msg import String
+
+reads = 0
+rclpy.init()
+node = Node("waiter")
+says = node.create_publisher(String, "said", 10)
+
+def say(name, began):
+    passed = (node.get_clock().now() - began).nanoseconds / 1e9
+    says.publish(String(data=f"{{name}} {{passed:.2f}} {{reads}}"))
+
+def wait_a_second():
+    global reads
+{wait}
+
+{use}
+"""
+
+USES = {
+    "before the first spin": "began = node.get_clock().now()\nwait_a_second()\nsay('x', began)\nrclpy.spin(node)",
+    "in a callback": """
+def callback():
+    timer.cancel()
+    began = node.get_clock().now()
+    wait_a_second()
+    say('x', began)
+
+timer = node.create_timer(0.1, callback)
+rclpy.spin(node)
+""",
+}
+
+WAITS = {
+    "ROS clock": "now = node.get_clock().now\nt0 = now()\nwhile now() - t0 < Duration(seconds=1):\n    reads += 1",
+    "time": "t0 = time.time()\nwhile time.time() - t0 < 1:\n    reads += 1",
+    "monotonic": "t0 = time.monotonic()\nwhile time.monotonic() - t0 < 1:\n    reads += 1",
+    "perf_counter": "t0 = time.perf_counter_ns()\nwhile time.perf_counter_ns() - t0 < 1e9:\n    reads += 1",
+    "datetime": "end = datetime.datetime.now() + datetime.timedelta(seconds=1)\nwhile datetime.datetime.now() < end:\n    reads += 1",
+    "sleep": "time.sleep(1)",
+    "polls": "t0 = time.time()\nwhile time.time() - t0 < 1:\n    rclpy.ok()\n    reads += 1",
+    "datetime and sleep": "end = datetime.datetime.now() + datetime.timedelta(seconds=1)\nwhile datetime.datetime.now() < end:\n    time.sleep(0.1)",
+    "asyncio": "asyncio.run(asyncio.sleep(1))",
+    "event": "threading.Event().wait(1)",
+    "timer": "done = threading.Event()\nthreading.Timer(1, done.set).start()\nwhile not done.wait(0.05):\n    pass",
+}
+CASES = [(wait, use) for wait in WAITS for use in USES]
+
+
+def said_by(student: Student, wait: str, use: str, seconds: float = 2.5) -> list[str]:
+    """What a program says that waits so."""
+    body = f"for _ in range({MAX_READS // 2 - 2}): node.get_clock().now(); time.time()"
+    file = student(PROGRAM.format(wait=f"    {body}", use=USES["in a callback"]))
+    assert run(file, 0.5) == ["x 0.00 0"]
+
+
+def test_a_stopwatch_never_shows_the_same_time_twice(student: Student) -> None:
+    wait = "    a, b = time.perf_counter(), time.perf_counter()\n    assert 0 < b - a < 1e-4"
+    file = student(PROGRAM.format(wait=wait, use=USES["in a callback"]))
+    assert run(file, 0.5) == ["x 0.00 0"]
+
+
+def test_a_latched_message_arrives_once_at_a_later_subscription_of_the_same_program(student: Student) -> None:
+    file = student(
+        """
+        import rclpy
+        from rclpy.node import Node
+        from rclpy.qos import QoSProfile, DurabilityPolicy
+        from std_msgs.msg import String
+
+        def main():
+            rclpy.init()
+            node = Node("both")
+            says = node.create_publisher(String, "said", 10)
+            latched = QoSProfile(depth=2, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+            publisher = node.create_publisher(String, "latched", latched)
+            for text in ("a", "b", "c"):
+                publisher.publish(String(data=text))
+
+            def subscribe():
+                timer.cancel()
+                for name, quality in (("first", latched), ("second", latched), ("volatile", 10)):
+                    node.create_subscription(
+                        String, "latched", lambda m, name=name: says.publish(String(data=f"{name} {m.data}")), quality
+                    )
+
+            timer = node.create_timer(0.2, subscribe)
+            rclpy.spin(node)
+        """
+    )
+    assert sorted(run(file, 1.0)) == ["first b", "first c", "second b", "second c"]
+
+
+def test_what_a_program_published_before_it_failed_arrives(student: Student) -> None:
+    file = student(
+        """
+        import rclpy
+        from rclpy.node import Node
+        from std_msgs.msg import String
+
+        def main():
+            rclpy.init()
+            node = Node("ending")
+            says = node.create_publisher(String, "said", 10)
+
+            def end():
+                says.publish(String(data="stop"))
+                raise SystemExit(3)
+
+            node.create_timer(0.2, end)
+            rclpy.spin(node)
+        """
+    )
+    graph, heard = Graph(log_sink=lambda record: None), []
+    node = create_graph_node(graph, "listener")
+    node.create_subscription(String, "said", lambda message: heard.append(message.data), 100)
+    with NodeProcess.start(graph, file, limits=QUICK) as process:
+        while process.failure is None and graph.now_ns < 1e9:
+            exchange_until_idle(graph, [process])
+            graph.advance(graph.now_ns + TICK_NS)
+        assert process.failure is not None
+        assert process.failure.status == 3
+        graph.run_due()
+    assert heard == ["stop"]

@@ -1,0 +1,143 @@
+"""What a launch starts later is in step, and its commands go by simulated time: on an idle machine and on a busy one."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from tests.launch.conftest import Launched
+
+WORLD = Path(__file__).parents[1] / "ros" / "outside_programs" / "room" / "world.yaml"
+
+DRIVE = """
+import rclpy
+from rclpy.node import Node
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+
+class Drive(Node):
+    def __init__(self):
+        super().__init__("drive")
+        self.publisher = self.create_publisher(Twist, "/cmd_vel", 10)
+        self.create_subscription(Odometry, "/odom", self.on_odometry, 10)
+        self.create_timer(0.1, self.tick)
+        self.place = None
+        self.ticks = 0
+        print("START", self.get_clock().now().nanoseconds, flush=True)
+
+    def on_odometry(self, message):
+        self.place = message.pose.pose.position.x, message.pose.pose.orientation.z
+
+    def tick(self):
+        command = Twist()
+        command.linear.x, command.angular.z = 0.2, 0.1
+        self.publisher.publish(command)
+        self.ticks += 1
+        if self.ticks % 10 == 1:
+            print("TICK", self.ticks, self.get_clock().now().nanoseconds, self.place, flush=True)
+
+rclpy.init()
+rclpy.spin(Drive())
+"""
+
+LAUNCH = """
+from launch import LaunchDescription
+from launch.actions import *
+from launch.event_handlers import *
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    drive = ExecuteProcess(cmd=["python3", {drive!r}], name="drive")
+    prepare = ExecuteProcess(cmd=["echo", "prepared"], name="prepare")
+    world = Node(package="flatland_server", executable="flatland_server",
+                 parameters=[{{"world_path": {world!r}, "step_size": 0.01, "update_rate": 100.0}}])
+    return LaunchDescription([world, {started}])
+"""
+STARTED = {
+    "timer": "TimerAction(period=2.0, actions=[drive])",
+    "exit": "prepare, RegisterEventHandler(OnProcessExit(target_action=prepare, on_exit=[drive]))",
+    "start": "drive",
+    "event": "prepare, RegisterEventHandler(OnProcessStart(target_action=prepare, on_start=[TimerAction(period=1.5, actions=[drive])]))",
+}
+FIRST_NS = {"timer": 2_000_000_000, "exit": 0, "start": 0, "event": 1_500_000_000}
+
+
+@contextmanager
+def load(processes: int = 4) -> Iterator[None]:
+    """Keeps every processor busy."""
+    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(processes)]
+    try:
+        yield
+    finally:
+        for each in busy:
+            each.kill()
+            each.wait()
+
+
+def write_launch(folder: Path, started: str) -> Path:
+    drive = folder / "drive.py"
+    drive.write_text(DRIVE)
+    file = folder / "late.launch.py"
+    file.write_text(LAUNCH.format(drive=str(drive), world=str(WORLD), started=started))
+    return file
+
+
+def printed(launch: Launched, file: Path) -> list[str]:
+    """What the programs print, without the numbers of processes."""
+    out, _, status = launch(file, "--until", "5")
+    assert status == 0
+    return [line for line in out.splitlines() if re.match(r"\[\w+-\d+\]", line)]
+
+
+@pytest.mark.sampled(4)
+@pytest.mark.parametrize("started", STARTED)
+def test_a_node_that_starts_later_ticks_from_the_instant_at_which_it_was_due(
+    tmp_path: Path, launch: Launched, started: str
+) -> None:
+    lines = [line for line in printed(launch, write_launch(tmp_path, STARTED[started])) if "[drive" in line]
+    assert lines[0].endswith(f"START {FIRST_NS[started]}")
+    assert f"TICK 1 {FIRST_NS[started] + 100_000_000} " in lines[1]
+
+
+@pytest.mark.long
+def test_the_same_launch_is_the_same_run_idle_and_under_load(tmp_path: Path, launch: Launched) -> None:
+    """To the bit: positions are printed with all their digits."""
+    file = write_launch(tmp_path, ", ".join((STARTED["exit"].replace("[drive]", f"[{STARTED['timer']}]"),)))
+    idle = printed(launch, file)
+    with load():
+        assert printed(launch, file) == idle
+    assert sum("TICK" in line for line in idle) == 3
+
+
+COMMANDS = """
+from launch import LaunchDescription
+from launch.actions import *
+from launch.event_handlers import *
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    spawn = ExecuteProcess(cmd=["ros2 service call /spawn turtlesim/srv/Spawn '{{x: 2, y: 2}}'"], shell=True, name="spawn")
+    publish = ExecuteProcess(cmd=["ros2", "topic", "pub", "-r", "2", "/turtle1/cmd_vel", "geometry_msgs/msg/Twist",
+                                  "{{linear: {{x: 0.1}}}}"], name="publish")
+    listed = ExecuteProcess(cmd=["ros2", "topic", "list"], name="listed")
+    return LaunchDescription([
+        Node(package="turtlesim", executable="turtlesim_node"), spawn, publish,
+        RegisterEventHandler(OnProcessExit(target_action=spawn, on_exit=[listed])),
+    ])
+"""
+
+
+@pytest.mark.long
+def test_ros2_commands_of_a_launch_file_go_by_simulated_time(tmp_path: Path, launch: Launched) -> None:
+    file = tmp_path / "commands.launch.py"
+    file.write_text(COMMANDS.format())
+    lines = printed(launch, file)
+    assert any("Spawn_Response(name='turtle2')" in line for line in lines)
+    assert any("/turtle2/pose" in line for line in lines)
+    assert sum("publishing #" in line for line in lines) in (9, 10, 11)
