@@ -66,6 +66,40 @@ CASES = [(wait, use) for wait in WAITS for use in USES]
 
 def said_by(student: Student, wait: str, use: str, seconds: float = 2.5) -> list[str]:
     """What a program says that waits so."""
+    body = "\n".join(f"    {line}" for line in WAITS[wait].splitlines())
+    return run(student(PROGRAM.format(wait=body, use=USES[use])), seconds)
+
+
+def run(file: Path, seconds: float) -> list[str]:
+    """What a program says in so many simulated seconds."""
+    heard: list[str] = []
+    graph = Graph(log_sink=lambda record: None)
+    node = create_graph_node(graph, "listener")
+    node.create_subscription(String, "said", lambda message: heard.append(message.data), 100)
+    with NodeProcess.start(graph, file, limits=QUICK) as process:
+        while graph.now_ns < seconds * 1e9:
+            exchange_until_idle(graph, [process])
+            assert process.failure is None, process.failure
+            graph.advance(graph.now_ns + TICK_NS)
+    return heard
+
+
+@pytest.mark.sampled(6)
+@pytest.mark.parametrize(("wait", "use"), CASES, ids=lambda each: each.replace(" ", "-"))
+def test_a_second_passes(student: Student, wait: str, use: str) -> None:
+    (said,) = said_by(student, wait, use)
+    assert 1.0 <= float(said.split()[1]) <= 1.06, said
+
+
+def test_a_loop_takes_as_many_readings_every_time(student: Student) -> None:
+    """As many as the steps of a second take, not as the machine makes in a second."""
+    once, again = (said_by(student, "ROS clock", "in a callback") for _ in range(2))
+    assert once == again
+    reads = int(once[0].split()[2])
+    assert abs(reads - (MAX_READS + READS_PER_STEP * 1e9 / TICK_NS)) <= 2 * READS_PER_STEP
+
+
+def test_a_few_readings_let_no_time_pass(student: Student) -> None:
     body = f"for _ in range({MAX_READS // 2 - 2}): node.get_clock().now(); time.time()"
     file = student(PROGRAM.format(wait=f"    {body}", use=USES["in a callback"]))
     assert run(file, 0.5) == ["x 0.00 0"]
