@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
+
 from kit.host.node_process import NodeProcess
 from kit.msg.std_msgs import String
-from kit.ros.graph.graph import MAX_READS, Graph
+from kit.ros.graph.graph import MAX_READS, READS_PER_STEP, Graph
 from kit.ros.node.node import create_graph_node
 from kit.run.lockstep import exchange_until_idle
 from tests.host.conftest import QUICK, Student
