@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -16,6 +15,7 @@ from kit.cli.dialogue import Way, run_dialogue
 from kit.cli.full_screen import show_lesson, show_lessons
 from kit.cli.plain import HEIGHT, WIDTH, InputBuffer, PlainSession, run_plain_session
 from kit.controllers import find_controller, prepare_workspace
+from kit.document.blocks import Block, Text, Tone
 from kit.document.layout import lines_of
 from kit.plain_text import counted, escape_controls, quoted, suggestion
 from kit.render.world_text import describe_scene, scene_rows
@@ -33,7 +33,7 @@ from kit.school.lessons.learning_playback import plain_rows
 from kit.school.lessons.lesson_contract import check_contract, lesson_folders
 from kit.school.lessons.lesson_dialogue import Drive, Edit, LessonDialogue, Replay, RunCommand
 from kit.school.lessons.lesson_session import LessonSession
-from kit.school.lessons.reading import TEXT_WIDTH, UnknownLesson, find_lesson, read_lesson
+from kit.school.lessons.reading import UnknownLesson, find_lesson, read_lesson
 from kit.school.lessons.records import (
     GraphScene,
     LearningScene,
@@ -174,24 +174,20 @@ def _foreign_lesson(folder: Path, name: str) -> Lesson:
 
 
 def _print_lessons(journal: ProgressJournal) -> None:
+    blocks: list[Block] = []
     for each in list_lessons(journal.events()):
         if (unit := each.opened_unit) is not None:
-            click.echo(f"\n{unit.letter}  {unit.title}\n{textwrap.fill(unit.opener, TEXT_WIDTH)}\n")
+            blocks += [Text(f"{unit.letter}  {unit.title}", Tone.BOLD), Text(unit.opener, is_tight=True)]
         progress = each.progress
         if progress is None:
-            click.echo(f"{each.name}: cannot be read.\n    {each.problem}")
+            blocks += [Text(f"{each.name}: cannot be read."), Text(each.problem, indent=4, is_tight=True)]
             continue
-        lesson = progress.lesson
-        mark = (
-            "done"
-            if each.is_completed
-            else f"{progress.completed_count}/{len(lesson.steps)}"
-            if each.has_started
-            else ""
-        )
-        click.echo(f"{each.number:<3} {lesson.title:<44} {lesson.minutes:>3} min  {mark}")
-        click.echo(f"    {lesson.summary}")
-    click.echo("\n`kit lesson NUMBER` opens one.")
+        lesson, done = progress.lesson, f"{progress.completed_count}/{len(progress.lesson.steps)}"
+        mark = "  done" if each.is_completed else f"  {done}" if each.has_started else ""
+        tail = f"  {lesson.minutes} min{mark}"
+        blocks.append(Text(lesson.title, Tone.BOLD, lead=f"{each.number:<3}", tail=tail))
+        blocks.append(Text(lesson.summary, indent=4, is_tight=True))
+    click.echo("\n".join(lines_of([*blocks, Text("`kit lesson NUMBER` opens one.")])))
 
 
 def _ways(workspace: Workspace) -> dict[type, Way]:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterable, Sequence
 from typing import Final
 
 from kit.document.rows import TEXT_WIDTH, Row, row, spread
+from kit.plain_text import wrap
 from kit.school.game.levels import GameLevel
 from kit.school.lessons.catalogue import LessonEntry, LessonProgress
 from kit.school.lessons.records import (
@@ -131,17 +131,14 @@ def summary(entry: LessonEntry, rows: int) -> list[Row]:
     """What the chosen lesson is about, and what one can do after it; at most so many rows."""
     lesson = entry.lesson
     if lesson is None:
-        lines = [each for part in entry.problem.splitlines() for each in textwrap.wrap(part, TEXT_WIDTH)]
+        lines = [each for part in entry.problem.splitlines() for each in wrap(part, TEXT_WIDTH)]
         return [row("  ", (each, "bad")) for each in lines[:rows]]
     made = []
     if entry.opened_unit is not None:
-        made += [row("  ", (each, "dim")) for each in textwrap.wrap(entry.opened_unit.opener, TEXT_WIDTH)]
-    made += [row("  ", each) for each in textwrap.wrap(lesson.summary, TEXT_WIDTH)]
+        made += [row("  ", (each, "dim")) for each in wrap(entry.opened_unit.opener, TEXT_WIDTH)]
+    made += [row("  ", each) for each in wrap(lesson.summary, TEXT_WIDTH)]
     for outcome in lesson.outcomes:
-        made += [
-            row("  ", (each, "dim"))
-            for each in textwrap.wrap(f"- {outcome}", TEXT_WIDTH, subsequent_indent="  ")
-        ]
+        made += [row("  ", (each, "dim")) for each in wrap(f"- {outcome}", TEXT_WIDTH, "", "  ")]
     return made[:rows]
 
 
@@ -157,13 +154,13 @@ def details(entry: LessonEntry, levels: Sequence[GameLevel], width: int) -> list
         row((f"{entry.number}  {lesson.title}", "bold")),
         row((f"{lesson.minutes} min, {done}", "dim")),
         row(),
-        *(row((each, "dim")) for each in textwrap.wrap(opener, room)),
-        *(row(each) for each in textwrap.wrap(lesson.summary, room)),
+        *(row((each, "dim")) for each in (wrap(opener, room) if opener else ())),
+        *(row(each) for each in wrap(lesson.summary, room)),
         row(),
         row(("Afterwards you can:", "bold")),
     ]
     for outcome in lesson.outcomes:
-        made += [row(each) for each in textwrap.wrap(f"- {outcome}", room, subsequent_indent="  ")]
+        made += [row(each) for each in wrap(f"- {outcome}", room, "", "  ")]
     made += [row(), row(("Steps", "bold"))]
     for step in lesson.steps:
         is_done = progress.is_step_completed(step)
@@ -179,7 +176,7 @@ def details(entry: LessonEntry, levels: Sequence[GameLevel], width: int) -> list
         )
     if levels:
         titles = ", ".join(level.title for level in levels)
-        made += [row(), *(row((each, "dim")) for each in textwrap.wrap(f"Opens in the game: {titles}", room))]
+        made += [row(), *(row((each, "dim")) for each in wrap(f"Opens in the game: {titles}", room))]
     return made
 
 
