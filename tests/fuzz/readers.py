@@ -6,10 +6,11 @@ import json
 import random
 import shutil
 import struct
+import warnings
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, get_args
 
 import numpy as np
 
@@ -29,6 +30,10 @@ from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.tasks.task_reader import read_task
 from kit.msg.interfaces import find_interface, interface_names
 from kit.msg.message import Message
+from kit.msg.std_msgs import String
+from kit.ros.bags import BagError, BagRecorder, Storage, read_bag, read_messages
+from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 from kit.school.report.as_files import report_to_markdown
 from kit.school.report.class_data import build_class_data, read_roster
 from kit.school.report.class_report import build_report, prepare_report
@@ -178,6 +183,41 @@ class ResultTarget:
             for write in FORMATS.values():
                 write(shown)
         return "read"
+
+
+class BagTarget:
+    """Damaged bags, of somebody else's robot, of both kinds of storage."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder / "bag"
+        self._bags = []
+        for storage in get_args(Storage):
+            made = clear(folder / "made") / storage
+            graph = Graph(log_sink=lambda record: None)
+            publisher = create_graph_node(graph, "talker").create_publisher(String, "/chat", 10)
+            with BagRecorder(graph, made, storage=storage) as recorder:
+                for number in range(20):
+                    publisher.publish(String(data=f"hello {number}"))
+                    graph.run_due()
+                    recorder.exchange()
+            self._bags.append({file.name: file.read_bytes() for file in made.iterdir()})
+
+    def attempt(self, rng: random.Random) -> str:
+        """Reads one bag."""
+        with warnings.catch_warnings(
+            action="ignore"
+        ):  # of the YAML library's, for an anchor that is there twice
+            for name, content in damage_files(rng, rng.choice(self._bags)).items():
+                (self._folder / name).parent.mkdir(exist_ok=True)
+                (self._folder / name).write_bytes(content)
+            try:
+                read_bag(self._folder)
+                count = sum(1 for _ in read_messages(self._folder))
+            except BagError:
+                return "refused"
+            finally:
+                shutil.rmtree(self._folder)
+        return "read" if count else "read, empty"
 
 
 MAX_RANDOM: Final = 200
