@@ -25,6 +25,7 @@ from grader.checks.contract import Check, check
 from grader.evidence.contract import CachingCollector, Evidence, EvidenceCollector, EvidenceOptions
 from grader.evidence.launch import LaunchCase, LaunchRecord, ParameterQueries, copied_package, run_launch
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from kit.plain_files import is_file_there
 from kit.plain_text import quoted
 from kit.world.yaml_section import Section
 
@@ -219,7 +220,7 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     section = files.public.section("launch")
     name = section.name("package", "starter")
     folder = (files.folder / name).resolve()
-    if not folder.is_relative_to(files.folder.resolve()) or not (folder / "package.xml").is_file():
+    if not folder.is_relative_to(files.folder.resolve()) or not is_file_there(folder / "package.xml"):
         section.error(
             f"no package {quoted(name)}: there is no {name}/package.xml beside assignment.yaml", "package"
         )

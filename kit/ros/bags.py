@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, Self
@@ -23,13 +23,14 @@ from rosbags.interfaces import (
     QosReliability,
     QosTime,
 )
-from rosbags.rosbag2 import Reader, ReaderError
+from rosbags.rosbag2 import Reader
 
 from kit.interruption import uninterrupted
 from kit.msg.class_builder import build_recorded_message
 from kit.msg.interfaces import DefinitionError, UnknownInterface, find_message
 from kit.msg.message import Message
 from kit.part_file import BeingWrittenError
+from kit.plain_text import quoted
 from kit.ros.bag_storage import (
     STORAGE_SETTINGS,
     WRITE_ERRORS,
@@ -327,12 +328,9 @@ def read_messages(
         chosen = [connection for connection in reader.connections if connection.id in found]
         if not chosen:  # none would mean all
             return
-        try:
-            for connection, time_ns, data in reader.messages(chosen):
-                serializer, cls = found[connection.id]
-                yield time_ns, connection.topic, serializer.deserialize(bytes(data), cls)
-        except (ReaderError, ValueError) as problem:
-            raise BagError(f"{folder}: a damaged bag: {problem}") from None
+        for connection, time_ns, data in reader.messages(chosen):
+            serializer, cls = found[connection.id]
+            yield time_ns, connection.topic, serializer.deserialize(bytes(data), cls)
 
 
 def _serializer_for(
@@ -360,15 +358,23 @@ def _open_reader(folder: Path) -> Iterator[Reader]:
         if is_being_recorded(folder):
             raise BagError(f"{folder}: a program records this bag now. It can be read when that has ended.")
         raise BagError(f"{folder}: not a bag: a bag is a folder with a metadata.yaml in it.")
+    for each in folder.iterdir():  # a named pipe would hold the reader
+        if not each.is_file():
+            raise BagError(f"{folder}: {quoted(each.name)} in it is not a file.")
     try:
         reader = Reader(folder)
         reader.open()
-    except (OSError, ReaderError) as problem:
+    except Exception as problem:  # noqa: BLE001 - whatever a damaged file makes the library raise
         raise BagError(f"{folder}: not a bag, or a damaged one: {reason(problem)}") from None
     try:
         yield reader
+    except BagError:
+        raise
+    except Exception as problem:  # noqa: BLE001 - likewise; what a caller does with a message is not in here
+        raise BagError(f"{folder}: a damaged bag: {reason(problem)}") from None
     finally:
-        reader.close()
+        with suppress(Exception):  # it was damaged, and that is told
+            reader.close()
 
 
 def _topic(connection: Connection) -> BagTopic:

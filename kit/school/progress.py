@@ -66,6 +66,10 @@ class EventKind(StrEnum):
     DEFENCE = "defence"
 
 
+YEARS: Final = range(2000, 2100)
+"""Years in which something can have been recorded."""
+
+
 @dataclass(frozen=True, slots=True)
 class ProgressEvent:
     """One recorded event."""
@@ -360,6 +364,10 @@ def _to_utc_text(at: str) -> str:
     time = datetime.fromisoformat(at)
     if time.tzinfo is None:
         raise ValueError("a time without its zone")
+    if (
+        time.year not in YEARS
+    ):  # what is computed from it, such as when a question is due again, must be a time too
+        raise ValueError("a time of another century")
     return time.astimezone(UTC).isoformat(timespec="microseconds")
 
 

@@ -6,13 +6,13 @@ import json
 import random
 import shutil
 import struct
+import warnings
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, get_args
 
 import numpy as np
-from kit.school.report.as_files import report_to_markdown
 
 from grader.cohort.gradebook import as_csv, as_json, gradebook_rows
 from grader.cohort.queue import Queue, prepare_queue, record_incident
@@ -21,6 +21,7 @@ from grader.kinds.policy import load_submitted_policy
 from grader.reading import read_assignment
 from grader.reports import FORMATS
 from kit.bridge.channels import WireCodec
+from kit.document.files import document_to_markdown
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox.confinement import Level
 from kit.learning.environment.batch import BatchEnv
@@ -30,6 +31,10 @@ from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.tasks.task_reader import read_task
 from kit.msg.interfaces import find_interface, interface_names
 from kit.msg.message import Message
+from kit.msg.std_msgs import String
+from kit.ros.bags import BagError, BagRecorder, Storage, read_bag, read_messages
+from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 from kit.school.report.class_data import build_class_data, read_roster
 from kit.school.report.class_report import build_report, prepare_report
 from kit.school.survey import read_form
@@ -88,7 +93,7 @@ class ExportTarget:
         roster = read_roster([self._folder])
         data = build_class_data(roster, self._form, {})
         if rng.random() < 0.03:
-            assert report_to_markdown(build_report(prepare_report(data), roster.file_count)).strip()
+            assert document_to_markdown(build_report(prepare_report(data), roster.file_count)).strip()
         return f"{len(roster.students)} of 3"
 
     def _damaged(self, rng: random.Random, text: str) -> bytes:
@@ -178,6 +183,41 @@ class ResultTarget:
             for write in FORMATS.values():
                 write(shown)
         return "read"
+
+
+class BagTarget:
+    """Damaged bags, of somebody else's robot, of both kinds of storage."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder / "bag"
+        self._bags = []
+        for storage in get_args(Storage):
+            made = clear(folder / "made") / storage
+            graph = Graph(log_sink=lambda record: None)
+            publisher = create_graph_node(graph, "talker").create_publisher(String, "/chat", 10)
+            with BagRecorder(graph, made, storage=storage) as recorder:
+                for number in range(20):
+                    publisher.publish(String(data=f"hello {number}"))
+                    graph.run_due()
+                    recorder.exchange()
+            self._bags.append({file.name: file.read_bytes() for file in made.iterdir()})
+
+    def attempt(self, rng: random.Random) -> str:
+        """Reads one bag."""
+        with warnings.catch_warnings(
+            action="ignore"
+        ):  # of the YAML library's, for an anchor that is there twice
+            for name, content in damage_files(rng, rng.choice(self._bags)).items():
+                (self._folder / name).parent.mkdir(exist_ok=True)
+                (self._folder / name).write_bytes(content)
+            try:
+                read_bag(self._folder)
+                count = sum(1 for _ in read_messages(self._folder))
+            except BagError:
+                return "refused"
+            finally:
+                shutil.rmtree(self._folder)
+        return "read" if count else "read, empty"
 
 
 MAX_RANDOM: Final = 200

@@ -34,6 +34,7 @@ from tests.fuzz.files import ArchiveTarget, RecordingTarget, RunTarget, Submitte
 from tests.fuzz.frames import FrameTarget
 from tests.fuzz.readers import (
     AssignmentTarget,
+    BagTarget,
     ExportTarget,
     MessageTarget,
     PolicyTarget,
@@ -78,6 +79,7 @@ TARGETS: Final[Mapping[str, Callable[[Path], FuzzTarget]]] = MappingProxyType(
         "assignments": AssignmentTarget,
         "results": ResultTarget,
         "messages": MessageTarget,
+        "bags": BagTarget,
     }
 )
 """By name; each is made with a folder for its files."""

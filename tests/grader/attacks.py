@@ -207,6 +207,28 @@ WORKED_ONCE: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "a compressed file that asks for 4 GB of memory": (
             "grader/cohort/test_unreadable.py::test_the_process_that_prepares_a_class_survives_every_bomb",
         ),
+        "a lesson of somebody else's that writes its starter anywhere": (
+            "school/lessons/test_foreign_lessons.py::test_an_exercise_writes_nothing_outside_its_folder",
+        ),
+        "a policy whose task names any file of the machine, or a pipe": (
+            "learning/tasks/test_task_reader.py::test_a_text_from_elsewhere_names_no_file_of_this_machine",
+            "learning/tasks/test_task_reader.py::test_whether_a_file_has_changed_is_not_looked_for_in_a_pipe",
+        ),
+        "a bag with a summary of other types, or a pipe in it": (
+            "ros/test_bags.py::test_a_pipe_in_a_bag_holds_no_reader",
+            "ros/test_bags.py::test_a_bag_whose_summary_has_other_types_is_refused",
+        ),
+        "an export from the year 9999, after which the quiz does not open": (
+            "school/test_progress.py::test_an_entry_from_another_century_is_refused",
+        ),
+        "a worker's result that is another submission's": (
+            "grader/cohort/test_queue.py::test_the_result_of_another_submission_gives_it_no_grade",
+            "grader/cohort/test_queue.py::test_no_verdict_is_lost_by_one_that_comes_late",
+        ),
+        "a robot whose names are escapes and whose requests end in tracebacks": (
+            "bridge/test_hostile_robot.py::test_nonsense_from_a_robot_leaves_no_traceback_and_sense_passes",
+            "bridge/test_hostile_robot.py::test_what_a_robot_calls_itself_is_no_command_of_a_terminal_and_fills_no_screen",
+        ),
     }
 )
 """What once worked against the grader, beside the rows of this catalogue, and the tests that hold it now."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, get_args
@@ -273,3 +275,35 @@ def test_damaged_bags_are_refused(damage: str, tmp_path: Path) -> None:
         folder = tmp_path / "other"
     with pytest.raises(BagError, match=r"bag|other"):
         list(read_messages(folder))
+
+
+@pytest.mark.parametrize("name", ["metadata.yaml", "bag.mcap", "beside"])
+def test_a_pipe_in_a_bag_holds_no_reader(name: str, tmp_path: Path) -> None:
+    folder = tmp_path / "bag"
+    record(folder)
+    (folder / name).unlink(missing_ok=True)
+    os.mkfifo(folder / name)
+    with pytest.raises(BagError):
+        read_bag(folder)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("nanoseconds: ", "nanoseconds: [1] # "),
+        ("type: std_msgs/msg/", "type: 1.5 # "),
+        ("message_count: ", "message_count: many # "),
+        ("offered_qos_profiles: ", "offered_qos_profiles: {} # "),
+    ],
+)
+def test_a_bag_whose_summary_has_other_types_is_refused(old: str, new: str, tmp_path: Path) -> None:
+    folder = tmp_path / "bag"
+    record(folder)
+    metadata = folder / "metadata.yaml"
+    whole = metadata.read_text()
+    if old not in whole:
+        pytest.skip("this storage keeps it elsewhere")
+    metadata.write_text(whole.replace(old, new))
+    with suppress(BagError):
+        assert read_bag(folder)
+        assert list(read_messages(folder)) is not None

@@ -19,9 +19,10 @@ from kit.learning.tasks.learning_task import StartVariation as StartVariation
 from kit.learning.tasks.learning_task import UnknownTask as UnknownTask
 from kit.learning.tasks.own_files import workspace_task_file
 from kit.learning.tasks.task_reader import TASK_FILE, read_task, task_name
-from kit.plain_files import is_file_there
+from kit.plain_files import is_file_there, read_plain_file
 from kit.plain_text import quoted, suggestion
 from kit.workspace import expand_home
+from kit.world.documents import MAX_YAML_BYTES
 
 
 def tasks_folder() -> Path:
@@ -135,7 +136,7 @@ class TaskSpec:
         if self.text is None:
             return False
         try:
-            return Path(self.task).read_text(encoding="utf-8-sig") != self.text
+            return read_plain_file(self.task, MAX_YAML_BYTES).decode("utf-8-sig") != self.text
         except (OSError, ValueError):  # gone, or no text any more: the task is kept here
             return False
 

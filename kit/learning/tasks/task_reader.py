@@ -92,7 +92,8 @@ def read_task(file: Path, text: str | None = None) -> ReadTask:
         raise WorldError([Problem(SourceLocation(file), f"cannot be read: {error}")]) from None
     documents = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, ProblemCollector())
     with documents.open(file, content) as section:
-        task, cases = _TaskReader(section, file, content, documents.allowed_root).read()
+        reader = _TaskReader(section, file, content, documents.allowed_root, is_kept=text is not None)
+        task, cases = reader.read()
     return ReadTask(task, content, cases, documents.problems)
 
 
@@ -101,14 +102,26 @@ def task_name(file: Path) -> str:
     return file.absolute().parent.name if file.name == TASK_FILE else file.stem
 
 
+def _world_named_in(file: Path) -> str | None:
+    """Returns the world that a task's file names now; None if there is no such file, or it names none."""
+    try:
+        documents = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, ProblemCollector())
+        section = documents.section(file, SourceLocation(file))
+        return section.name("world") if section is not None and section.has("world") else None
+    except (UnusableFile, WorldError):
+        return None
+
+
 class _TaskReader:
     """Reads one file's mapping."""
 
-    def __init__(self, section: Section, file: Path, text: str, root: AllowedRoot) -> None:
+    def __init__(self, section: Section, file: Path, text: str, root: AllowedRoot, *, is_kept: bool) -> None:
+        """``is_kept``: the text comes from elsewhere, such as a policy of somebody else's, and may name any file."""
         self._section = section
         self._file = file
         self._text = text
         self._root = root
+        self._is_kept = is_kept
 
     def read(self) -> tuple[LearningTask, tuple[PlacedCase, ...]]:
         """The task and its cases. What is wrong is noted, and something else stands in its place."""
@@ -177,6 +190,13 @@ class _TaskReader:
 
     def _own_world(self) -> tuple[MapCard, ...]:
         section, name = self._section, self._section.name("world")
+        if self._is_kept and name != _world_named_in(self._file):
+            section.error(
+                f"its world is not here: there is no task {quoted(str(self._file), 200)} that names {quoted(name)}. "
+                "Choose another task, such as one of the kit's",
+                "world",
+            )
+            return ()
         try:
             file = self._root.resolve(name, self._file.parent)
         except UnusableFile as error:

@@ -147,3 +147,14 @@ def test_names_of_folders_command_no_terminal(tmp_path: Path) -> None:
         shown = CliRunner().invoke(main, ["lesson", *words]).output
         assert "owned" in shown or "[2J" in shown
         assert all(sign.isprintable() or sign == "\n" for sign in shown)
+
+
+@pytest.mark.parametrize("file", ["../../../../out.yaml", "/tmp/out.yaml", "a/../../out.yaml"])
+def test_an_exercise_writes_nothing_outside_its_folder(file: str, tmp_path: Path) -> None:
+    """The starter would be copied there, wherever it is."""
+    folder = write_lessons(tmp_path / "theirs") / "01-colours"
+    whole = read_lesson(folder, is_foreign=True)
+    sheet = folder / "lesson.yaml"
+    sheet.write_text(sheet.read_text().replace(f"file: {whole.exercises[0].file}", f"file: {file}"))
+    with pytest.raises(WorldError, match="leads out of the exercise's folder"):
+        read_lesson(folder, is_foreign=True)
