@@ -93,7 +93,8 @@ class PackageProgram:
 
     folder: Path
     """The package's folder: messages name files relative to it."""
-    cwd: Path
+    cwd: Path | None
+    """Its working folder; None: one of its own."""
     environment: Mapping[str, str]
     entry: str | None = None
     """``package.module:function``; None: the file itself is run."""
@@ -101,12 +102,15 @@ class PackageProgram:
     """Folders from which modules are imported, before the installed libraries."""
     interfaces: Mapping[str, Path] = field(default_factory=dict)
     """The folders of the packages whose messages, services and actions it may use, by name."""
+    is_controller: bool = False
+    """Whether the file is run as a controller: one that only has a ``main`` or a class of nodes is run by that."""
 
     def to_start_fields(self) -> dict[str, Json]:
         """Returns the fields of the ``start`` frame."""
         return {
             "folder": str(self.folder),
-            "cwd": str(self.cwd),
+            "is_controller": self.is_controller,
+            **({} if self.cwd is None else {"cwd": str(self.cwd)}),
             "environment": dict(self.environment),
             "entry": self.entry,
             "imports": [str(path) for path in self.imports],

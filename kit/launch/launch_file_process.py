@@ -14,6 +14,7 @@ from kit.host.process import PackageProgram, StudentProcess
 from kit.host.protocol import Ended, Frame, Reply
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, MIB
 from kit.host.wire import Json, ProtocolError
+from kit.launch.command_folder import with_commands
 from kit.launch.program_lookup import INTERACTIVE_BOUNDS, LaunchBounds
 from kit.launch.requests import DeclaredArgument, Request, parse_request
 from kit.ros.packages import LAUNCH_SUFFIXES, SEARCH_VARIABLE, PackageError, find_packages, read_package
@@ -76,7 +77,7 @@ def _start_child(
     only_arguments: bool,
 ) -> StudentProcess:
     # A bounded launch file sees neither the environment nor the user's working directory.
-    environment = dict(os.environ) if bounds.is_interactive else {}
+    environment = with_commands(os.environ) if bounds.is_interactive else {}
     package_program = PackageProgram(
         folder,
         Path.cwd() if bounds.is_interactive else folder,

@@ -12,7 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final, Literal, NamedTuple, Protocol
 
-from kit.host.failure import Failure, StudentCodeError
+from kit.host.failure import NEARBY, Failure, StudentCodeError
 from kit.host.node_process import NodeProcess
 from kit.host.wire import printable
 from kit.ros.node.node import Node
@@ -57,7 +57,7 @@ def suggest_fix(reason: str) -> str | None:
     if name is not None:
         return f"The kit's {name[2]} has no {name[1]}: the kit does not have this part of ROS 2."
     module = _MISSING_MODULE.search(reason)
-    if module is None:
+    if module is None or NEARBY in reason:
         return None
     top = module[1].partition(".")[0]
     if (

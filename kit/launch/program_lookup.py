@@ -19,6 +19,7 @@ from kit.host.python_command import python_command
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import GIB, INTERACTIVE_LIMITS, MIB, Limits
 from kit.inspection.sockets import WORLD_VARIABLE
+from kit.launch.command_folder import with_commands
 from kit.launch.processes import (
     BuiltinProcess,
     CommandProcess,
@@ -39,7 +40,16 @@ from kit.ros.launch.unavailable import describe_unavailable
 from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile
 from kit.ros.node.time import Time
-from kit.ros.packages import SEARCH_VARIABLE, PackageError, find_packages, interface_packages, read_package
+from kit.ros.packages import (
+    SEARCH_VARIABLE,
+    PackageError,
+    find_packages,
+    import_folders,
+    interface_packages,
+    missing_package,
+    read_package,
+    workspace_folders,
+)
 from kit.ros.rotations import quaternion_from_euler
 
 if TYPE_CHECKING:
@@ -259,11 +269,8 @@ def _start_program(
                 f"{request.where}package '{package_name}' not found (for its composable node '{executable_name}')"
             )
         own = ", ".join(sorted({f"{package}/{name}" for package, name in BUILTIN_PROGRAMS}))
-        there = ", ".join(sorted(folders)) or "none"
-        raise ProcessStartError(
-            f"{request.where}package '{package_name}' not found (for its executable '{executable_name}'). "
-            f"Packages found: {there}. The kit itself has {own}."
-        )
+        missing = missing_package(package_name, context.search, f" (for its executable '{executable_name}')")
+        raise ProcessStartError(f"{request.where}{missing} The kit itself has {own}.")
     package = read_package(folders[package_name])
     if not package.executables and package.source is None:
         raise ProgramUnavailable(
@@ -272,7 +279,6 @@ def _start_program(
         )
     find = package.component if request.is_component else package.executable
     executable = find(executable_name)
-    sources = [read_package(folder).source for folder in folders.values()]
     assert package.source is not None
     package_program = PackageProgram(
         package.folder,
@@ -280,7 +286,7 @@ def _start_program(
         request.cwd or (Path.cwd() if context.bounds.is_interactive else package.folder),
         _environment(request, context),
         executable.entry,
-        tuple(dict.fromkeys([package.source, *(source for source in sources if source is not None)])),
+        tuple(dict.fromkeys([package.source, *import_folders(folders.values())])),
         _register_interfaces(folders),
     )
     return _start_node_program(package.file_of(executable), request.command, package_program, context)
@@ -323,7 +329,8 @@ def _environment(request: StartRequest, context: StartContext) -> dict[str, str]
     }
     if context.workspace is not None:
         kit_variables["KIT_WORKSPACE"] = str(context.workspace)
-    return {**request.environment, **kit_variables}
+    environment = {**request.environment, **kit_variables}
+    return with_commands(environment) if context.bounds.is_interactive else environment
 
 
 # Other commands
@@ -340,9 +347,16 @@ def _start_command(request: StartRequest, context: StartContext) -> Process:
     name = Path(command[0]).name if command else ""
     if name.startswith("python") and len(command) > 1 and command[1].endswith(".py") and not request.shell:
         file = (cwd / command[1]).absolute()
-        interfaces = _register_interfaces(find_packages(context.search))
+        workspace = workspace_folders(file)
+        if workspace:
+            context = replace(context, search=tuple(dict.fromkeys([*workspace, *context.search])))
+        folders = find_packages(context.search)
         package_program = PackageProgram(
-            file.parent, cwd, _environment(request, context), interfaces=interfaces
+            file.parent,
+            cwd,
+            _environment(request, context),
+            imports=import_folders(folders.values()),
+            interfaces=_register_interfaces(folders),
         )
         return _start_node_program(file, command[2:], package_program, context)
     if not request.shell:

@@ -8,14 +8,20 @@ from __future__ import annotations
 
 import ast
 import configparser
+import hashlib
 import os
 import re
+import tempfile
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 from xml.etree import ElementTree
+
+MAX_NESTING: Final = 8
+"""How many folders above a program's file its package's may be."""
 
 MAX_DEPTH: Final = 3
 """Depth to which search folders are searched for packages, as in a workspace: ``src/group/package``."""
@@ -147,8 +153,7 @@ def read_package(folder: Path) -> Package:
     except OSError as problem:
         raise PackageError(f"{file}: {problem.strerror}") from None
     except ElementTree.ParseError as problem:
-        line, column = problem.position
-        raise PackageError(f"{file}:{line}:{column + 1}: broken XML: {problem.msg}") from None
+        raise _broken_xml(file, problem) from None
     name = (root.findtext("name") or "").strip()
     if not name:
         raise PackageError(f"{file}: the package has no <name>")
@@ -181,6 +186,56 @@ def find_packages(folders: Iterable[Path]) -> dict[str, Path]:
     return found
 
 
+def workspace_folders(file: Path) -> tuple[Path, ...]:
+    """The folders in which the packages lie that a program's file sees when its workspace is sourced: its own package first.
+
+    None for a file that is in no package: then it has no workspace.
+    """
+    package = next((each for each in file.parents[:MAX_NESTING] if (each / "package.xml").is_file()), None)
+    if package is None:
+        return ()
+    source = next((each for each in package.parents[:MAX_DEPTH] if each.name == "src"), package.parent)
+    return (package, source)
+
+
+def import_folders(packages: Iterable[Path]) -> tuple[Path, ...]:
+    """The folders from which the Python modules of some packages are imported; of one that cannot be read, its own."""
+    found: dict[Path, None] = {}
+    for folder in packages:
+        try:
+            package = read_package(folder)
+        except PackageError:
+            found[folder] = None
+            continue
+        if package.source is not None or (folder / package.name / "__init__.py").is_file():
+            found[package.source or folder] = None
+    return tuple(found)
+
+
+def broken_packages(folders: Iterable[Path]) -> Iterator[str]:
+    """Why each package in and below some folders that has no readable ``package.xml`` cannot be found: its file and line."""
+    for folder in dict.fromkeys(each for start in folders for each in _package_folders(start, MAX_DEPTH)):
+        try:
+            ElementTree.fromstring((folder / "package.xml").read_bytes())
+        except ElementTree.ParseError as problem:
+            yield str(_broken_xml(folder / "package.xml", problem))
+        except OSError:
+            continue
+
+
+def _broken_xml(file: Path, problem: ElementTree.ParseError) -> PackageError:
+    line, column = problem.position
+    # expat's own message ends with the place in a form of its own.
+    return PackageError(f"{file}:{line}:{column + 1}: broken XML: {problem.msg.partition(': line')[0]}")
+
+
+def missing_package(name: str, folders: Sequence[Path], for_what: str = "") -> PackageError:
+    """The error for a package that cannot be found: what there is, and which packages cannot be read."""
+    there = ", ".join(sorted(find_packages(folders))) or "none"
+    broken = "".join(f" It may be this one: {reason}." for reason in broken_packages(folders))
+    return PackageError(f"package '{name}' not found{for_what}; available: {there}.{broken}")
+
+
 def interface_packages(packages: Mapping[str, Path]) -> dict[str, Path]:
     """Those of some packages, by name, that define messages, services or actions of their own."""
     return {
@@ -196,12 +251,15 @@ def search_folders() -> list[Path]:
 
 
 def share_folder(name: str) -> Path:
-    """The share folder of a package: its own folder. Raises PackageError."""
-    found = find_packages(search_folders())
-    if name in found:
-        return found[name]
-    there = ", ".join(sorted(found)) or "none"
-    raise PackageError(f"package '{name}' not found; available: {there}")
+    """The share folder of a package: its own folder, or one that is made of it where ``setup.py`` installs files elsewhere.
+
+    Raises PackageError.
+    """
+    folders = search_folders()
+    found = find_packages(folders)
+    if name not in found:
+        raise missing_package(name, folders)
+    return installed_share(name, found[name])
 
 
 def _package_folders(folder: Path, deep: int) -> Iterator[Path]:
@@ -323,9 +381,100 @@ def _setup_arguments(file: Path) -> dict[str, Any]:
         for call in ast.walk(statement):
             if isinstance(call, ast.Call) and _called_name(call) == "setup":
                 for keyword in call.keywords:
-                    if keyword.arg in ("entry_points", "package_dir"):
+                    if keyword.arg == "data_files":
+                        arguments[keyword.arg] = _data_files(keyword.value, names, file.parent)
+                    elif keyword.arg in ("entry_points", "package_dir"):
                         arguments[keyword.arg] = _constant(keyword.value, names, file)
     return arguments
+
+
+def _data_files(node: ast.expr, names: Mapping[str, Any], folder: Path) -> list[tuple[str, list[str]]]:
+    """The entries of ``data_files`` that can be evaluated without running the file: where files go, and which.
+
+    ``glob`` and ``os.path.join`` are understood.
+    """
+    found: list[tuple[str, list[str]]] = []
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        return _data_files(node.left, names, folder) + _data_files(node.right, names, folder)
+    if isinstance(node, ast.Name) and isinstance(names.get(node.id), list):
+        entries: list[Any] = names[node.id]
+        return [(each[0], each[1]) for each in entries if isinstance(each, list) and len(each) == 2]
+    for entry in node.elts if isinstance(node, (ast.List, ast.Tuple)) else ():
+        if isinstance(entry, ast.Tuple) and len(entry.elts) == 2:
+            try:
+                target = _value(entry.elts[0], names)
+                files = _file_list(entry.elts[1], names, folder)
+            except (_NotConstant, TypeError):
+                continue
+            if isinstance(target, str):
+                found.append((target, [file for file in files if isinstance(file, str)]))
+    return found
+
+
+def _file_list(node: ast.expr, names: Mapping[str, Any], folder: Path) -> list[Any]:
+    """A list of files, with what ``glob`` finds in a package's folder."""
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        return _file_list(node.left, names, folder) + _file_list(node.right, names, folder)
+    if isinstance(node, ast.Call) and _called_name(node) == "glob" and node.args:
+        pattern = str(_value(node.args[0], names))
+        return sorted(str(file.relative_to(folder)) for file in folder.glob(pattern))
+    return list(_value(node, names))
+
+
+def installed_share(name: str, folder: Path) -> Path:
+    """The share folder of a package: its own, or a copy made of links where ``setup.py`` installs files at other places.
+
+    The copy holds all that the package's folder holds too, so that nothing is missing that lies where it is expected.
+    """
+    setup = folder / "setup.py"
+    try:
+        entries = _setup_arguments(setup).get("data_files", []) if setup.is_file() else []
+    except PackageError:
+        return folder
+    moved: dict[str, Path] = {}
+    prefix = f"share/{name}"
+    for target, files in entries:
+        inside = os.path.normpath(target)
+        if inside != prefix and not inside.startswith(f"{prefix}/"):
+            continue
+        for file in files:
+            source = folder / file
+            place = str(Path(inside[len(prefix) + 1 :], source.name))
+            if source.is_file() and not (folder / place).exists():
+                moved[place] = source
+    if not moved:
+        return folder
+    mark = hashlib.sha256(repr((str(folder), sorted(moved))).encode()).hexdigest()[:16]
+    share = Path(tempfile.gettempdir()) / f"kit-share-{os.getuid()}" / mark / name
+    if not share.is_dir():
+        share.parent.mkdir(0o700, parents=True, exist_ok=True)
+        made = Path(tempfile.mkdtemp(dir=share.parent))
+        _link_tree(folder, made, moved)
+        with suppress(OSError):  # another process has been quicker
+            made.rename(share)
+    return share
+
+
+def _link_tree(folder: Path, target: Path, moved: Mapping[str, Path]) -> None:
+    """Fills a folder with links to what another one holds, and to some files by their places in it."""
+    folders = {place.partition("/")[0] for place in moved if "/" in place}
+    for entry in folder.iterdir():
+        if entry.name in folders and entry.is_dir():
+            inner = target / entry.name
+            inner.mkdir()
+            rest = {
+                place.partition("/")[2]: source
+                for place, source in moved.items()
+                if place.startswith(f"{entry.name}/")
+            }
+            _link_tree(entry, inner, rest)
+        else:
+            (target / entry.name).symlink_to(entry)
+    for place, source in moved.items():
+        link = target / place
+        if not os.path.lexists(link):
+            link.parent.mkdir(parents=True, exist_ok=True)
+            link.symlink_to(source)
 
 
 def _called_name(call: ast.Call) -> str:
@@ -367,6 +516,8 @@ def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
         left, right = _value(node.left, names), _value(node.right, names)
         if type(left) is type(right) and isinstance(left, (str, list)):
             return left + right
+    if isinstance(node, ast.Call) and _called_name(node) == "join" and node.args and not node.keywords:
+        return str(Path(*(str(_value(each, names)) for each in node.args)))
     if isinstance(node, ast.JoinedStr):
         return "".join(_format_part(part, names) for part in node.values)
     raise _NotConstant(node)

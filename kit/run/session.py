@@ -7,6 +7,7 @@ Switches controllers while a world runs: the next one starts beside the active o
 
 from __future__ import annotations
 
+import os
 import re
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
@@ -19,15 +20,24 @@ from kit.controllers import ControllerFile
 from kit.host.failure import Failure, StudentCodeError
 from kit.host.file_watcher import FileWatcher
 from kit.host.node_process import NodeProcess
+from kit.host.process import PackageProgram
 from kit.host.program_terminal import ProgramStreams
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.msg.geometry_msgs import Twist
+from kit.msg.interfaces import register_packages
 from kit.msg.std_msgs import Float32, String
 from kit.render.scene import PenStroke, SceneBody
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LoggingSeverity, LogRecord
 from kit.ros.node.node import create_graph_node
+from kit.ros.packages import (
+    SEARCH_VARIABLE,
+    find_packages,
+    import_folders,
+    interface_packages,
+    workspace_folders,
+)
 from kit.run.episode import controller_arguments
 from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Playback, Recording
@@ -183,6 +193,7 @@ class ControllerSwitcher:
                 seed=self._seed,
                 limits=self._limits,
                 level=self._level,
+                package=_controller_package(controller.file) if self._level is INTERACTIVE_LEVEL else None,
                 streams=self._streams,
                 replaces=self._active,
             )
@@ -228,6 +239,25 @@ class ControllerSwitcher:
             self._on_print(line.text)
         if printed.omission:
             self._on_print(printed.omission)
+
+
+def _controller_package(file: Path) -> PackageProgram | None:
+    """What a controller's file sees of the ROS 2 workspace in which it lies; None if it lies in none."""
+    search = workspace_folders(file.absolute())
+    if not search:
+        return None
+    packages = find_packages(search)
+    interfaces = interface_packages(packages)
+    register_packages({name: str(folder) for name, folder in interfaces.items()})
+    environment = {SEARCH_VARIABLE: os.pathsep.join(map(str, search))}
+    return PackageProgram(
+        file.absolute().parent,
+        None,
+        environment,
+        imports=import_folders(packages.values()),
+        interfaces=interfaces,
+        is_controller=True,
+    )
 
 
 MAX_MESSAGES: Final = 200

@@ -15,6 +15,7 @@ from kit.host.child.command_loop import CommandSession
 from kit.host.child.program_input import mark_reading
 from kit.host.child.simulated_time import use_simulated_time
 from kit.host.child.student_module import StudentProgram, exit_status
+from kit.host.child.subprocesses import answer_ticks_meanwhile
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.graph_bridge import ChildBridge
 from kit.host.waiter import AllThreadsWaiter
@@ -30,7 +31,9 @@ SWITCH_S: Final = 0.0005
 
 def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]) -> None:
     """Runs the program from its start to its end: its ``main()``, or its one class of nodes."""
-    as_package = "folder" in start  # run as ``ros2 run`` would: what it prints may be all that it does
+    as_package = (
+        "folder" in start and not start["is_controller"]
+    )  # run as ``ros2 run`` would: what it prints may be all that it does
     install_import_names(start.get("interfaces", {}))
     # Last, so that what is really installed comes first.
     sys.path.append(SHIMS_FOLDER)
@@ -38,10 +41,12 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     bridge = ChildBridge(session, start["now"], uninterrupted=session.interrupts.deferred)
     set_default_graph_finder(lambda: bridge.graph)
     use_simulated_time(bridge.graph, start["libraries"])
+    waiter = bridge.graph.waiter
+    assert isinstance(waiter, AllThreadsWaiter)  # the bridge's default
+    if "folder" in start:  # the user's own, not a submission
+        answer_ticks_meanwhile(partial(waiter.waiting_for_user, bridge.graph))
     if start["has_input"]:
         session.interrupts.install()
-        waiter = bridge.graph.waiter
-        assert isinstance(waiter, AllThreadsWaiter)  # the bridge's default
         mark_reading(partial(waiter.waiting_for_user, bridge.graph))
     bridge.graph.directory.replaced_names = frozenset(start.get("replaced", ()))
     if start["events"] is None:

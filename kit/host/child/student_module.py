@@ -11,13 +11,15 @@ from contextlib import suppress
 from itertools import islice
 from types import ModuleType, TracebackType
 
-from kit.host.failure import Failure, FailureKind, StudentCodeError
+from kit.host.failure import NEARBY, Failure, FailureKind, StudentCodeError
 from kit.host.sandbox import seccomp
 from kit.host.wire import MAX_TEXT
 
 STDERR = 2
 MAX_MESSAGE = 600
 """Characters of an exception's own text."""
+MAX_LEVELS = 6
+"""How many folders above a program's file are searched for what it could not import."""
 ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 
 
@@ -36,9 +38,21 @@ class StudentProgram:
         self._check_encoding()
         module = ModuleType(name)
         module.__file__ = self.file
+        if name == "__main__":
+            module.__package__ = self._package() or None
         sys.modules[name] = module
         exec(compile(self.source, self.file, "exec", dont_inherit=True), module.__dict__)
         return module
+
+    def _package(self) -> str:
+        """Returns the name of the Python package in which the file lies, so that it may import its neighbours with a dot."""
+        folder, names = os.path.dirname(self.file), []
+        while os.path.isfile(os.path.join(folder, "__init__.py")):
+            folder, name = os.path.split(folder)
+            names.append(name)
+        return (
+            ".".join(reversed(names)) if os.path.realpath(folder) in map(os.path.realpath, sys.path) else ""
+        )
 
     def _check_encoding(self) -> None:
         """Raises SyntaxError with its line for what ``python FILE`` refuses and ``compile`` of bytes accepts."""
@@ -134,7 +148,7 @@ def explain(problem: BaseException, program: StudentProgram) -> Failure:
     message = f"{type(problem).__name__}: {text}" if text else type(problem).__name__
     if frames and frames[-1][2] != "<module>":
         message += f" (in {frames[-1][2]})"
-    return _failure(kind, message + _way_out(problem), frames)
+    return _failure(kind, message + _way_out(problem, program), frames)
 
 
 def exit_status(problem: SystemExit) -> int:
@@ -155,7 +169,7 @@ def _exit_failure(problem: SystemExit, frames: list[tuple[str, int, str]]) -> Fa
     return _failure(FailureKind.EXIT, text, frames, status)
 
 
-def _way_out(problem: BaseException) -> str:
+def _way_out(problem: BaseException, program: StudentProgram) -> str:
     """Says what a name that does not exist was probably meant to be, as Python's own traceback does."""
     if (
         isinstance(problem, OSError)
@@ -171,6 +185,12 @@ def _way_out(problem: BaseException) -> str:
             return ""
         from pkgutil import iter_modules  # here: only a mistake needs it
 
+        nearby = _module_nearby(name.partition(".")[0], program.file)
+        if nearby is not None:
+            return (
+                f". {nearby} {NEARBY}, but Python does not find it from here: run the program as a part of its "
+                "package, `kit ros run PACKAGE PROGRAM`, or move the file beside that folder."
+            )
         return (
             _nearest(name, {*sys.stdlib_module_names, *(found.name for found in iter_modules())})
             or ". If the name is right, install it in the environment that runs the kit."
@@ -184,6 +204,19 @@ def _way_out(problem: BaseException) -> str:
                 return f". Did you forget `import {name}`?"
             known.update(dir(builtins), *_innermost_names(problem.__traceback__))
     return _nearest(name, known)
+
+
+def _module_nearby(name: str, file: str) -> str | None:
+    """Returns a folder or a module of this name beside the program's file, or beside one of the folders that hold it."""
+    folder = os.path.dirname(file)
+    for _ in range(MAX_LEVELS):
+        if folder in ("", os.sep):
+            break
+        for found in (os.path.join(folder, name), os.path.join(folder, f"{name}.py")):
+            if os.path.exists(found):
+                return found
+        folder = os.path.dirname(folder)
+    return None
 
 
 def _nearest(name: str, known: set[str]) -> str:

@@ -115,6 +115,8 @@ class LaunchContext:
         self._scopes = [Scope()]
         self._initial_environment = dict(os.environ if environment is None else environment)
         self._environments = [dict(self._initial_environment)]
+        self._own_environment = dict(os.environ)
+        """The variables of this process as they were last seen."""
 
     @property
     def scope(self) -> Scope:
@@ -126,7 +128,14 @@ class LaunchContext:
 
     @property
     def environment(self) -> dict[str, str]:
-        return self._environments[-1]
+        """The environment variables, with what the launch file itself has set in ``os.environ``."""
+        environment, seen = self._environments[-1], self._own_environment
+        if os.environ != seen:
+            for name in seen.keys() - os.environ.keys():
+                environment.pop(name, None)
+            environment.update({name: value for name, value in os.environ.items() if seen.get(name) != value})
+            self._own_environment = dict(os.environ)
+        return environment
 
     def push_configurations(self) -> None:
         """Opens a scope: changes of arguments, namespace, parameters and remappings are undone by ``pop_configurations``."""

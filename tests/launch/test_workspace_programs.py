@@ -1,0 +1,185 @@
+"""A program or launch file that is started by its path sees the workspace in which it lies."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+from click.testing import CliRunner
+
+from kit.cli import main
+from kit.launch.processes import suggest_fix
+from kit.ros.packages import PackageError, installed_share, missing_package
+from tests.launch.conftest import Launched
+
+PACKAGE = "<package><name>{name}</name><export><build_type>ament_python</build_type></export></package>"
+SETUP = """
+import os
+from glob import glob
+from setuptools import setup
+
+package_name = "{name}"
+setup(
+    name=package_name,
+    data_files=[
+        ("share/ament_index/resource_index/packages", ["resource/" + package_name]),
+        ("share/" + package_name, ["package.xml"] + glob("launch/*.launch.py")),
+        (os.path.join("share", package_name, "config"), glob(os.path.join("params", "*.yaml"))),
+        (f"share/{{package_name}}/launch", ["launch/other.launch.py"]),
+    ],
+    entry_points={{"console_scripts": ["{name} = {name}.program:main"]}},
+)
+"""
+PROGRAM = """
+import rclpy
+from rclpy.node import Node
+from my_pkg.helper import OWN
+from other_pkg.helper import OWN as OTHER
+from other_pkg.msg import Reading
+{more}
+
+def main():
+    rclpy.init()
+    node = Node("program")
+    print("SEES", OWN, OTHER, Reading(value=2.0).value)
+    node.destroy_node()
+
+if __name__ == "__main__":
+    main()
+"""
+
+
+@pytest.fixture
+def source(tmp_path: Path) -> Path:
+    """The folder ``src`` of a workspace with two packages, of which one has a message."""
+    folder = tmp_path / "ws" / "src"
+    for name in ("my_pkg", "other_pkg"):
+        package = folder / name
+        (package / name).mkdir(parents=True)
+        (package / "package.xml").write_text(PACKAGE.format(name=name))
+        (package / "setup.py").write_text(SETUP.format(name=name))
+        (package / name / "__init__.py").touch()
+        (package / name / "helper.py").write_text(f"OWN = '{name}'")
+    (folder / "other_pkg" / "msg").mkdir()
+    (folder / "other_pkg" / "msg" / "Reading.msg").write_text("float64 value\n")
+    (folder / "my_pkg" / "my_pkg" / "program.py").write_text(PROGRAM.format(more=""))
+    (folder / "my_pkg" / "my_pkg" / "relative.py").write_text(PROGRAM.format(more="from .helper import OWN"))
+    (folder / "my_pkg" / "launch").mkdir()
+    (folder / "my_pkg" / "params").mkdir()
+    (folder / "my_pkg" / "params" / "speed.yaml").write_text("speed: 1\n")
+    return folder
+
+
+def kit(*words: str | Path, workspace: Path) -> str:
+    result = CliRunner(env={"KIT_WORKSPACE": str(workspace)}).invoke(main, [str(word) for word in words])
+    return result.output
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("name", ["program", "relative"])
+def test_a_controller_sees_its_workspace(source: Path, name: str, tmp_path: Path) -> None:
+    file = source / "my_pkg" / "my_pkg" / f"{name}.py"
+    output = kit("run", "maze", "--controller", file, "--steps", "5", workspace=tmp_path / "kit")
+    assert "SEES my_pkg other_pkg 2.0" in output
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("name", ["program", "relative"])
+def test_a_file_that_a_launch_file_runs_sees_its_workspace(
+    source: Path, name: str, tmp_path: Path, launch: Launched
+) -> None:
+    file = tmp_path / "run.launch.py"
+    program = source / "my_pkg" / "my_pkg" / f"{name}.py"
+    file.write_text(
+        "from launch import LaunchDescription\nfrom launch.actions import ExecuteProcess\n"
+        f"def generate_launch_description(): return LaunchDescription([ExecuteProcess(cmd=['python3', {str(program)!r}])])"
+    )
+    out, _, status = launch(file, "--until", "1")
+    assert "SEES my_pkg other_pkg 2.0" in out
+    assert status == 0
+
+
+def test_files_are_where_setup_py_installs_them(source: Path) -> None:
+    package = source / "my_pkg"
+    (package / "launch" / "drive.launch.py").touch()
+    share = installed_share("my_pkg", package)
+    assert (share / "drive.launch.py").is_file()
+    assert (share / "launch" / "drive.launch.py").is_file()
+    assert (share / "config" / "speed.yaml").read_text() == "speed: 1\n"
+    assert (share / "params" / "speed.yaml").is_file()
+    assert installed_share("my_pkg", package) == share
+    (package / "launch" / "later.launch.py").touch()
+    assert (installed_share("my_pkg", package) / "later.launch.py").is_file()
+    shutil.rmtree(share.parent)
+
+
+def test_a_package_whose_files_stay_where_they_are_has_its_own_folder(source: Path) -> None:
+    assert installed_share("other_pkg", source / "other_pkg") == source / "other_pkg"
+
+
+def test_an_included_launch_file_is_found_where_it_is_installed(source: Path, launch: Launched) -> None:
+    folder = source / "my_pkg" / "launch"
+    (folder / "part.launch.py").write_text(
+        "from launch import LaunchDescription\nfrom launch.actions import LogInfo\n"
+        "def generate_launch_description(): return LaunchDescription([LogInfo(msg='INCLUDED')])"
+    )
+    (folder / "all.launch.py").write_text(
+        dedent(
+            """
+            import os
+            from ament_index_python.packages import get_package_share_directory
+            from launch import LaunchDescription, LaunchIntrospector
+            from launch.actions import IncludeLaunchDescription, LogInfo
+            from launch.substitutions import EnvironmentVariable, PathJoinSubstitution
+            from launch_ros.substitutions import FindPackageShare
+
+            os.environ["COLOUR"] = "red"
+
+            def generate_launch_description():
+                os.environ["SHAPE"] = "round"
+                config = os.path.join(get_package_share_directory("my_pkg"), "config", "speed.yaml")
+                description = LaunchDescription([
+                    LogInfo(msg=[EnvironmentVariable("COLOUR"), " and ", EnvironmentVariable("SHAPE")]),
+                    LogInfo(msg=open(config).read().strip()),
+                    IncludeLaunchDescription(PathJoinSubstitution([FindPackageShare("my_pkg"), "part.launch.py"])),
+                ])
+                print(LaunchIntrospector().format_launch_description(description))
+                print(len(os.popen("ros2 --help").read()) > 100)
+                return description
+            """
+        )
+    )
+    out, err, status = launch(source / "my_pkg", "all.launch.py", "--until", "1")
+    assert status == 0, err
+    for text in ("red and round", "speed: 1", "INCLUDED", "LogInfo", "IncludeLaunchDescription", "True"):
+        assert text in out
+
+
+def test_a_broken_package_xml_is_an_error_with_its_line(source: Path, launch: Launched) -> None:
+    file = source / "other_pkg" / "package.xml"
+    file.write_text("<package>\n<name>other_pkg</name>\n<description>a & b</description>\n</package>\n")
+    assert f"{file}:3:" in str(missing_package("other_pkg", [source]))
+    (source / "my_pkg" / "launch" / "x.launch.py").write_text(
+        "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n"
+        "def generate_launch_description(): return LaunchDescription([Node(package='other_pkg', executable='x')])"
+    )
+    _, err, status = launch(source / "my_pkg", "x.launch.py", "--until", "1")
+    assert status == 2
+    assert f"{file}:3:" in err
+    with pytest.raises(PackageError, match="package 'nobody' not found"):
+        raise missing_package("nobody", [source])
+
+
+def test_pip_is_not_advised_for_what_lies_nearby(source: Path, tmp_path: Path) -> None:
+    (source / "tools").mkdir()
+    (source / "tools" / "wall_follower").mkdir()
+    (source / "tools" / "deep").mkdir()
+    file = source / "tools" / "deep" / "drive.py"
+    (source / "tools" / "wall_follower.py").write_text("x = 1")
+    file.write_text("import rclpy\nimport wall_follower\n")
+    output = kit("ros", "run", file, workspace=tmp_path / "kit")
+    assert "wall_follower" in output
+    assert "pip install" not in output
+    assert suggest_fix("No module named 'wall_follower'") is not None
