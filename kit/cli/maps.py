@@ -13,7 +13,7 @@ import click
 
 from kit.cli import ScreenClosed, options
 from kit.cli.full_screen import run_screen
-from kit.document.blocks import Block, Table, Text, labelled_table
+from kit.document.blocks import Block, Picture, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.run.scenario import own_map_folder, scenario_on_map
 from kit.workspace import WorkspaceError, open_workspace
@@ -69,10 +69,10 @@ def command(ctx: click.Context) -> None:
 
 
 def _list() -> None:
-    own = [(str(folder),) for folder in _own_maps()]
+    own = tuple(map(str, _own_maps()))
     blocks: list[Block] = [
         maps_table(all_maps()),
-        *([labelled_table(own, "Your own:", indent=2)] if own else []),
+        *([Text("Your own:"), Picture(own, is_tight=True)] if own else []),
         Text(
             "`kit maps NAME` shows one, `kit play NAME` opens it, `kit maps --help` says how to make your own."
         ),

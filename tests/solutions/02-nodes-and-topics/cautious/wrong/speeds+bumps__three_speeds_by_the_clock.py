@@ -1,5 +1,7 @@
 """Three speeds, one after the other: the laser is not asked."""
 
+# Lesson: Have the robot drive at 0.6 m/s; at 0.3 m/s with a wall nearer than 1.2 m.
+
 import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
