@@ -42,6 +42,7 @@ class LaunchSession(Session):
             always_scan=always_scan,
             graph=launch.graph,
             offered_truths=offered_truths,
+            is_hidden=request.is_hidden,
         )
         self.launch = launch
         self.additions = launch.additions

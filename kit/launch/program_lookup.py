@@ -227,7 +227,7 @@ def _start_turtlesim(request: StartRequest, context: StartContext) -> Process:
     except (InvalidRosArguments, NameValidationException, ParameterException) as problem:
         raise ProcessStartError(f"{request.where}turtlesim_node: {problem}") from None
     try:
-        context.request_world(WorldRequest(world, 1 / PERIOD_S, PERIOD_S, True, request.where))
+        context.request_world(WorldRequest(world, 1 / PERIOD_S, PERIOD_S, True, request.where, True))
     except ProcessStartError:
         context.log(f"{request.name}: this launch already has a world and does not show a second one")
     else:

@@ -216,6 +216,8 @@ class WorldRequest:
     show_viz: bool = False
     where: str = ""
     """File and line of the launch file, for messages."""
+    is_hidden: bool = False
+    """Whether the world's own node and services have hidden names: it only shows what another node does."""
 
     @property
     def factor(self) -> float:

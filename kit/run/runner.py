@@ -22,6 +22,8 @@ from kit.run.lockstep import Observer, Participant, exchange_until_idle
 from kit.sim.plugin import OutgoingMessage, TopicEndpoint
 from kit.sim.simulation import Simulation, SimulationError, call_service
 
+HIDDEN_NAMESPACE: Final = "/_world"
+"""Where the services of a hidden world are: the commands for nodes and services leave names out that begin with ``_``."""
 GET_STATE_SERVICE: Final = "/get_state"
 """Answers with the true state of the whole world."""
 
@@ -34,9 +36,16 @@ class Runner:
     """
 
     def __init__(
-        self, simulation: Simulation, graph: Graph, *, offered_truths: frozenset[str] | None = None
+        self,
+        simulation: Simulation,
+        graph: Graph,
+        *,
+        offered_truths: frozenset[str] | None = None,
+        is_hidden: bool = False,
     ) -> None:
-        """``offered_truths``: the ground-truth topics and the service ``get_state``, by name, that nodes may use; a
+        """``is_hidden``: the world's own node and services have hidden names, for a world that only draws what other nodes do.
+
+        ``offered_truths``: the ground-truth topics and the service ``get_state``, by name, that nodes may use; a
         relative name stands for that of every robot. None: all.
         """
         self.simulation = simulation
@@ -49,11 +58,11 @@ class Runner:
         self._paused_steps: list[
             tuple[int, Future[None]]
         ] = []  # ticks still to make, and the future of the last
-        self._node = create_graph_node(graph, WORLD_NODE_NAME)
+        self._node = create_graph_node(graph, f"_{WORLD_NODE_NAME}" if is_hidden else WORLD_NODE_NAME)
         graph.reserved_names.add(self._node.handle.full_name)
         self._endpoints: dict[TopicEndpoint, Callable[[], object]] = {}  # what destroys each again
         self._publishers: dict[str, Callable[[Any], None]] = {}
-        WorldServices(self._node, self)
+        WorldServices(self._node, self, HIDDEN_NAMESPACE if is_hidden else "")
         self._connect_devices()
 
     @property
@@ -225,7 +234,8 @@ class ControllableRun(Protocol):
 class WorldServices:
     """Creates the services on ``node``, the world's own, and answers them."""
 
-    def __init__(self, node: Node, run: ControllableRun) -> None:
+    def __init__(self, node: Node, run: ControllableRun, namespace: str = "") -> None:
+        """``namespace``: what is put before the names of the services."""
         self._run = run
         for name, service_type, callback in (
             ("/spawn_model", flatland_msgs.SpawnModel, self._spawn),
@@ -240,7 +250,7 @@ class WorldServices:
             (GET_STATE_SERVICE, robot_kit_msgs.GetState, self._state),
         ):
             if name != GET_STATE_SERVICE or run.offers_truth(name):
-                node.create_service(service_type, name, callback)
+                node.create_service(service_type, f"{namespace}{name}", callback)
 
     def _call(self, response: ServiceOutcome, service: str, *arguments: Any) -> None:
         try:

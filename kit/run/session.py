@@ -56,11 +56,14 @@ class KeystrokePublisher:
     the keys push meanwhile, 0 to 1, goes to ``/teleopkeys/strength``.
     """
 
-    def __init__(self, graph: Graph) -> None:
+    def __init__(self, graph: Graph, *, is_hidden: bool = False) -> None:
+        """``is_hidden``: its names are hidden ones, for a world in which no program expects keys."""
         self._graph = graph
-        node = create_graph_node(graph, "TeleOpKeys")
-        self._keys = node.create_publisher(String, KEYS_TOPIC, 10)
-        self._strengths = node.create_publisher(Float32, STRENGTH_TOPIC, 10)
+        mark = "_" if is_hidden else ""
+        node = create_graph_node(graph, f"{mark}TeleOpKeys")
+        self._topic = KEYS_TOPIC.replace("/", f"/{mark}", 1)
+        self._keys = node.create_publisher(String, self._topic, 10)
+        self._strengths = node.create_publisher(Float32, STRENGTH_TOPIC.replace("/", f"/{mark}", 1), 10)
         self._strength = 1.0
         self._held: list[str] = []
         self._listeners = 0
@@ -68,7 +71,7 @@ class KeystrokePublisher:
     @property
     def has_listener(self) -> bool:
         """Whether a node listens to the keys."""
-        return self._graph.subscription_count(KEYS_TOPIC) > 0
+        return self._graph.subscription_count(self._topic) > 0
 
     def publish(self, messages: Iterable[str], strength: float = 1.0) -> None:
         if strength != self._strength:
@@ -83,7 +86,7 @@ class KeystrokePublisher:
 
     def resend_held_keys(self) -> None:
         """Publishes the keys that are down to a listener that has just started: it missed when they went down."""
-        listeners = self._graph.subscription_count(KEYS_TOPIC)
+        listeners = self._graph.subscription_count(self._topic)
         if listeners > self._listeners:
             self.publish([f"p_{key}" for key in self._held], self._strength)
         self._listeners = listeners
@@ -281,7 +284,7 @@ class Session:
 
     ``level``: how far controllers are confined. ``always_scan``: the robot's lasers are computed even when no node
     subscribes to them. ``on_message``: called with each log message as it comes. ``graph``: one that other nodes are in
-    already; by default the session makes its own. ``offered_truths``: as ``Runner`` takes them. ``streams``: what a
+    already; by default the session makes its own. ``offered_truths`` and ``is_hidden``: as ``Runner`` takes them. ``streams``: what a
     controller reads that is run by hand.
     """
 
@@ -298,6 +301,7 @@ class Session:
         graph: Graph | None = None,
         offered_truths: frozenset[str] | None = None,
         streams: ProgramStreams | None = None,
+        is_hidden: bool = False,
     ) -> None:
         self.scenario = scenario
         self._on_message = on_message
@@ -311,12 +315,12 @@ class Session:
         if always_scan:
             ends = (end for name in scenario.partners for end in simulation.model_endpoints(name))
             self._scanned_topics = frozenset(end.topic for end in ends)
-        self.runner = Runner(simulation, self.graph, offered_truths=offered_truths)
+        self.runner = Runner(simulation, self.graph, offered_truths=offered_truths, is_hidden=is_hidden)
         self.additions: list[SceneAddition] = []
         """What the view draws beside the world."""
         self.metrics = MetricsRecorder.for_scenario(scenario)
         self.runner.observers.append(self.metrics)
-        self.keys = KeystrokePublisher(self.graph)
+        self.keys = KeystrokePublisher(self.graph, is_hidden=is_hidden)
         self.switcher = ControllerSwitcher(
             self.runner,
             controller_arguments(scenario),

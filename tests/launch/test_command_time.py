@@ -141,3 +141,58 @@ def test_ros2_commands_of_a_launch_file_go_by_simulated_time(tmp_path: Path, lau
     assert any("Spawn_Response(name='turtle2')" in line for line in lines)
     assert any("/turtle2/pose" in line for line in lines)
     assert sum("publishing #" in line for line in lines) in (9, 10, 11)
+
+
+TURTLESIM = {
+    "node list": ["/turtlesim"],
+    "topic list": [
+        "/parameter_events",
+        "/rosout",
+        "/turtle1/cmd_vel",
+        "/turtle1/color_sensor",
+        "/turtle1/pose",
+    ],
+    "service list": [
+        "/clear",
+        "/kill",
+        "/reset",
+        "/spawn",
+        "/turtle1/set_pen",
+        "/turtle1/teleport_absolute",
+        "/turtle1/teleport_relative",
+        *(
+            f"/turtlesim/{name}"
+            for name in (
+                "describe_parameters",
+                "get_parameter_types",
+                "get_parameters",
+                "list_parameters",
+                "set_parameters",
+                "set_parameters_atomically",
+            )
+        ),
+    ],
+    "service type /reset": ["std_srvs/srv/Empty"],
+    "action list": ["/turtle1/rotate_absolute"],
+}
+"""What the official tutorial shows."""
+
+
+@pytest.mark.long
+def test_turtlesim_has_what_turtlesim_has(tmp_path: Path, launch: Launched) -> None:
+    commands = "".join(
+        f"ExecuteProcess(cmd='ros2 {words}'.split(), name={words.replace(' ', '_').replace('/', '')!r}),"
+        for words in TURTLESIM
+    )
+    file = tmp_path / "turtlesim.launch.py"
+    file.write_text(
+        "from launch import LaunchDescription\nfrom launch.actions import *\nfrom launch_ros.actions import Node\n"
+        "def generate_launch_description():\n"
+        "    return LaunchDescription([Node(package='turtlesim', executable='turtlesim_node'), "
+        f"TimerAction(period=0.1, actions=[{commands}])])"
+    )
+    lines = printed(launch, file)
+    for words, expected in TURTLESIM.items():
+        name = words.replace(" ", "_").replace("/", "")
+        shown = [line.split("] ", 1)[1] for line in lines if re.match(rf"\[{name}-\d+\]", line)]
+        assert shown == expected, words
