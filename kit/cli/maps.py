@@ -70,9 +70,10 @@ def command(ctx: click.Context) -> None:
 
 def _list() -> None:
     own = tuple(map(str, _own_maps()))
+    listed: list[Block] = [Text("Your own:"), Picture(own, is_tight=True)] if own else []
     blocks: list[Block] = [
         maps_table(all_maps()),
-        *([Text("Your own:"), Picture(own, is_tight=True)] if own else []),
+        *listed,
         Text(
             "`kit maps NAME` shows one, `kit play NAME` opens it, `kit maps --help` says how to make your own."
         ),
