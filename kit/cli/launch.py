@@ -14,7 +14,7 @@ from kit.cli.full_screen import run_screen
 from kit.host.failure import StudentCodeError
 from kit.inspection.sockets import sockets_folder, world_name
 from kit.ros.graph.graph import Graph
-from kit.ros.packages import Package, PackageError, find_packages, read_package
+from kit.ros.packages import Package, PackageError, PackageExecutable, find_packages, read_package
 from kit.tui.terminal import TerminalDecision
 from kit.workspace import Workspace, WorkspaceError, open_workspace
 from kit.world.problems import WorldError
@@ -278,8 +278,18 @@ def create(
 @where
 @click.pass_obj
 def list_packages(opened_workspace: Workspace, folders: Sequence[Path]) -> None:
-    """List the packages found."""
-    for name in sorted(_found(opened_workspace, folders)):
+    """List the packages found, and those that the kit brings: the interfaces of ROS 2, turtlesim and others."""
+    from kit.launch.launch_file_process import SHARE_FOLDER
+    from kit.launch.program_lookup import BUILTIN_PROGRAMS
+    from kit.msg.interfaces import PACKAGES
+
+    found = _found(opened_workspace, folders)
+    brought = {
+        *find_packages((SHARE_FOLDER,)),
+        *PACKAGES,
+        *(package for package, _ in BUILTIN_PROGRAMS if package),
+    }
+    for name in sorted({*found, *(() if folders else brought)}):
         click.echo(name)
 
 
@@ -291,9 +301,16 @@ def executables(opened_workspace: Workspace, name: str | None = None, folders: S
     """List the programs of all packages, or of one."""
     found = _found(opened_workspace, folders)
     names = [name] if name else sorted(found)
+    from kit.launch.program_lookup import BUILTIN_PROGRAMS
+
     for each in names:
-        for program in _package(found, each).executables:
-            click.echo(f"{each} {program.name}")
+        own = {program for package, program in BUILTIN_PROGRAMS if package == each and program}
+        if name is None or each in found or not own:
+            own |= {program.name for program in _package(found, each).executables}
+        else:
+            own |= {program.name for program in _brought(each)}
+        for program in sorted(own):
+            click.echo(f"{each} {program}")
 
 
 @package_command.command()
@@ -317,6 +334,14 @@ def xml(opened_workspace: Workspace, name: str, folders: Sequence[Path]) -> None
         ),
         nl=False,
     )
+
+
+def _brought(name: str) -> tuple[PackageExecutable, ...]:
+    """The Python programs of a package that the kit brings."""
+    from kit.launch.launch_file_process import SHARE_FOLDER
+
+    folder = find_packages((SHARE_FOLDER,)).get(name)
+    return () if folder is None else read_package(folder).executables
 
 
 def _found(opened_workspace: Workspace, folders: Sequence[Path]) -> dict[str, Path]:

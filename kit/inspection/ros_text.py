@@ -15,7 +15,7 @@ import yaml
 
 from kit.msg.definition_parser import parse_definition
 from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, SequenceKind, item_kind
-from kit.msg.interfaces import Interface, definition, definition_source, find_message
+from kit.msg.interfaces import PACKAGES, Interface, definition, definition_source, find_message
 from kit.msg.message import Message, Service, type_name
 from kit.msg.rcl_interfaces import FloatingPointRange, IntegerRange, ParameterDescriptor, ParameterValue
 from kit.plain_text import counted, format_size
@@ -174,6 +174,11 @@ def _lines(cls: Interface, comments: bool, nested_comments: bool, depth: int) ->
         shown = _SINCE.sub("", line).rstrip() if comments else line.partition("#")[0].rstrip()
         if not shown and not comments:
             continue
+        package = cls.__ros_type__.partition("/")[0]
+        if (
+            number in fields and package in PACKAGES
+        ):  # ROS 2's own files name a neighbour by its own name alone
+            shown = shown.removeprefix(f"{package}/")
         yield "\t" * depth + shown if shown else ""
         item = item_kind(fields[number]) if number in fields else None
         if isinstance(item, MessageKind):

@@ -95,8 +95,11 @@ class BagRecorder:
         storage: Storage = "mcap",
         node: Node | None = None,
         hidden: bool = False,
+        admits: Callable[[str], bool] = lambda topic: True,
     ) -> None:
-        """``hidden``: without ``topics``, also hidden ones, such as those of actions."""
+        """``hidden``: without ``topics``, also hidden ones, such as those of actions. ``admits``: of these the ones for whose
+        name this is true."""
+        self._admits = admits
         self._graph = graph
         self._folder = folder.absolute()
         self._requested_topics = None if topics is None else frozenset(topics)
@@ -150,7 +153,7 @@ class BagRecorder:
                     if self._requested_topics is None
                     else name in self._requested_topics
                 )
-                if chosen and name not in self._connections and len(types) == 1:
+                if chosen and self._admits(name) and name not in self._connections and len(types) == 1:
                     self._subscribe(name, types[0])
             self._version = directory.version
         if time.monotonic() - self._flushed_s >= FLUSH_INTERVAL_S:

@@ -83,6 +83,33 @@ def test_a_bag_is_played_at_its_own_pace(
 
 @pytest.mark.long
 @pytest.mark.parametrize(
+    ("words", "heard"),
+    [
+        (("--start-offset", "0.15"), "cde"),
+        (("--playback-duration", "0.25"), "abc"),
+        (("--start-offset", "0.1", "--playback-duration", "0.15"), "bc"),
+        (("--playback-until-sec", "1.65"), "ab"),
+        (("--exclude-topics", "/more", "/nothing"), "abcde"),
+        (("--exclude-topics", "/words"), ""),
+        (("--regex", "^/w"), "abcde"),
+        (("-x", "wor"), ""),
+        (("--topics", "/words", "/more", "--delay", "0.1"), "abcde"),
+    ],
+)
+def test_a_part_of_a_bag_is_played(
+    words: tuple[str, ...], heard: str, kit_ros: Kit, stage: Stage, bag: Path
+) -> None:
+    texts: list[str] = []
+    node = create_graph_node(stage.graph, "listener")
+    node.create_subscription(String, "/words", lambda message: texts.append(message.data), 10)
+    out, err, code = kit_ros("bag", "play", str(bag), *words)
+    node.destroy_node()
+    assert code == 0, out + err
+    assert "".join(texts) == heard
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
     "sent", ["SIGINT", "SIGTERM", "SIGHUP", "SIGTERM SIGTERM", "SIGHUP SIGINT", "hang up"]
 )
 def test_every_end_keeps_what_was_recorded(sent: str, stage: Stage, tmp_path: Path) -> None:

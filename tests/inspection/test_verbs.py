@@ -111,7 +111,7 @@ GOLDEN = {
     "interface show std_srvs/srv/SetBool": "bool data\n---\nbool success\nstring message\n",
     "interface show geometry_msgs/msg/PointStamped": (
         "std_msgs/Header header\n\tbuiltin_interfaces/Time stamp\n\t\tint32 sec\n\t\tuint32 nanosec\n"
-        "\tstring frame_id\ngeometry_msgs/Point point\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n"
+        "\tstring frame_id\nPoint point\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n"
     ),
     "interface proto std_srvs/srv/SetBool": '"data: false\n"\n',
     "interface proto geometry_msgs/msg/Point --no-quotes": "x: 0.0\ny: 0.0\nz: 0.0\n\n",

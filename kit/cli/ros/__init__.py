@@ -8,6 +8,7 @@ from typing import Final
 import click
 
 from kit.cli import LazyGroup, Verbs
+from kit.cli.ros.documented_options import tell_absent_options
 
 VERBS: Final[Verbs] = {
     "node": ("kit.cli.ros.node", "Inspect nodes: list, info."),
@@ -31,6 +32,7 @@ VERBS: Final[Verbs] = {
     "launch": ("kit.cli.launch", "Same as `kit launch`."),
     "pkg": ("kit.cli.launch:package_command", "Same as `kit pkg`."),
     "doctor": ("kit.cli.doctor", "Same as `kit doctor`."),
+    "wtf": ("kit.cli.doctor", "Same as `kit doctor`."),
 }
 
 ABSENT: Final[Mapping[str, str]] = {
@@ -38,14 +40,21 @@ ABSENT: Final[Mapping[str, str]] = {
     "daemon": "no daemon is needed; the running world knows all nodes.",
     "multicast": "the kit uses no network here; `kit bridge` connects to a robot.",
     "security": "the kit uses no network here; only your own user can connect to a world.",
-    "wtf": "use `kit ros doctor`.",
 }
 """Verbs of ROS 2's that are not here."""
 
 
+class RosGroup(LazyGroup):
+    """The group of ROS 2's commands: their help tells which options they do not have."""
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        command = super().get_command(ctx, cmd_name)
+        return command and tell_absent_options(cmd_name, command)
+
+
 @click.group(
     name="ros",
-    cls=LazyGroup,
+    cls=RosGroup,
     verbs=VERBS,
     absent=ABSENT,
     epilog="A world runs while `kit play`, `kit launch` or `kit run --serve` runs. If several run, the newest is used, "
@@ -54,7 +63,8 @@ ABSENT: Final[Mapping[str, str]] = {
 def command() -> None:
     """Inspect a running world from a second terminal, as `ros2` does on a robot.
 
-    Commands, arguments and output are the same as with `ros2`.
+    Commands, arguments and output are those of `ros2`. The help of each command names the options of `ros2` that are
+    not here.
 
     \b
     kit ros node list

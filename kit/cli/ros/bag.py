@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from datetime import datetime
@@ -27,7 +28,75 @@ def command() -> None:
     """Record and play bags: messages of topics, with their simulated times."""
 
 
-@command.command()
+class ListOptionsCommand(click.Command):
+    """A command some of whose options take all the words up to the next option, as in ``ros2 bag``."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        lists = {
+            name
+            for option in self.params
+            if isinstance(option, click.Option) and option.multiple
+            for name in option.opts
+        }
+        given: list[str] = []
+        current: str | None = None
+        for word in args:
+            if word.startswith("-"):
+                current = word if word in lists else None
+                if current is None and word != "--":
+                    given.append(word)
+            elif current is not None:
+                given += [current, word]
+            else:
+                given.append(word)
+        return super().parse_args(ctx, given)
+
+
+def topic_options(verb: str) -> Callable[[Any], Any]:
+    """The options by which topics are chosen."""
+
+    def add(function: Any) -> Any:
+        for option in (
+            click.option(
+                "--topics", "chosen", multiple=True, metavar="TOPIC ...", help=f"{verb} only these topics."
+            ),
+            click.option("-e", "--regex", help=f"{verb} only topics that match this regular expression."),
+            click.option(
+                "-x",
+                "--exclude-regex",
+                "--exclude",
+                "exclude_regex",
+                help="Leave out topics that match this one.",
+            ),
+            click.option(
+                "--exclude-topics", multiple=True, metavar="TOPIC ...", help="Leave out these topics."
+            ),
+        ):
+            function = option(function)
+        return function
+
+    return add
+
+
+def _filter(
+    regex: str | None, exclude_regex: str | None, exclude_topics: Sequence[str]
+) -> Callable[[str], bool]:
+    """Makes the function that says which topics are wanted; exits if an expression is none."""
+    try:
+        wanted, unwanted = re.compile(regex or ""), re.compile(exclude_regex or r"(?!)")
+    except re.error as problem:
+        exit_with_error(f"not a regular expression: {problem}")
+    left_out = {_absolute(name) for name in exclude_topics}
+    return lambda name: (
+        name not in left_out and wanted.search(name) is not None and unwanted.search(name) is None
+    )
+
+
+def _absolute(name: str) -> str:
+    return name if name.startswith("/") else f"/{name}"
+
+
+@command.command(cls=ListOptionsCommand)
 @click.argument("topics", nargs=-1)
 @click.option(
     "-a", "--all", "every", is_flag=True, help="Record all topics, including those that appear later."
@@ -44,6 +113,8 @@ def command() -> None:
     is_flag=True,
     help="With -a: include hidden topics, such as those of actions.",
 )
+@click.option("-n", "--node-name", default="", help="Name of the recording node.")
+@topic_options("Record")
 @options.storage
 @with_world_client
 def record(
@@ -52,6 +123,11 @@ def record(
     every: bool,
     output: Path | None,
     hidden: bool,
+    node_name: str,
+    chosen: Sequence[str],
+    regex: str | None,
+    exclude_regex: str | None,
+    exclude_topics: Sequence[str],
     storage: Storage,
 ) -> None:
     """Record topics of the running world, until Ctrl-C.
@@ -59,21 +135,26 @@ def record(
     \b
     kit ros bag record -a -o my_drive
     kit ros bag record /static_laser /cmd_vel
+    kit ros bag record --all --exclude-topics /rosout /parameter_events
     """
     from kit.ros.bag_storage import BagError
     from kit.ros.bags import RECORDER, BagRecorder
 
-    if every == bool(topics):
-        exit_with_error("Give the topics to record, or -a for all of them.")
+    topics = (*topics, *chosen)
+    if (every or regex is not None) == bool(topics):
+        exit_with_error("Give the topics to record, or -a for all of them, or --regex.")
+    admits = _filter(regex, exclude_regex, exclude_topics)
     options.explain_storage(storage)
     folder = output or Path(f"rosbag2_{datetime.now():%Y_%m_%d-%H_%M_%S}")
-    chosen = None if every else [name if name.startswith("/") else f"/{name}" for name in topics]
-    node = client.create_node(RECORDER)
+    names = [_absolute(name) for name in topics] or None
+    node = client.create_node(node_name or RECORDER)
     log = node.get_logger().info
     known: set[str] = set()
 
     try:
-        recorder = BagRecorder(client.graph, folder, topics=chosen, storage=storage, node=node, hidden=hidden)
+        recorder = BagRecorder(
+            client.graph, folder, topics=names, storage=storage, node=node, hidden=hidden, admits=admits
+        )
 
         for notice in recorder.notices:
             log(notice)
@@ -105,8 +186,11 @@ def info(folder: Path, verbose: bool) -> None:
     click.echo(bag_info(_read(folder)))
 
 
-@command.command()
-@click.argument("folder", type=click.Path(path_type=Path))
+@command.command(cls=ListOptionsCommand)
+@click.argument("folder", required=False, type=click.Path(path_type=Path))
+@click.option(
+    "-i", "--input", "given", type=click.Path(path_type=Path), help="The bag, in place of the argument."
+)
 @click.option(
     "-r",
     "--rate",
@@ -117,29 +201,58 @@ def info(folder: Path, verbose: bool) -> None:
 )
 @click.option("-l", "--loop", is_flag=True, help="Play in a loop.")
 @click.option("-p", "--start-paused", is_flag=True, help="Start when Enter is pressed.")
-@click.option("--topics", multiple=True, help="Play only this topic; repeat for more.")
-@click.option("-m", "--remap", multiple=True, metavar="FROM:=TO", help="Rename a topic.")
+@click.option(
+    "-d", "--delay", type=click.FloatRange(0), default=0.0, help="Wait so long before it starts [s]."
+)
+@click.option("--start-offset", type=click.FloatRange(0), default=0.0, help="Start so far into the bag [s].")
+@click.option("--playback-duration", type=click.FloatRange(0), help="Play so much of the bag [s].")
+@click.option("--playback-until-sec", type=float, help="Play messages up to this time of the bag [s].")
+@topic_options("Play")
+@click.option("-m", "--remap", multiple=True, metavar="FROM:=TO ...", help="Rename topics.")
 @click.option("--clock", type=float, is_flag=False, flag_value=40.0, hidden=True)
+@click.option("--disable-keyboard-controls", is_flag=True, hidden=True)
+@click.option("--disable-loan-message", is_flag=True, hidden=True)
 @with_world_client
 def play(
     client: InspectionClient,
-    folder: Path,
+    folder: Path | None,
+    given: Path | None,
     rate: float,
     loop: bool,
     start_paused: bool,
-    topics: Sequence[str],
+    delay: float,
+    start_offset: float,
+    playback_duration: float | None,
+    playback_until_sec: float | None,
+    chosen: Sequence[str],
+    regex: str | None,
+    exclude_regex: str | None,
+    exclude_topics: Sequence[str],
     remap: Sequence[str],
     clock: float | None,
+    disable_keyboard_controls: bool,
+    disable_loan_message: bool,
 ) -> None:
     """Play a bag in the running world, with the same intervals of simulated time.
 
     \b
-    kit ros bag play my_drive --topics /cmd_vel
+    kit ros bag play my_drive --topics /cmd_vel /odom
+    kit ros bag play my_drive --start-offset 5 --exclude-topics /rosout
     """
     from kit.ros.bag_storage import BagError
     from kit.ros.bags import read_messages
 
-    bag = _read(folder)
+    folder = folder or given
+    if folder is None:
+        exit_with_error("Give the bag to play: kit ros bag play FOLDER")
+    bag, topics = _read(folder), tuple(_absolute(name) for name in chosen)
+    admits = _filter(regex, exclude_regex, exclude_topics)
+    first_ns = bag.start_ns + int(start_offset * 1e9)
+    last_ns = bag.start_ns + bag.duration_ns
+    if playback_duration is not None:
+        last_ns = min(last_ns, first_ns + int(playback_duration * 1e9))
+    if playback_until_sec is not None:
+        last_ns = min(last_ns, int(playback_until_sec * 1e9))
     names = dict(entry.split(":=", 1) for entry in remap if ":=" in entry)
     if len(names) != len(remap):
         exit_with_error("--remap needs FROM:=TO, such as --remap /cmd_vel:=/left/cmd_vel")
@@ -149,24 +262,27 @@ def play(
         exit_with_error(f"{folder}: cannot be played in a loop: all its messages have the same time")
     node, graph = client.create_node("rosbag2_player"), client.graph
     log = node.get_logger().info
-    publishers = _publishers(node, bag, topics, names)
+    publishers = _publishers(node, bag, topics, names, admits)
     if start_paused:
         click.pause("Press Enter to start.")
     log(f"Set rate to {rate:g}; {bag.count} messages over {bag.duration_ns / 1e9:.3f} s")
 
     for each in bag.topics:
-        if each.name not in publishers and (not topics or each.name in topics):
+        if each.name not in publishers and (not topics or each.name in topics) and admits(each.name):
             log(f"'{each.name}' is left out: the kit does not know its type, {each.type}")
     try:
+        client.wait_for_tick()
+        graph.wait(lambda: False, graph.now_ns + int(delay * 1e9))
         while True:
             client.wait_for_tick()
             began_ns = graph.now_ns
             for time_ns, topic, message in read_messages(folder, tuple(publishers)):
-                graph.wait(lambda: False, began_ns + int((time_ns - bag.start_ns) / rate))
-                publishers[topic].publish(message)
+                if first_ns <= time_ns <= last_ns:
+                    graph.wait(lambda: False, began_ns + int((time_ns - first_ns) / rate))
+                    publishers[topic].publish(message)
             if not loop:
                 return
-            graph.wait(lambda: False, began_ns + int(bag.duration_ns / rate))
+            graph.wait(lambda: False, began_ns + int((last_ns - first_ns) / rate))
     except BagError as problem:
         exit_with_error(str(problem))
 
@@ -196,7 +312,7 @@ def _read(folder: Path) -> Bag:
 
 
 def _publishers(
-    node: Node, bag: Bag, topics: Sequence[str], names: dict[str, str]
+    node: Node, bag: Bag, topics: Sequence[str], names: dict[str, str], admits: Callable[[str], bool]
 ) -> dict[str, Publisher[Any]]:
     strange = sorted(set(topics) - {topic.name for topic in bag.topics})
     if strange:
@@ -205,7 +321,7 @@ def _publishers(
         )
     made = {}
     for topic in bag.topics:
-        if not topics or topic.name in topics:
+        if (not topics or topic.name in topics) and admits(topic.name):
             try:
                 cls = find_message(topic.type)
             except UnknownInterface:

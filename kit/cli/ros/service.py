@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import click
 
 from kit.cli.ros import topic
@@ -77,8 +79,11 @@ command.add_command(topic.echo_service)
     type=click.FloatRange(0, min_open=True),
     help="Repeat the call this many times per second.",
 )
+@click.option("--stdin", is_flag=True, help="Read the request from standard input.")
 @with_world_client
-def call(client: InspectionClient, name: str, type_name: str, values: str, rate: float | None) -> None:
+def call(
+    client: InspectionClient, name: str, type_name: str, values: str, rate: float | None, stdin: bool
+) -> None:
     """Call a service and print its response.
 
     \b
@@ -87,7 +92,7 @@ def call(client: InspectionClient, name: str, type_name: str, values: str, rate:
       "{name: serp, pose: {x: 0.5}}"
     """
     cls = find_or_exit(find_service, type_name)
-    content = parse_fields(values)
+    content = parse_fields(sys.stdin.read() if stdin else values)
     graph = client.graph
     service_client = client.node.create_client(cls, name)
     if not service_client.service_is_ready():

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
+import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, Final
 
 import click
@@ -400,6 +403,12 @@ for verb in (
     help="Start when there are this many subscribers (default: 1 with --once and --times).",
 )
 @click.option("-n", "--node-name", help="Name of the publishing node.")
+@click.option(
+    "--yaml-file",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="Read the messages from this file: one after the other, divided by ---.",
+)
+@click.option("--stdin", is_flag=True, help="Read the message from standard input.")
 @with_qos_options
 @with_world_client
 def pub(
@@ -413,6 +422,8 @@ def pub(
     every: int,
     matching: int | None,
     node_name: str | None,
+    yaml_file: Path | None,
+    stdin: bool,
     qos_options: QosOptions,
 ) -> None:
     """Publish a message on a topic: repeatedly until Ctrl-C, or once.
@@ -425,8 +436,20 @@ def pub(
         exit_with_error("--once and --times cannot be combined; give one of them")
     max_count = 1 if once else times
     cls = find_or_exit(find_message, type_name)
-    content = parse_fields(values)
-    make_message(cls, content, 0)
+    texts = [values]
+    if yaml_file is not None:
+        texts = [
+            text for text in re.split(r"^---\s*$", yaml_file.read_text("utf-8"), flags=re.M) if text.strip()
+        ]
+    elif stdin:
+        texts = [sys.stdin.read()]
+    contents = [parse_fields(text) for text in texts]
+    if not contents:
+        exit_with_error(f"{yaml_file}: there is no message in it")
+    for content in contents:
+        make_message(cls, content, 0)
+    if yaml_file is not None and not max_count:
+        max_count = len(contents)  # each once, as `ros2 topic pub` does
     try:
         node = client.create_node(node_name) if node_name else client.node
         publisher = node.create_publisher(
@@ -444,7 +467,7 @@ def pub(
     def publish() -> None:
         nonlocal count
         count += 1
-        message = make_message(cls, content, client.graph.now_ns)
+        message = make_message(cls, contents[(count - 1) % len(contents)], client.graph.now_ns)
         if every and count % every == 0:
             click.echo(f"publishing #{count}: {message!r}\n")
         publisher.publish(message)

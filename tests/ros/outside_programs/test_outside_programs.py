@@ -1,0 +1,25 @@
+"""Programs that were written outside do what their authors mean: ``python -m tests.ros.outside_programs`` prints the table."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import pytest
+
+from tests.ros.outside_programs.judge import OutsideProgram, programs_of, run_program
+
+MISTAKEN: Final = {
+    "12_turn_pid": "after its last zero command it handles one more odometry and commands again, and ends: the base turns on",
+    "44_turtle_polygon_relative": "awaits a service in a timer's callback, both in the node's mutually exclusive group: a deadlock",
+}
+"""Programs that do not do in ROS 2 what their author means either, and why."""
+
+PROGRAMS: Final = [each for name in ("first", "second") for each in programs_of(name)]
+
+
+@pytest.mark.long
+@pytest.mark.daily(6)
+@pytest.mark.parametrize("program", PROGRAMS, ids=lambda each: each.file.stem)
+def test_a_program_does_what_its_author_means(program: OutsideProgram) -> None:
+    complaints = run_program(program).complaints
+    assert bool(complaints) == (program.file.stem in MISTAKEN), complaints
