@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Final
+from typing import Final, NoReturn
 
 import click
 
-from kit.cli import LazyGroup
+from kit.cli import LazyGroup, run_as_process
 
 # Before numpy is imported: it starts a thread for each core otherwise, for sums that one adds up in no time.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -56,5 +56,10 @@ def main() -> None:
     """Grade student programs: one submission, every push in CI, or a whole class on a cluster."""
 
 
+def run() -> NoReturn:
+    """Runs ``grader`` as this process."""
+    run_as_process(main, "grader")
+
+
 if __name__ == "__main__":
-    main(prog_name="grader")
+    run()

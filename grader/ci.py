@@ -61,7 +61,7 @@ jobs:
           mkdir grade
           status=0
           python -P -m grader check "$GITHUB_WORKSPACE/{submit}" --assignment "$GITHUB_WORKSPACE/{assignment}" \\
-            --json --for-student --output grade/result.json || status=$?
+            --level highest --json --for-student --output grade/result.json || status=$?
           if [ ! -s grade/result.json ]; then exit "$status"; fi
           python -P -m grader report grade/result.json --format markdown >> "$GITHUB_STEP_SUMMARY"
           python -P -m grader report grade/result.json --format junit --output grade/junit.xml
@@ -89,7 +89,7 @@ grade:
     - python -P -m pip install --quiet -c kit/constraints.txt ./kit
     - >-
       python -P -m grader check "$CI_PROJECT_DIR/{submit}" --assignment "$CI_PROJECT_DIR/{assignment}"
-      --json --for-student --output result.json || status=$?
+      --level highest --json --for-student --output result.json || status=$?
     - if [ ! -s result.json ]; then exit "${{status:-1}}"; fi
     - python -P -m grader report result.json --format junit --output junit.xml
     - mkdir "$CI_PROJECT_DIR/.grade" && cp result.json junit.xml "$CI_PROJECT_DIR/.grade"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import sys
 import time
@@ -11,13 +10,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from functools import cache
-from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-import grader
-import kit
 from grader.assignment import MAX_HINTS, Assignment, Criterion, KnownMistake, SeedSet
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
 from grader.evidence.submission_clock import SubmissionClock
@@ -26,11 +21,13 @@ from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
 from grader.submission import Submission
 from grader.submitted_files import YAML_ENDINGS, SubmissionRefused, reading_submission
 from grader.teacher_tests import run_teacher_tests
-from kit.host.failure import Failure, FailureKind
+from grader.version import grader_version
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level, shield_this_process
 from kit.host.sandbox.probe import highest_level_up_to
 from kit.school.result import (
     PUBLIC_SEEDS,
+    WITH_SECRET,
     CriterionResult,
     CriterionStatus,
     EpisodeSummary,
@@ -38,7 +35,6 @@ from kit.school.result import (
     GradingTiming,
     Visibility,
 )
-from kit.world.catalogue import maps_folder
 
 SAME_MISTAKE: Final = "The same mistake as in"
 """How the feedback on a mistake begins that an earlier criterion has described."""
@@ -79,6 +75,10 @@ class GradingOptions:
     """Confinement level of programs; None takes the assignment's, and at least 1."""
     secret: bool = False
     """Whether to use the secret seeds too, for the grade."""
+    examples: bool = False
+    """Whether to look for public runs that lose points too, for a student to read where only secret seeds show a mistake.
+    From level 1 on they are made of every submission, before anything secret is run: up to ``MAX_COUNTERPARTS`` for each
+    criterion."""
     may_lower_level: bool = True
     """Whether practice, without secret seeds, may go on at a lower level, at least 1, where this machine supports none
     higher, if no level was requested."""
@@ -93,6 +93,8 @@ class _ScoredEvidence:
     evidence: Evidence
     measure: float | None
     share: float
+    failure: Failure | None
+    """How the program failed, in a run or while it was measured; None if it did not."""
 
 
 class Grading:
@@ -106,12 +108,16 @@ class Grading:
         *,
         secret: bool,
         clock: SubmissionClock,
+        examples: bool = False,
     ) -> None:
         self.assignment = assignment
         self.submission = submission
         self._collector = collector
         self._clock = clock
         self._secret = secret
+        self._examples = examples
+        self._has_run_public = not secret
+        """Whether everything public was run. Nothing secret is run before: what a program says after that is not shown."""
         self._checks = find_kind(assignment.kind).checks
         self._scored: dict[str, tuple[_ScoredEvidence, ...]] = {}
         self._tests: dict[str, CriterionResult] = {}
@@ -158,7 +164,7 @@ class Grading:
             public_version=self.assignment.public_version,
             submission=self.submission.digest,
             grader_version=grader_version(),
-            seeds="public+secret" if self._secret else PUBLIC_SEEDS,
+            seeds=WITH_SECRET if self._secret else PUBLIC_SEEDS,
             level=int(self._collector.level),
             platform=_platform(),
             tests=tests,
@@ -212,15 +218,10 @@ class Grading:
         if not scored or (criterion.after is not None and not self._score(self._criterion(criterion.after))):
             return replace(blank, rationale="Graded with secret seeds when you hand in.")
         broken = next(
-            (
-                each
-                for each in scored
-                if status_of_failure(each.evidence.failure) is CriterionStatus.GRADER_ERROR
-            ),
-            None,
+            (each for each in scored if status_of_failure(each.failure) is CriterionStatus.GRADER_ERROR), None
         )
         if broken is not None:
-            return self._broken(criterion, str(broken.evidence.failure))
+            return self._broken(criterion, str(broken.failure))
         if criterion.after is not None and not any(
             each.share == 1.0 for each in self._score(self._criterion(criterion.after))
         ):
@@ -233,8 +234,8 @@ class Grading:
         status = (
             CriterionStatus.PASS if full else (CriterionStatus.PARTIAL if share > 0 else CriterionStatus.FAIL)
         )
-        if worst is not None and worst.evidence.failure is not None and share == 0.0:
-            status = status_of_failure(worst.evidence.failure)
+        if worst is not None and worst.failure is not None and share == 0.0:
+            status = status_of_failure(worst.failure)
         check = self._checks[criterion.check]
         rationale = "" if full else self._rationale(criterion, shown, worst)
         return replace(
@@ -261,10 +262,44 @@ class Grading:
         public = [each for each in scored if not each.evidence.secret]
         if full or any(each.share < 1.0 for each in public):
             return public
-        if criterion.id not in self._counterexamples:
+        if self._looks_afterwards and criterion.id not in self._counterexamples:
             self._counterexamples[criterion.id] = self._find_counterexample(criterion)
-        found = self._counterexamples[criterion.id]
+        found = self._counterexamples.get(criterion.id)
         return [] if found is None else [found]
+
+    @property
+    def _looks_afterwards(self) -> bool:
+        """Whether examples are looked for after secret runs, and only where these lose points: at level 0, where a program can
+        read the secrets themselves."""
+        return self._examples and self._collector.level is Level.LIMITED
+
+    def _run_public(self) -> None:
+        """Runs everything public once, before the first secret run. A program that has seen a secret can hand it to a later
+        one in ways that no level closes, such as the page cache: so no later one's words may be shown."""
+        if self._has_run_public:
+            return
+        self._has_run_public = True
+        with reading_submission(self.submission.name):
+            for criterion in self.assignment.criteria:
+                self._collector.public_evidence(criterion)
+        if not self._examples or self._looks_afterwards:
+            return
+        for criterion in self.assignment.criteria:
+            with suppress(Exception):  # a check that fails here fails again where its criterion is judged
+                scored = self._score_public(criterion)
+                if criterion.seeds is not SeedSet.PUBLIC and all(each.share == 1.0 for each in scored):
+                    self._counterexamples[criterion.id] = self._find_counterexample(criterion)
+
+    def _score_public(self, criterion: Criterion) -> tuple[_ScoredEvidence, ...]:
+        """Scores the public evidence of a criterion alone."""
+        full: dict[int, bool] = {}
+        if criterion.after is not None:
+            before = self._score_public(self._criterion(criterion.after))
+            full = {id(each.evidence): each.share == 1.0 for each in before}
+        return tuple(
+            self._score_evidence(criterion, each, is_ready=full.get(id(each), True))
+            for each in self._collector.public_evidence(criterion)
+        )
 
     def _find_counterexample(self, criterion: Criterion) -> _ScoredEvidence | None:
         """Returns the first public counterpart that loses points; None if all that the collector makes earn everything."""
@@ -283,6 +318,7 @@ class Grading:
         """Measures and scores each piece of evidence for a criterion."""
         if criterion.id in self._scored:
             return self._scored[criterion.id]
+        self._run_public()
         ready = self._ready(criterion)
         # An error in here was brought to light by this work: it must look like no fault of the grader's.
         with reading_submission(self.submission.name):
@@ -294,9 +330,12 @@ class Grading:
 
     def _score_evidence(self, criterion: Criterion, evidence: Evidence, *, is_ready: bool) -> _ScoredEvidence:
         if evidence.failure is not None or not is_ready:
-            return _ScoredEvidence(evidence, None, 0.0)
-        measure = float(self._checks[criterion.check].measure(evidence, criterion.params))
-        return _ScoredEvidence(evidence, measure, criterion.anchors.share(measure))
+            return _ScoredEvidence(evidence, None, 0.0, evidence.failure)
+        try:
+            measure = float(self._checks[criterion.check].measure(evidence, criterion.params))
+        except StudentCodeError as error:  # what it returned takes longer to measure than a submission may
+            return _ScoredEvidence(evidence, None, 0.0, self._clock.explain(error.failure))
+        return _ScoredEvidence(evidence, measure, criterion.anchors.share(measure), evidence.failure)
 
     def _ready(self, criterion: Criterion) -> Callable[[Evidence], bool]:
         """Returns a predicate: did this evidence earn full points in the criterion that comes first?"""
@@ -313,16 +352,18 @@ class Grading:
         """Says why points are lost. ``shown``: only evidence that the reader may know of, ``worst`` among it."""
         if worst is None:
             return (
-                f"“{criterion.title}” is not met with the secret seeds of the grade. It was met with every public "
-                "seed that was tried, so that none can be shown."
+                f"“{criterion.title}” is not met with the secret seeds of the grade. No public seed was found with which "
+                "it is not met either."
+                if self._examples
+                else f"“{criterion.title}” is not met with the secret seeds of the grade. No example was looked for."
             )
-        evidence = worst.evidence
-        if evidence.failure is not None:
+        evidence, failure = worst.evidence, worst.failure
+        if failure is not None:
             if evidence.secret:
-                return f"{COARSE_RATIONALES[status_of_failure(evidence.failure)]} ({evidence.label})."
+                return f"{COARSE_RATIONALES[status_of_failure(failure)]} ({evidence.label})."
             # That a file cannot be read has nothing to do with where it would have been used.
-            is_unread = evidence.failure.kind in (FailureKind.SYNTAX, FailureKind.IMPORT)
-            text = f"{evidence.failure}" if is_unread else f"{evidence.failure} ({evidence.label})"
+            is_unread = failure.kind in (FailureKind.SYNTAX, FailureKind.IMPORT)
+            text = f"{failure}" if is_unread else f"{failure} ({evidence.label})"
             first = self._shown_before(criterion, text)
             return text if first is None else f"{SAME_MISTAKE} “{first.title}”."
         check = self._checks[criterion.check]
@@ -346,7 +387,7 @@ class Grading:
         read, or the mistake was described before: then that is all there is to mend."""
         if worst is None or worst.evidence.secret:
             return criterion.hints
-        if worst.evidence.failure is not None and (
+        if worst.failure is not None and (
             self.assignment.submit.endswith(YAML_ENDINGS) or rationale.startswith(SAME_MISTAKE)
         ):
             return ()
@@ -449,7 +490,14 @@ def open_grading(
                 collector = stack.enter_context(
                     find_kind(assignment.kind).collect(assignment, file, evidence_options)
                 )
-            yield Grading(assignment, submission, collector, secret=options.secret, clock=clock)
+            yield Grading(
+                assignment,
+                submission,
+                collector,
+                secret=options.secret,
+                clock=clock,
+                examples=options.examples,
+            )
 
 
 def level_unavailable_text(assignment: Assignment, level: Level, *, secret: bool) -> str:
@@ -521,45 +569,3 @@ def _finite(measure: float | None) -> float | None:
 
 def _platform() -> str:
     return f"{sys.platform}, Python {sys.version_info.major}.{sys.version_info.minor}"
-
-
-DISTRIBUTION: Final = "robot_learning_kit"
-UNUSED_PARTS: Final = ("cli", "tui", "school", "study", "data")
-"""Parts of the kit that no grading runs through; an installation's maps in ``data`` count as maps."""
-USED_FILES: Final = ("school/result.py",)
-"""What grading uses of these parts all the same."""
-
-
-@cache
-def grader_version() -> str:
-    """Returns the package version with a digest of the code and maps that grading depends on.
-
-    The version alone is not enough: an updated checkout keeps it, and older results would pass for current ones.
-    """
-    digest = hashlib.sha256()
-    for name, file in _source_files():
-        content = file.read_bytes()
-        digest.update(repr((name, len(content))).encode())
-        digest.update(content)
-    return f"{_package_version()}+{digest.hexdigest()[:12]}"
-
-
-def _source_files() -> Iterator[tuple[str, Path]]:
-    for package in (grader, kit):
-        folder = Path(package.__path__[0])
-        for file in sorted(folder.rglob("*.py")):
-            name = file.relative_to(folder)
-            is_used = name.parts[0] not in UNUSED_PARTS or name.as_posix() in USED_FILES
-            if package is grader or is_used:
-                yield f"{package.__name__}/{name.as_posix()}", file
-    for file in sorted(path for path in maps_folder().rglob("*") if path.is_file()):
-        yield f"maps/{file.relative_to(maps_folder()).as_posix()}", file
-
-
-def _package_version() -> str:
-    """Returns the installed version, by the name of the folder that an installation writes: ``importlib.metadata`` would
-    import a parser of e-mails for it."""
-    for entry in filter(None, sys.path):
-        for found in sorted(Path(entry).glob(f"{DISTRIBUTION}-*.dist-info")):
-            return found.name.removeprefix(f"{DISTRIBUTION}-").removesuffix(".dist-info")
-    return "unknown"

@@ -30,6 +30,7 @@ from grader.scoring import MAX_SHARE_STEPS, Anchors
 from grader.teacher_tests import read_teacher_tests
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS, MIB, Limits
+from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.school.result import Visibility
 from kit.world.documents import AllowedRoot, WorldDocuments
@@ -190,7 +191,7 @@ def _assignment(kind: str, section: Section, secrets: Section | None, folder: Pa
 def _teacher_test_files(section: Section, folder: Path) -> Iterator[Path]:
     """Yields the files with teacher tests."""
     for name in section.texts("tests", ()):
-        if "/" in name or not name.startswith("test_") or not (folder / name).is_file():
+        if "/" in name or not name.startswith("test_") or not is_file_there(folder / name):
             section.error(f"{quoted(name)} must be a file test_*.py in this folder", "tests")
         else:
             yield folder / name

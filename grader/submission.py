@@ -5,9 +5,9 @@ Nothing is imported, and only plain files are accepted: no links, no devices, no
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import os
-import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -28,6 +28,7 @@ from grader.submitted_files import (
     wrong_format,
 )
 from kit.host.private_folder import private_folder
+from kit.plain_files import open_plain_file
 
 MAX_NAMED: Final = 6
 """Ignored files that a note names."""
@@ -92,7 +93,8 @@ def _read_submission(path: Path, main: str) -> Submission:
     name = submission_name(path)
     if path.is_dir():
         files = SubmittedFiles(main)
-        _read_folder(path, "", files)
+        with _open_folder(path) as folder:
+            _read_folder(folder, "", files)
         return _find_main_file(name, files, main)
     if archive_stem(path.name) is not None:
         with _open_plain_file(path, MAX_PACKED_BYTES) as file:
@@ -162,8 +164,28 @@ def _refuse_wrong_format(name: str, content: bytes, main: str) -> None:
         raise SubmissionRefused(wrong)
 
 
-def _read_folder(folder: Path, prefix: str, files: SubmittedFiles) -> None:
-    """Reads the needed files below a folder; ``prefix`` is its path inside the submission, with ``/`` at its end.
+@contextmanager
+def _open_folder(path: Path | str, above: int | None = None) -> Iterator[int]:
+    """Opens a folder, never through a link; the context's value is its descriptor. Raises SubmissionRefused.
+
+    ``above``: descriptor of the folder that ``path`` is a name in. Everything below is opened through descriptors: somebody
+    who exchanges a folder for a link while it is read has no file of the reader's read.
+    """
+    try:
+        flags = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
+        handle = os.open(path, flags, dir_fd=above)
+    except OSError as error:
+        shown = shown_name(Path(path).name)[1:-1]
+        reason = "it is a link" if error.errno in (errno.ELOOP, errno.ENOTDIR) else error.strerror
+        raise SubmissionRefused(f"{shown} cannot be read: {reason}.") from None
+    try:
+        yield handle
+    finally:
+        os.close(handle)
+
+
+def _read_folder(folder: int, prefix: str, files: SubmittedFiles) -> None:
+    """Reads the needed files below an open folder; ``prefix`` is its path inside the submission, with ``/`` at its end.
 
     ``SubmittedFiles`` limits the depth, and so the recursion.
     """
@@ -178,31 +200,34 @@ def _read_folder(folder: Path, prefix: str, files: SubmittedFiles) -> None:
         path = f"{prefix}{name}"
         if is_link:
             raise SubmissionRefused(f"{shown_name(path)[1:-1]} is a link; hand in files only.")
-        if is_folder and (folder / name / VIRTUAL_ENVIRONMENT_FILE).exists():
-            files.ignore(path)
-        elif is_folder:
-            _read_folder(folder / name, f"{path}/", files)
+        if is_folder:
+            with _open_folder(name, folder) as inside:
+                if _is_virtual_environment(inside):
+                    files.ignore(path)
+                else:
+                    _read_folder(inside, f"{path}/", files)
         else:
-            with _open_plain_file(folder / name, MAX_BYTES) as file:
+            with _open_plain_file(name, MAX_BYTES, folder) as file:
                 files.add(path, file.read)
 
 
-def _open_plain_file(path: Path, max_bytes: int) -> BinaryIO:
-    """Opens a plain file without following a link or blocking on a pipe. Raises SubmissionRefused."""
-    shown = shown_name(path.name)[1:-1]
+def _is_virtual_environment(folder: int) -> bool:
     try:
-        handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+        os.stat(VIRTUAL_ENVIRONMENT_FILE, dir_fd=folder, follow_symlinks=False)
+    except OSError:
+        return False
+    return True
+
+
+def _open_plain_file(path: Path | str, max_bytes: int, folder: int | None = None) -> BinaryIO:
+    """Opens a plain file without following a link or blocking on a pipe. Raises SubmissionRefused."""
+    shown = shown_name(Path(path).name)[1:-1]
+    try:
+        file = open_plain_file(path, follows_links=False, folder=folder)
     except OSError as error:
-        reason = "it is a link" if path.is_symlink() else error.strerror
+        reason = "it is a link" if error.errno == errno.ELOOP else error.strerror
         raise SubmissionRefused(f"{shown} cannot be read: {reason}.") from None
-    file = os.fdopen(handle, "rb")
-    status = os.fstat(handle)
-    problem = ""
-    if not stat.S_ISREG(status.st_mode):
-        problem = f"{shown} is not a plain file."
-    elif status.st_size > max_bytes:
-        problem = f"{shown} is larger than {max_bytes >> 20} MiB: hand in only your program."
-    if problem:
+    if os.fstat(file.fileno()).st_size > max_bytes:
         file.close()
-        raise SubmissionRefused(problem)
+        raise SubmissionRefused(f"{shown} is larger than {max_bytes >> 20} MiB: hand in only your program.")
     return file

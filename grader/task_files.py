@@ -10,6 +10,7 @@ from kit.learning.environment.tasks import TaskSpec, UnknownTask, task_names
 from kit.learning.tasks.learning_task import LearningTask, TaskCase
 from kit.learning.tasks.task_reader import read_task
 from kit.learning.training.student_reward import RewardFileError
+from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Scenario, scenario_on_map
 from kit.world.catalogue import MapCard, MapCase
@@ -22,7 +23,7 @@ def assignment_task(name: str, folder: Path) -> TaskSpec:
     if name in task_names():
         return TaskSpec(name)
     file = (folder / name).resolve()
-    if not file.is_relative_to(folder.resolve()) or not file.is_file():
+    if not file.is_relative_to(folder.resolve()) or not is_file_there(file):
         raise UnknownTask(
             f"there is no task {quoted(name)}: {suggestion(name, task_names())}, nor a file of that name in this folder"
         )

@@ -18,12 +18,16 @@ ENDING: Final = (signal.SIGTERM, signal.SIGHUP)
 """The signals that end a process that does nothing about them, and that are sent for that."""
 
 
+REPEAT_S: Final = 0.01
+"""A signal that was lost is sent again after so long [s]."""
+
+
 @contextmanager
 def ended_by_signals() -> Iterator[None]:
     """Has SIGTERM and SIGHUP interrupt the main thread as Ctrl-C does, by KeyboardInterrupt, until the context ends.
 
     If one has come, the context ends by SystemExit, with 128 and the signal's number, as shells have it; output to a
-    terminal that is gone does not change that. A signal that is ignored, as under ``nohup``, stays ignored, and one for
+    terminal that is gone does not change that. One that is lost in a callback of C code is sent again, Ctrl-C too. A signal that is ignored, as under ``nohup``, stays ignored, and one for
     which there is a handler keeps it. In other threads than the main one the context does nothing.
 
     >>> import signal
@@ -53,21 +57,34 @@ def ended_by_signals() -> Iterator[None]:
         replaced = [number for number in ENDING if signal.getsignal(number) is signal.SIG_DFL]
     for number in replaced:
         signal.signal(number, interrupt)
+    hook = sys.unraisablehook
+
+    def repeat(problem: sys.UnraisableHookArgs) -> None:
+        """Ctrl-C or a signal that came while a library's C code called Python, as pymunk's steps do, is lost there."""
+        if os.getpid() == owner and issubclass(problem.exc_type, KeyboardInterrupt):
+            again = threading.Timer(REPEAT_S, os.kill, (owner, received[0] if received else signal.SIGINT))
+            again.daemon = True
+            again.start()
+        else:
+            hook(problem)
+
+    sys.unraisablehook = repeat
     try:
         yield
     except SystemExit as stop:  # its class may say more, as ScreenClosed's does
         if received:
-            _write_out()
+            write_out()
             stop.code = 128 + received[0]
         raise
     except (KeyboardInterrupt, OSError):
         if not received:
             raise
     finally:
+        sys.unraisablehook = hook
         for number in replaced:
             signal.signal(number, signal.SIG_DFL)
     if received:
-        _write_out()
+        write_out()
         raise SystemExit(128 + received[0])
 
 
@@ -100,7 +117,7 @@ def uninterrupted() -> Iterator[None]:
             signal.raise_signal(waiting[0])
 
 
-def _write_out() -> None:
+def write_out() -> None:
     """Writes what the standard streams hold. What a terminal that is gone does not take is lost, without an error at the exit."""
     for stream in (sys.stdout, sys.stderr):
         try:

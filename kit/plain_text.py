@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import textwrap
 import unicodedata
 from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -14,6 +15,10 @@ MIN_COLUMN_WIDTH = 12
 """Table columns are not made narrower than this, even if the table exceeds its width."""
 COLUMN_GAP = "  "
 INDENT = "  "
+_WORD = re.compile(r"(?:[^\s`]|`[^`\s](?:[^`\n]*[^`\s])?`)+(?!\S)|\S+")
+"""A word, or words between backticks with what touches them."""
+_HELD = "\x1f"
+"""In the place of a blank at which a line is not broken."""
 MAX_KNOWN_NAMES = 12
 """Names that ``suggestion`` lists when none of them is close."""
 
@@ -105,6 +110,55 @@ def join_names(names: Sequence[str], at_most: int = 4) -> str:
 # Lines
 
 
+def printable_text(text: str) -> str:
+    """Removes control characters that a terminal would obey, and joins lines to one."""
+    return "".join(c if is_printable(c) else " " if c.isspace() else "?" for c in text)
+
+
+def wrap(text: str, width: int, first: str = "", rest: str = "", *, most: int | None = None) -> list[str]:
+    """Wraps a text to lines of at most ``width`` characters, which begin with ``first`` and ``rest``; at least one line.
+
+    It breaks at blanks alone, so that an option or a file name is never parted, and between backticks only what is longer than
+    a line; a word that is longer than a line is broken behind a slash or a comma where it has one. A first word that fits on a later line alone begins there.
+    Where there are more than ``most`` lines, the last one ends with dots.
+
+    >>> wrap("see runs/turn-1/log.csv --set gamma", 12)
+    ['see', 'runs/turn-1/', 'log.csv', '--set gamma']
+    """
+    room, longest = max(width - len(first), 1), max(width - len(rest), 1)
+    words = [
+        part
+        for word in _WORD.findall(text)
+        for part in ([word.replace(" ", _HELD)] if len(word) <= longest else word.split())
+    ]
+    if words and room < len(words[0]) <= longest:  # it fits where a line is less indented
+        below = None if most is None else max(most - 1, 1)
+        return [first.rstrip(), *wrap(text, width, rest, rest, most=below)][:most]
+    words = [
+        part
+        for number, word in enumerate(words)
+        for part in _parts_of(word, longest if number else min(room, longest))
+    ]
+    lines = textwrap.wrap(
+        " ".join(words),
+        width,
+        initial_indent=first,
+        subsequent_indent=rest,
+        break_on_hyphens=False,
+        max_lines=most,
+        placeholder=" ...",
+    )
+    return [line.replace(_HELD, " ") for line in lines] or [first.rstrip()]
+
+
+def _parts_of(word: str, longest: int) -> Iterator[str]:
+    while len(word) > longest:
+        cut = max(word.rfind(sign, 1, longest) for sign in "/,") + 1 or longest
+        yield word[:cut]
+        word = word[cut:]
+    yield word
+
+
 def indent_lines(lines: Iterable[str]) -> list[str]:
     return [INDENT + line for line in lines]
 
@@ -122,23 +176,34 @@ def grouped_table(rows: Iterable[Sequence[str]], width: int = WIDTH) -> list[str
     lines = _row_lines([others for group in groups.values() for others in group], width - len(INDENT))
     text: list[str] = []
     for first, group in groups.items():
-        text += textwrap.wrap(first, width)
+        text += wrap(first, width)
         text += indent_lines(line for _ in group for line in next(lines))
     return text
 
 
 def _row_lines(rows: Sequence[Sequence[str]], width: int) -> Iterator[list[str]]:
     """Yields the lines of each row."""
-    widths = _fit_widths([max(1, *map(len, column)) for column in zip(*rows, strict=True)], width)
+    widths = fit_widths([max(1, *map(len, column)) for column in zip(*rows, strict=True)], width)
     for row in rows:
-        cells = [textwrap.wrap(cell, limit) for cell, limit in zip(row, widths, strict=True)]
+        cells = [wrap(cell, limit) for cell, limit in zip(row, widths, strict=True)]
         lines = zip_longest(*cells, fillvalue="")
         yield [COLUMN_GAP.join(map(str.ljust, line, widths)).rstrip() for line in lines]
 
 
-def _fit_widths(widths: list[int], width: int) -> list[int]:
-    """Returns the column widths, the largest reduced until all columns fit into ``width`` side by side."""
-    widths = list(widths)
-    while sum(widths) + len(COLUMN_GAP) * (len(widths) - 1) > width and max(widths) > MIN_COLUMN_WIDTH:
-        widths[widths.index(max(widths))] -= 1
-    return widths
+def fit_widths(
+    widths: Sequence[int], width: int, flexible: Collection[int] | None = None, least: int = MIN_COLUMN_WIDTH
+) -> list[int]:
+    """Returns the widths of a table's columns, the largest reduced until all fit into ``width`` side by side.
+
+    ``flexible``: the numbers of the columns that may be reduced, by default all; none becomes narrower than ``least``.
+    """
+    fitted = list(widths)
+    reducible = range(len(fitted)) if flexible is None else flexible
+    over = sum(fitted) + len(COLUMN_GAP) * (len(fitted) - 1) - width
+    while over > 0:
+        candidates = [number for number in reducible if fitted[number] > least]
+        if not candidates:
+            break
+        fitted[max(candidates, key=lambda number: fitted[number])] -= 1
+        over -= 1
+    return fitted

@@ -9,7 +9,7 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from errno import EISDIR
+from errno import EACCES, EISDIR
 from pathlib import Path
 from typing import Final
 
@@ -108,16 +108,32 @@ def check_writable(path: Path) -> None:
     with _errors_name_file(path):
         if path.is_dir():
             raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
-        with tempfile.TemporaryFile(dir=path.parent):
+        if is_special(path):
+            if not os.access(path, os.W_OK):
+                raise PermissionError(EACCES, os.strerror(EACCES))
+            return
+        with tempfile.TemporaryFile(dir=path.resolve().parent):
             pass
+
+
+def is_special(path: Path) -> bool:
+    """Whether ``path`` is a device, a pipe or an open file such as /dev/stdout, which is written to and never replaced."""
+    is_open_file = str(path).startswith(("/dev/std", "/dev/fd/", "/proc/self/fd/"))
+    return path.exists() and not path.is_dir() and (is_open_file or not path.is_file())
 
 
 def write_atomically(path: Path, data: bytes) -> None:
     """Writes ``data`` to ``path`` so that a reader, or a kill at any moment, sees the old file or the new one.
 
-    A new file has the mode that the user's umask gives, one that is replaced keeps its own. Raises OSError.
+    A new file has the mode that the user's umask gives, one that is replaced keeps its own. A link stays one: what it
+    points to is written. So is a device or a pipe, as it is. Raises OSError.
     """
     with _errors_name_file(path):
+        if is_special(path):
+            with path.open("ab") as device:
+                device.write(data)
+            return
+        path = path.resolve()
         temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
         handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
         try:
@@ -158,6 +174,11 @@ def open_common_folder(folder: Path) -> str:
     status = folder.lstat()
     if not stat.S_ISDIR(status.st_mode):
         return "is not a folder"
+    if status.st_uid not in (0, os.geteuid()):
+        return (
+            "belongs to another user, who may remove or close what is there. An administrator makes one for all: "
+            f"sudo install -d -o root -m 1777 {folder}"
+        )
     if status.st_mode & stat.S_IWOTH and not status.st_mode & stat.S_ISVTX:
         return "any user may replace what is there; `chmod +t` on it prevents that"
     return ""

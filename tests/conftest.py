@@ -75,7 +75,7 @@ class _WholeProgress:
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    if session.config.option.dist == "each":
+    if getattr(session.config.option, "dist", "no") == "each":  # the plugin may be switched off
         session.config.pluginmanager.register(_WholeProgress(session))
 
 

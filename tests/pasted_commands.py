@@ -14,13 +14,16 @@ from pathlib import Path
 
 import pytest
 
+from kit.document.blocks import Marked
+from kit.document.code_lines import is_command
+from kit.document.layout import Page, rows_of
+from kit.document.rows import MARGIN, Row, text_width
+from kit.school.lessons.aside import plain_lines
 from kit.school.lessons.checking import exercise_file, install_exercise, read_solution
+from kit.school.lessons.lesson_text import command_blocks
 from kit.school.lessons.reading import solutions_folder
 from kit.school.lessons.records import Lesson, LessonCommand, LessonStep
-from kit.school.lessons.shell_lines import fill_in_paths, is_command
-from kit.tui.rows import lesson_rows
-from kit.tui.suspend import plain_lines
-from kit.tui.widgets.text_rows import Row
+from kit.school.lessons.shell_lines import fill_in_paths
 from kit.workspace import Workspace, open_workspace
 from tests.tui.test_play_pty import User
 
@@ -55,9 +58,10 @@ def shown_commands(step: LessonStep, file: Path | None) -> list[ShownCommand]:
     """Those of a step in the order of the screen, each once: of its text, then those below it."""
     filled = [(command, fill_in_paths(command.line, file)) for command in step.commands]
     known = {tuple(shlex.split(line)): command for command, line in filled}
-    text = lesson_rows.words(fill_in_paths(step.text, file), COLUMNS)
+    page = Page(text_width(COLUMNS), MARGIN)
+    text = rows_of([Marked(fill_in_paths(step.text, file))], page)
     shown: dict[tuple[str, ...], ShownCommand] = {}
-    for lines in (*_code_of(text), *_code_of(lesson_rows.commands(filled, COLUMNS))):
+    for lines in (*_code_of(text), *_code_of(rows_of(command_blocks(filled), page))):
         words = tuple(shlex.split(lines.replace("\\\n", "")))
         assert words in known, f"step {step.number} shows a command that is not among its commands:\n{lines}"
         shown.setdefault(words, ShownCommand(known[words], lines))

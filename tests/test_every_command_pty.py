@@ -19,9 +19,9 @@ from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
 from kit.school.lessons.records import CommandKind, Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths
 from kit.school.quiz.schedule import AnswerChoice
-from kit.tui.rows.quiz_rows import told_rows
 from tests.kit_content import kit_bank
 from tests.pasted_commands import COLUMNS, LIMIT_S, SCREEN_S, Home, ShownCommand, shown_commands
+from tests.school.quiz.item_builders import told_rows
 from tests.waiting import wait_until
 
 NEEDS_NO_WORLD = ("bag", "interface", "pkg")

@@ -155,7 +155,9 @@ def _graded(task: Exercise, file: Path) -> GradingResult:
     """What a student's check finds, without the process that it starts for itself."""
     assignment = read_assignment(task.folder)
     submission = read_submission(submission_path(task, file), assignment.submit)
-    return grade(assignment, submission, GradingOptions(Level.LIMITED, secret=True)).for_student()
+    return grade(
+        assignment, submission, GradingOptions(Level.LIMITED, secret=True, examples=True)
+    ).for_student()
 
 
 def _solve(lesson: Lesson, task: Exercise, file: Path) -> None:

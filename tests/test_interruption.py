@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 
 import pytest
 
@@ -66,6 +67,31 @@ def test_what_is_ignored_or_handled_stays_so() -> None:
         signal.signal(signal.SIGHUP, before[0])
         signal.signal(signal.SIGTERM, before[1])
     assert heard == [signal.SIGTERM]
+
+
+@pytest.mark.parametrize("sent", ALL)
+def test_a_signal_in_a_callback_of_c_code_is_not_lost(sent: signal.Signals) -> None:
+    """There an exception ends nothing, as here in a finalizer."""
+
+    class Stepped:
+        def __del__(self) -> None:
+            signal.raise_signal(sent)
+            sum(range(1000))
+
+    ended = []
+
+    @ended_by_signals()
+    def work() -> None:
+        Stepped()
+        try:
+            threading.Event().wait(60)
+        except KeyboardInterrupt:
+            ended.append(sent)
+            raise
+
+    with pytest.raises((KeyboardInterrupt, SystemExit)):
+        work()
+    assert ended == [sent]
 
 
 def test_a_fork_dies_of_the_signal() -> None:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from kit.plain_text import format_size
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kit.plain_text import format_size, wrap
 
 
 def test_a_size_has_the_unit_that_suits_it() -> None:
@@ -14,3 +17,24 @@ def test_a_size_up_to_a_tebibyte_fits_a_column_of_ten() -> None:
     for exponent in range(40):
         for size in (2**exponent - 1, 2**exponent, 1000 * 2**exponent // 999):
             assert len(format_size(size)) <= 10, size
+
+
+def test_a_command_is_whole_where_it_fits_a_line() -> None:
+    text = "Then `kit run maze --seed 4`, or (`kit play`). It's ` alone"
+    assert wrap(text, 26) == ["Then", "`kit run maze --seed 4`,", "or (`kit play`). It's `", "alone"]
+    assert wrap("a `kit run maze --seed 4` b", 12) == ["a `kit run", "maze --seed", "4` b"]
+
+
+def test_a_first_word_is_whole_where_it_fits_on_a_later_line() -> None:
+    assert wrap("a-long-word b", 14, "[broken] ", "  ") == ["[broken]", "  a-long-word", "  b"]
+    assert wrap("ab cd", 14, "[broken] ", "  ") == ["[broken] ab cd"]
+    assert "".join(wrap("runs/" * 6, 14, "[broken] ", "  ")).replace(" ", "") == "[broken]" + "runs/" * 6
+
+
+@given(st.text("ab `/,-\n", max_size=60), st.integers(4, 30))
+def test_wrapping_loses_nothing(text: str, width: int) -> None:
+    lines = wrap(text, width, "  ", " ")
+    assert "".join("".join(lines).split()) == "".join(text.split())
+    assert all(len(line) <= width for line in lines)
+    words = [word for line in lines for word in line.split()]
+    assert [word for word in text.split() if len(word) <= width - 2 and word not in words] == []

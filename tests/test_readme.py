@@ -84,7 +84,7 @@ PRODUCT_PATH = re.compile(r"`((?:kit|grader)/[\w/]+(?:\.py|/)?)`")
 
 def walks() -> dict[str, list[list[str]]]:
     """The walks of CONTRIBUTING.md: by title, for each step the modules it names."""
-    section = CONTRIBUTING.read_text().split("## Three walks through the code")[1].split("\n## ")[0]
+    section = CONTRIBUTING.read_text().split("## Walks through the code")[1].split("\n## ")[0]
     titles = re.split(r"^\*\*(.+)\*\*$", section, flags=re.MULTILINE)[1:]
     return {
         title: [PRODUCT_PATH.findall(step) for step in re.split(r"^\d+\. ", text, flags=re.MULTILINE)[1:]]

@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from kit.controllers import find_controller, prepare_workspace, user_controllers
-from kit.workspace import WorkspaceError, check_writable, expand_home, open_workspace, write_atomically
+from kit.workspace import (
+    WorkspaceError,
+    check_writable,
+    expand_home,
+    open_common_folder,
+    open_workspace,
+    write_atomically,
+)
 
 
 def test_the_folder_is_the_one_named_else_the_environments_else_in_the_home(
@@ -77,3 +86,44 @@ def test_only_files_are_controllers(tmp_path: Path) -> None:
     assert [each.name for each in user_controllers(tmp_path)] == ["bytes", "deep"]
     with pytest.raises(LookupError):
         find_controller("pipe.py", tmp_path)
+
+
+def test_a_link_stays_one_and_its_target_is_written(tmp_path: Path) -> None:
+    (tmp_path / "there").mkdir()
+    link = tmp_path / "link"
+    link.symlink_to(tmp_path / "there" / "file")
+    for content in (b"new", b"newer"):  # also where nothing is there yet
+        write_atomically(link, content)
+        assert link.is_symlink()
+        assert (tmp_path / "there" / "file").read_bytes() == content
+    assert [path.name for path in (tmp_path / "there").iterdir()] == ["file"]
+
+
+def test_a_pipe_and_a_device_are_written_to_and_not_replaced(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        check_writable(pipe)
+        write_atomically(pipe, b"through")
+        assert os.read(reader, 100) == b"through"
+    finally:
+        os.close(reader)
+    assert pipe.is_fifo()
+    with (tmp_path / "out").open("wb") as out:
+        code = "from pathlib import Path; from kit.workspace import *; write_atomically(Path('/dev/stdout'), b'two')"
+        out.write(b"one ")
+        out.flush()
+        subprocess.run([sys.executable, "-c", code], stdout=out, check=True)
+    assert (tmp_path / "out").read_bytes() == b"one two"
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can make somebody else's folder")
+def test_a_common_folder_of_another_user_is_refused(tmp_path: Path) -> None:
+    """Whoever owns it may remove what others put there, whatever its mode."""
+    folder = tmp_path / "hall"
+    assert open_common_folder(folder) == ""
+    os.chown(folder, 65534, 65534)
+    assert "belongs to another user" in open_common_folder(folder)
+    os.chown(folder, 0, 0)
+    assert open_common_folder(folder) == ""

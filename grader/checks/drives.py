@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
@@ -52,6 +53,17 @@ class WaypointParams:
 class SpeedParams:
     speeds: tuple[str, ...] = ("0.5",)
     """m/s, forward."""
+    within: float = 0.02
+    """m/s"""
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedByRangeParams:
+    topic: str = "/static_laser"
+    """The laser's."""
+    bands: tuple[str, ...] = ("0.5 0", "1.2 0.3", "inf 0.6")
+    """Each the distance straight ahead up to which it holds [m], and the speed that is asked there [m/s]; nearest first. All
+    must occur."""
     within: float = 0.02
     """m/s"""
 
@@ -223,7 +235,27 @@ def rate(drive: GradedDrive, params: TopicRateParams) -> float:
     traffic = drive.traffic.get(params.topic)
     if traffic is None or drive.seconds == 0.0 or params.rate <= 0.0:
         return math.inf
-    return abs(traffic.count / drive.seconds - params.rate) / params.rate
+    return _rate_error(traffic.per_second, params.rate, drive.seconds)
+
+
+def _rate_error(per_second: Mapping[int, int], rate: float, seconds: float) -> float:
+    """Returns how far what comes ``rate`` times a second is off: over all, or by the share of the time in which there is less than half
+    or more than twice as much of it, whichever is more. All at once is no rate.
+
+    ``per_second``: how much of it came in each second. The first second does not count as such a time: a program begins in it.
+    """
+    mean_error = abs(sum(per_second.values()) / seconds - rate) / rate
+    length = max(1, math.ceil(LEAST_PER_SPAN / rate))
+    spans = [
+        sum(per_second.get(each, 0) for each in range(first, first + length)) / (length * rate)
+        for first in range(1, int(seconds) - length + 1, length)
+    ]
+    uneven = sum(not 0.4 < share < 2.5 for share in spans) / len(spans) if spans else 0.0
+    return max(mean_error, uneven)
+
+
+LEAST_PER_SPAN: Final = 4
+"""Messages or lines that a span of time should hold that is looked at by itself."""
 
 
 @check(none=0, full=1, unit="%", params=TopicsParams)
@@ -290,6 +322,31 @@ def drives_at(drive: GradedDrive, params: SpeedParams) -> float:
     )
 
 
+@check(none=0.5, full=0.9, unit="%", params=SpeedByRangeParams)
+def speed_by_range(drive: GradedDrive, params: SpeedByRangeParams) -> float:
+    """The speed does not follow what the laser measures ahead: it is the asked one for {actual} of the commands, in the case
+    that goes worst ({where}); {full} earns all points. Compare the numbers you publish, and when, with the task's."""
+    scans, commands = drive.ahead.get(params.topic), drive.commands
+    bands = [tuple(map(float, each.split())) for each in params.bands]
+    if scans is None or not len(scans) or not len(commands):
+        return 0.0
+    latest = np.searchsorted(scans[:, 0], commands[:, 0] + 1e-9, side="right") - 1
+    asked = np.array([_band_of(bands, distance) for distance in scans[:, 1]])
+    is_right = np.zeros(len(commands), dtype=np.bool_)
+    for back in (0, 1):  # a command may answer the scan before the newest
+        band = asked[np.maximum(latest - back, 0)]
+        speeds = np.array([speed for _, speed in bands])[band]
+        is_right |= np.abs(commands[:, 1] - speeds) <= params.within
+    case = asked[np.maximum(latest, 0)]
+    shares = [float(is_right[case == each].mean()) for each in range(len(bands)) if (case == each).any()]
+    return min(shares) if len(shares) == len(bands) else 0.0
+
+
+def _band_of(bands: Sequence[tuple[float, ...]], distance: float) -> int:
+    """Returns the first band whose end is beyond a distance; the last one for nan, for nothing that was met."""
+    return next((number for number, band in enumerate(bands) if distance < band[0]), len(bands) - 1)
+
+
 @check(none=0.5, full=0.95, unit="%", params=SpeedSpanParams)
 def keeps_speed(drive: GradedDrive, params: SpeedSpanParams) -> float:
     """The robot kept to the asked speed for {actual} of the time that counts here ({where}); {full} earns all points."""
@@ -324,10 +381,11 @@ def goes_home(drive: GradedDrive, params: NoParams) -> float:
 def says(drive: GradedDrive, params: PrintedTextParams) -> float:
     """The program does not print the required text at the required rate: it is off by {actual} ({where}); {full} is
     allowed. A timer sets the rate, and `self.get_logger().info(...)` prints."""
-    published = sum(params.text.casefold() in line.casefold() for line in drive.printed)
     if drive.seconds == 0.0 or params.seconds <= 0.0:
         return math.nan
-    return abs(published * params.seconds / drive.seconds - 1.0)
+    seconds = zip(drive.printed_at, drive.printed, strict=True)
+    said = Counter(second for second, line in seconds if params.text.casefold() in line.casefold())
+    return _rate_error(said, 1.0 / params.seconds, drive.seconds)
 
 
 @check(none=0.5, full=0.1, unit="%", params=CircleParams)
@@ -403,6 +461,7 @@ CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
             comes_back,
             faces,
             drives_at,
+            speed_by_range,
             says,
             keeps_speed,
             answered,

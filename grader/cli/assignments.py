@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import shutil
-import textwrap
 from dataclasses import fields
 from pathlib import Path
 from typing import Final
@@ -19,6 +18,8 @@ from grader.kinds.contract import find_kind, kind_names
 from grader.reading import budget_lines
 from grader.reports.cleaning import plain
 from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds
+from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
+from kit.document.layout import lines_of
 from kit.plain_text import quoted, suggestion
 from kit.workspace import write_atomically
 
@@ -56,8 +57,6 @@ def new(folder: Path, kind: str) -> None:
     click.echo(f"Then edit {folder}/assignment.yaml. To list the checks: grader checks {kind}")
 
 
-WIDTH: Final = 78
-MARGIN: Final = 18
 SHARE_HELP: Final = (
     "share: {none: ..., full: ..., steps: N}: the values that earn no points and all points. With secret seeds, points are given "
     "in N steps, by default 4, rounded to the nearest below all; of `seeds: secret` alone, each episode earns all or "
@@ -81,6 +80,7 @@ def checks(kind: str) -> None:
     """
     if kind not in kind_names():
         options.fail(f"There is no kind {quoted(kind)}: {suggestion(kind, kind_names())}")
+    rows: list[tuple[str, str]] = []
     for name, check in find_kind(kind).checks.items():
         none, full = check.format(check.anchors.none), check.format(check.anchors.full)
         params = ", ".join(f"{each.name}: {each.default!r}" for each in fields(check.params))
@@ -89,16 +89,17 @@ def checks(kind: str) -> None:
             f"with: {params}" if params else "",
         ]
         text = check.feedback.format(actual="...", full=full, where="...", passed="...", count="...")
-        for line, first in ((text, f"{name:<{MARGIN - 1}} "), ("; ".join(filter(None, parts)), " " * MARGIN)):
-            click.echo(textwrap.fill(line, WIDTH, initial_indent=first, subsequent_indent=" " * MARGIN))
-    click.echo("\n" + textwrap.fill(SHARE_HELP, WIDTH))
-    click.echo("\n" + textwrap.fill(MISTAKES_HELP, WIDTH))
-    click.echo("\nbudget: {KEY: NUMBER, ...} sets limits for every program that runs:")
-    for key, text in budget_lines():
-        first = f"  {key:<{MARGIN - 3}} "
-        click.echo(textwrap.fill(text, WIDTH, initial_indent=first, subsequent_indent=" " * MARGIN))
+        rows += [(name, text), ("", "; ".join(filter(None, parts)))]
     others = ", ".join(each for each in kind_names() if each != kind)
-    click.echo("\n" + textwrap.fill(f"Other kinds: {others}.", WIDTH))
+    budget = "budget: {KEY: NUMBER, ...} sets limits for every program that runs:"
+    blocks: list[Block] = [
+        labelled_table(row for row in rows if row[1]),
+        Text(SHARE_HELP),
+        Text(MISTAKES_HELP),
+        labelled_table(budget_lines(), budget, indent=2),
+        Text(f"Other kinds: {others}."),
+    ]
+    click.echo("\n".join(lines_of(blocks)))
 
 
 @click.command()
@@ -109,7 +110,7 @@ def checks(kind: str) -> None:
     help="Folder with the solution and the wrong solutions, if not FOLDER.",
 )
 @options.level
-def self_test(folder: Path, solutions: Path | None, level: int | None) -> None:
+def self_test(folder: Path, solutions: Path | None, level: str | None) -> None:
     """Test the assignment in FOLDER: the starter must run but not pass, the solution must earn all
     points, and each wrong solution must lose the criterion in its file name. Then print how likely a good submission
     is to fail by bad luck.
@@ -140,13 +141,16 @@ def self_test(folder: Path, solutions: Path | None, level: int | None) -> None:
         options.fail(str(error))
     chances = tuple(unfair_fail_odds(assignment, secret=assignment.has_secrets))
     if chances:
-        click.echo(
-            "\nProbability that a submission fails by bad luck, if each episode succeeds with probability"
+        title = "Probability that a submission fails by bad luck, if each episode succeeds with probability"
+        columns = (Column("", CellStyle.TEXT), *(Column(f"{success:.0%}") for success in SUCCESS_RATES))
+        odds = tuple(
+            (
+                f"{each.criterion} ({each.required_passes} of {each.episodes})",
+                *(f"{unfair:.1%}" for unfair in each.probabilities),
+            )
+            for each in chances
         )
-        click.echo(f"{'':<32}" + "".join(f"{success:>9.0%}" for success in SUCCESS_RATES))
-        for each in chances:
-            rule = f"{each.criterion} ({each.required_passes} of {each.episodes})"
-            click.echo(f"{rule:<32}" + "".join(f"{unfair:>9.1%}" for unfair in each.probabilities))
+        click.echo("\n" + "\n".join(lines_of([Table("odds", title, columns, odds, is_ruled=False)])))
     raise SystemExit(options.EXIT_FAILED if failed else 0)
 
 

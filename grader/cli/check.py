@@ -53,7 +53,7 @@ _format_option = click.option(
 def check(
     file: Path,
     folder: Path,
-    level: int | None,
+    level: str | None,
     secret: bool,
     hints: int,
     format_name: str,
@@ -68,14 +68,14 @@ def check(
     \b
     grader check my_controller.py --assignment assignments/reach
 
-    FILE may be anybody's, so its programs run confined: at the assignment's level, at least 1. A machine that cannot do
-    that refuses. Your own program may run without: --level 0.
+    FILE may be anybody's, so its programs run confined: at the assignment's level, at least 1; with --secret at the highest
+    of this machine. A machine that cannot do that refuses. Your own program may run without: --level 0.
 
     Exit code: 0 passed; 1 not passed; 2 an argument is wrong or something is missing; 3 the grader failed, no grade.
     """
     from grader.cli.progress import shown_progress
     from grader.grading import GradingOptions, LevelTooLow, open_grading
-    from grader.reports import FORMATS
+    from grader.reports import FORMATS, STUDENT_FORMATS
     from grader.submission import read_submission
     from grader.submitted_files import SubmissionRefused
 
@@ -88,9 +88,12 @@ def check(
     try:
         submission = read_submission(file, assignment.submit)
         if submission.note:
-            click.echo(submission.note, err=True)
+            options.warn(f"Note: {submission.note}")
         with shown_progress(progress_descriptor) as show_progress:
-            grading_options = GradingOptions(grading_level, secret, show_progress=show_progress)
+            is_for_student = for_student or format_name in STUDENT_FORMATS
+            grading_options = GradingOptions(
+                grading_level, secret, secret and is_for_student, show_progress=show_progress
+            )
             with open_grading(assignment, submission, grading_options) as grading:
                 result = grading.result()
                 picture = _worst_picture(grading, replay)

@@ -13,9 +13,10 @@ import click
 from grader.cli import options
 from grader.cohort.gradebook import (
     UNREADABLE,
+    WAITING,
     as_csv,
     as_json,
-    attention_lines,
+    attention_blocks,
     changes,
     choose_submissions,
     gradebook_rows,
@@ -38,7 +39,9 @@ from grader.cohort.queue import (
 )
 from grader.grading import GradingOptions
 from grader.reports.cleaning import clean_line, spreadsheet_cell
-from kit.cli.options import executor_options
+from kit.cli.options import describe_error, executor_options
+from kit.document.blocks import CellStyle, Column, Table
+from kit.document.layout import lines_of
 from kit.host.job_executors import read_shard, serve_jobs
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
@@ -53,6 +56,11 @@ from kit.world.problems import WorldError
 @options.level
 @options.secret
 @click.option(
+    "--examples",
+    is_flag=True,
+    help="With --secret: look for public runs that show students what only secret seeds show. Takes longer.",
+)
+@click.option(
     "--queue",
     "queue_folder",
     type=click.Path(file_okay=False, path_type=Path),
@@ -63,8 +71,9 @@ from kit.world.problems import WorldError
 def cohort(
     submissions: Path,
     folder: Path,
-    level: int | None,
+    level: str | None,
     secret: bool,
+    examples: bool,
     queue_folder: Path,
     jobs: int,
     executor: str,
@@ -76,11 +85,11 @@ def cohort(
     grader cohort handed_in --assignment tasks/one --queue grades --secret
     grader gradebook grades
 
-    You can interrupt it; run the same command to continue. At the end it lists the submissions that need your
+    Programs run at the highest confinement level of this machine; --level 1 takes less time. You can interrupt it; run the same command to continue. At the end it lists the submissions that need your
     attention.
 
-    Exit code: 0 all submissions have a grade; 1 some cannot be read; 2 an argument is wrong; 3 the grader failed for
-    some.
+    Exit code: 0 all submissions have a grade, or wait for shards; 1 some cannot be read; 2 an argument is wrong; 3 the
+    grader failed for some, or a worker left no result for some.
     """
 
     def count(key: str) -> None:
@@ -90,8 +99,10 @@ def cohort(
     if secret:
         options.warn_of_short_seeds(assignment)
     queue = Queue(queue_folder.absolute())
-    wanted = options.level_for_untrusted(assignment, level, secret=secret, runs_here=executor == "local")
-    grading_options = GradingOptions(wanted, secret, may_lower_level=False)
+    wanted = options.level_for_untrusted(
+        assignment, level, secret=secret, for_class=True, runs_here=executor == "local"
+    )
+    grading_options = GradingOptions(wanted, secret, secret and examples, may_lower_level=False)
     if secret and wanted < assignment.level:
         options.fail(
             f"Secret seeds are used at level {int(assignment.level)} or higher, not at {int(wanted)}."
@@ -109,12 +120,13 @@ def cohort(
             elif executor == "local":
                 run_locally(queue, waiting, jobs, count)
     except (QueueError, ExecutorUnavailable, OSError) as error:
-        options.fail(str(error))
-    raise SystemExit(publish(queue))
+        options.fail(describe_error(error))
+    raise SystemExit(publish(queue, is_graded=executor != "none"))
 
 
-def publish(queue: Queue) -> int:
-    """Writes the gradebook into the queue folder, lists who has no grade, and returns the exit code."""
+def publish(queue: Queue, *, is_graded: bool) -> int:
+    """Writes the gradebook into the queue folder, lists who has no grade, and returns the exit code. ``is_graded``: every job
+    should have a result by now."""
     table = gradebook_rows(queue)
     write_atomically(queue.folder / "gradebook.csv", as_csv(table).encode())
     write_atomically(queue.folder / "gradebook.json", as_json(table).encode())
@@ -123,9 +135,14 @@ def publish(queue: Queue) -> int:
     if assignment.has_secrets and not queue.grading_options().secret:
         unjudged = unjudged_line(table, assignment.max_points)
         click.echo(" ".join(filter(None, ("Graded without --secret.", unjudged))))
-    for line in attention_lines(table):
-        click.echo(line)
+    if attention := attention_blocks(table):
+        click.echo("\n".join(lines_of(attention)))
     verdicts = {row.verdict for row in table}
+    if is_graded and WAITING in verdicts:
+        click.echo(
+            "A worker left no result for some, one that cannot be read, or another job's: run the same command to grade them."
+        )
+        return options.EXIT_BROKEN
     if "broken" in verdicts:
         return options.EXIT_BROKEN
     return options.EXIT_FAILED if UNREADABLE in verdicts else 0
@@ -151,11 +168,11 @@ def work(folder: Path, shard: str, jobs: int) -> None:
     queue = Queue(folder.absolute())
     try:
         secret = queue.grading_options().secret
-        options.level_for_untrusted(queue.assignment(), int(queue.level()), secret=secret)
+        options.level_for_untrusted(queue.assignment(), str(int(queue.level())), secret=secret)
         keys = queue.waiting(share)
         run_locally(queue, keys, jobs, lambda key: None)
     except (QueueError, OSError) as error:
-        options.fail(str(error))
+        options.fail(describe_error(error))
     click.echo(f"{len(keys)} graded")
 
 
@@ -174,7 +191,7 @@ def worker(folder: Path) -> None:
 @click.option(
     "--late",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="YAML file with due, grace_minutes, per_day, least, latest_days.",
+    help="YAML file with due, zone, grace_minutes, per_day, least, latest_days.",
 )
 @click.option(
     "--times",
@@ -198,10 +215,15 @@ def gradebook(
     folder: Path, late: Path | None, times: Path | None, choose: str, against: Path | None, as_json_text: bool
 ) -> None:
     """Print the gradebook of the queue FOLDER. The late rules and the choice among several submissions apply only to
-    this output; they are not saved."""
+    this output; they are not saved.
+
+    A date as `due` means the end of that day. Times need their offset (+01:00, Z) or a `zone` in the late rules, such as
+    Europe/Lisbon; standard error says how `due` was read.
+    """
     try:
         policy = None if late is None else read_policy(late)
-        submission_times = {} if times is None else read_submission_times(times)
+        zone = None if policy is None else policy.zone
+        submission_times = {} if times is None else read_submission_times(times, zone)
         table = gradebook_rows(Queue(folder.absolute()), policy, submission_times)
         timeless = (
             [row.name for row in table if row.name not in submission_times] if policy is not None else []
@@ -209,7 +231,9 @@ def gradebook(
         table = choose_submissions(table, submission_times, choose)
         before = None if against is None else read_json(against.read_text(encoding="utf-8"))
     except (WorldError, QueueError, ValueError, OSError) as error:
-        options.fail(str(error))
+        options.fail(describe_error(error))
+    if policy is not None:
+        click.echo(policy.due_text, err=True)
     if timeless:
         named = ", ".join(map(clean_line, timeless[:5])) + (", ..." if len(timeless) > 5 else "")
         click.echo(f"{len(timeless)} without a time count as in time: {named}", err=True)
@@ -281,9 +305,21 @@ def ladder(folder: Path, names: tuple[str, ...], as_csv: bool, unconfined: bool)
             numbers = [f"{number:.0f}" for number in (each.elo, *each.interval)]
             writer.writerow([place, spreadsheet_cell(each.program), *numbers, f"{each.wins:g}", each.races])
         return
-    click.echo(f"{'':>4} {'program':<28} {'Elo':>6} {'95 %':>14}   won")
-    for place, each in enumerate(rows, 1):
-        interval = f"{each.interval[0]:+.0f} to {each.interval[1]:+.0f}"
-        click.echo(
-            f"{place:>3}. {clean_line(each.program):<28.28} {each.elo:>+6.0f} {interval:>14}   {each.wins:g} of {each.races}"
+    columns = (
+        Column(""),
+        Column("program", CellStyle.TEXT),
+        Column("Elo"),
+        Column("95 %"),
+        Column("won"),
+    )
+    cells = tuple(
+        (
+            f"{place}.",
+            clean_line(each.program),
+            f"{each.elo:+.0f}",
+            "{:+.0f} to {:+.0f}".format(*each.interval),
+            f"{each.wins:g} of {each.races}",
         )
+        for place, each in enumerate(rows, 1)
+    )
+    click.echo("\n".join(lines_of([Table("ladder", "", columns, cells, is_ruled=False)])))

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import click
 
+from kit.cli.options import on_terminal
+
 if TYPE_CHECKING:
     from grader.assignment import Assignment
     from kit.host.sandbox.confinement import Level
@@ -22,8 +24,15 @@ EXIT_BROKEN: Final = 3
 
 def fail(message: str, code: int = EXIT_BAD_INPUT) -> NoReturn:
     """Ends the verb with this message on standard error."""
-    click.echo(message, err=True)
+    warn(on_terminal(message))
     raise SystemExit(code)
+
+
+def warn(message: str) -> None:
+    """Prints a message on standard error: it may hold a student's words, and that of a CI job is read for commands."""
+    from grader.reports.cleaning import plain
+
+    click.echo(plain(message), err=True)
 
 
 assignment: Decorator = click.option(
@@ -35,8 +44,8 @@ assignment: Decorator = click.option(
 )
 level: Decorator = click.option(
     "--level",
-    type=click.IntRange(0, 3),
-    help="Exact confinement level of programs (default: the assignment's, and at least 1).",
+    type=click.Choice(["0", "1", "2", "3", "highest"]),
+    help="Confinement level of programs, exactly that; highest: the highest of this machine.",
 )
 secret: Decorator = click.option(
     "--secret", is_flag=True, help="Also use the secret seeds: for the grade, on the teacher's machine."
@@ -76,20 +85,31 @@ def warn_of_short_seeds(assignment: Assignment) -> None:
 
 
 def level_for_untrusted(
-    assignment: Assignment, number: int | None, *, secret: bool, runs_here: bool = True
+    assignment: Assignment, text: str | None, *, secret: bool, for_class: bool = False, runs_here: bool = True
 ) -> Level:
     """The confinement level at which programs of others are graded; exit code 2 if they run here and this machine does
-    not reach it."""
+    not reach it.
+
+    ``text``: the option ``--level``. Without it, the level is the highest of this machine where secrets are used or a class
+    is graded, and else the assignment's; at least 1 in any case.
+    """
     from grader import grading
+    from kit.host.sandbox.confinement import Level
     from kit.host.sandbox.probe import highest_level_up_to
 
-    level = grading.level_for_untrusted(assignment, to_level(number))
+    level = grading.level_for_untrusted(assignment, to_level(text))
+    if text is None and (secret or for_class):
+        level = max(level, highest_level_up_to(Level.ANOTHER_USER))
     if not runs_here or highest_level_up_to(level) == level:
         return level
     fail(grading.level_unavailable_text(assignment, level, secret=secret))
 
 
-def to_level(number: int | None) -> Level | None:
+def to_level(text: str | None) -> Level | None:
+    """Returns the level that was asked for; None where none was. ``highest``: of this machine, but never below 1."""
     from kit.host.sandbox.confinement import Level
+    from kit.host.sandbox.probe import highest_level_up_to
 
-    return None if number is None else Level(number)
+    if text == "highest":
+        return max(Level.FILTERED, highest_level_up_to(Level.ANOTHER_USER))
+    return None if text is None else Level(int(text))

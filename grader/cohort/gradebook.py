@@ -9,13 +9,15 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from datetime import UTC, datetime
+from datetime import UTC, datetime, tzinfo
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from grader.cohort.queue import Queue, QueueEntry, UnreadableWork
 from grader.reports.cleaning import clean_line, spreadsheet_cell
+from kit.document.blocks import Block, Text
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict, format_points
 from kit.world.documents import open_document
 
@@ -35,10 +37,19 @@ class LatePolicy:
     """Share that is always kept, until ``latest_days``."""
     latest_days: float | None = None
     """Days after which nothing counts; None for no such limit."""
+    zone: tzinfo | None = None
+    """In which times are read that name none."""
+
+    @property
+    def due_text(self) -> str:
+        """How the due date was read."""
+        zone = "" if self.zone is None else f" {self.zone}"
+        return f"due {self.due.isoformat(sep=' ')}{zone}"
 
     def kept(self, submitted: datetime) -> float:
         """Returns the share of its points that a submission keeps."""
-        late = (submitted - self.due).total_seconds() - self.grace_s
+        # In one zone Python subtracts what clocks show, and they skip or repeat an hour twice a year.
+        late = (submitted.astimezone(UTC) - self.due.astimezone(UTC)).total_seconds() - self.grace_s
         if late <= 0:
             return 1.0
         if self.latest_days is not None and late > self.latest_days * DAY:
@@ -47,17 +58,28 @@ class LatePolicy:
 
 
 def read_policy(file: Path) -> LatePolicy:
-    """Reads ``due``, ``grace_minutes``, ``per_day``, ``least`` and ``latest_days`` from a YAML file. Raises WorldError."""
+    """Reads ``due``, ``zone``, ``grace_minutes``, ``per_day``, ``least`` and ``latest_days`` from a YAML file.
+
+    ``due`` is a time with its offset, or in ``zone``; a date alone means the end of that day. Raises WorldError.
+    """
     with open_document(file) as section:
-        due = parse_time(section.name("due"))
-        if due is None:
-            section.error("must be a date and time such as 2026-11-30T23:59:00+01:00", "due")
+        zone = None
+        if section.has("zone"):
+            zone = find_zone(section.name("zone"))
+            if zone is None:
+                section.error("must be a time zone such as Europe/Lisbon, or UTC", "zone")
+        due = None
+        try:
+            due = parse_time(section.name("due"), zone, whole_day=True)
+        except ValueError as problem:
+            section.error(str(problem), "due")
         return LatePolicy(
             due or datetime.now(UTC),
             60 * section.number("grace_minutes", 0.0, minimum=0),
             section.number("per_day", 0.1, minimum=0, maximum=1),
             section.number("least", 0.0, minimum=0, maximum=1),
             section.number("latest_days", minimum=0) if section.has("latest_days") else None,
+            zone,
         )
 
 
@@ -70,32 +92,68 @@ class SubmissionTime:
     """By default the submission's own name."""
 
 
-def read_submission_times(file: Path) -> Mapping[str, SubmissionTime]:
+def read_submission_times(file: Path, zone: tzinfo | None = None) -> Mapping[str, SubmissionTime]:
     """Reads a CSV file with the columns ``name`` and ``submitted``, and ``student`` if some submit more than once.
 
-    Raises ValueError, OSError.
+    ``zone``: of times that name none. Raises ValueError, OSError.
     """
     arrivals = {}
     with file.open(newline="", encoding="utf-8-sig") as opened:
         for number, row in enumerate(csv.DictReader(opened), 2):
-            name, at = row.get("name") or "", parse_time(row.get("submitted") or "")
-            if at is None or not name:
-                raise ValueError(
-                    f"{file}:{number}: a row needs a name and a time such as 2026-11-30T23:59:00+01:00"
-                )
+            name = row.get("name") or ""
+            if not name:
+                raise ValueError(f"{file}:{number}: a row needs a name, and a time such as {EXAMPLE}")
+            try:
+                at = parse_time(row.get("submitted") or "", zone)
+            except ValueError as problem:
+                raise ValueError(f"{file}:{number}: submitted {problem}") from None
             if name in arrivals:
                 raise ValueError(f"{file}:{number}: {name} is there twice")
             arrivals[name] = SubmissionTime(at, (row.get("student") or "").strip() or name)
     return arrivals
 
 
-def parse_time(text: str) -> datetime | None:
-    """Parses a date and time; without a zone it is UTC. Returns None for anything else."""
+EXAMPLE: Final = "2026-11-30T23:59:00+01:00"
+
+
+def find_zone(name: str) -> tzinfo | None:
+    """The time zone of a name of the IANA's; None for a name of none, or one that this machine does not know."""
+    if name == "UTC":
+        return UTC
     try:
-        at = datetime.fromisoformat(text.strip())
-    except ValueError:
+        return ZoneInfo(name)
+    except (ZoneInfoNotFoundError, ValueError, OSError):
         return None
-    return at if at.tzinfo is not None else at.replace(tzinfo=UTC)
+
+
+def parse_time(text: str, zone: tzinfo | None = None, *, whole_day: bool = False) -> datetime:
+    """Parses a date and time with its offset, or in ``zone``. ``whole_day``: a date alone is the end of that day.
+
+    Raises ValueError for anything else, also for a time that can be read in two ways: in no zone, of a day alone, or in
+    the hour that clocks skip or repeat. The message begins with a verb.
+    """
+    text = text.strip()
+    try:
+        at = datetime.fromisoformat(text)
+    except ValueError:
+        raise ValueError(f"must be a date and time such as {EXAMPLE}") from None
+    is_day = ":" not in text and "T" not in text.upper()
+    if is_day and not whole_day:
+        raise ValueError(f"names a day and no time ({text}): write when, such as {EXAMPLE}")
+    if is_day:
+        at = at.replace(hour=23, minute=59, second=59)
+    if at.tzinfo is not None:
+        return at
+    if zone is None:
+        raise ValueError(
+            f"names no time zone ({text}): write it, such as {at.isoformat()}+01:00 or {at.isoformat()}Z, "
+            "or give the late rules a zone, such as `zone: Europe/Lisbon`"
+        )
+    first, second = (at.replace(tzinfo=zone, fold=fold) for fold in (0, 1))
+    if first.utcoffset() != second.utcoffset():
+        kind = "twice" if first.utcoffset() > second.utcoffset() else "never"  # type: ignore[operator]  # both have one
+        raise ValueError(f"comes {kind} in {zone} on that day ({text}): write its offset, such as {EXAMPLE}")
+    return first
 
 
 UNREADABLE: Final = "unreadable"
@@ -272,19 +330,22 @@ def summary(table: Sequence[GradebookRow]) -> str:
     return f"{text}, at confinement {word} {', '.join(map(str, levels))}"
 
 
-def attention_lines(table: Sequence[GradebookRow]) -> Iterator[str]:
-    """Yields a line for each submission that has no grade and why: first the unreadable ones, then the grader's faults."""
+def attention_blocks(table: Sequence[GradebookRow]) -> list[Block]:
+    """Each submission that has no grade and why: first the unreadable ones, then the grader's faults."""
     order = (UNREADABLE, GradingVerdict.BROKEN.value)
     rows = sorted(
         (row for row in table if row.verdict in order), key=lambda row: (order.index(row.verdict), row.name)
     )
     if not rows:
-        return
-    yield f"{len(rows)} {'has' if len(rows) == 1 else 'have'} no grade and need{'s' * (len(rows) == 1)} your attention:"
-    for row in rows[:MAX_LISTED]:
-        yield f"  {clean_line(row.name)}: {row.verdict}. {row.note}"
+        return []
+    verbs = ("has", "needs") if len(rows) == 1 else ("have", "need")
+    told = [f"{clean_line(row.name)}: {row.verdict}. {row.note}" for row in rows[:MAX_LISTED]]
     if len(rows) > MAX_LISTED:
-        yield f"  and {len(rows) - MAX_LISTED} more: see the gradebook"
+        told.append(f"and {len(rows) - MAX_LISTED} more: see the gradebook")
+    return [
+        Text(f"{len(rows)} {verbs[0]} no grade and {verbs[1]} your attention:"),
+        *(Text(each, indent=2, hang=2, is_tight=True) for each in told),
+    ]
 
 
 def unjudged_line(table: Sequence[GradebookRow], max_points: float) -> str:

@@ -62,6 +62,10 @@ class LadderRow:
     """Comparisons with others."""
 
 
+RACE_LIMIT_S: Final = 60.0
+"""Wall clock of one race [s]: an honest one takes a second or two."""
+
+
 def find_programs(folder: Path) -> dict[str, Path]:
     """The programs of a folder: each Python file, and of each folder in it the only one, by name. Links are none: what they
     lead to was not handed in."""
@@ -81,12 +85,16 @@ def race_all(
     programs: dict[str, Path],
     levels: Sequence[GameLevel],
     on_race: Callable[[LadderRace], object] = lambda race: None,
+    *,
+    wall_limit_s: float = RACE_LIMIT_S,
 ) -> list[LadderRace]:
     """Races every program on every level: the races of all pairs, since nobody is in another's way."""
     races = []
     for level in levels:
         for name, file in programs.items():
-            finish, _ = race_controller(level, find_controller(str(file.absolute())))
+            finish, _ = race_controller(
+                level, find_controller(str(file.absolute())), wall_limit_s=wall_limit_s
+            )
             races.append(_race_of(name, level, finish))
             on_race(races[-1])
     return races

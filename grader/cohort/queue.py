@@ -11,23 +11,35 @@ import hashlib
 import json
 import shutil
 import sys
+import unicodedata
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cache, partial
+from itertools import count
 from pathlib import Path
 from typing import Any, Final
 
 from grader.assignment import Assignment
-from grader.grading import GradingOptions, grade, grader_version, level_for_untrusted
+from grader.grading import GradingOptions, grade, level_for_untrusted
 from grader.reading import read_assignment
 from grader.submission import Submission, read_submission, submission_name
 from grader.submitted_files import IGNORED_NAMES, SubmissionRefused, SubmissionUnreadable
+from grader.version import grader_version
+from kit.field_types import check_field_types
 from kit.host import job_executors
-from kit.host.job_executors import MAX_TRIES, JobPool, in_shard
+from kit.host.job_executors import MAX_TRIES, JobPool, in_shard, read_result
 from kit.host.job_executors import ExecutorUnavailable as ExecutorUnavailable
 from kit.host.python_command import python_command
 from kit.host.sandbox.confinement import Level
-from kit.school.result import SCHEMA, CriterionResult, CriterionStatus, GradingResult, GradingVerdict
+from kit.school.result import (
+    PUBLIC_SEEDS,
+    SCHEMA,
+    WITH_SECRET,
+    CriterionResult,
+    CriterionStatus,
+    GradingResult,
+    GradingVerdict,
+)
 from kit.workspace import make_private_folder, write_atomically
 
 MANIFEST: Final = "manifest.json"
@@ -96,23 +108,49 @@ class Queue:
         return Level(self.manifest()["level"])
 
     def grading_options(self) -> GradingOptions:
-        return GradingOptions(self.level(), bool(self.manifest()["secret"]), may_lower_level=False)
+        """How every job is graded."""
+        manifest = self.manifest()
+        return GradingOptions(
+            self.level(), bool(manifest["secret"]), bool(manifest["examples"]), may_lower_level=False
+        )
 
     def entries(self) -> tuple[QueueEntry, ...]:
         return tuple(QueueEntry(**each) for each in self.manifest()["entries"])
 
     def result(self, key: str) -> GradingResult | None:
-        """Returns a job's result; None if there is none that can be read, so that it is graded again."""
+        """Returns a job's result; None if there is none that can be read and is this job's, so that it is graded again."""
         try:
-            return GradingResult.from_dict(json.loads(self.result_file(key).read_bytes()))
+            result = GradingResult.from_dict(read_result(self.result_file(key)))
         except (OSError, KeyError, TypeError, ValueError):
             return None
+        return result if self._is_result_of(key, result) else None
+
+    def _is_result_of(self, key: str, result: GradingResult) -> bool:
+        """Whether a worker has graded this job, and not another submission, at another level, by another assignment."""
+        keys = (
+            _key_of(
+                result.submission,
+                result.assignment_version,
+                result.grader_version,
+                is_secret=result.seeds == WITH_SECRET,
+                has_examples=has_examples,
+                level=result.level,
+            )
+            for has_examples in (False, True)
+        )
+        if key not in keys:
+            return False
+        assignment = _assignment(self.folder, result.assignment_version)
+        wanted = [(each.id, each.points) for each in assignment.tests]
+        return [(each.id, each.max_points) for each in result.tests] == wanted
 
     def unreadable(self, key: str) -> UnreadableWork | None:
         """Returns why a job's work could not be read; None if it could, or has not been tried."""
         try:
-            return UnreadableWork(**json.loads(self.result_file(key).read_bytes()))
-        except (OSError, TypeError, ValueError):
+            content = read_result(self.result_file(key))
+            check_field_types(UnreadableWork, content)
+            return UnreadableWork(**content)
+        except (OSError, KeyError, TypeError, ValueError):
             return None
 
     def is_waiting(self, key: str) -> bool:
@@ -130,9 +168,16 @@ class Queue:
         return Submission(content["name"], content["main"], files)
 
     def save_result(self, key: str, result: GradingResult) -> None:
+        """Saves a job's result. One without a grade never takes the place of a grade, however late it comes."""
+        if result.verdict is GradingVerdict.BROKEN and self._has_grade(key):
+            return
         write_atomically(
             self.result_file(key), (json.dumps(result.as_dict(), allow_nan=False) + "\n").encode()
         )
+
+    def _has_grade(self, key: str) -> bool:
+        known = self.result(key)
+        return known is not None and known.verdict is not GradingVerdict.BROKEN
 
     def save_unreadable(self, key: str, refused: SubmissionRefused) -> None:
         """Saves instead of a result that the work cannot be read."""
@@ -144,8 +189,20 @@ class Queue:
 
 def job_key(submission: Submission, assignment: Assignment, options: GradingOptions) -> str:
     """Returns one name for everything that decides a result."""
-    level = level_for_untrusted(assignment, options.level)
-    parts = (submission.digest, assignment.version, grader_version(), SCHEMA, options.secret, int(level))
+    return _key_of(
+        submission.digest,
+        assignment.version,
+        grader_version(),
+        is_secret=options.secret,
+        has_examples=options.examples,
+        level=int(level_for_untrusted(assignment, options.level)),
+    )
+
+
+def _key_of(
+    submission: str, assignment: str, grader: str, *, is_secret: bool, has_examples: bool, level: int
+) -> str:
+    parts = (submission, assignment, grader, SCHEMA, is_secret, has_examples, level)
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
@@ -166,6 +223,7 @@ def prepare_queue(
         "assignment_version": assignment.version,
         "grader_version": grader_version(),
         "secret": options.secret,
+        "examples": options.examples,
         "level": int(level),
         "entries": [asdict(each) for each in entries],
     }
@@ -180,10 +238,8 @@ def _entries(
     for path in sorted(cohort.iterdir()):
         if path.name.startswith(".") or path.name.lower() in IGNORED_NAMES:
             continue
-        name = submission_name(path)
-        if name in names:
-            name = path.name
-        names.add(name)
+        name = _unlike(names, submission_name(path), path.name)
+        names.add(_look(name))
         try:
             submission = read_submission(path, assignment.submit)
         except SubmissionUnreadable as unreadable:
@@ -198,6 +254,22 @@ def _entries(
             job = {"name": name, "main": submission.main, "files": files}
             write_atomically(queue.job(key), json.dumps(job).encode())
         yield QueueEntry(name, key, note=submission.note)
+
+
+def _unlike(looks: set[str], name: str, file_name: str) -> str:
+    """Returns a submission's name, or its file's, if that looks like no other; else one with a number."""
+    for candidate in (name, file_name):
+        if _look(candidate) not in looks:
+            return candidate
+    return next(each for number in count(2) if _look(each := f"{file_name} ({number})") not in looks)
+
+
+def _look(name: str) -> str:
+    """Returns what a reader takes a name for: without double blanks, letters of other widths, and what cannot be seen."""
+    shown = "".join(
+        sign for sign in unicodedata.normalize("NFKC", name) if sign.isprintable() or sign.isspace()
+    )
+    return " ".join(shown.split()).casefold()
 
 
 def _copy_assignment(queue: Queue, assignment: Assignment) -> None:
@@ -244,6 +316,11 @@ def _grade_job(queue: Queue, key: str) -> GradingResult:
     return result
 
 
+def _limit_s(queue: Queue) -> float:
+    """How long a worker may take for one job [s]: after that it counts as standing still."""
+    return MAX_TRIES * (queue.assignment().submission_limit_s + GRACE_S)
+
+
 class WorkerPool(JobPool):
     """Runs ``jobs`` worker processes. A worker that dies, or stands still, costs its job one try and nothing else."""
 
@@ -254,13 +331,14 @@ class WorkerPool(JobPool):
             jobs,
             on_done,
             partial(record_incident, queue),
-            MAX_TRIES * (queue.assignment().submission_limit_s + GRACE_S),
+            _limit_s(queue),
         )
 
 
 def record_incident(queue: Queue, key: str) -> None:
-    """Saves for a job that it has no grade, because its worker died every time."""
-    queue.save_result(key, _incident_result(queue, key))
+    """Saves for a job that it has no grade, because its worker died every time; unless it had saved the result before."""
+    if queue.is_waiting(key):
+        queue.save_result(key, _incident_result(queue, key))
 
 
 def _incident_result(queue: Queue, key: str) -> GradingResult:
@@ -280,7 +358,7 @@ def _incident_result(queue: Queue, key: str) -> GradingResult:
         assignment.version,
         submission.digest,
         grader_version(),
-        "public+secret" if options.secret else "public",
+        WITH_SECRET if options.secret else PUBLIC_SEEDS,
         int(options.level or 0),
         sys.platform,
         tests,
@@ -309,7 +387,7 @@ def run_on_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callab
     Only keys are sent. A job that repeatedly kills its worker gets no grade; the others go on.
     """
     lost = partial(record_incident, queue)
-    job_executors.run_on_dask(queue.folder, grade_one_job, keys, address, on_done, lost)
+    job_executors.run_on_dask(queue.folder, grade_one_job, keys, address, on_done, lost, _limit_s(queue))
 
 
 def grade_one_job(folder: str, key: str) -> str:

@@ -72,13 +72,17 @@ class EvidenceCollector(Protocol):
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         """The evidence for a criterion; runs what has not run yet."""
 
+    def public_evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        """The part of it that no secret decides; runs what of that has not run yet."""
+
     def collected(self) -> Sequence[Evidence]:
         """All evidence collected so far, besides counterparts."""
 
     def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
         """Yields a few more pieces of public evidence, each run when it is asked for.
 
-        They show a student what goes wrong where only secret evidence lost points, and decide no points.
+        They show a student what goes wrong where only secret evidence loses points, and decide no points. What a program
+        says in them is shown, so they are run before anything secret is.
         """
 
 
@@ -118,25 +122,51 @@ class EvidenceRecord:
 
 
 class FixedEvidence:
-    """A collector of evidence that is complete from the start and the same for every criterion."""
+    """A collector of evidence that is complete from the start, the same for every criterion, and public."""
 
-    def __init__(
-        self,
-        evidence: Sequence[Evidence],
-        level: Level,
-        collect_counterpart: Callable[[], Evidence] | None = None,
-    ) -> None:
-        """``collect_counterpart``: collects the same with the public seeds, where ``evidence`` is secret."""
+    def __init__(self, evidence: Sequence[Evidence], level: Level) -> None:
         self.level = level
         self._evidence = tuple(evidence)
-        self._collect_counterpart = collect_counterpart
-        self._counterpart: Evidence | None = None
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         return self._evidence
 
+    def public_evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        return self._evidence
+
     def collected(self) -> Sequence[Evidence]:
         return self._evidence
+
+    def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
+        return iter(())
+
+
+class SingleEvidence:
+    """A collector of one piece of evidence, the same for every criterion, which is collected when it is first needed."""
+
+    def __init__(
+        self,
+        collect: Callable[[], Evidence],
+        level: Level,
+        collect_counterpart: Callable[[], Evidence] | None = None,
+    ) -> None:
+        """``collect_counterpart``: collects the same with the public seeds, where what ``collect`` collects is secret."""
+        self.level = level
+        self._collect = collect
+        self._evidence: Evidence | None = None
+        self._collect_counterpart = collect_counterpart
+        self._counterpart: Evidence | None = None
+
+    def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        if self._evidence is None:
+            self._evidence = self._collect()
+        return (self._evidence,)
+
+    def public_evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        return self.evidence(criterion) if self._collect_counterpart is None else ()
+
+    def collected(self) -> Sequence[Evidence]:
+        return () if self._evidence is None else (self._evidence,)
 
     def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
         if self._collect_counterpart is None:
@@ -243,6 +273,9 @@ class EpisodeCollector(CachingCollector):
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         return [self._evidence_of(spec) for spec in self._specs(criterion)]
+
+    def public_evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        return [self._evidence_of(spec) for spec in self._specs(criterion) if not spec.secret]
 
     def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
         specs = counterpart_specs(self._assignment, criterion)

@@ -1,5 +1,4 @@
-"""The record of one graded episode, which checks measure and to which nothing comes from the student's process; and what its nodes
-connect to that no other node offers or uses."""
+"""The record of one graded episode, which checks measure and to which nothing comes from the student's process."""
 
 from __future__ import annotations
 
@@ -7,141 +6,23 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
 from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.host.failure import Failure
-from kit.msg.message import type_name
-from kit.plain_text import counted, join_names, nearest_name
+from kit.plain_text import counted, join_names
 from kit.render.clearance import nearest_wall_distances, side_wall_distances
 from kit.render.scene import Disc, Scene, SceneBody
 from kit.render.world_text import scene_rows
-from kit.ros.graph.directory import Directory, NodeEntry, describe_mismatch
-from kit.ros.graph.graph import Graph
+from kit.ros.graph.connections import NodeConnections
 from kit.ros.node.timer import TIMER_WITHOUT_CALLBACK
 from kit.run.metrics import DriveMetrics
 from kit.run.recording import ACCEPT, Recording
 from kit.run.scenario import Scenario
 from kit.world.records import Circle, Polygon
-
-UNHEARD_BY_DESIGN: Final = frozenset({"/rosout", "/parameter_events"})
-"""Topics that every node has and that need no other end."""
-MAX_MISTAKES: Final = 3
-MAX_NAMES: Final = 6
-
-
-@dataclass(frozen=True, slots=True)
-class NodeConnections:
-    """The nodes that a program had when its episode ended."""
-
-    nodes: tuple[str, ...] = ()
-    """Their full names, sorted."""
-    mistakes: tuple[str, ...] = ()
-    """Sentences about connections without another end, such as a subscription of a topic that nobody publishes."""
-    heard: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """Topics to which each node subscribes, sorted, without those that every node has."""
-    profiles: tuple[str, ...] = ()
-    """One line for each publisher and subscription, ``/node publishes /topic RELIABLE VOLATILE 10``, sorted."""
-
-
-class ConnectionsReader:
-    """Reads the connections of the nodes that join a graph after this reader was made: those of the program."""
-
-    def __init__(self, graph: Graph) -> None:
-        self._graph = graph
-        self._others = frozenset(graph.directory.nodes)
-
-    def read(self) -> NodeConnections:
-        with self._graph.lock:
-            directory = self._graph.directory
-            handles = [handle for handle in directory.nodes if handle not in self._others]
-            mistakes = [mistake for handle in handles for mistake in _mistakes(directory, handle)]
-            heard = {handle.full_name: _heard_topics(handle) for handle in handles}
-            profiles = [line for handle in handles for line in _profiles(handle)]
-        return NodeConnections(
-            tuple(sorted(heard)), tuple(mistakes[:MAX_MISTAKES]), heard, tuple(sorted(profiles))
-        )
-
-
-def _heard_topics(handle: NodeEntry) -> tuple[str, ...]:
-    topics = {subscription.topic_name for subscription in handle.subscriptions}
-    return tuple(sorted(topics - UNHEARD_BY_DESIGN))
-
-
-def _profiles(handle: NodeEntry) -> Iterator[str]:
-    for verb, endpoints in (("publishes", handle.publishers), ("subscribes", handle.subscriptions)):
-        for each in endpoints:
-            if each.topic_name not in UNHEARD_BY_DESIGN:
-                qos = each.qos_profile
-                yield (
-                    f"{handle.full_name} {verb} {each.topic_name} {qos.reliability.name} {qos.durability.name} "
-                    f"{qos.depth}"
-                )
-
-
-def _mistakes(directory: Directory, handle: NodeEntry) -> Iterator[str]:
-    for subscription in handle.subscriptions:
-        name, kind = subscription.topic_name, type_name(subscription.msg_type)
-        if name in UNHEARD_BY_DESIGN:
-            continue
-        published = _topics(directory, publishes=True)
-        types = published.get(name, set())
-        if not types:
-            yield f"{handle.full_name} subscribes to {name}, which has no publisher; {_offer(name, kind, published)}."
-        elif kind not in types:
-            yield f"{handle.full_name} expects {kind} on {name}, which carries {', '.join(sorted(types))}."
-        for publisher in directory.publishers(name):
-            if publisher.msg_type is subscription.msg_type and (
-                why := describe_mismatch(publisher, subscription)
-            ):
-                yield f"Nothing passes on {name}. {why}."
-    for publisher in handle.publishers:
-        name, kind = publisher.topic_name, type_name(publisher.msg_type)
-        if name in UNHEARD_BY_DESIGN:
-            continue
-        heard = _topics(directory, publishes=False)
-        types = heard.get(name, set())
-        if types and kind not in types:
-            yield f"{handle.full_name} publishes {kind} on {name}, where {', '.join(sorted(types))} is expected."
-        elif not types and (others := _same_type(kind, heard)):
-            yield (
-                f"{handle.full_name} publishes to {name}, which has no subscriber; {kind} has subscribers on "
-                f"{join_names(others, MAX_NAMES)}."
-            )
-    for client in handle.clients:
-        if directory.find_server(client.service_name, client.srv_type) is None:
-            offered = {each: set(types) for each, types in directory.service_names_and_types()}
-            kind = type_name(client.srv_type)
-            yield f"{handle.full_name} calls {client.service_name}, which no node offers; {_offer(client.service_name, kind, offered)}."
-
-
-def _topics(directory: Directory, *, publishes: bool) -> dict[str, set[str]]:
-    """Returns the types of the publishers, or of the subscriptions, of every topic that has some."""
-    found = {}
-    for name in directory.topics:
-        ends = directory.publishers(name) if publishes else directory.subscriptions(name)
-        types = {type_name(end.msg_type) for end in ends}
-        if types and name not in UNHEARD_BY_DESIGN:
-            found[name] = types
-    return found
-
-
-def _same_type(kind: str, offered: Mapping[str, set[str]]) -> list[str]:
-    return sorted(name for name, types in offered.items() if kind in types)
-
-
-def _offer(name: str, kind: str, offered: Mapping[str, set[str]]) -> str:
-    """Names what there is instead: names of the same type, else the nearest name, else all."""
-    if others := _same_type(kind, offered):
-        return f"of the type {kind} there is {join_names(others, MAX_NAMES)}"
-    near = nearest_name(name, offered)
-    if near is not None:
-        return f"the nearest name is {near}"
-    return f"there are {join_names(sorted(offered), MAX_NAMES)}" if offered else "there are none"
-
 
 CLEARANCE_INTERVAL = 5
 """Ticks between two measurements of the clearance: 0.05 s, in which a robot at 1 m/s moves 5 cm."""
@@ -162,6 +43,8 @@ class TopicTraffic:
     count: int
     nodes: tuple[str, ...] = ()
     """Full names of the nodes that published it."""
+    per_second: Mapping[int, int] = field(default_factory=dict)
+    """Messages in each second of the episode in which there were some."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,6 +75,10 @@ class GradedDrive:
     """The ticks at which the robot began to touch something."""
     connections: NodeConnections = field(default_factory=NodeConnections)
     """The program's nodes at the end; empty for a program that stopped, and for a drive by hand."""
+    printed_at: tuple[int, ...] = ()
+    """The second of the episode in which each line was printed."""
+    ahead: Mapping[str, FloatArray] = field(default_factory=dict)
+    """By a laser's topic, (k, 2): the time of each scan [s] and its range straight ahead [m]; nan where nothing was met."""
 
     @property
     def steps(self) -> int:

@@ -140,10 +140,14 @@ class EnvironmentRecord:
 
 
 class FreePlacementRunner(RestrictedRunner):
-    """A runner whose robot may be moved anywhere, since an environment begins its episodes where it likes."""
+    """A runner whose robot may be moved anywhere while an episode begins: an environment begins its episodes where it likes. In a
+    step it is driven, and not moved."""
+
+    is_in_step = False
+    """Whether the environment is making a step."""
 
     def _is_allowed(self, service: str, arguments: tuple[Any, ...]) -> bool:
-        return service in self._services
+        return service in self._services and not self.is_in_step
 
 
 def examine_environment(
@@ -329,6 +333,7 @@ class _EnvironmentExaminer:
         text = json.dumps({**question, "number": self._question_number})
         self._request_publisher.publish(String(data=text))
         began_ns = self._runner.graph.now_ns
+        self._runner.is_in_step = question["call"] == "step"
         answer = self._await_answer(CALL_TIMEOUT_S, what)
         self._call_s = (self._runner.graph.now_ns - began_ns) / 1e9
         if self._call_s == 0:  # calls that wait for nothing must not all come at one moment

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import random
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from grader.assignment import Shift, Trial
 from grader.evidence.contract import EpisodeSpec, EvidenceRecord
-from grader.evidence.drive_record import ConnectionsReader, GradedDrive, NodeConnections, TopicTraffic
+from grader.evidence.drive_record import GradedDrive, TopicTraffic
 from grader.evidence.service_calls import ServiceCaller
 from grader.evidence.submission_clock import SubmissionClock
+from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
@@ -21,6 +25,8 @@ from kit.host.sandbox.limits import Limits
 from kit.host.wire import printable
 from kit.msg.message import Message, type_name
 from kit.msg.robot_kit_msgs import GetState
+from kit.msg.sensor_msgs import LaserScan
+from kit.ros.graph.connections import ConnectionsReader, NodeConnections
 from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph
 from kit.run.episode import EndReason, controller_arguments, run_until, when_failed, when_reached
@@ -34,6 +40,7 @@ from kit.world.records import Model, World
 
 STEP: Final = 0.01
 """s"""
+TICKS_PER_SECOND: Final = round(1 / STEP)
 
 GET_STATE: Final = GET_STATE_SERVICE.removeprefix("/")
 """The service that tells the true state of the world, as an assignment names it."""
@@ -109,26 +116,59 @@ class RestrictedRunner(Runner):
 
 
 class TrafficRecorder:
-    """Counts the messages on each topic that nodes other than the world's own publish."""
+    """Counts the messages on each topic that nodes other than the world's own publish, second by second, and notes what a
+    laser of the world measured straight ahead."""
 
     def __init__(self, graph: Graph, world_node: GraphNode | None) -> None:
         self._world_node = world_node
-        self._counts: dict[tuple[str, str], int] = {}
+        self._counts: dict[tuple[str, str], Counter[int]] = {}
         self._nodes: dict[tuple[str, str], set[str]] = {}
+        self._ahead: dict[str, list[tuple[float, float]]] = {}
         self.stop = graph.add_message_listener(self._on_message)
 
     def _on_message(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
         if node is self._world_node:
+            if isinstance(message, LaserScan) and message.ranges:
+                ahead = float(message.ranges[len(message.ranges) // 2])
+                self._ahead.setdefault(name, []).append((time_ns / 1e9, ahead))
             return
         key = name, type_name(type(message))
-        self._counts[key] = self._counts.get(key, 0) + 1
+        self._counts.setdefault(key, Counter())[time_ns // 10**9] += 1
         self._nodes.setdefault(key, set()).add(node.handle.full_name)
 
     def traffic(self) -> Mapping[str, TopicTraffic]:
         return {
-            name: TopicTraffic(kind, count, tuple(sorted(self._nodes[name, kind])))
-            for (name, kind), count in sorted(self._counts.items())
+            name: TopicTraffic(kind, counts.total(), tuple(sorted(self._nodes[name, kind])), counts)
+            for (name, kind), counts in sorted(self._counts.items(), key=lambda each: each[0])
         }
+
+    def ahead(self) -> Mapping[str, FloatArray]:
+        """Returns (k, 2) for each laser's topic: the time [s] and the range of the ray in the middle of each scan [m]."""
+        return {name: np.array(rows, dtype=np.float64) for name, rows in self._ahead.items()}
+
+
+class PrintedRecorder:
+    """Takes what a program prints second by second, since its lines carry no time of their own."""
+
+    def __init__(self, program: NodeProcess) -> None:
+        self._program = program
+        self._lines: list[str] = []
+        self._seconds: list[int] = []
+
+    def take(self, second: int) -> None:
+        """Takes what was printed since the last call; of all that, the first lines are kept."""
+        for line in self._program.take_output().lines[: MAX_PRINTED_LINES - len(self._lines)]:
+            self._lines.append(printable(line.text))
+            self._seconds.append(second)
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        return tuple(self._lines)
+
+    @property
+    def seconds(self) -> tuple[int, ...]:
+        """The second of the episode in which each line was printed."""
+        return tuple(self._seconds)
 
 
 @dataclass(slots=True)
@@ -221,19 +261,38 @@ class _EpisodeWorld:
                 self._runner.call_unrestricted("move_model", scenario.robot, tuple(home))
             self._runner.allow_home(scenario.robot, home)
         self._traffic_recorder = TrafficRecorder(graph, self._runner.node)
+        self._others_topics = frozenset(
+            end.topic
+            for model in scenario.world.models
+            if model.name not in scenario.partners
+            for end in simulation.model_endpoints(model.name)
+            if end.direction == "subscribe"
+        ) - {
+            end.topic
+            for name in scenario.partners
+            for end in simulation.model_endpoints(name)
+            if end.direction == "subscribe"
+        }
         self._service_caller = ServiceCaller(graph, trial.calls)
         self._connections_reader = ConnectionsReader(graph)
 
     def run(self, program: NodeProcess, clock: SubmissionClock) -> GradedDrive:
         """Ticks until the time is over, the target reached, or the program failed."""
         spec, metrics = self._spec, self._metrics
+        printed = PrintedRecorder(program)
         try:
             program.enter_graph()
             program.join()
-            failure, connections = self._drive(program, clock)
+            failure, connections = self._drive(program, printed, clock)
         except StudentCodeError as error:
             failure, connections = clock.explain(error.failure), NodeConnections()
         self._traffic_recorder.stop()
+        program.close()
+        recording = self._recorder.recording()
+        printed.take(max(0, recording.ticks - 1) // TICKS_PER_SECOND)
+        traffic = self._traffic_recorder.traffic()
+        # What stands in another robot's way may not be driven out of it.
+        driven = [f"{name} of another robot" for name in traffic if name in self._others_topics]
         return GradedDrive(
             trial=spec.trial.name,
             label=spec.label,
@@ -241,12 +300,14 @@ class _EpisodeWorld:
             secret=spec.secret,
             scenario=self._scenario,
             limit_s=spec.trial.time_s,
-            recording=self._recorder.recording(),
+            recording=recording,
             score=metrics.metrics,
             failure=failure,
-            traffic=self._traffic_recorder.traffic(),
-            refused=tuple(self._runner.refused[:MAX_PRINTED_LINES]),
-            printed=_printed_lines(program),
+            traffic=traffic,
+            refused=tuple([*driven, *self._runner.refused][:MAX_PRINTED_LINES]),
+            printed=printed.lines,
+            printed_at=printed.seconds,
+            ahead=self._traffic_recorder.ahead(),
             fingerprint=self._fingerprint.text,
             level=int(program.level),
             answers=self._service_caller.answers(),
@@ -254,7 +315,14 @@ class _EpisodeWorld:
             connections=connections,
         )
 
-    def _drive(self, program: NodeProcess, clock: SubmissionClock) -> tuple[Failure | None, NodeConnections]:
+    def _drive(
+        self, program: NodeProcess, printed: PrintedRecorder, clock: SubmissionClock
+    ) -> tuple[Failure | None, NodeConnections]:
+        def before_tick(number: int) -> None:
+            self._service_caller.call_due(number * STEP)
+            if number % TICKS_PER_SECOND == 0 and number:
+                printed.take(number // TICKS_PER_SECOND - 1)
+
         self._runner.participants.append(program)
         ends = [
             clock.end_condition,
@@ -265,7 +333,7 @@ class _EpisodeWorld:
             self._runner,
             limit_s=self._spec.trial.time_s,
             ends=ends,
-            before_tick=lambda number: self._service_caller.call_due(number * STEP),
+            before_tick=before_tick,
         )
         failure = clock.used_up_failure() if reason is EndReason.STOPPED else program.failure
         connections = self._connections_reader.read()

@@ -39,6 +39,7 @@ from kit.learning.tasks.learning_task import TaskCase
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.presets import LinearSchedule, find_preset
 from kit.learning.training.training import make_learner
+from kit.plain_files import is_file_there
 
 TEACHING_REWARD: Final = "progress"
 """The kit's reward by which a robot is taught to arrive, to see what its drives earn by the task's own reward."""
@@ -179,7 +180,7 @@ class PosedTask:
         from grader.kinds.policy import load_submitted_policy  # only here: a kind imports this module
 
         file = self._folder / self.plan.policy
-        if not file.is_file():
+        if not is_file_there(file):
             return f"There is no {self.plan.policy} beside the task: train it, and copy the run's best.npz there."
         try:
             policy = load_submitted_policy(file)

@@ -6,7 +6,7 @@ A reward is judged by that behaviour: if it misses the target, it is the exploit
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -261,7 +261,17 @@ class OptimalPolicy:
     """(states, moves) True where no other move is better."""
 
 
-def value_iteration(model: GridModel, rewards: FloatArray) -> OptimalPolicy:
+TimeCheck = Callable[[], None]
+"""Called between the steps of a long calculation; raises what ends it when its time is used up."""
+
+
+def without_limit() -> None:
+    """Lets a calculation take as long as it takes."""
+
+
+def value_iteration(
+    model: GridModel, rewards: FloatArray, check_time: TimeCheck = without_limit
+) -> OptimalPolicy:
     """Iterates Bellman's optimality equation until it holds.
 
     ``rewards``: (states, moves), finite, and so small that their sums are. Q(s, a) = r(s, a) + discount * max Q(s', .),
@@ -273,6 +283,7 @@ def value_iteration(model: GridModel, rewards: FloatArray) -> OptimalPolicy:
     values = np.zeros(model.states)
     largest = max(float(np.abs(rewards).max(initial=0.0)), 1e-300)
     for _ in range(1 + math.ceil(math.log(CONVERGENCE_SHARE * (1.0 - discount)) / math.log(discount))):
+        check_time()
         q_values = rewards + discounts * values[model.next]
         better = q_values.max(axis=1)
         change = float(np.abs(better - values).max())
@@ -295,13 +306,14 @@ class PolicyOutcome:
     """A start from which the target may be missed; None if there is none."""
 
 
-def evaluate_policy(policy: OptimalPolicy) -> PolicyOutcome:
+def evaluate_policy(policy: OptimalPolicy, check_time: TimeCheck = without_limit) -> PolicyOutcome:
     """Evaluates the policy from every start from which the target can be reached, for ``max_steps``."""
     model = policy.model
     starts = model.starts[np.isfinite(model.to_go[model.cell_of(model.starts)])]
     probabilities = policy.best / policy.best.sum(axis=1, keepdims=True)
     success, steps = np.zeros(model.states), np.zeros(model.states)
     for _ in range(model.task.max_steps):
+        check_time()
         success = (probabilities * np.where(model.done, model.reached, success[model.next])).sum(axis=1)
         steps = 1.0 + (probabilities * np.where(model.done, 0.0, steps[model.next])).sum(axis=1)
     lost = starts[success[starts] < 1.0 - 1e-9]
@@ -391,17 +403,22 @@ class LoopComparison:
         return f"{self.name.capitalize()} forever earns {self.loop_return:.3g}, driving to the target only {self.arrival_return:.3g}."
 
 
-def compare_behaviours(model: GridModel, rewards: FloatArray) -> tuple[BehaviourComparison, ...]:
+def compare_behaviours(
+    model: GridModel, rewards: FloatArray, check_time: TimeCheck = without_limit
+) -> tuple[BehaviourComparison, ...]:
     """Compares good and bad behaviours from several starts."""
-    return tuple(_compare_behaviours(model, rewards))
+    return tuple(_compare_behaviours(model, rewards, check_time))
 
 
-def compare_loops(model: GridModel, rewards: FloatArray) -> tuple[LoopComparison, ...]:
+def compare_loops(
+    model: GridModel, rewards: FloatArray, check_time: TimeCheck = without_limit
+) -> tuple[LoopComparison, ...]:
     """Compares every loop that fits into the map with driving to the target, from several starts."""
     drives = []
-    for start, good in _sample_drives(model):
+    for start, good in _sample_drives(model, check_time):
         arrival_return = discounted_return(model, rewards, start, good)
         for name, loop in LOOPS.items():
+            check_time()
             if _is_free_loop(model, start, loop):
                 repeated = loop * (model.task.max_steps // len(loop))
                 drives.append(
@@ -431,8 +448,11 @@ def discounted_return(model: GridModel, rewards: FloatArray, start: int, moves: 
     return total
 
 
-def _compare_behaviours(model: GridModel, rewards: FloatArray) -> Iterator[BehaviourComparison]:
-    for start, good in _sample_drives(model):
+def _compare_behaviours(
+    model: GridModel, rewards: FloatArray, check_time: TimeCheck
+) -> Iterator[BehaviourComparison]:
+    for start, good in _sample_drives(model, check_time):
+        check_time()
         direct_return = discounted_return(model, rewards, start, good)
         slow_return = discounted_return(model, rewards, start, (*DETOUR, *good))
         crash = _crash_moves(model, start)
@@ -456,9 +476,10 @@ def _compare_behaviours(model: GridModel, rewards: FloatArray) -> Iterator[Behav
         )
 
 
-def _sample_drives(model: GridModel) -> list[tuple[int, tuple[int, ...]]]:
+def _sample_drives(model: GridModel, check_time: TimeCheck) -> list[tuple[int, tuple[int, ...]]]:
     """Returns some start states, each with the moves of a shortest drive to the target."""
-    policy = value_iteration(model, np.where(model.reached, 1.0, np.where(model.hit, -1.0, -0.01)))
+    rewards = np.where(model.reached, 1.0, np.where(model.hit, -1.0, -0.01))
+    policy = value_iteration(model, rewards, check_time)
     starts = [int(start) for start in model.starts if np.isfinite(model.to_go[model.cell_of(start)])]
     drives = []
     for start in starts[len(starts) // (2 * START_COUNT) :: max(1, len(starts) // START_COUNT)][:START_COUNT]:

@@ -12,7 +12,7 @@ from typing import Any, Final, TypeVar
 
 from grader.assignment import Assignment, Trial
 from grader.checks.contract import Check
-from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
+from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, SingleEvidence
 from grader.submitted_files import reading_submission
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
@@ -92,14 +92,18 @@ def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed
 def collect_once(
     collect_evidence: Callable[[Assignment, Path, EvidenceOptions], EvidenceRecord],
 ) -> Callable[..., AbstractContextManager[EvidenceCollector]]:
-    """Makes a ``Kind.collect`` for a kind with one piece of evidence. Where that was made with a secret seed, the
+    """Makes a ``Kind.collect`` for a kind with one piece of evidence. Where that is made with a secret seed, the
     public counterpart is collected too when somebody asks for it."""
 
     def collect(
         assignment: Assignment, file: Path, options: EvidenceOptions
     ) -> AbstractContextManager[EvidenceCollector]:
-        record, public = collect_evidence(assignment, file, options), replace(options, secret=False)
-        counterpart = (lambda: collect_evidence(assignment, file, public)) if record.secret else None
-        return nullcontext(FixedEvidence([record], options.level, counterpart))
+        public = replace(options, secret=False)
+        is_secret = options.secret and bool(assignment.secret_seeds)
+        counterpart = (lambda: collect_evidence(assignment, file, public)) if is_secret else None
+        collected = SingleEvidence(
+            lambda: collect_evidence(assignment, file, options), options.level, counterpart
+        )
+        return nullcontext(collected)
 
     return collect

@@ -19,7 +19,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from grader.archives import READ_ERRORS, check_arrays
 from grader.assignment import Assignment
 from grader.checks.contract import NoParams, check
 from grader.checks.drives import CHECKS
@@ -35,9 +34,11 @@ from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_scenario
 from grader.submitted_files import reading_submission
+from kit.array_archives import READ_ERRORS, check_arrays
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist
+from kit.plain_files import read_plain_file
 from kit.ros.graph.graph import Graph
 from kit.run.episode import run_until
 from kit.run.metrics import DriveMetrics, MetricsRecorder
@@ -127,7 +128,7 @@ def collect(
 
 def _load_checked(task: HandDriveTask, file: Path) -> Recording:
     """Loads the recording of a drive in the right scenario. Raises RecordingError for anything else."""
-    data = file.read_bytes()
+    data = read_plain_file(file, MAX_BYTES)
     if not data:
         raise RecordingError(f"{file.name} is empty: no drive has been recorded yet.")
     _check_size(data, file.name, task.time_s)

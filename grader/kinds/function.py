@@ -187,6 +187,10 @@ class FunctionCollector(CachingCollector):
         ]
         return [self._record(name, secret) for secret in hidden if self._secret or not secret]
 
+    def public_evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        name = self._function(criterion.params.function)
+        return [] if criterion.seeds is SeedSet.SECRET else [self._record(name, False)]
+
     def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
         spec = self._function(criterion.params.function)
         label = f"{spec.name}()"

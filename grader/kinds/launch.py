@@ -25,6 +25,7 @@ from grader.checks.contract import Check, check
 from grader.evidence.contract import CachingCollector, Evidence, EvidenceCollector, EvidenceOptions
 from grader.evidence.launch import LaunchCase, LaunchRecord, ParameterQueries, copied_package, run_launch
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from kit.plain_files import is_file_there
 from kit.plain_text import quoted
 from kit.world.yaml_section import Section
 
@@ -219,7 +220,7 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     section = files.public.section("launch")
     name = section.name("package", "starter")
     folder = (files.folder / name).resolve()
-    if not folder.is_relative_to(files.folder.resolve()) or not (folder / "package.xml").is_file():
+    if not folder.is_relative_to(files.folder.resolve()) or not is_file_there(folder / "package.xml"):
         section.error(
             f"no package {quoted(name)}: there is no {name}/package.xml beside assignment.yaml", "package"
         )
@@ -257,13 +258,19 @@ class LaunchCollector(CachingCollector):
         self._queries = ParameterQueries(_requested_parameters(assignment.criteria))
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        return self._records(criterion, secret=self._secret)
+
+    def public_evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        return self._records(criterion, secret=False)
+
+    def _records(self, criterion: Criterion, *, secret: bool) -> Sequence[Evidence]:
         chosen = criterion.params.runs
         return [
             self._collect(
                 (run.name, run.secret), partial(self._launch, run), LaunchRecord(run).label, secret=run.secret
             )
             for run in self._assignment.task.runs
-            if (not chosen or run.name in chosen) and (self._secret or not run.secret)
+            if (not chosen or run.name in chosen) and (secret or not run.secret)
         ]
 
     def _launch(self, run: LaunchCase) -> LaunchRecord:

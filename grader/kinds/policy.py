@@ -20,19 +20,21 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from grader.archives import READ_ERRORS, check_arrays
 from grader.assignment import Assignment, read_seed
 from grader.checks.contract import Check, NoParams, check
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once
 from grader.submitted_files import reading_submission
 from grader.task_files import read_task_choice
+from kit.array_archives import READ_ERRORS, check_arrays
+from kit.document.layout import lines_of
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
 from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.confidence_intervals import lower_bound
 from kit.learning.policies.evaluation import EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError, load_policy
+from kit.plain_files import read_plain_file
 
 MAX_BYTES: Final = 2 << 20
 """Bytes of a policy, unpacked; the kit's take about a tenth. A larger one would take too long to test."""
@@ -116,7 +118,7 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
         outcome="tested",
         steps=sum(case.episodes for case in result.cases),
         explain_with=lambda name, params: _explain(result, name),
-        draw_with=lambda name: "\n".join(result.rows()),
+        draw_with=lambda name: "\n".join(lines_of([result.table()])),
     )
 
 
@@ -129,8 +131,8 @@ def _explain(result: EvaluationResult, name: str) -> str:
 
 def load_submitted_policy(file: Path) -> Policy:
     """The policy. PolicyError for what is none, too large, or holds more than its bytes say."""
-    data = file.read_bytes()
     try:
+        data = read_plain_file(file, MAX_BYTES)
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             check_arrays(archive, MAX_BYTES)
     except READ_ERRORS as error:

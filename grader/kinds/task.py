@@ -26,7 +26,7 @@ from typing import Final
 
 from grader.assignment import Assignment, read_seed
 from grader.checks.contract import Check, NoParams, check
-from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
+from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, SingleEvidence
 from grader.evidence.reader_process import PosedTaskProcess
 from grader.evidence.training_results import PosedTaskPlan
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
@@ -143,10 +143,12 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
 def collect(assignment: Assignment, file: Path, options: EvidenceOptions) -> Iterator[EvidenceCollector]:
     """Reads the task once; with the secret seed where it is used."""
     with ExitStack() as stack:
-        record = collect_evidence(assignment, file, options, stack)
         public = replace(options, secret=False)
-        counterpart = (lambda: collect_evidence(assignment, file, public, stack)) if record.secret else None
-        yield FixedEvidence([record], options.level, counterpart)
+        is_secret = options.secret and bool(assignment.secret_seeds)
+        counterpart = (lambda: collect_evidence(assignment, file, public, stack)) if is_secret else None
+        yield SingleEvidence(
+            lambda: collect_evidence(assignment, file, options, stack), options.level, counterpart
+        )
 
 
 def collect_evidence(

@@ -35,6 +35,7 @@ from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from kit.controllers import find_controller
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox.confinement import Level
+from kit.plain_files import is_file_there
 from kit.plain_text import quoted
 from kit.run.scenario import Scenario
 from kit.world.records import World
@@ -89,7 +90,7 @@ def _read_spec(section: Section, folder: Path) -> WorldRunSpec:
     if driver:
         try:
             driver_file = folder / driver
-            file = str(driver_file if driver_file.is_file() else find_controller(driver).file)
+            file = str(driver_file if is_file_there(driver_file) else find_controller(driver).file)
         except LookupError as error:
             section.error(str(error), "driver")
     target = section.point("target") if section.has("target") else None
@@ -131,6 +132,13 @@ class WorldCollector:
         if criterion.check not in RUN_CHECKS or contents is None or contents.world.problems:
             return [first]
         return self._runs.evidence(criterion)
+
+    def public_evidence(self, criterion: Criterion) -> Sequence[Evidence]:
+        first = self._read_contents()
+        contents: WorldContents | None = first.content
+        if criterion.check not in RUN_CHECKS or contents is None or contents.world.problems:
+            return [first]
+        return self._runs.public_evidence(criterion)
 
     def collected(self) -> Sequence[Evidence]:
         return [*([] if self._read is None else [self._read]), *self._runs.collected()]

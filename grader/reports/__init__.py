@@ -33,3 +33,6 @@ FORMATS: Final[Mapping[str, ReportWriter]] = MappingProxyType(
     }
 )
 """Every format by its name on the command line."""
+
+STUDENT_FORMATS: Final = frozenset(FORMATS) - {"text", "json"}
+"""Formats that students read as they are written."""

@@ -7,13 +7,14 @@ plain text, never HTML or markup.
 from __future__ import annotations
 
 import json
-import textwrap
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import Any, Final
 from xml.etree import ElementTree
 
 from grader.reports.cleaning import clean_line, escape_markdown, fenced_block, plain, xml_text
+from kit.document.blocks import Block, Text
+from kit.document.layout import lines_of, text_blocks
 from kit.school.result import (
     INDENT,
     VERDICT_TEXTS,
@@ -22,15 +23,12 @@ from kit.school.result import (
     GradingResult,
     GradingVerdict,
     Visibility,
-    criterion_lines,
+    criterion_blocks,
     format_points,
-    line_text,
     points_text,
     rounded_points,
 )
 
-WIDTH = 78
-"""Width of the report in a terminal, in characters."""
 LOG_LINES = 8
 """Lines of a program's output shown."""
 
@@ -38,28 +36,27 @@ LOG_LINES = 8
 def write_text(result: GradingResult, *, hints: int = 1) -> str:
     """Writes the result for people, in the lines of the kit's own renderer, with the totals and the notices below: printable
     characters only. ``hints``: how many hints of a criterion to show."""
-    return "\n".join(_text_lines(result, hints)) + "\n"
+    return "\n".join(lines_of(_blocks(result, hints))) + "\n"
 
 
-def _text_lines(result: GradingResult, hints: int) -> Iterator[str]:
+def _blocks(result: GradingResult, hints: int) -> list[Block]:
     # What the JSON report shows of a result is clean: no terminal escapes, no commands of a CI runner.
     shown = GradingResult.from_dict(json.loads(write_json(result)))
     more_hints = f"For more help, add --hints {hints + 1}."
+    blocks: list[Block] = []
     for test in shown.tests:
-        for line in criterion_lines(test, WIDTH, hints=hints, more_hints=more_hints, log_lines=LOG_LINES):
-            yield line_text(line)
+        blocks += criterion_blocks(test, hints=hints, more_hints=more_hints, log_lines=LOG_LINES)
         if test.teacher_note:
             note = clean_line(f"With secret seeds: {test.teacher_note}", 600)
-            yield from textwrap.wrap(note, WIDTH, initial_indent=INDENT, subsequent_indent=INDENT)
-    yield ""
+            blocks.append(Text(note, indent=INDENT, is_tight=True))
     points = "No grade" if shown.points is None else f"{points_text(shown.points, shown.max_points)} points"
-    yield f"{points}. {VERDICT_TEXTS[shown.verdict]}"
-    for notice in shown.notices:
-        yield from textwrap.wrap(clean_line(notice), WIDTH)
-    yield (
-        f"level {shown.level}, seeds {shown.seeds}, "
-        f"fingerprint {shown.submission[:8]}-{shown.assignment_version[:8]}"
-    )
+    fingerprint = f"{shown.submission[:8]}-{shown.assignment_version[:8]}"
+    return [
+        *blocks,
+        Text(f"{points}. {VERDICT_TEXTS[shown.verdict]}"),
+        *text_blocks(map(clean_line, shown.notices)),
+        Text(f"level {shown.level}, seeds {shown.seeds}, fingerprint {fingerprint}", is_tight=True),
+    ]
 
 
 def write_json(result: GradingResult) -> str:

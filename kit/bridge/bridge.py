@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Final, Self
 
@@ -35,6 +36,7 @@ from kit.bridge.wire import (
 from kit.inspection.sockets import connect, listen, running_worlds, sockets_folder
 from kit.msg.interfaces import DefinitionError, UnknownInterface, find_message, find_service
 from kit.msg.message import Message, Service
+from kit.plain_text import escape_controls
 from kit.ros.execution.callback_groups import ReentrantCallbackGroup
 from kit.ros.graph.snapshot import EndpointState, GraphState, snapshot
 from kit.ros.node.node import Node
@@ -47,6 +49,10 @@ LOOK_S: Final = 0.2
 """How often types are looked for that were not known yet."""
 JOIN_S: Final = 2.0
 """How long the end waits for a thread of its own, which ends with the process anyway [s]."""
+MAX_REPORTS: Final = 30
+"""Lines on what has become of one route."""
+MAX_LINE: Final = 1000
+"""Characters of a line."""
 STOP_PAUSE_S: Final = 0.02
 """Between the repeats of a stop."""
 
@@ -81,9 +87,10 @@ class Bridge:
         self._node = node
         self._wire = wire
         self._settings = settings
-        self._report = report
+        self._report = report = partial(_report_plainly, report)
         self._channels: dict[BridgeRoute, Channel] = {}
-        self._told: dict[BridgeRoute, str] = {}
+        self._told: dict[BridgeRoute, set[str]] = {route: set() for route in settings.routes}
+        self._wire_names = {route.wire_name for route in settings.routes}
         self._looked_s = float("-inf")
         self._is_stopped = False
         self._lock = threading.Lock()
@@ -118,7 +125,8 @@ class Bridge:
         """Opens what can be opened, and passes on what has arrived."""
         if time.monotonic() - self._looked_s >= LOOK_S:
             self._looked_s = time.monotonic()
-            remote = self._wire.endpoints()
+            # A robot may announce thousands of others.
+            remote = tuple(each for each in self._wire.endpoints() if each.name in self._wire_names)
             if len(self._channels) < len(self._settings.routes):
                 self._open_known_routes(remote)
             self._name_strangers(remote)
@@ -235,10 +243,12 @@ class Bridge:
         return MotionGuard(cls, self._settings.limit, self._settings.watchdog_s)
 
     def _report_route(self, route: BridgeRoute, text: str) -> None:
-        """Reports what has become of a route, once."""
-        if self._told.get(route) != text:
-            self._told[route] = text
-            self._report(text)
+        """Reports what has become of a route, each state once. A robot that announces ever new types does not fill the screen."""
+        told = self._told[route]
+        if text in told or len(told) > MAX_REPORTS:
+            return
+        told.add(text)
+        self._report(text if len(told) <= MAX_REPORTS else f"{route}: further changes are not shown")
 
     # In any thread
 
@@ -311,6 +321,12 @@ class Bridge:
                 elif not guard.is_silent and route in silent:
                     silent.remove(route)
                     self._report(f"{route}: commands resumed")
+
+
+def _report_plainly(report: Report, text: str) -> None:
+    """Reports a line, in which a robot may have names and texts, without anything that a terminal would obey."""
+    shown = escape_controls(" ".join(text.splitlines()))
+    report(shown if len(shown) <= MAX_LINE else f"{shown[:MAX_LINE]}...")
 
 
 def _matches(endpoint: RemoteEndpoint, route: BridgeRoute) -> bool:

@@ -15,8 +15,9 @@ from typing import Any, Final, NamedTuple
 
 from kit.bridge.motion_guard import MotionGuard
 from kit.bridge.rmw_zenoh import NO_TYPE_HASH
-from kit.bridge.wire import BridgeRoute, Direction, InterfaceId, Reply, Wire
+from kit.bridge.wire import MAX_MESSAGE_BYTES, BridgeRoute, Direction, InterfaceId, Reply, Wire
 from kit.msg.message import Message, Service
+from kit.plain_text import format_size
 from kit.ros.execution.callback_groups import CallbackGroup
 from kit.ros.execution.task import Future
 from kit.ros.node.node import Node
@@ -25,6 +26,8 @@ from kit.ros.serialization import Distro, Serializer
 
 MAX_WAITING: Final = 10
 """Messages of one topic, or requests of one service, that may wait until the world takes them; older ones are dropped."""
+MAX_UNANSWERED: Final = 100
+"""Requests of the robot's that one service of the world's may be at."""
 DRY_PERIOD_S: Final = 1.0
 """A dry run shows one message of a topic in so many seconds."""
 
@@ -119,6 +122,24 @@ class Channel(ABC):
         """Tells the robot to stand."""
         raise AssertionError(f"{self.route} does not move a robot")
 
+    def _is_too_large(self, data: bytes) -> bool:
+        """Drops what is larger than a message of a robot's can be, before it waits in memory."""
+        if len(data) <= MAX_MESSAGE_BYTES:
+            return False
+        self._drop(
+            f"the robot sent {format_size(len(data))} at once, and {format_size(MAX_MESSAGE_BYTES)} may pass"
+        )
+        return True
+
+    def _try_wire(self, send: Callable[[], object]) -> bool:
+        """Hands something to the wire; returns whether it took it. A wire that refuses keeps nothing else from its work."""
+        try:
+            send()
+        except Exception as problem:  # noqa: BLE001 - each wire's package has errors of its own
+            self._drop(f"the wire does not take it: {problem}")
+            return False
+        return True
+
     def _drop(self, reason: str) -> None:
         """Counts a message that does not pass; says why for the first of them."""
         self.traffic.dropped += 1
@@ -162,7 +183,8 @@ class SentTopic(Channel):
         except (TypeError, ValueError, OverflowError) as problem:
             self._drop(f"a message cannot be sent: {problem}")
             return
-        self._send(data)
+        if not self._try_wire(lambda: self._send(data)):
+            return
         self.traffic.add(len(data))
         if self._context.is_dry and time.monotonic() - self._shown_s >= DRY_PERIOD_S:
             self._shown_s = time.monotonic()
@@ -198,7 +220,8 @@ class ReceivedTopic(Channel):
         context.wire.open_subscription(route.wire_name, interface, qos, self._add)
 
     def _add(self, data: bytes, late_s: float) -> None:
-        self._arrived.append(_Arrival(data, late_s))
+        if not self._is_too_large(data):
+            self._arrived.append(_Arrival(data, late_s))
 
     def deliver(self) -> None:
         if self._is_stop_due:
@@ -240,6 +263,8 @@ class ServedService(Channel):
         context.wire.open_service(route.wire_name, interface, self._add)
 
     def _add(self, data: bytes, reply: Reply) -> None:
+        if self._is_too_large(data):
+            return
         if len(self._arrived) == MAX_WAITING:
             self._drop(
                 f"more than {MAX_WAITING} requests wait for the world, and the oldest gets no answer: let the world run, "
@@ -255,12 +280,18 @@ class ServedService(Channel):
             except ValueError as problem:
                 self._drop(f"a request cannot be read: {problem}")
                 continue
+            if self._client.pending_count >= MAX_UNANSWERED:
+                self._drop(
+                    f"the world has not answered {MAX_UNANSWERED} requests yet, and this one gets no answer"
+                )
+                continue
             self.traffic.add(len(data))
             self._client.call_async(request).add_done_callback(partial(self._reply, reply))
 
     def _reply(self, reply: Reply, future: Future[Any]) -> None:
         response: Any = future.result()
-        reply(self._context.codec.serialize(response))
+        data = self._context.codec.serialize(response)
+        self._try_wire(lambda: reply(data))
 
 
 class CalledService(Channel):
@@ -279,7 +310,10 @@ class CalledService(Channel):
         future: Future[Any] = Future()
         data = self._context.codec.serialize(request)
         self.traffic.add(len(data))
-        self._call(data, lambda answer: self._arrived.append((future, answer)))
+        if not self._try_wire(
+            lambda: self._call(data, lambda answer: self._arrived.append((future, answer)))
+        ):
+            self._arrived.append((future, None))
         return await future
 
     def deliver(self) -> None:
@@ -289,6 +323,8 @@ class CalledService(Channel):
                 self._drop(
                     "the robot did not answer a request; its caller keeps waiting, as it would on the robot"
                 )
+                continue
+            if self._is_too_large(data):
                 continue
             try:
                 future.set_result(self._context.codec.deserialize(data, self._cls.Response))

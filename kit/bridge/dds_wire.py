@@ -16,6 +16,7 @@ from xml.sax.saxutils import quoteattr
 
 from kit.bridge.rmw_zenoh import NO_TYPE_HASH, dds_type_name, ros_type_name
 from kit.bridge.wire import (
+    MAX_ENDPOINTS,
     BridgeError,
     DelayMeasure,
     InterfaceId,
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
 
 TOPIC_PREFIX: Final = "rt/"
 MAX_TAKEN: Final = 100
-MAX_ENDPOINTS: Final = 10_000
 WRITE_WAIT_S: Final = 0.1
 """How long a reliable writer may wait for a reader that is behind."""
 NO_SERVICES: Final = "services do not pass over DDS: each DDS middleware of ROS 2 implements them differently. Use topics, or kit bridge zenoh"

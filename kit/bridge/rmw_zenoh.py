@@ -23,6 +23,8 @@ NO_TYPE_HASH: Final = "TypeHashNotSupported"
 DEFAULT_DEPTH: Final = 42
 """The depth that rmw_zenoh leaves out, ``RMW_ZENOH_DEFAULT_HISTORY_DEPTH``."""
 GID_LENGTH: Final = 16
+MAX_TOKEN: Final = 2000
+"""Characters of a token that is read: names have at most 255 each."""
 _ATTACHMENT: Final = struct.Struct("<qqB16s")
 
 
@@ -112,12 +114,14 @@ def endpoint_token(
 def parse_token(token: str) -> WireEndpoint | None:
     """The endpoint that a token announces; None for a node's, and for what is no such token."""
     parts = token.split("/")
-    if len(parts) != 13 or parts[0] != ADMIN_SPACE:
+    if len(token) > MAX_TOKEN or len(parts) != 13 or parts[0] != ADMIN_SPACE:
         return None
     _, _, _, _, _, kind, _, namespace, node, name, dds_type, type_hash, qos = parts
     try:
         known_kind, ros_type = EntityKind(kind), ros_type_name(dds_type)
     except ValueError:
+        return None
+    if known_kind is EntityKind.NODE:  # has no topic or service
         return None
     full_node = f"{namespace.replace(SLASH, '/').rstrip('/')}/{node.replace(SLASH, '/')}"
     return WireEndpoint(known_kind, full_node, name.replace(SLASH, "/"), ros_type, type_hash, qos)

@@ -17,6 +17,12 @@ from kit.ros.node.qos import QoSProfile
 
 INSTALL_COMMAND: Final = "pip install -c constraints.txt -e '.[robot]'"
 """Command to run in the kit's folder."""
+MAX_MESSAGE_BYTES: Final = 32_000_000
+"""Bytes of one message, request or answer that is taken from the robot: more than a picture of 4K has."""
+MAX_ENDPOINTS: Final = 10_000
+"""Endpoints on the robot's side that are kept; those beyond are not seen."""
+MAX_SENDERS: Final = 1000
+"""Senders whose delays are kept; those heard first make room for others."""
 DELAY_WINDOW_NS: Final = 5_000_000_000
 """The quickest message of the last one to two windows is what others are compared with."""
 
@@ -216,4 +222,6 @@ class DelayMeasure:
             began, before, least = now_ns, least, offset
         least = min(least, offset)
         self._quickest[sender] = began, least, before
+        if len(self._quickest) > MAX_SENDERS:
+            del self._quickest[next(iter(self._quickest))]
         return (offset - min(least, before)) / 1e9

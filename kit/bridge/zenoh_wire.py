@@ -22,6 +22,8 @@ from kit.bridge.rmw_zenoh import (
     parse_token,
 )
 from kit.bridge.wire import (
+    MAX_ENDPOINTS,
+    MAX_MESSAGE_BYTES,
     BridgeError,
     DelayMeasure,
     InterfaceId,
@@ -167,7 +169,10 @@ class ZenohWire:
             payload, attachment = query.payload, query.attachment
             if payload is None or attachment is None:
                 return  # no request of ROS
-            asked = Attachment.unpack(attachment.to_bytes())
+            try:
+                asked = Attachment.unpack(attachment.to_bytes())
+            except ValueError:  # likewise
+                return
 
             def reply(data: bytes) -> None:
                 answer = Attachment(asked.sequence_number, time.time_ns(), asked.gid)
@@ -235,6 +240,7 @@ class ZenohWire:
             "scouting/multicast/enabled": False,
             "timestamping/enabled": True,
             "transport/link/tx/lease": LEASE_MS,
+            "transport/link/rx/max_message_size": 2 * MAX_MESSAGE_BYTES,
         }
 
     def _watch_tokens(self) -> None:
@@ -245,7 +251,8 @@ class ZenohWire:
                 if token in self._own_tokens or found is None:
                     return
                 if sample.kind == self._zenoh.SampleKind.PUT:
-                    self._tokens[token] = _remote_endpoint(found)
+                    if len(self._tokens) < MAX_ENDPOINTS:
+                        self._tokens[token] = _remote_endpoint(found)
                 else:
                     self._tokens.pop(token, None)
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from errno import EACCES, EDQUOT, EFBIG, EIO, EMFILE, ENAMETOOLONG, ENFILE, ENOSPC, EPERM, EROFS
 from importlib import import_module
 from types import MappingProxyType
 from typing import Any, Final, NoReturn
@@ -12,6 +15,7 @@ from typing import Any, Final, NoReturn
 import click
 
 import kit
+from kit.interruption import ended_by_signals, write_out
 
 VERBS: Final[dict[str, tuple[str, str]]] = {
     "start": ("kit.cli.start", "Open the kit: a robot and a menu (same as `kit` alone)."),
@@ -90,15 +94,78 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
 """Every verb: its module, with the name of its command where that is not ``command``, and its line in ``kit --help``."""
 
 
+NO_ROOM: Final = frozenset((ENOSPC, EDQUOT, EFBIG))
+REFUSED: Final = frozenset((EACCES, EPERM, EROFS, EIO, ENAMETOOLONG, EMFILE, ENFILE))
+
+
+def is_environment_error(error: OSError) -> bool:
+    """Whether an error is one of the disk, or of rights: nothing that the kit does wrong."""
+    return error.errno in NO_ROOM or (error.errno in REFUSED and error.filename is not None)
+
+
+def describe_no_room(error: OSError) -> str:
+    """A sentence about a full disk, and the way out."""
+    where = "what it prints or writes" if error.filename is None else error.filename
+    return (
+        f"{where} cannot be written: {error.strerror}. Free some space, or write elsewhere, and run it again."
+    )
+
+
+BAD_INPUT: Final = 2
+"""Exit code where an argument is wrong, or something cannot be read or written."""
+
+
+SIGNALLED: Final = 128
+"""Exit codes of what a signal has ended are above this, as shells have them."""
+
+
 class ScreenClosed(SystemExit):
     """A full screen was left: all that was to be kept is on the disk, and the terminal is as it was."""
 
 
 Verbs = Mapping[str, tuple[str, str]]
+_HELD: Final = "\ue000"
+"""In the place of a hyphen while click wraps a text: it would break an option there."""
+
+
+class WholeWordFormatter(click.HelpFormatter):
+    """Breaks the text of a command's help at blanks alone."""
+
+    def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
+        super().write_usage(prog, _held(args), prefix)
+
+    def write_text(self, text: str) -> None:
+        super().write_text(_held(text))
+
+    def write_dl(self, rows: Iterable[tuple[str, str]], col_max: int = 30, col_spacing: int = 2) -> None:
+        super().write_dl([(first, _held(second)) for first, second in rows], col_max, col_spacing)
+
+    def getvalue(self) -> str:
+        return super().getvalue().replace(_HELD, "-")
+
+
+def _held(text: str) -> str:
+    return text.replace("-", _HELD)
+
+
+class CommandContext(click.Context):
+    """What a command of the kit or the grader is called with."""
+
+    formatter_class = WholeWordFormatter
+
+
+def _prepared(command: click.Command) -> click.Command:
+    """The command, with its own commands, whose help is broken at blanks alone."""
+    command.context_class = CommandContext
+    for each in command.commands.values() if isinstance(command, click.Group) else ():
+        _prepared(each)
+    return command
 
 
 class LazyGroup(click.Group):
     """A group that imports a verb's module when the verb is used, and lists the verbs without importing any."""
+
+    context_class = CommandContext
 
     def __init__(
         self,
@@ -120,8 +187,7 @@ class LazyGroup(click.Group):
         if cmd_name not in self._verbs:
             return None
         module, _, name = self._verbs[cmd_name][0].partition(":")
-        command: click.Command = getattr(import_module(module), name or "command")
-        return command
+        return _prepared(getattr(import_module(module), name or "command"))
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -168,16 +234,47 @@ def main(ctx: click.Context) -> None:
 
 
 def run() -> NoReturn:
-    """Runs the command line as this process.
+    """Runs ``kit`` as this process."""
+    run_as_process(main, "kit")
+
+
+def run_as_process(command: click.Command, name: str) -> NoReturn:
+    """Runs a command line as this process, to whose end belongs that what it has written is out.
+
+    SIGTERM and SIGHUP end it as Ctrl-C does. Where the disk is full, or the folder another user's, one sentence says so in
+    place of a traceback; exit code 2.
 
     After a full screen Python does not take apart what was imported, which takes longer than to leave the screen: the
     process ends once its output is written. The screen has given the terminal back and removed what it made; the exit
     handlers of libraries do not run, which would take compiled code away from threads that are still in it.
     """
     try:
-        main(prog_name="kit")
+        with ended_by_signals():
+            try:
+                command(prog_name=name)
+            except SystemExit as stop:
+                if stop.code == BAD_INPUT:  # and why has been said
+                    write_out()
+                sys.stdout.flush()
+                raise
     except ScreenClosed as closed:
-        sys.stdout.flush()
-        sys.stderr.flush()
+        write_out()
         os._exit(closed.code if isinstance(closed.code, int) else 0)
+    except SystemExit as stop:
+        if not isinstance(stop.code, int) or stop.code <= SIGNALLED:
+            raise
+        # Python would kill itself by SIGINT, whatever the code, if an `exec` of a library's was interrupted on the way.
+        atexit._run_exitfuncs()
+        write_out()
+        os._exit(stop.code)
+    except OSError as error:
+        if not is_environment_error(error):
+            raise
+        with suppress(OSError):
+            text = (
+                describe_no_room(error) if error.errno in NO_ROOM else f"{error.filename}: {error.strerror}."
+            )
+            click.echo(f"{name}: {text}", err=True)
+        write_out()
+        raise SystemExit(BAD_INPUT) from None
     raise SystemExit(0)  # a command that ends otherwise has said so by a SystemExit of its own

@@ -25,6 +25,7 @@ from kit.bridge.wire import BridgeError, BridgeRoute, Direction, DryRunWire, Rem
 from kit.bridge.zenoh_wire import DEFAULT_ENDPOINT, ZenohAddress, ZenohWire
 from kit.cli import options
 from kit.cli.ros.world_client import connect_to_world
+from kit.plain_text import escape_controls
 
 STOP_KEY: Final = " "
 RESUME_KEY: Final = "g"
@@ -296,7 +297,7 @@ def _list_endpoints(open_wire: Callable[[], Wire]) -> None:
     wire = open_wire()
     try:
         time.sleep(DISCOVERY_S)
-        lines = describe_endpoints(wire.endpoints())
+        lines = map(escape_controls, describe_endpoints(wire.endpoints()))
     finally:
         wire.close()
     click.echo("\n".join(lines) or "Connected; no topics or services were found in this domain.")

@@ -71,7 +71,7 @@ def report(
         roster = read_roster(files, use_names=names)
         if not roster.students:
             click.echo(escape_controls("\n".join(roster.warnings)), err=True)
-            click.echo(
+            options.say(
                 "None of the files contains a student's progress. `kit progress export FILE` creates one.",
                 err=True,
             )

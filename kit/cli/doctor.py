@@ -7,7 +7,6 @@ import os
 import platform
 import re
 import sys
-import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, requires, version
@@ -18,6 +17,8 @@ import click
 import kit
 from kit.cli import options
 from kit.cli.full_screen import show_screen
+from kit.document.blocks import labelled_table
+from kit.document.layout import lines_of
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe_levels
 from kit.host.sandbox.promises import promises_since
@@ -32,9 +33,6 @@ if TYPE_CHECKING:
 
 _DISTRIBUTION: Final = "robot-learning-kit"
 _REQUIREMENT: Final = re.compile(r"""(?P<name>[\w.-]+)[^;]*(;.*extra == ['"](?P<extra>\w+)['"])?""")
-
-_WIDTH: Final = 80
-_LABEL: Final = 18
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,21 +188,13 @@ def findings() -> list[Finding]:
 
 def as_text(report: list[Finding]) -> str:
     """The report in lines of at most 80 columns, but for a word that is longer itself."""
-    lines: list[str] = []
-    section = ""
+    sections: dict[str, list[tuple[str, str]]] = {}
     for finding in report:
-        if finding.section != section:
-            section = finding.section
-            lines += ["", section]
-        lines += textwrap.wrap(
-            f"{finding.value}  {finding.meaning}",
-            _WIDTH,
-            initial_indent=f"  {finding.name:<{_LABEL}}",
-            subsequent_indent=" " * (_LABEL + 2),
-            break_long_words=False,
-            break_on_hyphens=False,
+        told = f"{finding.value}{' ' if finding.value.endswith('.') else ': '}{finding.meaning}"
+        sections.setdefault(finding.section, []).append(
+            (finding.name, told if finding.meaning else finding.value)
         )
-    return "\n".join(lines[1:])
+    return "\n".join(lines_of([labelled_table(rows, title, indent=2) for title, rows in sections.items()]))
 
 
 def as_json(report: list[Finding]) -> str:

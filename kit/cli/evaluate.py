@@ -11,13 +11,14 @@ from pathlib import Path
 import click
 
 from kit.cli import learning_options, options
+from kit.document.layout import Page, lines_of
 from kit.learning.environment.disturbances import UniformRange
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.evaluation import Evaluator, build_paths_scene, derive_seed, record_paths
 from kit.learning.policies.policies import Policy
 from kit.learning.policies.policy_node import create_policy_package, format_policy_node
-from kit.learning.policies.sweep import PolicySweep, find_kinds, format_sweep, sweep_csv
-from kit.learning.training.run_text import format_comparison
+from kit.learning.policies.sweep import PolicySweep, find_kinds, sweep_blocks, sweep_csv
+from kit.learning.training.run_text import comparison_tables
 from kit.learning.training.run_upkeep import draw_test_curves
 from kit.learning.training.runs import find_run
 from kit.render.encode import ENCODERS
@@ -137,12 +138,12 @@ def command(
         else:
             click.echo(f"{title}: trained on {found.trained_on.title}, {found.steps:,} steps")
             if found.trained_on.has_changed and task is None:
-                click.echo(
+                options.say(
                     f"{found.trained_on.task} has changed since; this tests the task as it was. --task selects the new one."
                 )
             if place.disturbances:
                 click.echo(f"Under {place.disturbances}:")
-            click.echo("\n".join(result.rows()))
+            click.echo("\n".join(lines_of([result.table()])))
         if paths is not None or pictures is not None:
             _show_paths(found, place, paths or 10, pictures, seed, greedy=not sampled)
 
@@ -163,14 +164,15 @@ def _sweep(sweep: PolicySweep, title: str, csv_file: Path | None, as_json: bool)
         return
     click.echo(f"{title}: success rate, {points[0].episodes:,} episodes per value")
     columns = min(79, shutil.get_terminal_size().columns - 1)
-    click.echo("\n".join(format_sweep(points, ENCODERS["braille"](True), columns)))
+    blocks = sweep_blocks(points, ENCODERS["braille"](True), columns)
+    click.echo("\n".join(lines_of(blocks, Page(width=columns))))
 
 
 def _write_node(policy: Policy, file: Path) -> None:
     write_atomically(file, format_policy_node(policy).encode())
     task = policy.trained_on.resolve()
     where = task.maps[0] if task.maps else task.map_cards[0].world_file
-    click.echo(f"{file}: `kit play {where} --controller {file}` runs it here, `python3 {file}` on a robot.")
+    options.say(f"{file}: `kit play {where} --controller {file}` runs it here, `python3 {file}` on a robot.")
 
 
 def _make_package(policy: Policy, name: str, destination: Path | None, workspace: Path | None) -> None:
@@ -180,7 +182,7 @@ def _make_package(policy: Policy, name: str, destination: Path | None, workspace
         options.fail(str(problem))
     where = folder if destination else name
     click.echo(f"{folder}: `kit launch {where} simulation.launch.py` runs it here.")
-    click.echo(
+    options.say(
         f"On a robot: copy it into ~/ros2_ws/src, `colcon build`, then `ros2 launch {name} {name}.launch.py "
         "scan_topic:=/scan cmd_vel_topic:=/cmd_vel`. It needs rclpy and numpy."
     )
@@ -236,7 +238,7 @@ def compare_command(
         if as_json:
             click.echo(json.dumps({name: result.as_dict() for name, result in results.items()}, indent=2))
         else:
-            click.echo("\n".join(format_comparison(results)))
+            click.echo("\n".join(lines_of(comparison_tables(results))))
         if curves:
             _draw(policies, workspace)
 

@@ -303,4 +303,4 @@ def _explained_errors() -> Iterator[None]:
     try:
         yield
     except (LookupError, ValueError, WorldError, OSError) as error:
-        options.fail(str(error))
+        options.fail(options.describe_error(error))

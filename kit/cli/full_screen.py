@@ -7,18 +7,19 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 
 from kit.cli import ScreenClosed, options
-from kit.interruption import ended_by_signals
 from kit.tui.terminal import TerminalDecision
 from kit.workspace import Workspace, open_workspace
 
 if TYPE_CHECKING:
     from textual.screen import Screen
 
+    from kit.dialogue.dialogue import Dialogue
     from kit.layers.case_sources import PlanningTask
     from kit.school.game.levels import GameLevel
     from kit.school.lessons.lesson_session import LessonSession
     from kit.school.progress import ProgressJournal
     from kit.tui.app import KitApp
+    from kit.tui.screens.dialogue import DialogueScreen
     from kit.tui.screens.layers import LayersScreen
     from kit.tui.screens.lesson import LessonScreen
     from kit.tui.screens.lessons import LessonsScreen
@@ -34,8 +35,7 @@ def run_screen(
     """Runs the app with the screen that ``make_screen`` builds until the user leaves it.
 
     ``make_screen`` imports its screen itself: textual reads the environment when it is imported, and that is set
-    here first. Returns the screen, and the exit code: 0 unless the app failed or, in ``ended_by_signals``, a signal has
-    ended it. What the screen has made is there in every case.
+    here first. Returns the screen, and the exit code: 0 unless the app failed or a signal has ended it. What the screen has made is there in every case.
     """
     os.environ.update(terminal.environment())
     from kit.tui.app import KitApp
@@ -51,11 +51,21 @@ def run_screen(
     return screen, app.return_code or 0
 
 
-@ended_by_signals()
 def show_screen(terminal: TerminalDecision, make_screen: Callable[[KitApp], Screen[Any]]) -> NoReturn:
     """The same, for a verb that ends with its screen; at SIGTERM and SIGHUP too, after the screen has saved what it keeps."""
     _, code = run_screen(terminal, make_screen)
     raise ScreenClosed(code)
+
+
+def show_dialogue(dialogue: Dialogue, terminal: TerminalDecision) -> NoReturn:
+    """Asks on the full screen."""
+
+    def make_screen(app: KitApp) -> DialogueScreen:
+        from kit.tui.screens.dialogue import DialogueScreen
+
+        return DialogueScreen(dialogue)
+
+    show_screen(terminal, make_screen)
 
 
 def show_lesson(session: LessonSession, workspace: Workspace, terminal: TerminalDecision) -> NoReturn:

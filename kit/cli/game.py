@@ -15,6 +15,8 @@ from kit.cli import options
 from kit.cli.full_screen import show_levels, show_screen
 from kit.cli.shared_game import guest, host
 from kit.controllers import find_controller, prepare_workspace
+from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
+from kit.document.layout import lines_of
 from kit.plain_text import counted
 from kit.workspace import Workspace, WorkspaceError
 
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
     from kit.run.recording import Recording
     from kit.school.game.levels import GameLevel
-    from kit.school.game.player_progress import DriverFacts, GameSummary
+    from kit.school.game.player_progress import DriverFacts, GameSummary, Medal
     from kit.school.game.race import DriverKind, RaceFinish
     from kit.school.progress import ProgressJournal
     from kit.tui.app import KitApp
@@ -90,7 +92,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     kit game host two-doors --tag         two players: a race or tag
     kit game leaderboard                  the best times on this machine
 
-    A level can be driven once a level before it is finished or the lesson that prepares it is completed; the level of
+    A level can be driven once a level before it is finished or the lesson that opens it too is completed; the level of
     the day is always open. Driving by hand, your program and your agent win separate medals; gold needs a time near the reference drive's
     and no collisions. Each extra rule earns a star: no collisions, never standing still, one sensor, few lines of
     code, few training steps. The kit's own controllers demonstrate and earn nothing. A task used as a level (its first
@@ -214,10 +216,11 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
     with _open_journal(workspace) as (journal, opened_workspace):
         if name is None:
             medals = challenge_medals(journal.events())
-            for each in all_challenges():
-                medal = medals.get(each.id, Medal.NONE)
-                sign = NO_STAR if medal is Medal.NONE else medal.title[0].upper()
-                click.echo(f"  {sign}  {each.id:<16} {each.title}. {each.story}")
+            rows = [
+                (_sign(medals.get(each.id, Medal.NONE)), each.id, f"{each.title}. {each.story}")
+                for each in all_challenges()
+            ]
+            click.echo("\n".join(lines_of([labelled_table(rows, indent=2)])))
             return
         try:
             chosen = find_challenge(name)
@@ -240,7 +243,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                 _, seconds = begin_repair(journal, chosen, answers_folder(opened_workspace))
             judgement = judge(chosen, answer, opened_workspace.runs, seconds)
         except (LookupError, ChallengeError, RunError, OSError) as error:
-            options.fail(str(error))
+            options.fail(options.describe_error(error))
         record_judgement(journal, chosen, judgement)
         click.echo(f"{judgement.text}\n  {judgement.medal.title}")
 
@@ -300,10 +303,9 @@ def leaderboard(workspace: Path | None) -> None:
 
     with _open_journal(workspace) as (_progress, _):
         found = read_entries(leaderboard_folder())
-        for line in (*leaderboard_standings(standings(found)), *leaderboard_times(found)):
-            click.echo("".join(text for text, _ in line).rstrip())
+        click.echo("\n".join(lines_of([*leaderboard_standings(standings(found)), leaderboard_times(found)])))
         if not has_joined(leaderboard_folder()):
-            click.echo(
+            options.say(
                 "You are not on it. `kit game join` adds your name and times; `kit game leave` removes them."
             )
 
@@ -321,7 +323,7 @@ def join(workspace: Path | None, name: str | None) -> None:
         if not player_name or not player_name.isprintable():
             options.fail("Give a name: `kit game join --name Ada`.")
         join_leaderboard(journal, opened_workspace, player_name)
-        click.echo(
+        options.say(
             f"{player_name} is on the leaderboard of this machine ({leaderboard_folder()}). `kit game leave` undoes it."
         )
 
@@ -346,6 +348,7 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
     from kit.cli.plain import PlainSession, run_plain_session
     from kit.host.private_folder import private_folder
     from kit.run.recording import RecordingError, load_recording
+    from kit.run.recording_file import RecordingFile
     from kit.school.game.race import SEED, RaceReferee, judge_recording
 
     scenario = level.find_scenario()
@@ -368,7 +371,7 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
                 find_controller("teleop", opened_workspace.controllers),
                 seed=SEED,
                 folder=opened_workspace.controllers,
-                record=file,
+                record=RecordingFile(file),
                 prints_file=False,
                 observer=referee,
                 report=report,
@@ -387,30 +390,40 @@ def _print_levels(summary: GameSummary) -> None:
     from kit.school.game.race import DriverKind
     from kit.tui.rows.level_rows import medal_counts
 
-    click.echo(
-        "Of each level: its number; the medals by hand, by your program and by your agent (G, S, B);\n"
-        "the stars of five extra rules; its name; your best times, or what opens it.\n"
-    )
+    blocks: list[Block] = [
+        Text(
+            "Of each level: its number; the medals by hand, by your program and by your agent (G, S, B); the stars of five "
+            "extra rules; its name; your best times, or what opens it."
+        )
+    ]
     found = summary.levels
     for world in all_worlds():
-        click.echo(f"{world.title}: {world.story}")
+        rows = []
         for number, each in enumerate(found, 1):
             if each.level.world != world.id:
                 continue
-            level, medals = each.level, ""
-            for driver in DriverKind:
-                medal = each.medals.get(driver, Medal.NONE)
-                medals += NO_STAR if medal is Medal.NONE else medal.title[0].upper()
+            level = each.level
+            medals = "".join(_sign(each.medals.get(driver, Medal.NONE)) for driver in DriverKind)
             stars = f"{STAR * each.star_count:{NO_STAR}<{len(ExtraRule)}}"
             times = ", ".join(f"{driver.phrase} {time:.2f} s" for driver, time in each.best_times.items())
             lesson = f", or after lesson {level.lesson_number}" if level.lesson_number else ""
             state = times if each.is_open else f"opens after {' or '.join(level.opened_by)}{lesson}"
-            click.echo(f"{number:>3}  {medals}  {stars}  {level.id:<18} {state}".rstrip())
+            rows.append((str(number), medals, stars, level.id, state))
+        columns = (Column(""), *[Column("", CellStyle.TEXT)] * 4)
+        blocks.append(Table(world.id, f"{world.title}: {world.story}", columns, tuple(rows), indent=1))
     won = sum(medal is not Medal.NONE for medal in summary.challenges)
-    click.echo(
+    challenges = (
         f"Challenges: {won} of {len(summary.challenges)} with a medal; `kit game challenge` lists them."
     )
-    click.echo(f"\n{medal_counts(summary)}. `kit game play NAME` drives a level by hand.")
+    ways = f"{medal_counts(summary)}. `kit game play NAME` drives a level by hand."
+    click.echo("\n".join(lines_of([*blocks, Text(challenges), Text(ways)])))
+
+
+def _sign(medal: Medal) -> str:
+    """The first letter of a medal."""
+    from kit.school.game.player_progress import Medal
+
+    return NO_STAR if medal is Medal.NONE else medal.title[0].upper()
 
 
 def _record_drive(
@@ -443,7 +456,7 @@ def _record_drive(
     if record.previous_best is not None and finish.reached:
         click.echo(f"Your best before: {record.previous_best:.2f} s.")
     if record.is_best:
-        click.echo(
+        options.say(
             f"Your best so far {driver.phrase}; to replay it: kit game replay {level.command_name} --driver {driver}"
         )
     reference = reference_seconds(level)

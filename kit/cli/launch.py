@@ -13,7 +13,6 @@ from kit.cli import options
 from kit.cli.full_screen import run_screen
 from kit.host.failure import StudentCodeError
 from kit.inspection.sockets import sockets_folder, world_name
-from kit.interruption import ended_by_signals
 from kit.ros.graph.graph import Graph
 from kit.ros.packages import Package, PackageError, PackageExecutable, find_packages, read_package
 from kit.tui.terminal import TerminalDecision
@@ -167,7 +166,6 @@ def _show_arguments(target: LaunchTarget) -> None:
         click.echo("\n  No arguments.")
 
 
-@ended_by_signals()
 def _run_plainly(
     target: LaunchTarget,
     arguments: Mapping[str, str],

@@ -17,10 +17,12 @@ import click
 
 from kit.cli import options
 from kit.cli.full_screen import show_layers
+from kit.document.blocks import labelled_table
+from kit.document.layout import lines_of
 from kit.layers import explain as words
 from kit.layers.assignment import LayerAssignment
 from kit.layers.case_sources import PlanningTask, UnknownPlanningTask, open_task, solve_task
-from kit.layers.drawing import GlyphStyle, draw_assignment, draw_case, to_plain_lines
+from kit.layers.drawing import GlyphStyle, assignment_tables, draw_case, to_plain_lines
 from kit.layers.examples import EXAMPLES
 from kit.layers.explain import greedy_end_text, patch_text, world_verdict_text
 from kit.layers.flatland.world_patch import PatchError, WorldPatch, apply_patch, build_patch, make_recheck
@@ -30,7 +32,7 @@ from kit.layers.plan_data import check_data, graphviz_text, greedy_data, mermaid
 from kit.layers.planning import LayerPlan, Relaxation, allow_unwanted, drop_requirements
 from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import requirements_text
-from kit.plain_text import counted, quoted, suggestion, table
+from kit.plain_text import counted, quoted, suggestion
 from kit.world.problems import WorldError
 from kit.world.records import MAX_LAYERS
 
@@ -291,7 +293,7 @@ def explain(
         if on_screen:
             show_layers(task, Path(target).name)
         run = run_greedy(task.case)
-        echo_lines(words.wrap(task.case.title))
+        echo_lines(words.paragraph(task.case.title))
         echo_lines(to_plain_lines(draw_case(task.case, glyphs=choose_glyphs(glyphs))))
         echo_lines(["", "THE SLIDES' METHOD", ""])
         echo_lines(
@@ -300,7 +302,7 @@ def explain(
         found, _ = solve_task(task, time_limit=reading.time_limit)
         echo_lines(["", "THE FEWEST LAYERS", ""])
         echo_lines(words.plan_text(found))
-        echo_lines(["", *draw_assignment(task.case, found.assignment), ""])
+        echo_lines(["", *lines_of(assignment_tables(task.case, found.assignment)), ""])
         echo_lines(words.proof_text(found, every_pair=len(found.certificate.conflicting) <= 10))
         echo_lines(words.comparison_text(run, found))
 
@@ -316,7 +318,7 @@ def example(name: str | None, on_screen: bool) -> None:
       kit layers example slides-lasers --screen
     """
     if name is None:
-        echo_lines(table([(key, case.title) for key, case in EXAMPLES.items()]))
+        echo_lines(lines_of([labelled_table((key, case.title) for key, case in EXAMPLES.items())]))
         echo_lines(["", "`kit layers example NAME` prints one, `kit layers explain NAME` explains it."])
     elif name in EXAMPLES and on_screen:
         show_layers(open_task(name), name)
@@ -364,13 +366,13 @@ def _patch(task: PlanningTask, world_plan: WorldPlan | None, also_shared: bool) 
 def show_plan(case: LayerCase, found: LayerPlan, world_plan: WorldPlan | None, time_limit: float) -> None:
     """Prints the plan as tables, its proof, the slides' method beside it, and relaxations where it is too large."""
     if world_plan is None:
-        echo_lines(words.wrap(case.title))
+        echo_lines(words.paragraph(case.title))
         echo_lines(words.plan_text(found))
         assignment, kept = found.assignment, 0
     else:
         echo_lines(words.world_plan_text(world_plan))
         assignment, kept = world_plan.assignment, len(world_plan.world_case.layer_lists.kept_layers)
-    echo_lines(["", *draw_assignment(case, assignment), ""])
+    echo_lines(["", *lines_of(assignment_tables(case, assignment)), ""])
     echo_lines(words.proof_text(found))
     echo_lines(words.comparison_text(run_greedy(found.case), found))
     if found.size + kept > MAX_LAYERS:
@@ -414,7 +416,7 @@ def show_greedy(case: LayerCase, *, as_json: bool, graph: str | None) -> None:
     elif graph:
         show_graph(case, run.assignment, graph)
     else:
-        echo_lines([*greedy_end_text(run), "", *draw_assignment(case, run.assignment)])
+        echo_lines([*greedy_end_text(run), "", *lines_of(assignment_tables(case, run.assignment))])
 
 
 def show_graph(case: LayerCase, assignment: LayerAssignment, language: str) -> None:

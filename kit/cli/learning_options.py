@@ -156,7 +156,7 @@ def explained_errors() -> Iterator[None]:
     except (UnknownTask, WorkspaceError) as error:
         options.fail(str(error))
     except OSError as error:
-        options.fail(f"{error.filename}: {error.strerror}." if error.filename else str(error))
+        options.fail(options.describe_os_error(error))
 
 
 def runs_folder(workspace: Path | None) -> Path:

@@ -2,36 +2,53 @@
 
 from __future__ import annotations
 
-import textwrap
+import os
+import subprocess
+import sys
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import click
 
 from kit.cli import VERBS, options
+from kit.cli.dialogue import Way, run_dialogue
 from kit.cli.full_screen import show_lesson, show_lessons
-from kit.cli.lesson_plain import PlainLesson
 from kit.cli.plain import HEIGHT, WIDTH, InputBuffer, PlainSession, run_plain_session
 from kit.controllers import find_controller, prepare_workspace
+from kit.document.blocks import Block, Text, Tone
+from kit.document.layout import lines_of
 from kit.plain_text import counted, escape_controls, quoted, suggestion
 from kit.render.world_text import describe_scene, scene_rows
 from kit.run.episode import run_until, when_failed
-from kit.run.recording import load_recording
+from kit.run.recording import RecordingError, load_recording
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from kit.run.view import ViewBuilder
+from kit.school.lessons.aside import arguments_of, editor_arguments
 from kit.school.lessons.catalogue import list_lessons
 from kit.school.lessons.checking import ExerciseFilesError
-from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
+from kit.school.lessons.glossary import UnknownTerm, find_terms, glossary_blocks, read_glossary
 from kit.school.lessons.graph_playback import graph_rows
 from kit.school.lessons.learning_playback import plain_rows
 from kit.school.lessons.lesson_contract import check_contract, lesson_folders
+from kit.school.lessons.lesson_dialogue import Drive, Edit, LessonDialogue, Replay, RunCommand
 from kit.school.lessons.lesson_session import LessonSession
-from kit.school.lessons.reading import TEXT_WIDTH, UnknownLesson, find_lesson, read_lesson
-from kit.school.lessons.records import GraphScene, LearningScene, Lesson, LessonScene, scene_confinement_level
+from kit.school.lessons.reading import UnknownLesson, find_lesson, read_lesson
+from kit.school.lessons.records import (
+    GraphScene,
+    LearningScene,
+    Lesson,
+    LessonScene,
+    LessonStep,
+    scene_confinement_level,
+)
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.workspace import Workspace, WorkspaceError
 from kit.world.problems import WorldError
+
+if TYPE_CHECKING:
+    from kit.run.recording import Recording
+    from kit.run.scenario import Scenario
 
 TRAIL_POINTS = 100
 """Points of the way that a recorded run is drawn with."""
@@ -106,14 +123,9 @@ def command(
             if not terminal.plain.value:
                 show_lesson(session, opened_workspace, terminal)
             click.echo(f"Line by line. {terminal.plain.reason}")
-            input_buffer = InputBuffer()
-            PlainLesson(
-                session,
-                watch=_print_watched,
-                replay=_print_run,
-                drive=lambda scene, file: _drive_scene(scene, file, opened_workspace, input_buffer),
-                input_buffer=input_buffer,
-            ).run()
+            dialogue = LessonDialogue(session)
+            dialogue.begin(LineStage())
+            run_dialogue(dialogue, _ways(opened_workspace))
     except (
         UnknownLesson,
         WorkspaceError,
@@ -123,8 +135,6 @@ def command(
         FileNotFoundError,
     ) as error:
         options.fail(str(error))
-    except KeyboardInterrupt:
-        click.echo("\nYour progress is saved.")
 
 
 def _print_contract(folder: Path) -> NoReturn:
@@ -164,24 +174,83 @@ def _foreign_lesson(folder: Path, name: str) -> Lesson:
 
 
 def _print_lessons(journal: ProgressJournal) -> None:
+    blocks: list[Block] = []
     for each in list_lessons(journal.events()):
         if (unit := each.opened_unit) is not None:
-            click.echo(f"\n{unit.letter}  {unit.title}\n{textwrap.fill(unit.opener, TEXT_WIDTH)}\n")
+            blocks += [Text(f"{unit.letter}  {unit.title}", Tone.BOLD), Text(unit.opener, is_tight=True)]
         progress = each.progress
         if progress is None:
-            click.echo(f"{each.name}: cannot be read.\n    {each.problem}")
+            blocks += [Text(f"{each.name}: cannot be read."), Text(each.problem, indent=4, is_tight=True)]
             continue
-        lesson = progress.lesson
-        mark = (
-            "done"
-            if each.is_completed
-            else f"{progress.completed_count}/{len(lesson.steps)}"
-            if each.has_started
-            else ""
-        )
-        click.echo(f"{each.number:<3} {lesson.title:<44} {lesson.minutes:>3} min  {mark}")
-        click.echo(f"    {lesson.summary}")
-    click.echo("\n`kit lesson NUMBER` opens one.")
+        lesson, done = progress.lesson, f"{progress.completed_count}/{len(progress.lesson.steps)}"
+        mark = "  done" if each.is_completed else f"  {done}" if each.has_started else ""
+        tail = f"  {lesson.minutes} min{mark}"
+        blocks.append(Text(lesson.title, Tone.BOLD, lead=f"{each.number:<3}", tail=tail))
+        blocks.append(Text(lesson.summary, indent=4, is_tight=True))
+    click.echo("\n".join(lines_of([*blocks, Text("`kit lesson NUMBER` opens one.")])))
+
+
+def _ways(workspace: Workspace) -> dict[type, Way]:
+    """How a lesson is shown what it asks for, line by line."""
+    return {
+        Drive: lambda request, lines: _drive_scene(request, workspace, lines),
+        Replay: lambda request, lines: _print_run(request.file),
+        Edit: lambda request, lines: _edit(request),
+        RunCommand: lambda request, lines: _run_command(request, workspace),
+    }
+
+
+def _edit(request: Edit) -> str:
+    """Opens the student's editor, and waits for its end; returns why it could not."""
+    arguments = editor_arguments(os.environ, request.file, request.line)
+    if arguments is None or not sys.stdin.isatty():
+        return f"No editor can be opened here. Edit {request.file} in another terminal; saving it checks it."
+    try:
+        subprocess.run(arguments, cwd=request.file.parent, check=False)
+    except OSError as error:
+        return f"{arguments[0]} could not be started ({error.strerror}). Name another editor in $EDITOR."
+    return ""
+
+
+def _run_command(request: RunCommand, workspace: Workspace) -> str | None:
+    """Runs a command of the kit in this terminal."""
+    arguments = arguments_of(request.line)
+    if arguments is None:
+        return None
+    click.echo(f"$ {request.line}")
+    sys.stdout.flush()
+    source = None if sys.stdin is not None and sys.stdin.isatty() else subprocess.DEVNULL
+    environment = {**os.environ, "KIT_WORKSPACE": str(workspace.folder)}
+    subprocess.run(arguments, cwd=request.folder, env=environment, stdin=source, check=False)
+    return ""
+
+
+class LineStage:
+    """Tells the scene of a step in words and a picture, its beginning and its end."""
+
+    is_described = is_open = is_resting = True
+    is_recorded = is_paused = False
+
+    def __init__(self) -> None:
+        self._scene: LessonScene | LearningScene | GraphScene | None = None
+
+    def open(self, step: LessonStep, *, still: bool) -> None:
+        self._scene = step.scene or step.playback_scene
+
+    def play(self, recording: Recording, place: Scenario, *, still: bool = False) -> None: ...
+
+    def go(self) -> None:
+        self.again()
+
+    def again(self) -> None:
+        if self._scene is not None:
+            _print_watched(self._scene)
+
+    def hold(self, held: bool) -> None: ...
+
+    def step_once(self) -> None: ...
+
+    def close(self) -> None: ...
 
 
 def _print_watched(scene: LessonScene | LearningScene | GraphScene) -> None:
@@ -212,10 +281,13 @@ def _print_scene(scene: LessonScene) -> None:
         click.echo(f"After {scene.seconds:g} s: {describe_scene(view.scene)}; {drive_text}.")
 
 
-def _print_run(file: Path) -> None:
-    """Prints a recorded run in words and a picture: where it began, and how it ended."""
-    recording = load_recording(file)
-    place = find_scenario(recording.place, recording.case)
+def _print_run(file: Path) -> str:
+    """Prints a recorded run in words and a picture: where it began, and how it ended. Returns why that is not possible."""
+    try:
+        recording = load_recording(file)
+        place = find_scenario(recording.place, recording.case)
+    except (OSError, LookupError, RecordingError, WorldError) as error:
+        return str(error)
     with Session(place, seed=recording.seed, step_size=recording.step_size, always_scan=True) as session:
         session.play_back(recording)
         view_builder = ViewBuilder(session)
@@ -228,26 +300,30 @@ def _print_run(file: Path) -> None:
         click.echo("\n".join(scene_rows(view.scene, WIDTH, HEIGHT // 2 + 2)))
         drive_text = f"{view.metrics.distance_m:.1f} m driven, {counted(view.metrics.bumps, 'bump')}"
         click.echo(f"After {view.time_s:.1f} s: {describe_scene(view.scene)}; {drive_text}.")
+    return ""
 
 
-def _drive_scene(
-    scene: LessonScene, file: str, opened_workspace: Workspace, input_buffer: InputBuffer
-) -> None:
-    """Lets the student drive line by line and saves the recording in ``file``."""
+def _drive_scene(request: Drive, opened_workspace: Workspace, input_buffer: InputBuffer) -> str:
+    """Lets the student drive line by line, reading the same input, and saves the recording; returns why that failed."""
+    scene = request.scene
     scenario = find_scenario(scene.map_name, scene.case, None)
     click.echo(
         "`drive 0.3 0 2` drives at 0.3 m/s without turning for 2 s; `picture` shows where you are; `quit` hands in your drive."
     )
-    run_plain_session(
-        PlainSession(
-            scenario,
-            find_controller("teleop", opened_workspace.controllers),
-            seed=scene.seed,
-            folder=opened_workspace.controllers,
-            record=Path(file),
-            input_buffer=input_buffer,
+    try:
+        run_plain_session(
+            PlainSession(
+                scenario,
+                find_controller("teleop", opened_workspace.controllers),
+                seed=scene.seed,
+                folder=opened_workspace.controllers,
+                record=options.recording_file(request.file),
+                input_buffer=input_buffer,
+            )
         )
-    )
+    except OSError as error:
+        return f"{request.file}: {error.strerror}."
+    return ""
 
 
 @click.command()
@@ -264,5 +340,4 @@ def glossary_command(term: tuple[str, ...]) -> None:
         shown = find_terms(terms, " ".join(term)) if term else terms
     except (UnknownTerm, WorldError, FileNotFoundError) as error:
         options.fail(str(error))
-    for each in shown:
-        click.echo("\n".join(each.lines()))
+    click.echo("\n".join(lines_of(glossary_blocks(shown))))

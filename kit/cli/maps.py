@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sys
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,8 @@ import click
 
 from kit.cli import ScreenClosed, options
 from kit.cli.full_screen import run_screen
-from kit.plain_text import table
+from kit.document.blocks import Block, Picture, Table, Text, labelled_table
+from kit.document.layout import lines_of
 from kit.run.scenario import own_map_folder, scenario_on_map
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.catalogue import (
@@ -67,16 +69,21 @@ def command(ctx: click.Context) -> None:
 
 
 def _list() -> None:
-    cards = all_maps()
-    click.echo("\n".join(table([(card.name, card.summary) for card in cards])))
-    own = _own_maps()
-    if own:
-        click.echo("\nYour own:")
-        for folder in own:
-            click.echo(f"  {folder}")
-    click.echo(
-        "\n`kit maps NAME` shows one, `kit play NAME` opens it, `kit maps --help` says how to make your own."
-    )
+    own = tuple(map(str, _own_maps()))
+    listed: list[Block] = [Text("Your own:"), Picture(own, is_tight=True)] if own else []
+    blocks: list[Block] = [
+        maps_table(all_maps()),
+        *listed,
+        Text(
+            "`kit maps NAME` shows one, `kit play NAME` opens it, `kit maps --help` says how to make your own."
+        ),
+    ]
+    click.echo("\n".join(lines_of(blocks)))
+
+
+def maps_table(cards: Iterable[MapCard]) -> Table:
+    """The maps there are: a name, and what there is to do."""
+    return labelled_table((card.name, card.summary) for card in cards)
 
 
 def _own_maps() -> list[Path]:
@@ -121,7 +128,7 @@ def _show_card(card: MapCard, glyphs: str | None) -> None:
     click.echo("\n".join(scene_rows(scene, columns - 1, max(10, rows - 6), ENCODERS[chosen](True))))
     for case in card.cases:
         x, y, theta = case.start
-        click.echo(
+        options.say(
             f"{case.name}: from ({x:g}, {y:g}, {theta:g} rad) to within {case.target_radius:g} m of "
             f"({case.target[0]:g}, {case.target[1]:g})"
         )
@@ -199,6 +206,7 @@ def _title(name: str) -> str:
 def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str | None) -> None:
     """Opens the sheet, and tells what was made of it. The drawing is kept beside the map, to be changed later."""
     from kit.mapmaking.new_map import MapSketch, read_drawing, write_map
+    from kit.mapmaking.sketch_draft import SketchDraft
 
     terminal = options.full_screen(
         "Drawing on the screen",
@@ -211,6 +219,9 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
         sketch = MapSketch.room(int(columns), int(rows), cell)
     except ValueError as error:
         raise click.UsageError(f"--size takes two numbers, such as 40x20 ({error}).") from None
+
+    draft = SketchDraft(folder)
+    sketch, note = (sketch, "") if draft.found is None else (draft.found, "as you left it, not saved")
 
     def save(drawn: MapSketch) -> NewMap:
         made = write_map(
@@ -225,11 +236,15 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
     def make_screen(app: KitApp) -> MapDrawingScreen:
         from kit.tui.screens.map_drawing import MapDrawingScreen
 
-        return MapDrawingScreen(app.kit_theme, folder.name, sketch, save)
+        return MapDrawingScreen(app.kit_theme, folder.name, sketch, save, note=note, keep=draft.keep)
 
     screen, code = run_screen(terminal, make_screen)
+    keeps = screen.saved is None and not screen.is_given_up
+    draft.close(keeps=keeps)
     if screen.saved is not None:
         _report(screen.saved, glyphs)
+    elif keeps and (note or screen.sketch != sketch):
+        click.echo(f"The map is not saved yet. `kit maps new {folder.name}` shows your drawing again.")
     else:
         click.echo("Nothing was saved.")
     raise ScreenClosed(code)
@@ -372,7 +387,7 @@ def _report(made: NewMap, glyphs: str | None) -> None:
     assert card is not None  # just written
     _show_card(card, glyphs)
     x, y = made.route.narrowest
-    click.echo(
+    options.say(
         f"The path from start to target is {made.route.length:.1f} m long; its narrowest passage, {made.route.width:.2f} m wide, "
         f"is at ({x:.2f}, {y:.2f})."
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sys
 from collections.abc import Callable
 from functools import reduce
@@ -11,7 +12,8 @@ from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import click
 
-from kit.plain_text import escape_controls
+from kit.cli import BAD_INPUT, NO_ROOM, describe_no_room
+from kit.plain_text import escape_controls, wrap
 from kit.tui.terminal import (
     COLOUR_CHOICES,
     GLYPH_CHOICES,
@@ -25,11 +27,13 @@ from kit.tui.terminal import (
 from kit.workspace import Workspace, WorkspaceError, open_workspace
 
 if TYPE_CHECKING:
+    from kit.run.recording_file import RecordingFile
     from kit.school.progress import ProgressJournal
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
-BAD_INPUT = 2
+SENTENCE_WIDTH = 78
+"""Columns of sentences that are printed."""
 
 Storage = Literal["mcap", "sqlite3"]
 """Kinds of bags."""
@@ -37,8 +41,31 @@ Storage = Literal["mcap", "sqlite3"]
 
 def fail(message: str) -> NoReturn:
     """Prints ``message`` on standard error and ends the verb with exit code 2."""
-    click.echo(escape_controls(message), err=True)
+    click.echo(on_terminal(escape_controls(message)), err=True)
     raise SystemExit(BAD_INPUT)
+
+
+def say(text: str, *, err: bool = False) -> None:
+    """Prints sentences, in lines that fit a terminal of 80 columns."""
+    click.echo("\n".join(line for part in text.splitlines() for line in wrap(part, SENTENCE_WIDTH)), err=err)
+
+
+def on_terminal(message: str) -> str:
+    """The lines of an error's message, broken between words where a terminal shows them; a log keeps each whole."""
+    if not sys.stderr.isatty():
+        return message
+    columns = min(shutil.get_terminal_size().columns, SENTENCE_WIDTH + 2)
+    return "\n".join(
+        part
+        for line in message.splitlines()
+        for part in (
+            wrap(line, columns, _indent_of(line), _indent_of(line)) if len(line) > columns else [line]
+        )
+    )
+
+
+def _indent_of(line: str) -> str:
+    return line[: len(line) - len(line.lstrip())]
 
 
 def environment_variable(text: str) -> tuple[str, str]:
@@ -60,8 +87,30 @@ def open_journal(workspace: Workspace) -> ProgressJournal:
 
 
 def describe_os_error(error: OSError) -> str:
-    """Formats an error with its file."""
+    """Formats an error with its file, and the way out where there is no room."""
+    if error.errno in NO_ROOM:
+        return describe_no_room(error)
     return f"{error.filename}: {error.strerror}" if error.filename and error.strerror else str(error)
+
+
+def recording_file(file: Path | None) -> RecordingFile | None:
+    """Opens the file of ``--record``, and says what was restored in its folder; ends the verb where it cannot be written."""
+    if file is None:
+        return None
+    from kit.run.recording_file import RecordingFile
+
+    try:
+        opened = RecordingFile(file)
+    except OSError as error:
+        fail(describe_os_error(error))
+    for notice in opened.notices:
+        click.echo(escape_controls(notice), err=True)
+    return opened
+
+
+def describe_error(error: Exception) -> str:
+    """What an error says, with the file where it is one of the system."""
+    return describe_os_error(error) if isinstance(error, OSError) else str(error)
 
 
 def replace_unencodable(text: str) -> str:
@@ -188,7 +237,7 @@ storage: Decorator = click.option(
 def explain_storage(kind: Storage) -> None:
     """Prints which ROS 2 distributions read such a bag."""
     if kind == "mcap":
-        click.echo(
+        say(
             "The bag is in MCAP format. ROS 2 Humble needs a plugin to read it; `-s sqlite3` needs none.",
             err=True,
         )

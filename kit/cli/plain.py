@@ -14,7 +14,10 @@ from typing import Final, NamedTuple
 
 import click
 
+from kit.cli.maps import maps_table
 from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
+from kit.document.blocks import labelled_table
+from kit.document.layout import lines_of
 from kit.inspection.server import InspectionServer, open_inspection_server
 from kit.interruption import uninterrupted
 from kit.msg.geometry_msgs import Twist, Vector3
@@ -24,7 +27,8 @@ from kit.ros.log import LogRecord
 from kit.run.episode import EndCondition, EndReason, run_until
 from kit.run.lockstep import Observer
 from kit.run.pacing import MAXIMUM, REAL_TIME, Schedule
-from kit.run.recording import Recorder, save_recording
+from kit.run.recording import Recorder
+from kit.run.recording_file import RecordingFile
 from kit.run.scenario import Scenario, find_scenario
 from kit.run.session import Session
 from kit.run.view import ViewBuilder, format_log
@@ -144,7 +148,7 @@ class PlainSession:
         folder: Path,
         root: Path | None = None,
         socket_dir: Path | None = None,
-        record: Path | None = None,
+        record: RecordingFile | None = None,
         input_buffer: InputBuffer | None = None,
         prints_file: bool = True,
         observer: Observer | None = None,
@@ -256,9 +260,9 @@ class PlainSession:
             self.lines.close()
             self._close_world()
             if self._record is not None and self._recorder is not None:
-                save_recording(self._recorder.recording(), self._record)
+                self._record.complete(self._recorder.recording())
                 if self._prints_file:
-                    click.echo(f"Drive saved to {self._record}.")
+                    click.echo(f"Drive saved to {self._record.file}.")
 
     def _open(self, scenario: Scenario) -> Session:
         session = Session(scenario, seed=self._seed, always_scan=True, on_message=_print_log)
@@ -270,7 +274,7 @@ class PlainSession:
                 session.runner.participants.append(self._inspection_server)
         self._recorder: Recorder | None = None
         if self._record is not None:
-            self._recorder = Recorder.for_scenario(scenario, session.runner.simulation)
+            self._recorder = Recorder.for_scenario(scenario, session.runner.simulation, self._record)
             session.runner.observers.append(self._recorder)
         self._load_controller(session)
         return session
@@ -309,13 +313,12 @@ def _print_log(record: LogRecord) -> None:
 
 
 def _print_help(plain: PlainSession, words: Sequence[str]) -> None:
-    for verb in VERBS.values():
-        click.echo(f"{verb.usage:<28} {verb.summary}")
+    rows = [(verb.usage, verb.summary) for verb in VERBS.values()]
+    click.echo("\n".join(lines_of([labelled_table(rows)])))
 
 
 def _print_maps(plain: PlainSession, words: Sequence[str]) -> None:
-    for card in all_maps():
-        click.echo(f"{card.name}: {card.summary}")
+    click.echo("\n".join(lines_of([maps_table(all_maps())])))
 
 
 def _quit(plain: PlainSession, words: Sequence[str]) -> None:

@@ -10,8 +10,7 @@ import click
 from kit.cli import ScreenClosed, options
 from kit.cli.full_screen import run_screen
 from kit.controllers import find_controller, prepare_workspace
-from kit.interruption import ended_by_signals
-from kit.workspace import WorkspaceError, check_writable
+from kit.workspace import WorkspaceError
 
 if TYPE_CHECKING:
     from kit.tui.app import KitApp
@@ -37,7 +36,6 @@ if TYPE_CHECKING:
 )
 @options.glyphs
 @options.color
-@ended_by_signals()
 def command(
     place: str,
     case: str | None,
@@ -67,11 +65,6 @@ def command(
         driver = find_controller(controller, opened_workspace.controllers)
     except (LookupError, WorkspaceError) as error:
         options.fail(str(error))
-    if record is not None:
-        try:
-            check_writable(record)
-        except OSError as error:
-            options.fail(options.describe_os_error(error))
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
     socket_dir = sockets_folder(opened_workspace.folder)
     if terminal.plain.value:
@@ -84,6 +77,7 @@ def command(
             where = find_scenario(place, case, root)
         except (LookupError, WorldError) as error:
             options.fail(str(error))
+        kept = options.recording_file(record)
         line_by_line = PlainSession(
             where,
             driver,
@@ -91,13 +85,14 @@ def command(
             folder=opened_workspace.controllers,
             root=root,
             socket_dir=socket_dir,
-            record=record,
+            record=kept,
         )
         try:
             run_plain_session(line_by_line)
         except OSError as error:
             options.fail(options.describe_os_error(error))
         return
+    kept = options.recording_file(record)
 
     def make_screen(app: KitApp) -> PlayScreen:
         from kit.tui.screens.play import PlayScreen
@@ -112,16 +107,16 @@ def command(
             runs=opened_workspace.runs,
             seed=seed,
             socket_dir=socket_dir,
-            records=record is not None,
+            record=kept,
         )
 
     screen, code = run_screen(terminal, make_screen)
+    if screen.draft_problem:
+        click.echo(f"What you typed last and did not save is {screen.draft_problem}.", err=True)
     recording = screen.recording()
-    if record is not None and recording is not None:
-        from kit.run.recording import save_recording
-
+    if kept is not None and recording is not None:
         try:
-            save_recording(recording, record)
+            kept.complete(recording)
         except OSError as error:
             options.fail(options.describe_os_error(error))
         click.echo(f"Drive saved to {record}.")

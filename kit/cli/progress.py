@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import click
 
 from kit.cli import options
+from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text
+from kit.document.layout import lines_of
+from kit.document.rows import row_text
 from kit.plain_text import counted
 from kit.school.game.challenges import game_summary
-from kit.school.lessons.catalogue import list_lessons
+from kit.school.lessons.catalogue import LessonEntry, list_lessons
 from kit.school.progress import EventKind, ProgressError, ProgressJournal, read_export
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError
-
-TITLE_COLUMNS = 40
 
 
 @contextmanager
@@ -88,22 +89,33 @@ def _show(journal: ProgressJournal) -> None:
         click.echo(f"Nothing yet. Begin with `kit lesson {first.number}`; it takes five minutes.")
         return
     shelf = list_lessons(events)
-    for each in shelf:
-        progress = each.progress
-        if progress is None:
-            click.echo(
-                f"{each.number:<3} {each.title:<{TITLE_COLUMNS}} cannot be read; `kit lesson {each.number}` says why"
-            )
-            continue
-        exercises = progress.lesson.exercises
-        passed = sum(exercise.name in progress.passed_exercises for exercise in exercises)
-        bar = "".join("#" if progress.is_step_completed(step) else "." for step in progress.lesson.steps)
-        tries = sum(progress.attempt_counts.values())
-        checks = f"{tries} checks" if tries else ""
-        click.echo(
-            f"{each.number:<3} {each.title:<{TITLE_COLUMNS}} {bar:<12} {passed}/{len(exercises)} exercises  {checks}"
-        )
     finished = sum(each.is_completed for each in shelf)
-    click.echo(f"\n{counted(finished, 'lesson')} done. `kit quiz --scores` shows the quiz.\n\nThe game")
-    for line in game_progress(game_summary(events)):
-        click.echo("".join(text for text, _ in line).rstrip())
+    blocks: list[Block] = [
+        _lessons_table(shelf),
+        Text(f"{counted(finished, 'lesson')} done. `kit quiz --scores` shows the quiz."),
+        Text("The game"),
+    ]
+    click.echo("\n".join([*lines_of(blocks), *map(row_text, game_progress(game_summary(events)))]))
+
+
+def _lessons_table(shelf: Sequence[LessonEntry]) -> Table:
+    """How far each lesson is: its steps, its exercises and how often they were checked."""
+    columns = (
+        Column("", CellStyle.TEXT),
+        Column("lesson", CellStyle.TEXT),
+        Column("steps", CellStyle.TEXT),
+        Column("exercises"),
+        Column("checks"),
+    )
+    return Table("lessons", "", columns, tuple(map(_lesson_cells, shelf)), is_ruled=False)
+
+
+def _lesson_cells(entry: LessonEntry) -> tuple[Cell, ...]:
+    progress = entry.progress
+    if progress is None:
+        return entry.number, entry.title, f"cannot be read: see kit lesson {entry.number}", "", ""
+    exercises = progress.lesson.exercises
+    passed = sum(exercise.name in progress.passed_exercises for exercise in exercises)
+    bar = "".join("#" if progress.is_step_completed(step) else "." for step in progress.lesson.steps)
+    tries = sum(progress.attempt_counts.values())
+    return entry.number, entry.title, bar, f"{passed} of {len(exercises)}", tries or ""

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, NoReturn
 
 import click
 
 from kit.cli import options
-from kit.cli.full_screen import show_screen
+from kit.cli.dialogue import run_dialogue
+from kit.cli.full_screen import show_dialogue
+from kit.document.blocks import Text
+from kit.document.layout import lines_of
 from kit.school.progress import FILE, ProgressError, ProgressEvent, ProgressJournal
-from kit.school.quiz.items import OPTION_COUNT, LessonWithoutQuestions, QuestionBank, QuizItem, read_bank
+from kit.school.quiz.items import LessonWithoutQuestions, QuestionBank, read_bank
+from kit.school.quiz.quiz_dialogue import QuizDialogue
 from kit.school.quiz.quiz_session import (
     PracticePlan,
     QuestionPlan,
@@ -23,34 +25,15 @@ from kit.school.quiz.quiz_session import (
     student_seed,
 )
 from kit.school.quiz.quiz_text import (
-    CONFIDENCE_CHOICES,
-    CONFIDENCE_QUESTION,
-    closing_lines,
-    feedback_text,
-    follow_up_lines,
+    closing_blocks,
     restart_line,
-    schedule_lines,
-    scores_lines,
+    schedule_blocks,
+    scores_blocks,
     today_line,
-    verdict_text,
-    wrap_text,
 )
-from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, answers_from_events, build_schedule
-from kit.tui.terminal import TerminalDecision
+from kit.school.quiz.schedule import answers_from_events, build_schedule
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError
-
-if TYPE_CHECKING:
-    from kit.tui.app import KitApp
-    from kit.tui.screens.quiz import QuizScreen
-
-WIDTH: Final = 78
-NOT_SURE_WORDS: Final = ("?", "0")
-LEAVE_WORDS: Final = ("q", "quit")
-
-
-class _LeaveQuiz(Exception):
-    """The student has had enough for now."""
 
 
 @click.command()
@@ -101,9 +84,9 @@ def command(
             if session.current_item is None:
                 _print_finished(session)
             elif terminal.plain.value:
-                ask_line_by_line(session)
+                run_dialogue(QuizDialogue(session))
             else:
-                _ask_on_full_screen(session, terminal)
+                show_dialogue(QuizDialogue(session), terminal)
     except ProgressError as error:
         options.fail(str(error))
 
@@ -145,118 +128,15 @@ def _print_scores(bank: QuestionBank, workspace: Path | None) -> None:
                 events = journal.events()
     except ProgressError as error:
         options.fail(str(error))
-    for line in scores_lines(bank, answers_from_events(events), build_schedule(bank, events, local_now())):
-        click.echo(line)
+    schedule = build_schedule(bank, events, local_now())
+    click.echo("\n".join(lines_of(scores_blocks(bank, answers_from_events(events), schedule))))
 
 
 def _print_finished(session: QuizSession) -> None:
     """Prints the result of a finished quiz and what can be done next."""
-    if isinstance(session.plan, QuizRoundPlan):
-        for line in (*closing_lines(session), restart_line(session.plan)):
-            click.echo(line)
-        return
     schedule = session.build_schedule()
-    click.echo(today_line(schedule))
-    if schedule.topics:
-        click.echo("")
-        for line in schedule_lines(schedule):
-            click.echo(line)
-
-
-def _ask_on_full_screen(session: QuizSession, terminal: TerminalDecision) -> NoReturn:
-    def make_screen(app: KitApp) -> QuizScreen:
-        from kit.tui.screens.quiz import QuizScreen
-
-        return QuizScreen(session)
-
-    show_screen(terminal, make_screen)
-
-
-# Line by line
-
-
-def ask_line_by_line(session: QuizSession) -> None:
-    """Asks what the sitting has ahead, by lines of standard input, until all is asked, ``q``, or its end."""
-    click.echo(f"{session.plan.title}: {session.question_count} questions.")
-    if session.question_number > 1:
-        click.echo(f"You continue at question {session.question_number}.")
-    click.echo("Type 1, 2 or 3, ? if you are not sure, Enter to leave it blank, q to quit.")
-    try:
-        while (item := session.current_item) is not None:
-            _ask(session, item)
-        click.echo("")
-        for line in closing_lines(session):
-            click.echo(line)
-    except (_LeaveQuiz, KeyboardInterrupt):
-        click.echo("")
-        click.echo(
-            f"{session.question_number - 1} of {session.question_count} answered. `{session.plan.command}` continues here. "
-            + today_line(session.build_schedule())
-        )
-
-
-def _ask(session: QuizSession, item: QuizItem) -> None:
-    click.echo("")
-    click.echo(f"Question {session.question_number} of {session.question_count}, {item.topic.label}")
-    for line in wrap_text(item.question, WIDTH):
-        click.echo(line)
-    if item.picture:
-        click.echo("")
-        for row in item.picture:
-            click.echo(f"    {row}".rstrip())
-        click.echo("")
-    for number, option in enumerate(item.options, 1):
-        first, *rest = wrap_text(option.text, WIDTH, "     ")
-        click.echo(f"  {number}  {first.strip()}")
-        for line in rest:
-            click.echo(line)
-    click.echo("  ?  I am not sure")
-    choice = _read_choice()
-    session.answer(choice, None if choice.option is None else _read_confidence())
-    click.echo(verdict_text(item, choice))
-    for line in (*wrap_text(feedback_text(item, choice), WIDTH), *follow_up_lines(item, WIDTH)):
-        click.echo(line)
-
-
-def _read_choice() -> AnswerChoice:
-    choices = {str(index + 1): AnswerChoice(index) for index in range(OPTION_COUNT)}
-    choices |= dict.fromkeys(NOT_SURE_WORDS, NOT_SURE)
-    asked_once = False
-    while True:
-        word = _read_line()
-        if word in choices:
-            return choices[word]
-        if not word and asked_once:
-            return BLANK
-        asked_once = not word
-        click.echo(
-            "Press Enter again to leave it blank; type ? if you are not sure."
-            if asked_once
-            else "Type 1, 2 or 3, ? if you are not sure, Enter to leave it blank, q to quit."
-        )
-
-
-def _read_confidence() -> int | None:
-    words = ", ".join(f"{number} {text}" for number, text in CONFIDENCE_CHOICES)
-    click.echo(f"{CONFIDENCE_QUESTION} {words}")
-    while True:
-        word = _read_line()
-        if not word:
-            return None
-        number = next((number for number, _ in CONFIDENCE_CHOICES if word == str(number)), None)
-        if number is not None:
-            return number
-        click.echo("Type 1, 2, 3 or 4, Enter to leave it open, q to quit.")
-
-
-def _read_line() -> str:
-    """The next line that the student types. Raises _LeaveQuiz where they leave, or there are no more."""
-    if sys.stdin is None:
-        raise _LeaveQuiz
-    if sys.stdin.isatty():
-        click.echo("> ", nl=False)
-    line = sys.stdin.readline()
-    word = line.strip().lower()
-    if not line or word in LEAVE_WORDS:
-        raise _LeaveQuiz
-    return word
+    if isinstance(session.plan, QuizRoundPlan):
+        blocks = [*closing_blocks(session), Text(restart_line(session.plan), is_tight=True)]
+    else:
+        blocks = [Text(today_line(schedule)), *(schedule_blocks(schedule) if schedule.topics else ())]
+    click.echo("\n".join(lines_of(blocks)))

@@ -13,9 +13,11 @@ from kit.cli import learning_options, options
 from kit.cli.full_screen import show_screen
 from kit.learning.policies.policies import Policy, load_policy
 from kit.learning.training.runs import find_run
+from kit.plain_text import escape_controls
 from kit.run.animation import AnimationSettings, ExportError, count_frames, export_recording
 from kit.run.recording import Recording, RecordingError, load_recording, rerun
-from kit.run.scenario import Scenario, find_scenario
+from kit.run.recording_file import restore_recordings
+from kit.run.scenario import Scenario, find_recorded_scenario
 from kit.school.game.player_progress import find_playable_level
 from kit.school.game.two_players import CannotShare, recorded_scenario
 from kit.world.problems import WorldError
@@ -96,9 +98,11 @@ def command(
 
     Exit code of --check: 0 the same run; 1 a different run; 2 the file or its world cannot be read.
     """
+    for notice in restore_recordings(file.absolute().parent) if not file.exists() else ():
+        click.echo(escape_controls(notice), err=True)
     try:
         recording = load_recording(file)
-        scenario = _scenario(recording, root)
+        scenario = _scenario(recording, file, root)
     except (RecordingError, LookupError, WorldError, CannotShare) as error:
         options.fail(str(error))
     except OSError as error:
@@ -139,7 +143,7 @@ def command(
         if again.poses.shape == recording.poses.shape
         else [0]
     )
-    click.echo(
+    options.say(
         f"not the same run: the poses differ from row {differing_rows[0]} on. Has the world changed since?"
     )
     raise SystemExit(1)
@@ -153,10 +157,10 @@ def _policy(agent: str, workspace: Path | None) -> Policy:
         return find_run(learning_options.runs_folder(workspace), agent).policy()
 
 
-def _scenario(recording: Recording, root: Path | None) -> Scenario:
+def _scenario(recording: Recording, file: Path, root: Path | None) -> Scenario:
     """The world that was driven in: that of the game's level, where the recording is one of a level."""
     if recording.level is None:
-        return find_scenario(recording.place, recording.case, root)
+        return find_recorded_scenario(recording.place, recording.case, file, root)
     return recorded_scenario(find_playable_level(recording.level), recording)
 
 

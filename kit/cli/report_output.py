@@ -18,7 +18,7 @@ from kit.workspace import write_atomically
 from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
-    from kit.school.report.document import ClassReport
+    from kit.document.blocks import Document
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,13 +95,14 @@ def output_options(function: Callable[..., Any]) -> Callable[..., Any]:
     return decorated
 
 
-def write_outputs(made: ClassReport, outputs: ReportOutputs, *, printed: ClassReport | None = None) -> None:
+def write_outputs(made: Document, outputs: ReportOutputs, *, printed: Document | None = None) -> None:
     """Writes the files that were asked for, and prints the text unless JSON goes to the terminal.
 
     ``printed``: what is printed instead of the whole.
     """
-    from kit.school.report.as_files import plot_to_svg, report_to_html, report_to_json, table_to_csv
-    from kit.school.report.as_text import ASCII_GLYPHS, BLOCK_GLYPHS, report_lines
+    from kit.document.files import document_to_html, document_to_json, plot_to_svg, table_to_csv
+    from kit.document.glyphs import ASCII_GLYPHS, BLOCK_GLYPHS
+    from kit.document.layout import document_lines
 
     html_file, json_file = outputs.html_file, outputs.json_file
     to_terminal = json_file is not None and str(json_file) == "-"
@@ -115,22 +116,22 @@ def write_outputs(made: ClassReport, outputs: ReportOutputs, *, printed: ClassRe
         if html_file.suffix != ".html":
             html_file.mkdir(parents=True, exist_ok=True)
             page = html_file / "index.html"
-        files[page] = report_to_html(made)
+        files[page] = document_to_html(made)
     if json_file is not None and not to_terminal:
-        files[json_file] = report_to_json(made)
+        files[json_file] = document_to_json(made)
     for folder in (outputs.svg_folder, outputs.csv_folder):
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
     _write(files)
     if to_terminal:
-        click.echo(report_to_json(made).encode(), nl=False)
+        click.echo(document_to_json(made).encode(), nl=False)
     else:
         chosen = (
             ASCII_GLYPHS
             if outputs.glyphs == "ascii" or (outputs.glyphs is None and not _can_encode_blocks())
             else BLOCK_GLYPHS
         )
-        click.echo(options.replace_unencodable("\n".join(report_lines(printed or made, chosen))))
+        click.echo(options.replace_unencodable("\n".join(document_lines(printed or made, chosen))))
 
 
 def _write(files: Mapping[Path, str]) -> None:
@@ -163,6 +164,6 @@ def explained_errors() -> Iterator[None]:
     except BrokenPipeError:
         raise  # whoever read the output has enough; click ends quietly
     except OSError as error:
-        options.fail(f"{options.describe_os_error(error)}.")
+        options.fail(options.describe_os_error(error))
     except (ProgressError, WorldError) as error:
         options.fail(str(error))

@@ -11,12 +11,13 @@ import click
 
 from kit.cli import options
 from kit.cli.options import Storage
-from kit.controllers import find_controller
+from kit.controllers import find_controller, kit_controllers
+from kit.document.blocks import Picture, labelled_table
+from kit.document.layout import lines_of
 from kit.host.program_terminal import ProgramTerminal, has_user_terminal, piped_streams
 from kit.inspection.server import InspectionServer
 from kit.inspection.sockets import sockets_folder
-from kit.interruption import ended_by_signals
-from kit.plain_text import counted
+from kit.plain_text import counted, escape_controls
 from kit.ros.bags import BagRecorder
 from kit.ros.graph.graph import Graph
 from kit.run.headless import RunSummary, run_headless
@@ -27,6 +28,7 @@ from kit.run.view import format_log
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError
 
+STANDS_STILL_M = 0.01
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells have it."""
 
@@ -68,7 +70,6 @@ INTERRUPTED = 130
 @options.storage
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @options.workspace
-@ended_by_signals()
 def command(
     place: str,
     case: str | None,
@@ -110,21 +111,22 @@ def command(
         )
     if bag is not None:
         options.explain_storage(storage)
-        participants.append(lambda graph: BagRecorder(graph, bag, storage=storage))
+        participants.append(lambda graph: _record_bag(graph, bag, storage))
     try:
         with ExitStack() as stack:
             if has_user_terminal():
                 streams = stack.enter_context(ProgramTerminal(shows_output=False)).streams
             else:
                 streams = piped_streams()
+            driver = find_controller(controller, opened_workspace.controllers)
             summary = run_headless(
                 find_scenario(place, case, root),
-                find_controller(controller, opened_workspace.controllers),
+                driver,
                 steps=steps,
                 seed=seed,
                 factor=speed or (REAL_TIME if serve else MAXIMUM),
                 until_reached=until_reached,
-                record=record,
+                record=options.recording_file(record),
                 participants=participants,
                 on_message=lambda record: click.echo(format_log(record), err=True),
                 streams=streams,
@@ -134,12 +136,26 @@ def command(
     except OSError as error:
         options.fail(options.describe_os_error(error))
     click.echo(json.dumps(summary.as_dict(), indent=2) if as_json else format_summary(summary))
+    is_own = driver.file not in {each.file for each in kit_controllers()}
+    if is_own or summary.metrics.distance_m < STANDS_STILL_M:  # the kit's controllers need not hear all
+        for mistake in summary.mistakes:
+            click.echo(mistake, err=True)
     if summary.interrupted:
         for kept in filter(None, (record, bag)):
             click.echo(f"What ran until then is in {kept}.", err=True)
         raise SystemExit(INTERRUPTED)
     if summary.failure is not None:
         raise SystemExit(1)
+
+
+def _record_bag(graph: Graph, folder: Path, storage: Storage) -> BagRecorder:
+    recorder = BagRecorder(graph, folder, storage=storage)
+    for notice in recorder.notices:
+        click.echo(escape_controls(notice), err=True)
+    return recorder
+
+
+FAILURE_INDENT = 13
 
 
 def format_summary(summary: RunSummary) -> str:
@@ -169,8 +185,11 @@ def format_summary(summary: RunSummary) -> str:
         ("end", end),
         ("fingerprint", summary.fingerprint),
     ]
-    if summary.failure is not None:
-        rows.append(("stopped", str(summary.failure).replace("\n", "\n" + " " * 13)))
     if summary.interrupted:
         rows.append(("stopped", "by Ctrl-C or a signal"))
-    return "\n".join(f"{name:<12} {text}" for name, text in rows)
+    failure = [] if summary.failure is None else str(summary.failure).splitlines()
+    if failure:
+        rows.append(("stopped", failure[0]))
+    return "\n".join(
+        lines_of([labelled_table(rows), Picture(tuple(failure[1:]), indent=FAILURE_INDENT, is_tight=True)])
+    )

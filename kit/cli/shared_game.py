@@ -11,7 +11,6 @@ import click
 from kit.cli import ScreenClosed, options
 from kit.cli.full_screen import run_screen
 from kit.controllers import prepare_workspace
-from kit.interruption import ended_by_signals
 from kit.workspace import Workspace, WorkspaceError
 
 if TYPE_CHECKING:
@@ -30,7 +29,6 @@ TELL_INTERVAL = 2.0
 @click.option("--everybody", is_flag=True, help="Let all users of this machine join.")
 @click.option("--name", help="Your name in the game (default: your login name).")
 @click.pass_obj
-@ended_by_signals()
 def host(
     workspace: Path | None, level: str, tag: bool, group: str | None, everybody: bool, name: str | None
 ) -> None:

@@ -9,6 +9,8 @@ import click
 
 from kit.cli import options
 from kit.cli.full_screen import show_screen
+from kit.document.blocks import labelled_table
+from kit.document.layout import lines_of
 from kit.workspace import Workspace, WorkspaceError
 
 if TYPE_CHECKING:
@@ -84,5 +86,4 @@ def _print_overview(opened_workspace: Workspace) -> None:
     if overview.due:
         click.echo(f"{overview.due} questions are due today: `kit quiz --today`")
     click.echo("")
-    for line, text in SUGGESTED_COMMANDS:
-        click.echo(f"  {line:<16} {text}")
+    click.echo("\n".join(lines_of([labelled_table(SUGGESTED_COMMANDS, indent=2)])))

@@ -9,10 +9,10 @@ import click
 
 from kit.cli import learning_options, options, report_output
 from kit.cli.sweep import run_sweep
+from kit.document.blocks import Document
 from kit.host.job_executors import ExecutorUnavailable
 from kit.learning.training.algorithms import require_learn_extra
 from kit.learning.training.runs import RunError
-from kit.school.report.document import ClassReport
 from kit.study import study_document
 from kit.study.printed_tables import printed_table, study_chapters
 from kit.study.recorded_results import RecordedResultError, StudyVariant, source_number
@@ -109,9 +109,9 @@ def command(
         except (RecordedResultError, study_document.UnknownStudyNumber) as error:
             options.fail(str(error))
         report_output.write_outputs(
-            ClassReport(study_document.TITLE, everything),
+            Document(study_document.TITLE, everything),
             outputs,
-            printed=ClassReport(study_document.TITLE, listed) if listed and not whole else None,
+            printed=Document(study_document.TITLE, listed) if listed and not whole else None,
         )
 
 

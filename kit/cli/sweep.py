@@ -14,6 +14,7 @@ from typing import Literal
 import click
 
 from kit.cli import learning_options, options
+from kit.document.layout import lines_of
 from kit.host import job_executors
 from kit.host.job_executors import ExecutorUnavailable
 from kit.learning.environment.tasks import TaskSpec
@@ -21,7 +22,7 @@ from kit.learning.training.crosstable import (
     case_groups,
     check_crosstable,
     crosstable_columns,
-    format_crosstable,
+    crosstable_tables,
 )
 from kit.learning.training.run_check import check_run_config
 from kit.learning.training.runs import NAME_PATTERN, PresetName, RunConfig
@@ -29,9 +30,9 @@ from kit.learning.training.sweep_worker import make_pool, run_job_by_key, sweep_
 from kit.learning.training.training_sweep import (
     TrainingSweep,
     combine,
-    format_sweep_table,
     problems,
     sweep_rows,
+    sweep_table,
     sweep_table_csv,
 )
 from kit.learning.training.tuning import SettingRange, check_ranges, require_optuna, tune
@@ -299,7 +300,7 @@ def _print_table(
     if as_json:
         click.echo(json.dumps({"rows": [asdict(row) for row in rows], "problems": failed}, indent=2))
     else:
-        click.echo("\n".join(format_sweep_table(rows)))
+        click.echo("\n".join(lines_of([sweep_table(rows)])))
 
 
 def _print_crosstable(sweep: TrainingSweep, failed: Sequence[str], *, as_json: bool) -> None:
@@ -311,8 +312,8 @@ def _print_crosstable(sweep: TrainingSweep, failed: Sequence[str], *, as_json: b
         return
     if columns:
         number, compare = printed_means(sweep.entries()[0].config.choice.task)
-        click.echo("\n".join(format_crosstable(columns, compare)))
+        click.echo("\n".join(lines_of(crosstable_tables(columns, compare))))
         if compare:
-            click.echo(f"dissertation: means of its Table {number}; `kit study {number}` shows every cell.")
+            options.say(f"dissertation: means of its Table {number}; `kit study {number}` shows every cell.")
     if waiting := len(sweep.waiting()) - len(failed):
         click.echo(f"{waiting} of {len(sweep.entries())} trainings have no result yet.")

@@ -10,6 +10,8 @@ from pathlib import Path
 import click
 
 from kit.cli import learning_options, options
+from kit.document.blocks import Text, labelled_table
+from kit.document.layout import Page, lines_of
 from kit.learning.environment.tasks import all_tasks, find_task
 from kit.learning.tasks.own_files import own_task_files, workspace_folders, workspace_task_file
 from kit.learning.tasks.task_check import check_task
@@ -21,9 +23,9 @@ from kit.learning.tasks.task_template import (
     pack_task,
     unpack_task,
 )
-from kit.learning.tasks.task_text import build_case_scene, describe_case, describe_keys, describe_task
+from kit.learning.tasks.task_text import build_case_scene, describe_case, key_tables, task_blocks, tasks_table
 from kit.learning.training.run_check import check_reward
-from kit.plain_text import counted, table
+from kit.plain_text import counted, wrap
 from kit.render.encode import ENCODERS
 from kit.render.world_text import scene_rows
 
@@ -70,7 +72,7 @@ def new(name: str, source: str) -> None:
         own = workspace_task_file(name)
         found_by_name = file.parent.name == name or (own is not None and own.samefile(file))
         shown = name if found_by_name else file
-        click.echo(f"{file}: edit it; `kit task check {shown}` checks it, `kit train {shown}` trains it.")
+        options.say(f"{file}: edit it; `kit task check {shown}` checks it, `kit train {shown}` trains it.")
 
 
 @command.command()
@@ -134,7 +136,7 @@ def unpack(archive: Path, dest: Path) -> None:
             file = unpack_task(archive, dest)
         except TaskArchiveError as error:
             options.fail(str(error))
-        click.echo(
+        options.say(
             f"{file}: valid; `kit task show {file.parent}` shows it, `kit train {file.parent}` trains it."
         )
 
@@ -152,22 +154,27 @@ def show(task: str, on: str | None, glyphs: str | None) -> None:
         encoder = ENCODERS[options.terminal(glyphs=glyphs).glyphs.value](True)
         columns, rows = shutil.get_terminal_size()
         for card, case in found.map_cases():
-            click.echo(describe_case(found, case))
+            click.echo("\n".join(wrap(describe_case(found, case), columns - 1)))
             scene = build_case_scene(found, card, case)
             click.echo("\n".join(scene_rows(scene, columns - 1, max(8, rows // 2), encoder)) + "\n")
-        click.echo("\n".join(describe_task(found)))
+        click.echo("\n".join(lines_of(task_blocks(found), _page())))
 
 
 @command.command()
 def keys() -> None:
     """Print every key of a task file, and every name that a reward may use."""
-    click.echo("\n".join(describe_keys(min(100, shutil.get_terminal_size().columns))))
+    click.echo("\n".join(lines_of(key_tables(), _page())))
 
 
 @command.command(name="list")
 def list_tasks() -> None:
     """List the kit's tasks, and your own task files in the workspace."""
-    rows = [(task.name, task.summary) for task in all_tasks()]
-    rows += [(task_name(file), str(file)) for file in own_task_files(workspace_folders())]
-    click.echo("\n".join(table(rows, 1000)))  # a path that is broken over two lines cannot be copied
-    click.echo("\n`kit task show NAME` shows one, `kit task new MINE --from NAME` starts your own from it.")
+    own = [(task_name(file), str(file)) for file in own_task_files(workspace_folders())]
+    ways = "`kit task show NAME` shows one, `kit task new MINE --from NAME` starts your own from it."
+    tables = [tasks_table(all_tasks()), *([labelled_table(own, "Your own:", indent=2)] if own else [])]
+    click.echo("\n".join(lines_of([*tables, Text(ways)])))
+
+
+def _page() -> Page:
+    """As wide as the terminal, at most 100 columns."""
+    return Page(width=min(100, shutil.get_terminal_size().columns - 1))

@@ -14,6 +14,7 @@ import click
 from kit.cli import learning_options, options
 from kit.cli.full_screen import run_screen
 from kit.cli.shared_game import join_shared_game
+from kit.document.layout import lines_of
 from kit.learning.environment.disturbances import UniformRange
 from kit.learning.environment.rewards import REWARDS
 from kit.learning.environment.tasks import TaskSpec, all_tasks
@@ -29,7 +30,7 @@ from kit.learning.training.events import EventReader, TrainingEnded, TrainingPro
 from kit.learning.training.presets import LEARNING_RATE
 from kit.learning.training.run_check import check_run_config
 from kit.learning.training.run_text import format_event
-from kit.learning.training.run_upkeep import delete_run, disk_bytes, format_runs, read_overviews, rename_run
+from kit.learning.training.run_upkeep import delete_run, disk_bytes, read_overviews, rename_run, runs_blocks
 from kit.learning.training.runs import (
     PresetName,
     RunConfig,
@@ -131,7 +132,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
                 break
             time.sleep(0.1)
     except KeyboardInterrupt:
-        click.echo(
+        options.say(
             f"\n{run.name} continues training. `kit watch {run.name}` shows it again, `kit runs {run.name} --stop` stops it."
         )
         return
@@ -139,7 +140,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
         if not once or not run.is_active:
             if run.last_log_line:
                 click.echo(run.last_log_line)
-            click.echo(
+            options.say(
                 f"{run.name} was interrupted. `kit train --resume {run.name}` continues from its last checkpoint."
             )
     elif ended.how == "failed":
@@ -478,7 +479,7 @@ def runs_command(
         else:
             found = list_runs(folder)
             click.echo(
-                "\n".join(format_runs(read_overviews(found)))
+                "\n".join(lines_of(runs_blocks(read_overviews(found))))
                 if found
                 else "No runs yet. `kit train turn` starts one."
             )

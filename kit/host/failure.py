@@ -36,7 +36,14 @@ class FailureKind(Enum):
 
 
 REPORTABLE = frozenset(
-    (FailureKind.SYNTAX, FailureKind.IMPORT, FailureKind.EXCEPTION, FailureKind.EXIT, FailureKind.MEMORY)
+    (
+        FailureKind.SYNTAX,
+        FailureKind.IMPORT,
+        FailureKind.EXCEPTION,
+        FailureKind.EXIT,
+        FailureKind.MEMORY,
+        FailureKind.DISK,
+    )
 )
 """The kinds that a child may report of itself; the parent finds the others."""
 
@@ -97,10 +104,7 @@ def process_ended(status: int, where: StackPosition | None, limits: Limits) -> F
             "no more data: the program closed a file descriptor that belongs to the kit"
         )
     if status == OVER_DISK_LIMIT:
-        message = (
-            f"the program wrote more than its limit of {limits.scratch / MIB:g} MiB or {limits.files} files."
-        )
-        return Failure(FailureKind.DISK, f"{message} Does it keep writing to a file, or never remove one?")
+        return Failure(FailureKind.DISK, _disk_text(limits))
     number = status - 128 if status > 128 else -status
     if number == signal.SIGXCPU:
         return _at(FailureKind.TIMEOUT, f"the program used up its {limits.cpu_s} s of processor time.", where)
@@ -121,10 +125,20 @@ def process_ended(status: int, where: StackPosition | None, limits: Limits) -> F
 
 def add_limits(failure: Failure, limits: Limits) -> Failure:
     """Adds the limit to a failure that the child has reported: only the parent knows it."""
-    if failure.kind is not FailureKind.MEMORY:
+    if failure.kind is FailureKind.MEMORY:
+        message = f"the program needs more memory than its limit of {limits.memory // MIB} MiB. Does a list grow forever?"
+    elif failure.kind is FailureKind.DISK:
+        message = _disk_text(limits)
+    else:
         return failure
-    message = f"the program needs more memory than its limit of {limits.memory // MIB} MiB. Does a list grow forever?"
     return Failure(failure.kind, message, failure.file, failure.line)
+
+
+def _disk_text(limits: Limits) -> str:
+    return (
+        f"the program wrote more than its limit of {limits.scratch / MIB:g} MiB or {limits.files} files. "
+        "Does it keep writing to a file, or never remove one?"
+    )
 
 
 def protocol_violation(what: str) -> Failure:

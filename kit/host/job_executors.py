@@ -1,11 +1,13 @@
 """Works through jobs that are known by their keys: in local processes, in a SLURM array job, or on a Dask cluster.
 
 Jobs and results lie in a folder that all machines see; a job's result is a file, so that only keys are sent, and what was
-interrupted goes on where it was. A class of submissions is graded so, and a sweep of trainings is run so.
+interrupted goes on where it was. A class of submissions is graded so, and a sweep of trainings is run so. What lies there
+as a result counts only if its reader accepts it: a worker may have another version, a full disk, or a fault.
 """
 
 from __future__ import annotations
 
+import json
 import re
 import shlex
 import shutil
@@ -15,13 +17,17 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import IO, Final
+from typing import IO, Any, Final, NoReturn
 
+from kit.plain_files import read_plain_file
+from kit.plain_text import quoted
 from kit.workspace import write_atomically
 
 DONE: Final = "done"
 MAX_TRIES: Final = 2
 """How often a job is tried whose worker dies."""
+MAX_RESULT_BYTES: Final = 16_000_000
+"""Bytes of a result's file, many times those of the longest."""
 SLURM_SCRIPT: Final = "slurm.sh"
 CLUSTER_INSTALLATION: Final = "pip install -c constraints.txt -e '.[cluster]'"
 
@@ -37,6 +43,23 @@ def serve_jobs(run_job: Callable[[str], object], keys: IO[str], output: IO[str])
         run_job(key)
         output.write(f"{DONE} {key}\n")
         output.flush()
+
+
+def read_result(file: Path) -> dict[str, Any]:
+    """Returns the JSON object that a worker has saved. Raises ValueError or OSError for anything else, such as a number that
+    is not finite, a larger file, or one that is none."""
+    try:
+        content = json.loads(read_plain_file(file, MAX_RESULT_BYTES), parse_constant=_refuse_constant)
+        json.dumps(content, allow_nan=False)  # 1e999 is read as infinity
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
+    if type(content) is not dict:
+        raise ValueError("it is not an object")
+    return content
+
+
+def _refuse_constant(name: str) -> NoReturn:
+    raise ValueError(f"{name} is not a number of JSON")
 
 
 def read_shard(text: str) -> tuple[int, int] | None:
@@ -194,14 +217,16 @@ def run_on_dask(
     address: str,
     on_done: Callable[[str], object],
     on_lost: Callable[[str], object],
+    limit_s: float | None = None,
 ) -> None:
-    """Runs the jobs on a Dask cluster whose machines all see the folder. Raises ExecutorUnavailable.
+    """Runs the jobs on a Dask cluster whose machines all see the folder. Raises ExecutorUnavailable, after all other jobs are
+    through, if one failed.
 
     ``run_job_by_key`` gets the folder and a key. ``on_lost``: called with the key of a job that repeatedly kills its
-    worker; the others go on.
+    worker. ``limit_s``: if no job at all ends for so long [s], the cluster counts as standing still.
     """
     try:
-        from distributed import Client, KilledWorker, as_completed
+        from distributed import Client, KilledWorker, wait
     except ImportError:
         raise ExecutorUnavailable(
             f"Dask is not installed. In the kit's folder: {CLUSTER_INSTALLATION}"
@@ -213,12 +238,35 @@ def run_on_dask(
         futures = {
             client.submit(run_job_by_key, where, key, pure=False, retries=MAX_TRIES - 1): key for key in keys
         }
-        for future in as_completed(futures):
-            problem = future.exception()
-            if isinstance(problem, KilledWorker):
-                on_lost(futures[future])
-            elif problem is not None:
+        failed: dict[str, Exception] = {}
+        while futures:
+            try:
+                over = wait(list(futures), timeout=limit_s, return_when="FIRST_COMPLETED").done
+            except TimeoutError:
                 raise ExecutorUnavailable(
-                    f"A worker of the cluster failed: {type(problem).__name__}: {problem}"
-                )
-            on_done(futures[future])
+                    f"No job has ended on the cluster for {limit_s:.0f} s: does the scheduler have workers? Results so far "
+                    "are kept; run the same command to continue."
+                ) from None
+            for future in over:
+                key = futures.pop(future)
+                problem = _problem_of(future)
+                if isinstance(problem, KilledWorker):
+                    on_lost(key)
+                elif problem is not None:
+                    failed[key] = problem
+                on_done(key)
+    if failed:
+        first = next(iter(failed.values()))
+        raise ExecutorUnavailable(
+            f"{len(failed)} of {len(keys)} jobs failed on the cluster, the first with {type(first).__name__}: "
+            f"{quoted(str(first), 200)}. The other results are kept; run the same command to try these again."
+        )
+
+
+def _problem_of(future: Any) -> Exception | None:
+    """Returns what a task ended with; also what went wrong while that was fetched."""
+    try:
+        problem: Exception | None = future.exception()
+    except Exception as error:  # noqa: BLE001 - it was cancelled, or its error cannot be read on this machine
+        return error
+    return problem

@@ -52,7 +52,7 @@ from kit.host.protocol import (
 )
 from kit.host.sandbox import bubblewrap
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level, SandboxConfig
-from kit.host.sandbox.grants import ReadGrants, find_grants, library_folders
+from kit.host.sandbox.grants import ReadGrants, find_grants, library_folders, loader_folders
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, KIB, Limits
 from kit.host.sandbox.reaper import descendants, end_descendants, remove_folder
 from kit.host.wire import HEADER, Json, ProtocolError, decode, encode
@@ -534,7 +534,7 @@ def process_environment(scratch: str) -> dict[str, str]:
         "MKL_NUM_THREADS": "1",
     }
     # Where a computing cluster keeps the libraries of the very Python that runs this.
-    library_path = os.environ.get("LD_LIBRARY_PATH")
+    library_path = ":".join(loader_folders())
     return fixed | ({"LD_LIBRARY_PATH": library_path} if library_path else {})
 
 

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from itertools import combinations, groupby
 from typing import Final, Literal
 
+from kit.document.blocks import CellStyle, Column, Table
 from kit.layers.assignment import LayerAssignment, NamedLayer
 from kit.layers.requirements import ContactRequirement, LayerCase
-from kit.plain_text import table
 
 DrawingStyle = Literal[
     "space", "edge", "struck", "group edge", "beam", "map", "body", "group", "laser", "text", "cursor"
@@ -460,8 +460,8 @@ def draw_layer_grid(
     return [*lines, (DrawingSpan(legend[:width], "struck"),)]
 
 
-def draw_assignment(case: LayerCase, assignment: LayerAssignment, *, width: int = 80) -> list[str]:
-    """The plan as two tables: what each layer holds and who watches it; which list each entity and laser gets."""
+def assignment_tables(case: LayerCase, assignment: LayerAssignment) -> list[Table]:
+    """The plan: what each layer holds and who watches it; which list each entity and laser gets."""
     watchers = {
         layer.name: ", ".join(name for name, watched in assignment.watches.items() if layer.name in watched)
         for layer in assignment.layers
@@ -475,12 +475,17 @@ def draw_assignment(case: LayerCase, assignment: LayerAssignment, *, width: int 
         )
         for layer in assignment.layers
     ]
-    lists = [(name, ", ".join(assignment.layers_of(name)) or "(none: layers: [])") for name in case.names]
-    lasers = [
-        (name, ", ".join(assignment.watches.get(name, ())) or "(none: layers: [])") for name in case.laser
+    none = "(none: layers: [])"
+    lists = [(name, ", ".join(assignment.layers_of(name)) or none) for name in case.names]
+    lasers = [(name, ", ".join(assignment.watches.get(name, ())) or none) for name in case.laser]
+    tables = [
+        _text_table(("layer", "holds", "watched by"), layers),
+        _text_table(("who", "its layers"), lists),
+        _text_table(("laser", "watches"), lasers),
     ]
-    lines = list(table([("layer", "holds", "watched by"), *layers], width))
-    lines += ["", *table([("who", "its layers"), *lists], width)]
-    if lasers:
-        lines += ["", *table([("laser", "watches"), *lasers], width)]
-    return lines
+    return [each for each in tables if each.rows or each is not tables[-1]]
+
+
+def _text_table(heads: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> Table:
+    columns = tuple(Column(head, CellStyle.TEXT) for head in heads)
+    return Table("assignment", "", columns, tuple(rows), is_ruled=False)

@@ -3,7 +3,6 @@ readers alike."""
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Callable, Collection, Iterable, Iterator
 from fractions import Fraction
 from functools import partial
@@ -14,22 +13,15 @@ from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.greedy import CollisionStep, GreedyRun, LaserStep
 from kit.layers.planning import BoundCertificate, LayerPlan, Relaxation
 from kit.layers.requirements import LayerCase, Requirement, SightRequirement, layer_conflict
-from kit.plain_text import counted, join_with_and
+from kit.plain_text import counted, join_with_and, wrap
 from kit.world.records import MAX_LAYERS
 
 WIDTH = 80
 
 
-def wrap(text: str, *, width: int = WIDTH, indent: str = "", later: str | None = None) -> list[str]:
+def paragraph(text: str, *, width: int = WIDTH, indent: str = "", later: str | None = None) -> list[str]:
     """A paragraph; ``later`` is the indent of its further lines."""
-    return textwrap.wrap(
-        text,
-        width,
-        initial_indent=indent,
-        subsequent_indent=indent if later is None else later,
-        break_on_hyphens=False,
-        break_long_words=False,
-    )
+    return wrap(text, width, indent, indent if later is None else later)
 
 
 def members_text(case: LayerCase, members: Collection[str]) -> str:
@@ -50,7 +42,7 @@ def requirement_text(requirement: Requirement, case: LayerCase) -> str:
 
 def case_text(case: LayerCase, *, width: int = WIDTH) -> list[str]:
     """Describes a case: counts, then the required collisions and what the lasers must see."""
-    say = partial(wrap, width=width)
+    say = partial(paragraph, width=width)
     maps = [entity.name for entity in case.entities if entity.kind == "map"]
     others = [entity.name for entity in case.entities if entity.kind != "map"]
     lines = say(f"Maps: {', '.join(maps) or 'none'}. Bodies: {', '.join(others) or 'none'}.")
@@ -72,7 +64,7 @@ def greedy_text(run: GreedyRun, *, draw: Callable[[int], Iterable[str]] | None =
     """
     edges = run.case.edges()
     yield f"Edges: {len(edges)}"
-    yield from wrap(", ".join(map(str, edges)) or "none", indent="  ")
+    yield from paragraph(", ".join(map(str, edges)) or "none", indent="  ")
     for number, step in enumerate(run.collision_steps, start=1):
         yield ""
         yield from collision_step_text(run.case, number, step)
@@ -87,7 +79,7 @@ def greedy_text(run: GreedyRun, *, draw: Callable[[int], Iterable[str]] | None =
 
 def greedy_end_text(run: GreedyRun, *, width: int = WIDTH) -> list[str]:
     """Describes the result of the method, and what it left open."""
-    say = partial(wrap, width=width)
+    say = partial(paragraph, width=width)
     lines = say(f"The slides' method ends with {counted(run.size, 'layer')}.")
     if run.missed:
         lines += say(
@@ -101,7 +93,7 @@ def collision_step_text(
     case: LayerCase, number: int, step: CollisionStep, *, width: int = WIDTH
 ) -> list[str]:
     """One collision layer: the edge, what joined, what is struck, what is left."""
-    say = partial(wrap, width=width)
+    say = partial(paragraph, width=width)
     left = len(step.choices)
     lines = say(
         f"Step {number}. {f'Of {left} edges left, take' if left > 1 else 'Take the last edge,'} {step.edge}."
@@ -109,20 +101,20 @@ def collision_step_text(
     for growth in step.growth:
         also = [name for name in growth.choices if name != growth.added]
         choice = f" ({join_with_and(also)} could have joined instead)" if also else ""
-        lines += say(f"{growth.added} collides with everyone so far: it joins{choice}.", indent="  ")
+        lines += say(f"{growth.added} collides with each of these: it joins{choice}.", indent="  ")
     lines += say(
-        f"Nobody {'else ' if step.growth else ''}collides with everyone. "
+        f"Nothing {'more ' if step.growth else ''}collides with each of them. "
         f"Layer {step.layer.name} = {members_text(case, step.layer.members)}.",
         indent="  ",
     )
-    struck = ", ".join(map(str, step.covered_edges))
-    lines += say(f"Strike {struck}. {left - len(step.covered_edges) or 'None'} left.", indent="  ")
+    struck, still = join_with_and(step.covered_edges), left - len(step.covered_edges)
+    lines += say(f"This covers {struck}; {counted(still, 'edge') if still else 'no edge'} left.", indent="  ")
     return lines
 
 
 def laser_step_text(case: LayerCase, step: LaserStep, *, width: int = WIDTH) -> list[str]:
     """One laser: its groups, what becomes of each, and the layers it watches."""
-    say = partial(wrap, width=width)
+    say = partial(paragraph, width=width)
     lines = say(f"Laser {step.laser}. In each collision layer, group what it must see.")
     endings = {
         "whole layer": "the whole layer, so {} itself serves",
@@ -142,7 +134,7 @@ def laser_step_text(case: LayerCase, step: LaserStep, *, width: int = WIDTH) -> 
 
 def plan_text(plan: LayerPlan, *, width: int = WIDTH) -> list[str]:
     """Describes the number of layers, and whether it is proved minimal."""
-    say = partial(wrap, width=width)
+    say = partial(paragraph, width=width)
     if plan.is_optimal:
         return say(f"{counted(plan.size, 'layer')}, and no plan has fewer.")
     return say(
@@ -153,7 +145,7 @@ def plan_text(plan: LayerPlan, *, width: int = WIDTH) -> list[str]:
 
 def proof_text(plan: LayerPlan, *, every_pair: bool = False, width: int = WIDTH) -> list[str]:
     """Explains why no plan has fewer layers than the bound. ``every_pair``: with the reason for each two requirements."""
-    say = partial(wrap, width=width)
+    say = partial(paragraph, width=width)
     certificate = plan.certificate
     lines = (
         _packing_text(plan.case, certificate, every_pair=every_pair, width=width)
@@ -179,7 +171,7 @@ def proof_text(plan: LayerPlan, *, every_pair: bool = False, width: int = WIDTH)
 def _packing_text(
     case: LayerCase, certificate: BoundCertificate, *, every_pair: bool, width: int
 ) -> list[str]:
-    say = partial(wrap, width=width)
+    say = partial(paragraph, width=width)
     apart = certificate.conflicting
     count = len(apart)
     if count == 1:
@@ -187,25 +179,29 @@ def _packing_text(
     else:
         lines = say(f"No two of these {count} fit one layer, so they need {counted(count, 'layer')}:")
     for number, requirement in enumerate(apart, start=1):
-        lines += say(f"{number:>3}  {requirement_text(requirement, case)}", later="     ")
+        lines += say(requirement_text(requirement, case), indent=f"{number:>3}  ", later="     ")
     pairs = list(combinations(range(count), 2))
     shown = pairs if every_pair else [(i, i + 1) for i in range(min(3, count - 1))]
     if shown:
         lines.append("Because:" if every_pair or len(pairs) <= len(shown) else "Because, for example:")
     for i, j in shown:
-        lines += say(f"{i + 1:>3} and {j + 1}: {layer_conflict(case, apart[i], apart[j])}", later="     ")
+        lines += say(
+            f"{layer_conflict(case, apart[i], apart[j])}", indent=f"{i + 1:>3} and {j + 1}: ", later="     "
+        )
     return lines
 
 
 def _weights_text(case: LayerCase, weights: dict[Requirement, Fraction], width: int) -> list[str]:
-    say = partial(wrap, width=width)
+    say = partial(paragraph, width=width)
     total = sum(weights.values(), Fraction(0))
     lines = say(
         f"Give these {len(weights)} requirements weights. No layer there can be collects more than 1, and together "
         f"they weigh {_mixed_number(total)}: they need {counted(-(-total.numerator // total.denominator), 'layer')}."
     )
     for requirement, weight in weights.items():
-        lines += say(f"{_mixed_number(weight):>5}  {requirement_text(requirement, case)}", later="       ")
+        lines += say(
+            requirement_text(requirement, case), indent=f"{_mixed_number(weight):>5}  ", later="       "
+        )
     return lines
 
 
@@ -219,7 +215,7 @@ def _mixed_number(number: Fraction) -> str:
 
 def comparison_text(run: GreedyRun, plan: LayerPlan, *, width: int = WIDTH) -> list[str]:
     """The slides' method beside the plan."""
-    say = partial(wrap, width=width)
+    say = partial(paragraph, width=width)
     more = run.size - plan.size
     if run.missed:
         count = len(run.missed)
@@ -242,26 +238,26 @@ def world_plan_text(plan: WorldPlan) -> list[str]:
     file = plan.world_case.layer_lists.world.file
     lines: list[str] = []
     if plan.current_breaches:
-        lines += wrap(f"Today {file} does not do what is asked:")
+        lines += paragraph(f"Today {file} does not do what is asked:")
         for breach in plan.current_breaches[:MAX_LISTED_BREACHES]:
-            lines += wrap(str(breach), indent="  - ", later="    ")
+            lines += paragraph(str(breach), indent="  - ", later="    ")
         if len(plan.current_breaches) > MAX_LISTED_BREACHES:
             lines.append(f"  ... and {len(plan.current_breaches) - MAX_LISTED_BREACHES} more")
     if not count:
         return [
             *lines,
-            *wrap(f"{file} names no layer: whatever is in all of them meets. Nothing can be saved."),
+            *paragraph(f"{file} names no layer: whatever is in all of them meets. Nothing can be saved."),
         ]
     proof = "and no plan has fewer" if plan.is_optimal else f"and at least {plan.bound} are needed"
     if plan.is_unchanged:
         verdict = "as few as can be" if plan.is_optimal else f"and at least {plan.bound} are needed"
-        lines += wrap(f"{file} names {counted(count, 'layer')}, {verdict}. Nothing needs to change.")
+        lines += paragraph(f"{file} names {counted(count, 'layer')}, {verdict}. Nothing needs to change.")
     elif plan.current_breaches:
-        lines += wrap(f"It names {counted(count, 'layer')}; what is asked takes {size}, {proof}.")
+        lines += paragraph(f"It names {counted(count, 'layer')}; what is asked takes {size}, {proof}.")
     else:
-        lines += wrap(f"{file} names {counted(count, 'layer')}. {size} would do the same, {proof}.")
+        lines += paragraph(f"{file} names {counted(count, 'layer')}. {size} would do the same, {proof}.")
     if plan.world_case.layer_lists.kept_layers:
-        lines += wrap(
+        lines += paragraph(
             f"The layer {join_with_and(plan.world_case.layer_lists.kept_layers)} stays as it is: lasers know it by its name, and report what is "
             "in it as bright."
         )
@@ -272,7 +268,7 @@ def world_verdict_text(plan: WorldPlan) -> list[str]:
     """The verdict on a world, in a few lines."""
     lines = world_plan_text(plan)
     if not plan.is_unchanged:
-        lines += wrap("`kit layers plan` shows which, and with --patch what to change in the files.")
+        lines += paragraph("`kit layers plan` shows which, and with --patch what to change in the files.")
     return lines
 
 
@@ -280,12 +276,12 @@ def patch_text(patch: WorldPatch) -> list[str]:
     """The diff, and what has to be done by hand."""
     lines = patch.diff().splitlines()
     for left in patch.skipped:
-        lines += ["", *wrap(f"{left.path} is left alone: {left.reason}. By hand:")]
+        lines += ["", *paragraph(f"{left.path} is left alone: {left.reason}. By hand:")]
         lines += [f"  {words}" for words in left.by_hand]
     if patch.skipped:
         lines += [
             "",
-            *wrap("These changes belong together: --apply writes none of them as long as one is left."),
+            *paragraph("These changes belong together: --apply writes none of them as long as one is left."),
         ]
     return lines or ["There is nothing to change."]
 
@@ -298,7 +294,7 @@ MAX_LISTED_BREACHES = 20
 
 def too_many_text(plan: LayerPlan, given_up: Relaxation | None, tolerated: Relaxation | None) -> list[str]:
     """More than Flatland's sixteen layers: the two ways out, the shorter first."""
-    lines = wrap(f"Flatland has {MAX_LAYERS} layers and this plan needs {plan.size}. Ways out:")
+    lines = paragraph(f"Flatland has {MAX_LAYERS} layers and this plan needs {plan.size}. Ways out:")
     ways = [
         (sacrifice, words)
         for sacrifice, words in (
@@ -310,13 +306,13 @@ def too_many_text(plan: LayerPlan, given_up: Relaxation | None, tolerated: Relax
     for sacrifice, words in sorted(ways, key=lambda way: len(way[0].requirements)):
         proof = "the fewest there are" if sacrifice.is_fewest else "perhaps not the fewest"
         words = words.removeprefix("Or ").capitalize()
-        lines += wrap(
+        lines += paragraph(
             f"{words} ({len(sacrifice.requirements)}, {proof}; {counted(sacrifice.plan.size, 'layer')} then do):"
         )
         for requirement in sacrifice.requirements:
-            lines += wrap(requirement_text(requirement, plan.case), indent="    - ", later="      ")
+            lines += paragraph(requirement_text(requirement, plan.case), indent="    - ", later="      ")
     if not ways:
-        lines += wrap(
+        lines += paragraph(
             "None was found in the time given. Split the world, or give models the same needs.", indent="  "
         )
     return lines

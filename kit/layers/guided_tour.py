@@ -81,7 +81,7 @@ class GreedyTour:
 def case_page(case: LayerCase, width: int) -> TourPage:
     """Returns the page that shows the requirements."""
     lines = words.case_text(case, width=width)
-    title = words.wrap(case.title, width=width)
+    title = words.paragraph(case.title, width=width)
     return TourPage("case", "What is asked", (*title, *([""] if title else []), *lines))
 
 
@@ -164,11 +164,13 @@ def plan_pages(
 
 def _current_layers(world_plan: WorldPlan, width: int) -> list[str]:
     """Returns the text on the world's present layers."""
-    lines = words.wrap(
+    lines = words.paragraph(
         f"Today the world names {counted(world_plan.current_name_count, 'layer')}.", width=width
     )
     if wrong := len(world_plan.current_breaches):
-        lines += words.wrap(f"In {wrong} ways it does not do what is asked: kit layers check.", width=width)
+        lines += words.paragraph(
+            f"In {wrong} ways it does not do what is asked: kit layers check.", width=width
+        )
     return lines
 
 
@@ -181,12 +183,12 @@ def _layer_heading(case: LayerCase, assignment: LayerAssignment, layer: NamedLay
     watchers = [name for name, watched in assignment.watches.items() if layer.name in watched]
     seen = f", watched by {join_with_and(watchers)}" if watchers else ""
     members = words.members_text(case, layer.members)
-    return words.wrap(f"{layer.name} = {members}{seen}", width=width, later="  ")
+    return words.paragraph(f"{layer.name} = {members}{seen}", width=width, later="  ")
 
 
 def _layer_page(case: LayerCase, assignment: LayerAssignment, layer: NamedLayer, width: int) -> Iterator[str]:
     """One layer of a plan and what it brings about."""
-    say = partial(words.wrap, width=width, indent="  ", later="    ")
+    say = partial(words.paragraph, width=width, indent="  ", later="    ")
     yield from _layer_heading(case, assignment, layer, width)
     yield "It brings about:"
     for requirement in case.requirements:

@@ -17,6 +17,7 @@ from kit.arrays import BoolArray
 from kit.fields.occupancy_grid import OccupancyGrid, occupancy_grid_of
 from kit.geometry import Pose
 from kit.mapmaking.route import (
+    NEAREST_TARGET,
     ROBOT_RADIUS,
     NoRoute,
     Point,
@@ -199,6 +200,15 @@ def _place(made: Path, plan: WallPlan, title: str, middle: Point) -> tuple[Pose,
         target, start = farthest_apart(grid, plan.target)
     else:
         start, target = farthest_apart(grid, plan.start)
+    apart = math.dist(start, target)
+    if apart < NEAREST_TARGET and not (plan.start and plan.target):
+        given = "start" if plan.start else "target" if plan.target else ""
+        raise NoRoute(
+            f"No {'place for start and target' if not given else f'second place for the {given}'} was found: from "
+            f"({start[0]:.2f}, {start[1]:.2f}) a robot that needs {2 * ROBOT_RADIUS:.2f} m gets only {apart:.2f} m far. The "
+            "lines were read as walls all around it: give the map a larger scale, thinner or fewer lines, or name both "
+            "start and target."
+        )
     route = widest_route(grid, start, target)
     check_closed(grid, start)
     ahead = route.points[min(len(route.points) - 1, 12)]

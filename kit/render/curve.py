@@ -336,6 +336,6 @@ def _write_part_names(frame: Frame, stacked: StackedCounts, parts: Sequence[Char
     newest = stacked.counts[-1] / stacked.counts[-1].sum() if len(stacked.x) else np.full(len(parts), np.nan)
     column = 0
     for part, share in zip(parts, newest.tolist(), strict=True):
-        text = f"{part.glyph}{part.name}" + ("" if np.isnan(share) else f" {100 * share:.0f}")
+        text = f"{part.glyph}{part.name}" + ("" if np.isnan(share) else f" {100 * share:.0f}%")
         write_text(frame, 0, column, text, part.role)
         column += len(text) + 1

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
@@ -12,6 +11,7 @@ from typing import Any, Final, NamedTuple
 
 from kit.msg.conversion import to_dict
 from kit.msg.message import Message
+from kit.plain_text import wrap
 from kit.ros.graph.snapshot import GraphState, ServiceState, TopicState
 
 
@@ -151,7 +151,8 @@ def _value_rows(
 
 def _numbers(head: str, values: list[Any], width: int, indent: str) -> Iterator[str]:
     text = f"{head} {_inline(values)}"
-    rows = textwrap.wrap(text, width, subsequent_indent=indent + INDENT) or [text]
+    blanks = " " * (len(text) - len(text.lstrip()))
+    rows = wrap(text, width, blanks, indent + INDENT)
     if len(rows) > MAX_NUMBER_ROWS:
         note = f" ... {len(values)} in all]"
         rows = rows[:MAX_NUMBER_ROWS]

@@ -5,13 +5,12 @@ Times are those of the graph: in a simulation, simulation time. Not imported by 
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from itertools import chain, count
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any, Final, Literal, Self
+from typing import Any, Final, Self
 
 from rosbags.interfaces import (
     Connection,
@@ -24,12 +23,24 @@ from rosbags.interfaces import (
     QosReliability,
     QosTime,
 )
-from rosbags.rosbag2 import Reader, ReaderError, StoragePlugin, Writer, WriterError
+from rosbags.rosbag2 import Reader
 
 from kit.interruption import uninterrupted
 from kit.msg.class_builder import build_recorded_message
 from kit.msg.interfaces import DefinitionError, UnknownInterface, find_message
 from kit.msg.message import Message
+from kit.part_file import BeingWrittenError
+from kit.plain_text import quoted
+from kit.ros.bag_storage import (
+    STORAGE_SETTINGS,
+    WRITE_ERRORS,
+    BagError,
+    BagPart,
+    Storage,
+    is_being_recorded,
+    reason,
+    restore_bags,
+)
 from kit.ros.execution.callback_groups import MutuallyExclusiveCallbackGroup
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.naming import topic_or_service_is_hidden
@@ -38,37 +49,16 @@ from kit.ros.node.node import Node, create_graph_node
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from kit.ros.node.subscription import Subscription
 from kit.ros.node.time import Duration
-from kit.ros.serialization import Distro, Serializer
-
-Storage = Literal["mcap", "sqlite3"]
+from kit.ros.serialization import Serializer
 
 RECORDER: Final = "rosbag2_recorder"
 MAX_PENDING: Final = 64
 MAX_PENDING_BYTES: Final = 1 << 20
 """Messages, and their bytes, that are written at once: to keep signals away takes longer than to write a message."""
+FLUSH_INTERVAL_S: Final = 1.0
+"""After so long all messages are on the disk [s]."""
 INFINITE_TIME: Final = QosTime(9223372036, 854775807)
 """How ROS 2 writes an infinite duration."""
-
-
-@dataclass(frozen=True, slots=True)
-class _StorageSettings:
-    """The settings of a kind of storage: files are written for the oldest ROS 2 that reads it without plugins."""
-
-    plugin: StoragePlugin
-    version: Literal[8, 9]
-    distro: Distro
-
-
-_STORAGE_SETTINGS: Final = MappingProxyType(
-    {
-        "mcap": _StorageSettings(StoragePlugin.MCAP, 9, "jazzy"),
-        "sqlite3": _StorageSettings(StoragePlugin.SQLITE3, 8, "humble"),
-    }
-)
-
-
-class BagError(OSError):
-    """A bag that cannot be read or written; the message says which and why."""
 
 
 class _RecordingSubscription(Subscription[Any]):
@@ -91,8 +81,9 @@ class BagRecorder:
     """Records the messages of a graph in a new bag until it is closed. A participant of the lock-step.
 
     ``topics`` None: all but hidden ones, also those that come later. The bag appears under its name when it is
-    complete; until then, and after SIGKILL, what there is of it lies in ``.NAME.part`` beside it.
-    Raises BagError.
+    complete; until then what there is of it lies in ``.NAME.part`` beside it, every second. What a killed recording has
+    left there, or of another bag in that folder, is restored first; ``notices`` says so. Raises BagError, also if another
+    program records a bag of this name.
     """
 
     def __init__(
@@ -113,8 +104,7 @@ class BagRecorder:
         self._folder = folder.absolute()
         self._requested_topics = None if topics is None else frozenset(topics)
         self._hidden = hidden
-        self._kind = _STORAGE_SETTINGS[storage]
-        self._serializer = Serializer(self._kind.distro)
+        self._serializer = Serializer(STORAGE_SETTINGS[storage].distro)
         self._connections: dict[str, Connection] = {}
         self._version = -1
         self._node = node
@@ -126,14 +116,13 @@ class BagRecorder:
         """Number of messages recorded."""
         if self._folder.exists():
             raise BagError(f"{folder} already exists. Choose another folder, or remove it.")
-        self._part = _unused_path(self._folder.parent, f".{self._folder.name}.part")
-        self._writer = Writer(
-            self._part / self._folder.name, version=self._kind.version, storage_plugin=self._kind.plugin
-        )
         try:
-            self._writer.open()
-        except (OSError, WriterError) as problem:
-            raise BagError(f"{folder}: no bag can be written there ({_reason(problem)}).") from None
+            self.notices = tuple(restore_bags(self._folder.parent, wanted=self._folder))
+            """A sentence for each bag that was restored."""
+            self._part = BagPart(self._folder, storage)
+        except BeingWrittenError as problem:
+            raise BagError(str(problem)) from None
+        self._flushed_s = time.monotonic()
         if self._node is None:
             self._node = create_graph_node(graph, RECORDER)
         self.exchange()
@@ -167,6 +156,9 @@ class BagRecorder:
                 if chosen and self._admits(name) and name not in self._connections and len(types) == 1:
                     self._subscribe(name, types[0])
             self._version = directory.version
+        if time.monotonic() - self._flushed_s >= FLUSH_INTERVAL_S:
+            with uninterrupted():  # half a record would make what follows unreadable
+                self._write_pending()
         return False
 
     def close(self) -> None:
@@ -179,29 +171,34 @@ class BagRecorder:
             node.destroy_node()
             self._write_pending()
             try:
-                self._writer.close()
-                self._writer.path.rename(self._folder)
-                self._part.rmdir()
-            except OSError as problem:
-                raise BagError(
-                    f"{self._folder}: the bag could not be completed ({_reason(problem)}). "
-                    f"What there is of it lies in {self._part}."
-                ) from None
+                if self.failure is None:
+                    self._part.complete()
+            except WRITE_ERRORS as problem:
+                self._fail(problem)
+            if self.failure is not None:
+                self.count = self._part.rescue()
         if self.failure is not None:
             raise BagError(self.failure)
 
     def _subscribe(self, topic: str, type_of: str) -> None:
         assert self._node is not None
         cls = find_message(type_of)
-        publishers = list(self._graph.directory.publishers(topic))
+        profiles = [
+            _rosbags_qos(publisher.qos_profile) for publisher in self._graph.directory.publishers(topic)
+        ]
         with uninterrupted():
-            self._connections[topic] = connection = self._writer.add_connection(
-                topic,
-                type_of,
-                msgdef=self._serializer.definition(cls),
-                rihs01=self._serializer.type_hash(cls),
-                offered_qos_profiles=[_rosbags_qos(publisher.qos_profile) for publisher in publishers],
-            )
+            try:
+                connection = self._part.add_topic(
+                    topic,
+                    type_of,
+                    self._serializer.definition(cls),
+                    self._serializer.type_hash(cls),
+                    profiles,
+                )
+            except WRITE_ERRORS as problem:
+                self._fail(problem)
+                return
+            self._connections[topic] = connection
         _RecordingSubscription(
             self._node,
             cls,
@@ -222,20 +219,29 @@ class BagRecorder:
                 self._write_pending()
 
     def _write_pending(self) -> None:
+        """Puts all messages on the disk."""
         pending, self._pending, self._pending_bytes = self._pending, [], 0
-        for place, (connection, time_ns, data) in enumerate(pending):
+        if self.failure is not None:
+            return
+        written = 0
+        try:
+            for connection, time_ns, data in pending:
+                self._part.write(connection, time_ns, data)
+                written += 1
+        except WRITE_ERRORS as problem:  # not the publisher's fault, in whose call this happens
+            self.count -= len(pending) - written
+            self._fail(problem)
+            return
+        if time.monotonic() - self._flushed_s >= FLUSH_INTERVAL_S:
+            self._flushed_s = time.monotonic()
             try:
-                self._writer.write(connection, time_ns, data)
-            except OSError as problem:  # not the publisher's fault, in whose call this happens
-                self.failure = f"{self._folder}: the bag ends early: {_reason(problem)}."
-                self.count -= len(pending) - place
-                return
+                self._part.flush()
+            except WRITE_ERRORS as problem:
+                self._fail(problem)
 
-
-def _unused_path(folder: Path, name: str) -> Path:
-    """A path that does not exist, so that the rest of a killed recording is not overwritten."""
-    numbered = (f"{name}{number}" for number in count(2))
-    return next(folder / each for each in chain([name], numbered) if not (folder / each).exists())
+    def _fail(self, problem: Exception) -> None:
+        if self.failure is None:
+            self.failure = f"{self._folder}: the bag ends early: {reason(problem)}."
 
 
 def _rosbags_qos(profile: QoSProfile) -> Qos:
@@ -325,12 +331,9 @@ def read_messages(
         chosen = [connection for connection in reader.connections if connection.id in found]
         if not chosen:  # none would mean all
             return
-        try:
-            for connection, time_ns, data in reader.messages(chosen):
-                serializer, cls = found[connection.id]
-                yield time_ns, connection.topic, serializer.deserialize(bytes(data), cls)
-        except (ReaderError, ValueError) as problem:
-            raise BagError(f"{folder}: a damaged bag: {problem}") from None
+        for connection, time_ns, data in reader.messages(chosen):
+            serializer, cls = found[connection.id]
+            yield time_ns, connection.topic, serializer.deserialize(bytes(data), cls)
 
 
 def _serializer_for(
@@ -355,16 +358,26 @@ def _serializer_for(
 @contextmanager
 def _open_reader(folder: Path) -> Iterator[Reader]:
     if not (folder / "metadata.yaml").is_file():
+        if is_being_recorded(folder):
+            raise BagError(f"{folder}: a program records this bag now. It can be read when that has ended.")
         raise BagError(f"{folder}: not a bag: a bag is a folder with a metadata.yaml in it.")
+    for each in folder.iterdir():  # a named pipe would hold the reader
+        if not each.is_file():
+            raise BagError(f"{folder}: {quoted(each.name)} in it is not a file.")
     try:
         reader = Reader(folder)
         reader.open()
-    except (OSError, ReaderError) as problem:
-        raise BagError(f"{folder}: not a bag, or a damaged one: {_reason(problem)}") from None
+    except Exception as problem:  # noqa: BLE001 - whatever a damaged file makes the library raise
+        raise BagError(f"{folder}: not a bag, or a damaged one: {reason(problem)}") from None
     try:
         yield reader
+    except BagError:
+        raise
+    except Exception as problem:  # noqa: BLE001 - likewise; what a caller does with a message is not in here
+        raise BagError(f"{folder}: a damaged bag: {reason(problem)}") from None
     finally:
-        reader.close()
+        with suppress(Exception):  # it was damaged, and that is told
+            reader.close()
 
 
 def _topic(connection: Connection) -> BagTopic:
@@ -380,7 +393,3 @@ def _topic(connection: Connection) -> BagTopic:
     return BagTopic(
         connection.topic, connection.msgtype, connection.msgcount, connection.ext.serialization_format, qos
     )
-
-
-def _reason(problem: Exception) -> str:
-    return (problem.strerror if isinstance(problem, OSError) else None) or str(problem)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,17 +14,18 @@ from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.host.program_terminal import ProgramStreams
 from kit.interruption import uninterrupted
+from kit.ros.graph.connections import ConnectionsReader
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
 from kit.run.episode import EndCondition, EndReason, run_until, when_failed, when_reached
 from kit.run.lockstep import ClosableParticipant
 from kit.run.metrics import DriveMetrics
 from kit.run.pacing import MAXIMUM, Schedule
-from kit.run.recording import Fingerprint, Recorder, save_recording
+from kit.run.recording import Fingerprint, Recorder
+from kit.run.recording_file import RecordingFile
 from kit.run.scenario import Scenario, find_scenario
 from kit.run.session import Session
 from kit.sim.simulation import STEP_SIZE_S
-from kit.workspace import check_writable
 
 OUTPUT_INTERVAL = 100
 """Ticks after which the controller's output is read."""
@@ -51,6 +52,8 @@ class RunSummary:
     failure: Failure | None
     interrupted: bool = False
     """Whether Ctrl-C or a signal ended it."""
+    mistakes: tuple[str, ...] = ()
+    """Sentences about topics and services that the controller uses and that have no other end."""
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able; the same for the same run but for ``wall_s``."""
@@ -80,24 +83,22 @@ def run_headless(
     seed: int = 0,
     factor: float = MAXIMUM,
     until_reached: bool = False,
-    record: Path | None = None,
+    record: RecordingFile | None = None,
     participants: Sequence[Callable[[Graph], ClosableParticipant]] = (),
     on_message: Callable[[LogRecord], object] = lambda record: None,
     streams: ProgramStreams | None = None,
 ) -> RunSummary:
     """Runs ``steps`` ticks; fewer if the controller fails, on Ctrl-C, or with ``until_reached`` at the target.
 
-    ``factor``: simulated seconds per second; a run that is paced waits while it is paused. ``record``: the file to keep
-    the run in. ``participants``: each is opened on the run's graph and closed at its end. ``on_message``: called with
+    ``factor``: simulated seconds per second; a run that is paced waits while it is paused. ``record``: where the run is
+    kept; closed at the end. ``participants``: each is opened on the run's graph and closed at its end. ``on_message``: called with
     what nodes log and print. ``streams``: what the controller reads; while it waits for that, the run goes on, in real time
     at most.
 
-    Raises OSError if ``record`` cannot be written, before the run if that can be known, and what opening
-    ``participants`` raises.
+    Raises OSError if ``record`` cannot be completed, and what opening ``participants`` raises.
     """
-    if record is not None:
-        check_writable(record)
     with (
+        record or nullcontext(),
         Session(scenario, seed=seed, on_message=on_message, streams=streams) as session,
         ExitStack() as stack,
     ):
@@ -107,13 +108,16 @@ def run_headless(
             stack.callback(participant.close)
             runner.participants.append(participant)
         runner.observers.append(fingerprint)
-        recorder = Recorder.for_scenario(scenario, runner.simulation)
+        recorder = Recorder.for_scenario(scenario, runner.simulation, record)
         if record is not None:
             runner.observers.append(recorder)
-        session.drive_with(controller)
-        session.wait_until_driven()
+        connections = ConnectionsReader(session.graph)
         start = time.perf_counter()
+        interrupted = False
         try:
+            session.drive_with(controller)
+            session.wait_until_driven()
+            start = time.perf_counter()
             interrupted = _run(
                 session,
                 fingerprint,
@@ -123,11 +127,13 @@ def run_headless(
                 output_interval=OUTPUT_INTERVAL if streams is None else INPUT_INTERVAL,
             )
             session.read_output()
+        except KeyboardInterrupt:  # before the controller drives
+            interrupted = True
         finally:  # also where a terminal is gone, or Ctrl-C comes twice
             wall = time.perf_counter() - start
             if record is not None:
                 with uninterrupted():
-                    save_recording(recorder.recording(), record)
+                    record.complete(recorder.recording())
         poses = dict(zip(runner.simulation.model_names, runner.simulation.poses(), strict=False))
         return RunSummary(
             scenario.title,
@@ -140,6 +146,7 @@ def run_headless(
             wall,
             session.failure,
             interrupted,
+            connections.read().mistakes,
         )
 
 
@@ -201,5 +208,5 @@ def run_episode(
         steps=round(seconds / STEP_SIZE_S),
         seed=seed,
         until_reached=until_reached,
-        record=None if record is None else Path(record),
+        record=None if record is None else RecordingFile(Path(record)),
     )

@@ -10,16 +10,16 @@ import io
 import json
 import math
 import struct
-import zipfile
 from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import TYPE_CHECKING, Any, Final, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kit.array_archives import read_arrays
 from kit.arrays import FloatArray, IntArray
 from kit.interruption import uninterrupted
 from kit.msg.conversion import from_dict, to_dict
@@ -101,11 +101,48 @@ class Recording:
         return self.poses[np.concatenate(rows).astype(np.int64)] if rows else np.empty((0, 3))
 
 
+@dataclass(frozen=True, slots=True)
+class RecordingSize:
+    """How much a recording holds of each of its parts."""
+
+    ticks: int
+    poses: int
+    inputs: int
+    models: int
+
+    def plus(self, other: Recording) -> RecordingSize:
+        """The size with what has come after."""
+        return RecordingSize(
+            self.ticks + other.ticks,
+            self.poses + len(other.poses),
+            self.inputs + len(other.inputs),
+            self.models + len(other.models),
+        )
+
+
+NOTHING: Final = RecordingSize(0, 0, 0, 0)
+
+
+class RecordingStore(Protocol):
+    """Where a run is written while it is recorded; see ``kit.run.recording_file``."""
+
+    def begin(self, first: Recording) -> None:
+        """Starts anew, with a recording that has no ticks yet."""
+
+    def offer(self, recorder: Recorder) -> None:
+        """Called after every tick."""
+
+
 class Recorder(Observer):
-    """Records a run as one of its observers, from its first tick on."""
+    """Records a run as one of its observers, from its first tick on; into ``store`` too, as the run goes on."""
 
     def __init__(
-        self, place: str, case: str | None, simulation: Simulation, level: str | None = None
+        self,
+        place: str,
+        case: str | None,
+        simulation: Simulation,
+        level: str | None = None,
+        store: RecordingStore | None = None,
     ) -> None:
         self._place = place
         self._case = case
@@ -117,12 +154,22 @@ class Recorder(Observer):
         self._poses = array("d")
         self._counts = array("q")
         self._models: list[tuple[int, tuple[str, ...]]] = []
+        self._store = store
+        if store is not None:
+            store.begin(self.recording())
 
     @classmethod
-    def for_scenario(cls, scenario: Scenario, simulation: Simulation) -> Self:
+    def for_scenario(
+        cls, scenario: Scenario, simulation: Simulation, store: RecordingStore | None = None
+    ) -> Self:
         """Records a run of ``scenario``."""
         case = None if scenario.case is None else scenario.case.name
-        return cls(scenario.name, case, simulation, scenario.level)
+        return cls(scenario.name, case, simulation, scenario.level, store)
+
+    @property
+    def ticks(self) -> int:
+        """How many have been recorded."""
+        return len(self._counts)
 
     def on_message(self, topic: str, message: Message) -> None:
         self._add_input(ACCEPT, topic, type(message).__ros_type__, to_dict(message))
@@ -137,19 +184,23 @@ class Recorder(Observer):
         for pose in simulation.poses():
             self._poses.extend(pose)
         self._counts.append(len(names))
+        if self._store is not None:
+            self._store.offer(self)
 
-    def recording(self) -> Recording:
-        """The run so far: all ticks that have ended, also where a signal has interrupted the one after."""
-        poses = np.array(self._poses, dtype=np.float64)[: 3 * sum(self._counts)]
+    def recording(self, since: RecordingSize = NOTHING) -> Recording:
+        """The run so far, or what has come after ``since``: all ticks that have ended, also where a signal has interrupted
+        the one after."""
+        counts = np.array(self._counts[since.ticks :], dtype=np.int64)
+        poses = np.array(self._poses[3 * since.poses :], dtype=np.float64)[: 3 * counts.sum()]
         return Recording(
             self._place,
             self._case,
             self._seed,
             self._step_size,
-            tuple(self._models),
-            tuple(self._inputs),
+            tuple(self._models[since.models :]),
+            tuple(self._inputs[since.inputs :]),
             poses.reshape(-1, 3),
-            np.array(self._counts, dtype=np.int64),
+            counts,
             self._level,
         )
 
@@ -159,7 +210,20 @@ class Recorder(Observer):
 
 def save_recording(recording: Recording, file: Path) -> None:
     """Writes the file whole or not at all. Raises OSError."""
-    header = {
+    data = io.BytesIO()
+    np.savez_compressed(
+        data,
+        header=np.frombuffer(json.dumps(recording_header(recording)).encode(), dtype=np.uint8),
+        poses=recording.poses,
+        counts=recording.counts,
+    )
+    with uninterrupted():
+        write_atomically(file, data.getvalue())
+
+
+def recording_header(recording: Recording) -> dict[str, Any]:
+    """All but the arrays; JSON-able."""
+    return {
         "format": FORMAT,
         "place": recording.place,
         "case": recording.case,
@@ -169,15 +233,10 @@ def save_recording(recording: Recording, file: Path) -> None:
         "inputs": [(each.tick, each.kind, each.content) for each in recording.inputs],
         "level": recording.level,
     }
-    data = io.BytesIO()
-    np.savez_compressed(
-        data,
-        header=np.frombuffer(json.dumps(header).encode(), dtype=np.uint8),
-        poses=recording.poses,
-        counts=recording.counts,
-    )
-    with uninterrupted():
-        write_atomically(file, data.getvalue())
+
+
+MAX_HEADER_BYTES: Final = 32 << 20
+"""Bytes of a recording's inputs and names: reading them takes ten times as much memory."""
 
 
 def load_recording(file: Path | str) -> Recording:
@@ -190,26 +249,26 @@ def load_recording(file: Path | str) -> Recording:
     100
     """
     file = Path(file)
-    data = file.read_bytes()
     try:
-        if not zipfile.is_zipfile(io.BytesIO(data)):  # of another file numpy says that pickle might read it
-            raise ValueError("no .npz file, or a part of one")
-        with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
-            recording = _recording_from_arrays(arrays)
-        _check(recording)
+        arrays = read_arrays(file)
+        if len(arrays["header"]) > MAX_HEADER_BYTES:
+            raise ValueError(f"its inputs take more than {MAX_HEADER_BYTES >> 20} MiB")
+        header = json.loads(bytes(arrays["header"]))
+        recording = recording_from_header(header, arrays["poses"], arrays["counts"])
+    except OSError:
+        raise
     except Exception as error:  # noqa: BLE001 - whatever a damaged archive makes zipfile, numpy and json raise
         raise RecordingError(f"{file}: not a recording of the kit, or damaged ({error}).") from None
     return recording
 
 
-def _recording_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Recording:
-    header = json.loads(bytes(arrays["header"]))
+def recording_from_header(header: Mapping[str, Any], poses: NDArray[Any], counts: NDArray[Any]) -> Recording:
+    """The recording of this header and these arrays. Raises ValueError, KeyError or TypeError where they are damaged."""
     if header["format"] != FORMAT:
         raise ValueError(f"made by another version of the kit, format {header['format']}")
-    poses, counts = arrays["poses"], arrays["counts"]
     if poses.dtype != np.float64 or counts.dtype != np.int64:
         raise ValueError(f"arrays of {poses.dtype} and {counts.dtype}")
-    return Recording(
+    recording = Recording(
         str(header["place"]),
         None if header["case"] is None else str(header["case"]),
         int(header["seed"]),
@@ -220,6 +279,8 @@ def _recording_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Recording:
         counts,
         None if header["level"] is None else str(header["level"]),
     )
+    _check(recording)
+    return recording
 
 
 def _check(recording: Recording) -> None:

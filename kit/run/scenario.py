@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from kit.geometry import Pose
+from kit.plain_text import quoted
 from kit.workspace import WorkspaceError, expand_home, open_workspace
 from kit.world.catalogue import WORLD_FILE, MapCard, MapCase, find_map, map_names, own_card
 from kit.world.records import Model, World
@@ -111,6 +113,27 @@ def find_scenario(name: str, case: str | None = None, root: Path | None = None) 
     return replace(_scenario_of_case(own, case), name=str(file))
 
 
+def find_recorded_scenario(
+    place: str, case: str | None, recording: Path, root: Path | None = None
+) -> Scenario:
+    """Finds the scenario that a recording names, as ``find_scenario`` does; but a recording may be anybody's, so a file that
+    is no map of the kit's or the workspace's must lie in the folder of the recording, in the current folder, or below.
+
+    Raises as ``find_scenario``, and LookupError where it lies elsewhere.
+    """
+    file = _own_world_file(place, root)
+    if root is None and file is not None:
+        near = [recording.absolute().parent.resolve(), Path.cwd()]
+        with suppress(WorkspaceError):
+            near.append(open_workspace(make=False).worlds.resolve())
+        if not any(file.resolve().is_relative_to(folder) for folder in near):
+            raise LookupError(
+                f"{recording}: was made in {quoted(place)}, which lies neither beside it nor in the current folder. "
+                "If that is right, say where the world is: --root FOLDER."
+            )
+    return find_scenario(place, case, root)
+
+
 def case_names(name: str) -> tuple[str, ...]:
     """The names of the cases of a map, found as ``find_scenario`` finds it; none where no card gives start and target.
 
@@ -125,12 +148,15 @@ def _own_world_file(name: str, root: Path | None = None) -> Path | None:
     """The world file that a name stands for, where it is not that of a map of the kit's."""
     if name in map_names():
         return None
-    path = expand_home(name)
-    if root is None and not path.exists():
-        path = own_map_folder(name) or path
-    if path.is_dir():
-        path = path / WORLD_FILE
-    return path.absolute() if path.is_file() or path.suffix in (".yaml", ".yml") else None
+    try:
+        path = expand_home(name)
+        if root is None and not path.exists():
+            path = own_map_folder(name) or path
+        if path.is_dir():
+            path = path / WORLD_FILE
+        return path.absolute() if path.is_file() or path.suffix in (".yaml", ".yml") else None
+    except (OSError, ValueError):  # what cannot be a file's name is no map's either
+        return None
 
 
 def own_map_folder(name: str) -> Path | None:

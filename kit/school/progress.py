@@ -20,6 +20,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, Final, Self
 
+from kit.plain_files import read_plain_file
 from kit.workspace import write_atomically
 
 FILE: Final = "progress.db"
@@ -63,6 +64,10 @@ class EventKind(StrEnum):
     FINISH = "finish"
     ABOUT = "about"
     DEFENCE = "defence"
+
+
+YEARS: Final = range(2000, 2100)
+"""Years in which something can have been recorded."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -315,10 +320,14 @@ def _keep_as(file: Path, backup: Path) -> None:
             os.replace(f"{file}{ending}", f"{backup}{ending}")  # noqa: PTH105 - the names are text with an ending
 
 
+MAX_EXPORT_BYTES: Final = 5_000_000
+"""Bytes of an exported file: many times what a student does in a year; reading takes ten times as much memory."""
+
+
 def read_export(file: Path) -> list[ProgressEvent]:
     """Reads the events of an exported file. Raises ProgressError if it is malformed."""
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
+        content = json.loads(read_plain_file(file, MAX_EXPORT_BYTES).decode())
     except OSError as error:
         raise ProgressError(f"{file}: cannot be read ({error.strerror}).") from None
     except (ValueError, RecursionError) as error:
@@ -355,6 +364,10 @@ def _to_utc_text(at: str) -> str:
     time = datetime.fromisoformat(at)
     if time.tzinfo is None:
         raise ValueError("a time without its zone")
+    if (
+        time.year not in YEARS
+    ):  # what is computed from it, such as when a question is due again, must be a time too
+        raise ValueError("a time of another century")
     return time.astimezone(UTC).isoformat(timespec="microseconds")
 
 

@@ -8,17 +8,22 @@ grader neither gives nor takes points: the run has no grade.
 from __future__ import annotations
 
 import math
-import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from enum import Enum, StrEnum, auto
+from enum import StrEnum
 from types import MappingProxyType
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, TypeVar
+
+from kit.document.blocks import Picture, Text, Tone
+from kit.field_types import check_field_types
+from kit.plain_text import printable_text
 
 SCHEMA: Final = 1
 
 PUBLIC_SEEDS: Final = "public"
 """The name of the public sets of seeds; see ``GradingResult.seeds``."""
+WITH_SECRET: Final = "public+secret"
+"""The same with the secret ones."""
 
 MAX_LOG_LENGTH: Final = 4000
 """Characters of a program's output that are kept with a criterion."""
@@ -228,11 +233,12 @@ class GradingResult:
         if content["schema"] != SCHEMA:
             raise ValueError(f"a result of schema {content['schema']}; this version reads schema {SCHEMA}")
         given = {key: content[key] for key in cls.__slots__ if key not in _OWN_READING}
+        check_field_types(cls, {**given, "notices": content["notices"]})
         return cls(
             **given,
             tests=tuple(_criterion_from_dict(each) for each in content["tests"]),
             notices=tuple(content["notices"]),
-            timing=GradingTiming(**content["timing"]),
+            timing=_checked(GradingTiming, content["timing"]),
         )
 
     def without_secrets(self) -> GradingResult:
@@ -261,15 +267,25 @@ def _criterion_from_dict(content: Mapping[str, Any]) -> CriterionResult:
     if content["is_withheld"]:
         status = content["status"] or CriterionStatus.SKIPPED
         content = {**content, "status": status, "points": 0.0, "max_points": 0.0}
-    return CriterionResult(
-        **{
-            **content,
-            "status": CriterionStatus(content["status"]),
-            "visibility": Visibility(content["visibility"]),
-            "hints": tuple(content["hints"]),
-            "episodes": tuple(EpisodeSummary(**each) for each in content["episodes"]),
-        }
-    )
+    read = {
+        **content,
+        "status": CriterionStatus(content["status"]),
+        "visibility": Visibility(content["visibility"]),
+        "episodes": tuple(_checked(EpisodeSummary, each) for each in content["episodes"]),
+    }
+    check_field_types(CriterionResult, read)
+    criterion = CriterionResult(**{**read, "hints": tuple(content["hints"])})
+    if criterion.points != content["points"] or criterion.max_points != content["max_points"]:
+        raise ValueError(f"{content['points']} of {content['max_points']} points")
+    return criterion
+
+
+R = TypeVar("R")
+
+
+def _checked(record: type[R], content: Mapping[str, Any]) -> R:
+    check_field_types(record, content)
+    return record(**content)
 
 
 def rounded_points(points: float) -> float:
@@ -282,31 +298,11 @@ def format_points(points: float) -> str:
     return f"{points:.2f}".rstrip("0").rstrip(".")
 
 
-INDENT: Final = " " * 5
-MIN_WIDTH: Final = 20
+INDENT: Final = 5
+"""Columns before what is said of a criterion below its title."""
 MAX_RATIONALE: Final = 600
 MAX_VALUE: Final = 300
 """Characters of an expected or actual value that are shown."""
-
-
-class TextRole(Enum):
-    """The role of a span in its line, by which a screen can colour it."""
-
-    PASSED = auto()
-    LOST = auto()
-    NOT_JUDGED = auto()
-    PLAIN = auto()
-    HEADING = auto()
-    DETAIL = auto()
-    HINT = auto()
-
-
-class TextSpan(NamedTuple):
-    text: str
-    role: TextRole
-
-
-TextLine = tuple[TextSpan, ...]
 
 MARKS: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
     {
@@ -332,42 +328,40 @@ VERDICT_TEXTS: Final[Mapping[GradingVerdict, str]] = MappingProxyType(
 )
 
 
-def line_text(line: TextLine) -> str:
-    """The line without its roles."""
-    return "".join(span.text for span in line)
-
-
 def points_text(points: float, max_points: float) -> str:
     """``2.5 of 4``"""
     return f"{format_points(points)} of {format_points(max_points)}"
 
 
-def criterion_lines(
-    criterion: CriterionResult, width: int, *, hints: int = 0, more_hints: str = "", log_lines: int = 0
-) -> Iterator[TextLine]:
-    """The lines of one criterion, at most ``width`` characters each: mark, title and points; of one that is not
-    passed also the rationale, the expected and the actual value, and the next steps.
+def criterion_blocks(
+    criterion: CriterionResult, *, hints: int = 0, more_hints: str = "", log_lines: int = 0
+) -> list[Text | Picture]:
+    """One criterion: mark, title and points; of one that is not passed also the rationale, the expected and the actual value,
+    and the next steps.
 
     ``hints``: how many of its hints to show. ``more_hints``: how to see more, shown where there are more.
     ``log_lines``: how many of the last lines that a crashed program printed to show.
     """
-    yield from _heading_lines(criterion, width)
+    blocks: list[Text | Picture] = [_heading(criterion)]
     if criterion.is_passed:
-        return
-    yield from _paragraph_lines(_shortened(criterion.rationale, MAX_RATIONALE), TextRole.PLAIN, width)
+        return blocks
+    blocks.append(_paragraph(_shortened(criterion.rationale, MAX_RATIONALE)))
     if criterion.actual:
-        if criterion.expected:
-            yield from _paragraph_lines(f"expected: {_shortened(criterion.expected)}", TextRole.DETAIL, width)
-        yield from _paragraph_lines(f"actual:   {_shortened(criterion.actual)}", TextRole.DETAIL, width)
-    for number, hint in enumerate(criterion.hints[:hints], 1):
-        yield from _paragraph_lines(f"Hint {number} of {len(criterion.hints)}: {hint}", TextRole.HINT, width)
-    if more_hints and len(criterion.hints) > hints:
-        yield from _paragraph_lines(more_hints, TextRole.DETAIL, width)
+        values = (("expected:", criterion.expected), ("actual:  ", criterion.actual))
+        blocks += [_paragraph(_shortened(text), Tone.DIM, lead=name) for name, text in values if text]
+    of = len(criterion.hints)
+    blocks += [
+        _paragraph(text, Tone.BOLD, lead=f"Hint {number} of {of}:")
+        for number, text in enumerate(criterion.hints[:hints], 1)
+    ]
+    if more_hints and of > hints:
+        blocks.append(_paragraph(more_hints, Tone.DIM))
     if log_lines and criterion.log:
-        yield (TextSpan(f"{INDENT}what the program printed:", TextRole.DETAIL),)
         # A character before each: no line of a report begins with what a student's program printed.
-        for line in criterion.log.splitlines()[-log_lines:]:
-            yield (TextSpan(f"{INDENT}| {line}", TextRole.DETAIL),)
+        lines = tuple(f"| {printable_text(line)}" for line in criterion.log.splitlines()[-log_lines:])
+        blocks.append(_paragraph("what the program printed:", Tone.DIM))
+        blocks.append(Picture(lines, INDENT, Tone.DIM, is_tight=True))
+    return [each for each in blocks if not isinstance(each, Text) or each.text]
 
 
 def replay_lines(criteria: Sequence[CriterionResult]) -> list[str]:
@@ -376,39 +370,22 @@ def replay_lines(criteria: Sequence[CriterionResult]) -> list[str]:
     return picture.rstrip().splitlines()
 
 
-def _heading_lines(criterion: CriterionResult, width: int) -> Iterator[TextLine]:
-    mark = MARKS[criterion.status]
-    role = (
-        TextRole.PASSED
-        if criterion.is_passed
-        else TextRole.LOST
-        if criterion.is_judged
-        else TextRole.NOT_JUDGED
-    )
-    title_role = TextRole.PLAIN if criterion.is_passed else TextRole.HEADING
+def _heading(criterion: CriterionResult) -> Text:
+    tone = Tone.GOOD if criterion.is_passed else Tone.BAD if criterion.is_judged else Tone.DIM
     points = "" if criterion.is_withheld else f": {points_text(criterion.points, criterion.max_points)}"
-    title = " ".join(criterion.title.split())
-    # The points stay with the title's last word: they are wrapped as one word, and taken off again.
-    wrapped = textwrap.wrap(
-        title + "\0" * len(points),
-        max(MIN_WIDTH, width),
-        initial_indent=" " * (len(mark) + 1),
-        subsequent_indent=INDENT,
+    return Text(
+        " ".join(criterion.title.split()),
+        Tone.PLAIN if criterion.is_passed else Tone.BOLD,
+        lead=MARKS[criterion.status],
+        lead_tone=tone,
+        tail=points,
+        hang=INDENT,
+        is_tight=True,
     )
-    for number, line in enumerate(wrapped):
-        text = line.rstrip("\0")
-        head: TextLine = (TextSpan(mark, role), TextSpan(" ", TextRole.PLAIN)) if number == 0 else ()
-        body = TextSpan(text[len(mark) + 1 :] if number == 0 else text, title_role)
-        tail: TextLine = (TextSpan(points, TextRole.DETAIL),) if number == len(wrapped) - 1 else ()
-        yield (*head, body, *tail)
 
 
-def _paragraph_lines(text: str, role: TextRole, width: int) -> Iterator[TextLine]:
-    for part in text.splitlines():
-        for line in textwrap.wrap(
-            part, max(MIN_WIDTH, width), initial_indent=INDENT, subsequent_indent=INDENT
-        ):
-            yield (TextSpan(line, role),)
+def _paragraph(text: str, tone: Tone = Tone.PLAIN, lead: str = "") -> Text:
+    return Text(text, tone, lead=lead, lead_tone=tone, indent=INDENT, is_tight=True)
 
 
 def _shortened(text: str, limit: int = MAX_VALUE) -> str:

@@ -10,8 +10,8 @@ from pathlib import Path
 from statistics import fmean, pstdev, stdev
 from typing import Any, Final, Literal, NamedTuple
 
+from kit.document.blocks import Cell, CellStyle, Column, Table
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
-from kit.school.report.document import CellStyle, ReportTable, TableCell, TableColumn
 from kit.school.report.inference import t_quantile
 from kit.study.printed_tables import (
     ADJACENCY,
@@ -399,9 +399,9 @@ def seed_means(table: PrintedTable, result: RecordedResult, column: str) -> Seed
     return SeedMeans(means) if means else None
 
 
-def spread_table(table: PrintedTable, result: RecordedResult, variant: StudyVariant) -> ReportTable | None:
+def spread_table(table: PrintedTable, result: RecordedResult, variant: StudyVariant) -> Table | None:
     """Each agent's printed mean and SD beside the seeds' means; None unless there are several seeds of one."""
-    rows: list[tuple[TableCell, ...]] = []
+    rows: list[tuple[Cell, ...]] = []
     for column in table.columns if table.cases else ():
         means = seed_means(table, result, column)
         if means is None or len(means.values) < 2:
@@ -416,14 +416,14 @@ def spread_table(table: PrintedTable, result: RecordedResult, variant: StudyVari
         return None
     heads = ("printed", "SD", "seeds", "mean", "low", "high", "SD seeds")
     columns = (
-        TableColumn("agent", CellStyle.TEXT),
-        *(TableColumn(head, decimals=3) for head in heads),
-        TableColumn("in SD", CellStyle.TEXT),
-        TableColumn("between", CellStyle.TEXT),
+        Column("agent", CellStyle.TEXT),
+        *(Column(head, decimals=3) for head in heads),
+        Column("in SD", CellStyle.TEXT),
+        Column("between", CellStyle.TEXT),
     )
     identity = f"table-{table.id.replace('.', '-')}-seeds" + ("-kit" if variant == "kit" else "")
     title = f"Means over the cases, printed and by seed: {'kit' if variant == 'kit' else 'ours'}"
-    return ReportTable(identity, title, columns, tuple(rows), note=SPREAD_NOTE)
+    return Table(identity, title, columns, tuple(rows), note=SPREAD_NOTE)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,19 +9,19 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Final
 
-from kit.plain_text import suggestion
-from kit.school.report.as_files import report_to_markdown, table_to_markdown
-from kit.school.report.document import (
+from kit.document.blocks import (
+    Block,
+    Cell,
     CellStyle,
-    ClassReport,
-    ReportBlock,
-    ReportChapter,
-    ReportPlot,
-    ReportTable,
-    ReportText,
-    TableCell,
-    TableColumn,
+    Chapter,
+    Column,
+    Document,
+    Plot,
+    Table,
+    Text,
 )
+from kit.document.files import document_to_markdown, table_to_markdown
+from kit.plain_text import suggestion
 from kit.study.evaluation import (
     EvaluationData,
     evaluation_chapters,
@@ -83,7 +83,7 @@ def chapters(
     to_files: bool,
     with_plots: bool = True,
     with_class: bool = False,
-) -> tuple[tuple[ReportChapter, ...], tuple[ReportChapter, ...]]:
+) -> tuple[tuple[Chapter, ...], tuple[Chapter, ...]]:
     """What is printed instead of the whole, if anything; and the whole, which files get.
 
     ``kind``: ``table``, ``figure`` or empty for either. ``wanted``: a number; that of a chapter, or empty, for a list. ``workspace``:
@@ -116,14 +116,14 @@ def chapters(
     return (), (_table(wanted, workspace) if is_table else _figure(pictures[wanted], workspace),)
 
 
-def _evaluation_chapters(chosen: list[StudyChapter], with_class: bool) -> tuple[ReportChapter, ...]:
+def _evaluation_chapters(chosen: list[StudyChapter], with_class: bool) -> tuple[Chapter, ...]:
     """What chapter 5 has beside its tables and figures."""
     if all(each.number != 5 for each in chosen):
         return ()
     return evaluation_chapters(_evaluation(), with_class=with_class)
 
 
-def _failures(chosen: list[StudyChapter], workspace: Workspace | None) -> Iterator[ReportChapter]:
+def _failures(chosen: list[StudyChapter], workspace: Workspace | None) -> Iterator[Chapter]:
     """Every recorded cell of these chapters that lies below the print."""
     tables = [table for chapter in chosen for table in chapter.tables]
     rows = [
@@ -142,11 +142,11 @@ def _failures(chosen: list[StudyChapter], workspace: Workspace | None) -> Iterat
     if rows:
         heads = ("table", "row", "whose")
         columns = (
-            *(TableColumn(head, CellStyle.TEXT) for head in heads),
-            *(TableColumn(head, decimals=3) for head in ("printed", "recorded", "at most")),
+            *(Column(head, CellStyle.TEXT) for head in heads),
+            *(Column(head, decimals=3) for head in ("printed", "recorded", "at most")),
         )
-        table = ReportTable("failures", "", columns, tuple(rows))
-        yield ReportChapter("failures", "Below the printed number", (ReportText(FAILURES_NOTE), table))
+        table = Table("failures", "", columns, tuple(rows))
+        yield Chapter("failures", "Below the printed number", (Text(FAILURES_NOTE), table))
 
 
 FAILURES_NOTE: Final = (
@@ -158,8 +158,8 @@ FAILURES_NOTE: Final = (
 def recorded_study_document() -> str:
     """The document as it follows from the printed cells and the logs that come with the kit."""
     _, whole = chapters("", "", None, to_files=True, with_plots=False)
-    head = ReportChapter("summary", "Summary", (ReportText(SUMMARY_NOTE), summary_table()))
-    return report_to_markdown(ClassReport(TITLE, (head, *whole)))
+    head = Chapter("summary", "Summary", (Text(SUMMARY_NOTE), summary_table()))
+    return document_to_markdown(Document(TITLE, (head, *whole)))
 
 
 SUMMARY_NOTE: Final = (
@@ -195,9 +195,9 @@ def summary_lines() -> list[str]:
     ]
 
 
-def summary_table() -> ReportTable:
+def summary_table() -> Table:
     """What the dissertation reports, what agents by its settings reach here, and by the kit's own preset; where there are any."""
-    rows: list[tuple[TableCell, ...]] = []
+    rows: list[tuple[Cell, ...]] = []
     for number in SUMMARY_TABLES:
         table = printed_table(number)
         results = _results(table, None)
@@ -206,7 +206,7 @@ def summary_table() -> ReportTable:
                 continue
             printed = _column_mean({row: table.cell(row, column) for row in _own_rows(table)})
             cells = {variant: result.cells(table) for variant, result in results.items()}
-            ours: list[TableCell] = [
+            ours: list[Cell] = [
                 _mean_text(table, results.get(variant), column)
                 or _column_mean(
                     {
@@ -221,10 +221,10 @@ def summary_table() -> ReportTable:
             if any(cell is not None for cell in ours):
                 rows.append((f"{number}, {_measured(column, measure)}".rstrip(", "), printed, *ours))
     columns = (
-        TableColumn("Success rate", CellStyle.TEXT),
-        *(TableColumn(title) for title in ("dissertation", "its settings", "the kit's")),
+        Column("Success rate", CellStyle.TEXT),
+        *(Column(title) for title in ("dissertation", "its settings", "the kit's")),
     )
-    return ReportTable("summary", "", columns, tuple(rows))
+    return Table("summary", "", columns, tuple(rows))
 
 
 def _measured(column: str, measure: str) -> str:
@@ -246,7 +246,7 @@ def _own_rows(table: PrintedTable) -> list[str]:
     return list(table.rows)[: len(table.cases) or table.attempts]
 
 
-def _column_mean(values: dict[str, float], printed: dict[str, float] | None = None) -> TableCell:
+def _column_mean(values: dict[str, float], printed: dict[str, float] | None = None) -> Cell:
     """The mean of what is a number; None if a number is missing where ``printed`` has one."""
     expected = [row for row, value in (printed or values).items() if value == value]
     numbers = [values[row] for row in expected if row in values]
@@ -269,7 +269,7 @@ def _results(table: PrintedTable, workspace: Workspace | None) -> Results:
     return {variant: result for variant, result in found.items() if result is not None}
 
 
-def _overview(chapter: StudyChapter, workspace: Workspace | None) -> ReportChapter:
+def _overview(chapter: StudyChapter, workspace: Workspace | None) -> Chapter:
     items = [
         (f"Table {table.id}", table.title, table_status(_results(table, workspace), table))
         for table in chapter.tables
@@ -320,7 +320,7 @@ def _is_recorded(figure: PrintedFigure, workspace: Workspace | None) -> bool:
 _VARIANT_WORDS: Final = {"seed": "by the dissertation's settings", "kit": "by the kit's own preset"}
 
 
-def _table(number: str, workspace: Workspace | None) -> ReportChapter:
+def _table(number: str, workspace: Workspace | None) -> Chapter:
     for chapter in study_chapters():
         for table in chapter.tables:
             if table.id == number:
@@ -329,9 +329,7 @@ def _table(number: str, workspace: Workspace | None) -> ReportChapter:
                 return table_chapter(table, chapter.misprints_of(number), results, missing)
     data = _evaluation()
     found = next(each for each in data.printed if each.id == number)
-    return ReportChapter(
-        f"table-{number}", f"Chapter 5, section {found.section}", evaluation_table(data, number)
-    )
+    return Chapter(f"table-{number}", f"Chapter 5, section {found.section}", evaluation_table(data, number))
 
 
 def _durations(table: PrintedTable, workspace: Workspace | None, results: Results) -> Durations:
@@ -348,7 +346,7 @@ def _durations(table: PrintedTable, workspace: Workspace | None, results: Result
     return found
 
 
-def _figure(figure: PrintedFigure, workspace: Workspace | None, *, with_plots: bool = True) -> ReportChapter:
+def _figure(figure: PrintedFigure, workspace: Workspace | None, *, with_plots: bool = True) -> Chapter:
     if figure.paths:
         recorded = find_recorded_result(workspace, printed_table(figure.results_of))
         return figure_chapter(figure, _figure_paths(figure, recorded, with_plots=with_plots), recorded)
@@ -356,21 +354,19 @@ def _figure(figure: PrintedFigure, workspace: Workspace | None, *, with_plots: b
     return figure_chapter(figure, plots, recorded)
 
 
-def _figure_paths(
-    figure: PrintedFigure, recorded: RecordedResult | None, *, with_plots: bool
-) -> list[ReportBlock]:
+def _figure_paths(figure: PrintedFigure, recorded: RecordedResult | None, *, with_plots: bool) -> list[Block]:
     """The recorded ways: drawn, or only how they ended; none where there are none."""
     if recorded is None:
         return []
     ways = {case: recorded.paths_of(figure.group, case) for _, case in figure.paths}
     if not with_plots:
-        return [ReportText(f"{paths_title(figure, case, some)}.") for case, some in ways.items() if some]
+        return [Text(f"{paths_title(figure, case, some)}.") for case, some in ways.items() if some]
     if not any(ways.values()):
         return []
     from kit.study.study_runs import path_plots  # brings environments along
 
     choice = FIRST_RUN if figure.group == POTENTIAL_FIELDS else CHOSEN_EPISODES
-    return [*path_plots(figure, recorded), ReportText(f"{PATHS_LEGEND} {choice}")]
+    return [*path_plots(figure, recorded), Text(f"{PATHS_LEGEND} {choice}")]
 
 
 PATHS_LEGEND: Final = (
@@ -385,7 +381,7 @@ FIRST_RUN: Final = (
 
 def _figure_plots(
     figure: PrintedFigure, workspace: Workspace | None
-) -> tuple[list[ReportPlot], RecordedResult | None]:
+) -> tuple[list[Plot], RecordedResult | None]:
     """Makes the plots of a figure from the raw answers, or from the first agent of its group that was recorded."""
     if not figure.results_of:
         return [_evaluation_plots()[name] for name in figure.plots], None
@@ -401,6 +397,6 @@ def _evaluation() -> EvaluationData:
 
 
 @cache
-def _evaluation_plots() -> dict[str, ReportPlot]:
+def _evaluation_plots() -> dict[str, Plot]:
     """Those of the evaluation, by name."""
     return evaluation_plots(_evaluation())

@@ -7,19 +7,19 @@ from collections.abc import Mapping, Sequence
 from statistics import fmean
 from typing import Final
 
-from kit.learning.training.run_upkeep import format_seconds
-from kit.school.report.document import (
+from kit.document.blocks import (
     BarChart,
+    Block,
+    Caution,
+    Cell,
     CellStyle,
-    ReportBlock,
-    ReportChapter,
-    ReportPlot,
-    ReportTable,
-    ReportText,
-    ReportWarning,
-    TableCell,
-    TableColumn,
+    Chapter,
+    Column,
+    Plot,
+    Table,
+    Text,
 )
+from kit.learning.training.run_upkeep import format_seconds
 from kit.study.printed_tables import (
     ADJACENCY_BY_POSES,
     POTENTIAL_FIELDS,
@@ -59,52 +59,52 @@ Durations = Mapping[StudyVariant, tuple[float, float]]
 
 def overview_chapter(
     chapter: StudyChapter, items: Sequence[tuple[str, str, str]], notes: Sequence[str]
-) -> ReportChapter:
+) -> Chapter:
     """A list of ``items``: the table or figure, its title, and what there is of ours.
 
     ``notes`` stand below it.
     """
     heads = ("number", "what it shows", "ours")
-    columns = tuple(TableColumn(head, CellStyle.TEXT) for head in heads)
+    columns = tuple(Column(head, CellStyle.TEXT) for head in heads)
     title = f"Chapter {chapter.number}. {chapter.title}"
-    return ReportChapter(
+    return Chapter(
         f"chapter-{chapter.number}",
         title,
-        (ReportTable(f"chapter-{chapter.number}", "", columns, tuple(items)), *map(ReportText, notes)),
+        (Table(f"chapter-{chapter.number}", "", columns, tuple(items)), *map(Text, notes)),
     )
 
 
 def table_chapter(
     table: PrintedTable, misprints: Sequence[Misprint], results: Results, missing: Durations
-) -> ReportChapter:
+) -> Chapter:
     """A printed table with its settings and slips; below each printed row what was recorded, if anything was.
 
     ``missing``: how long it would take to make the results that are not there.
     """
     cells = {variant: result.cells(table) for variant, result in results.items()}
-    blocks: list[ReportBlock] = [ReportText(text) for text in (f"Section {table.section}.", *table.settings)]
+    blocks: list[Block] = [Text(text) for text in (f"Section {table.section}.", *table.settings)]
     blocks.append(_comparison_table(table, cells))
     for variant, result in results.items():
         blocks += _recorded_blocks(table, variant, result, cells[variant])
     if any(cells.values()):
         blocks.append(_picture(table, cells))
-    blocks += [ReportText(f"Slip: {each.why}{_right_values(each)}") for each in misprints]
-    blocks += [ReportText(text) for text in _how_to_run(table, missing)]
-    return ReportChapter(f"table-{table.id}", f"Table {table.id}. {table.title}", tuple(blocks))
+    blocks += [Text(f"Slip: {each.why}{_right_values(each)}") for each in misprints]
+    blocks += [Text(text) for text in _how_to_run(table, missing)]
+    return Chapter(f"table-{table.id}", f"Table {table.id}. {table.title}", tuple(blocks))
 
 
 def figure_chapter(
-    figure: PrintedFigure, plots: Sequence[ReportBlock], recorded: RecordedResult | None = None
-) -> ReportChapter:
+    figure: PrintedFigure, plots: Sequence[Block], recorded: RecordedResult | None = None
+) -> Chapter:
     """``plots``: ours, from the raw answers or from what was ``recorded``."""
-    blocks = [*map(ReportText, (f"Section {figure.section}.", *figure.settings)), *plots]
+    blocks = [*map(Text, (f"Section {figure.section}.", *figure.settings)), *plots]
     if recorded is not None and plots:
-        blocks.append(ReportText(_origin(recorded)))
+        blocks.append(Text(_origin(recorded)))
     elif figure.run:
-        blocks.append(ReportText(f"No recorded result; run it with `{figure.run}`."))
+        blocks.append(Text(f"No recorded result; run it with `{figure.run}`."))
     if figure.missing:
-        blocks.append(ReportText(f"Missing: {figure.missing}"))
-    return ReportChapter(f"figure-{figure.id}", f"Figure {figure.id}. {figure.title}", tuple(blocks))
+        blocks.append(Text(f"Missing: {figure.missing}"))
+    return Chapter(f"figure-{figure.id}", f"Figure {figure.id}. {figure.title}", tuple(blocks))
 
 
 def paths_title(figure: PrintedFigure, case: str, ways: Sequence[RecordedPath]) -> str:
@@ -115,7 +115,7 @@ def paths_title(figure: PrintedFigure, case: str, ways: Sequence[RecordedPath]) 
     return f"Figure {figure.id}, ours: {case}, {who}: {told}"
 
 
-def session_plot(figure: PrintedFigure, test: RecordedTest) -> ReportPlot | None:
+def session_plot(figure: PrintedFigure, test: RecordedTest) -> Plot | None:
     """What the tests during a training came to; None if there were none."""
     if not test.sessions:
         return None
@@ -155,23 +155,23 @@ def table_status(results: Results, table: PrintedTable) -> str:
     return "none" if table.run else "-"
 
 
-def _comparison_table(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> ReportTable:
+def _comparison_table(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> Table:
     identity = f"table-{table.id.replace('.', '-')}"
     is_compared = any(cells.values())
     columns = tuple(
-        TableColumn(title, decimals=max(decimals, 3) if is_compared and decimals else decimals)
+        Column(title, decimals=max(decimals, 3) if is_compared and decimals else decimals)
         for title, decimals in zip(table.columns, table.decimals, strict=True)
     )
-    label = TableColumn("", CellStyle.TEXT)
+    label = Column("", CellStyle.TEXT)
     if not is_compared:
         rows = tuple((row, *_printed_cells(table, row)) for row in table.rows)
-        return ReportTable(identity, "As printed", (label, *columns), rows)
-    lines: list[tuple[TableCell, ...]] = []
+        return Table(identity, "As printed", (label, *columns), rows)
+    lines: list[tuple[Cell, ...]] = []
     for row in table.rows:
         lines.append((row, "printed", *_printed_cells(table, row)))
         for variant, found in cells.items():
             lines += _recorded_lines(table, row, VARIANT_NAMES[variant], found)
-    return ReportTable(
+    return Table(
         identity,
         "As printed, and ours",
         (label, label, *columns),
@@ -181,15 +181,13 @@ def _comparison_table(table: PrintedTable, cells: Mapping[StudyVariant, Recorded
     )
 
 
-def _recorded_lines(
-    table: PrintedTable, row: str, name: str, cells: RecordedCells
-) -> list[tuple[TableCell, ...]]:
+def _recorded_lines(table: PrintedTable, row: str, name: str, cells: RecordedCells) -> list[tuple[Cell, ...]]:
     """The recorded cells of a row, their intervals, and what differs from the printed ones."""
     ours = [cells.get((row, column)) for column in table.columns]
     if not any(ours):
         return []
     intervals = [each.interval if each else None for each in ours]
-    lines: list[tuple[TableCell, ...]] = [(row, name, *(_cell_number(each) for each in ours))]
+    lines: list[tuple[Cell, ...]] = [(row, name, *(_cell_number(each) for each in ours))]
     if any(intervals):
         lines.append((row, "at least", *(each.low if each else None for each in intervals)))
         lines.append((row, "at most", *(each.high if each else None for each in intervals)))
@@ -201,7 +199,7 @@ def _recorded_lines(
     return lines
 
 
-def _cell_number(cell: RecordedCell | None, printed: float = 0.0) -> TableCell:
+def _cell_number(cell: RecordedCell | None, printed: float = 0.0) -> Cell:
     """The number, less a printed one; steps are whole."""
     if cell is None:
         return None
@@ -209,7 +207,7 @@ def _cell_number(cell: RecordedCell | None, printed: float = 0.0) -> TableCell:
     return round(number) if cell.measure == STEPS else number
 
 
-def _printed_cells(table: PrintedTable, row: str) -> tuple[TableCell, ...]:
+def _printed_cells(table: PrintedTable, row: str) -> tuple[Cell, ...]:
     """Whole numbers without a point."""
     return tuple(
         int(number) if not decimals and not math.isnan(number) else number
@@ -217,7 +215,7 @@ def _printed_cells(table: PrintedTable, row: str) -> tuple[TableCell, ...]:
     )
 
 
-def _picture(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> ReportPlot:
+def _picture(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> Plot:
     """Bars: printed shares and ours beside them; where rows are cases, the mean of a column, ours if there is one of each case."""
     rows: list[tuple[str, tuple[float, ...]]] = []
     own = list(table.rows)[: len(table.cases) or None]
@@ -247,21 +245,19 @@ def _is_share(cells: Mapping[StudyVariant, RecordedCells], row: str, column: str
 
 def _recorded_blocks(
     table: PrintedTable, variant: StudyVariant, recorded: RecordedResult, cells: RecordedCells
-) -> list[ReportBlock]:
+) -> list[Block]:
     """How ours were made, and every cell whose interval lies below the printed number."""
     name = VARIANT_NAMES[variant]
-    blocks: list[ReportBlock] = [ReportText(f"{VARIANT_TITLES[variant]}: {_origin(recorded)}")]
+    blocks: list[Block] = [Text(f"{VARIANT_TITLES[variant]}: {_origin(recorded)}")]
     if any(cell.interval is not None for cell in cells.values()):
-        blocks.append(ReportText(INTERVALS_NOTE))
+        blocks.append(Text(INTERVALS_NOTE))
     for group in dict.fromkeys(
         table.groups if table.has_fields else (*table.trained_groups, *table.row_groups)
     ):
         told = [_test_text(each) for each in recorded.tests_of(group)]
-        blocks.append(ReportText(f"{name}, {group}: {'; '.join(told) or 'no agent yet'}."))
+        blocks.append(Text(f"{name}, {group}: {'; '.join(told) or 'no agent yet'}."))
     if table.has_fields:
-        blocks.append(
-            ReportText(f"{name}: where the print has potential fields, `{CONTROLLERS[variant]}` drives.")
-        )
+        blocks.append(Text(f"{name}: where the print has potential fields, `{CONTROLLERS[variant]}` drives."))
         if (sides := _sides_table(table, recorded, variant)) is not None:
             blocks.append(sides)
     if (spread := spread_table(table, recorded, variant)) is not None:
@@ -272,7 +268,7 @@ def _recorded_blocks(
     ]
     if below:
         blocks.append(
-            ReportWarning(
+            Caution(
                 f"{len(below)} of {sum(cell.interval is not None for cell in cells.values())} cells fail: their 95 % interval "
                 f"lies below the printed number. No agent was trained again for it. {'; '.join(below)}."
             )
@@ -290,13 +286,13 @@ INTERVALS_NOTE: Final = (
 )
 
 
-def _sides_table(table: PrintedTable, recorded: RecordedResult, variant: StudyVariant) -> ReportTable | None:
+def _sides_table(table: PrintedTable, recorded: RecordedResult, variant: StudyVariant) -> Table | None:
     """How often a controller's robots were side by side, by both measures; None where only rays were recorded."""
     column = table.column_of(POTENTIAL_FIELDS, ADJACENCY_BY_POSES)
     tests = recorded.tests_of(POTENTIAL_FIELDS)
     if column is None:
         return None
-    rows: list[tuple[TableCell, ...]] = []
+    rows: list[tuple[Cell, ...]] = []
     for row, (_, case) in zip(table.rows, table.cases, strict=False):
         found = [each for each in tests if case in each.by_poses]
         if found:
@@ -304,8 +300,8 @@ def _sides_table(table: PrintedTable, recorded: RecordedResult, variant: StudyVa
     if not rows:
         return None
     columns = (
-        TableColumn("", CellStyle.TEXT),
-        *(TableColumn(title) for title in ("printed", "by rays", "by poses")),
+        Column("", CellStyle.TEXT),
+        *(Column(title) for title in ("printed", "by rays", "by poses")),
     )
     identity = f"table-{table.id.replace('.', '-')}-sides" + ("-kit" if variant == "kit" else "")
     note = (
@@ -313,7 +309,7 @@ def _sides_table(table: PrintedTable, recorded: RecordedResult, variant: StudyVa
         "fields it does not say which it prints."
     )
     title = f"Adjacency of `{CONTROLLERS[variant]}`, by both of the dissertation's measures"
-    return ReportTable(identity, title, columns, tuple(rows), note=note)
+    return Table(identity, title, columns, tuple(rows), note=note)
 
 
 def _test_text(test: RecordedTest) -> str:

@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 
 from kit.controllers import find_controller
+from kit.document.blocks import ScenePlot
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.environment.tasks import find_task
 from kit.learning.policies.evaluation import (
@@ -30,7 +31,6 @@ from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_sweep import SweepEntry, TrainingSweep, combine
 from kit.render.scene import Scene
 from kit.run.scenario import find_scenario
-from kit.school.report.document import ScenePlot
 from kit.study.pairs import SAMPLE_S, PairRunResult, run_once, shift_start_poses
 from kit.study.printed_tables import (
     FIGURE,

@@ -14,6 +14,7 @@ from textual.screen import Screen
 from kit.render.roles import COLOR_SCHEMES
 from kit.tui.input.driver import KeyDriver
 from kit.tui.terminal import TerminalDecision
+from kit.tui.textual_patches import fire_late_timers
 from kit.tui.theme import Theme, text_colors, textual_theme
 from kit.tui.widgets.text_rows import ASCII_ONLY
 
@@ -38,6 +39,7 @@ class KitApp(App[None]):
     """
 
     def __init__(self, terminal: TerminalDecision) -> None:
+        fire_late_timers()
         super().__init__(driver_class=KeyDriver, ansi_color=terminal.ansi)
         self.kit_theme = Theme.of(terminal)
         if terminal.ansi:
@@ -75,11 +77,13 @@ class KitApp(App[None]):
 
     def action_glossary(self) -> None:
         """Opens the glossary over any screen."""
-        from kit.school.lessons.glossary import read_glossary  # of no use to the first frame
-        from kit.tui.rows.lesson_rows import glossary_rows
+        from kit.document.layout import Page, rows_of
+        from kit.document.rows import MARGIN, TEXT_WIDTH
+        from kit.school.lessons.glossary import glossary_blocks, read_glossary  # of no use to the first frame
         from kit.tui.screens.dialogs import TextScreen
 
-        self.push_screen(TextScreen("Glossary", glossary_rows(read_glossary())))
+        rows = rows_of(glossary_blocks(read_glossary()), Page(TEXT_WIDTH, MARGIN))
+        self.push_screen(TextScreen("Glossary", rows))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leaves Ctrl-C to a screen that has an action for it, and Ctrl-Z to a text that takes a change back."""

@@ -19,7 +19,7 @@ if TYPE_CHECKING:  # the physics takes a moment to import: the frame is drawn fi
 
     from kit.inspection.server import InspectionServer
     from kit.run.lockstep import Observer
-    from kit.run.recording import Recorder, Recording
+    from kit.run.recording import Recorder, Recording, RecordingStore
     from kit.run.runner import Runner
     from kit.run.scenario import Scenario
     from kit.run.session import Session
@@ -43,14 +43,16 @@ class SessionHost:
         seed: int = 0,
         socket_dir: Path | None = None,
         records: bool = False,
+        store: RecordingStore | None = None,
     ) -> None:
         """``socket_dir``: the folder of sockets through which other terminals look in; None: none does. ``records``:
-        whether the drive is recorded."""
+        whether the drive is recorded. ``store``: where it is written as it goes on."""
         self._on_view = on_view
         self._on_error = on_error
         self._seed = seed
         self._socket_dir = socket_dir
-        self._records = records
+        self._records = records or store is not None
+        self._recording_store = store
         self._recorder: Recorder | None = None
         self._inspection_server: InspectionServer | None = None
         self._session: Session | None = None
@@ -172,7 +174,9 @@ class SessionHost:
         if self._records:
             from kit.run.recording import Recorder
 
-            self._recorder = Recorder.for_scenario(session.scenario, session.runner.simulation)
+            self._recorder = Recorder.for_scenario(
+                session.scenario, session.runner.simulation, self._recording_store
+            )
             session.runner.observers.append(self._recorder)
 
     def _replace(self, session: Session, factor: float | None = None) -> None:

@@ -6,6 +6,8 @@ that is most of the bytes. ``crop_left`` makes a screen send the span and no mor
 the characters sent before, where Textual names all of them with each piece of text. ``write_runs`` sends a widget's characters
 without asking the compositor, which takes twice as long as to draw them. Both touch private names, so they are bound to the
 one Textual version they were read in; with any other, the screen stays as it is and everything works, with more bytes.
+
+``fire_late_timers`` mends a fault of Textual's: a timer that should fire once never fires where its task starts late.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple, TypeVar
 
 import textual
+import textual.message_pump
 from rich.color import ColorSystem
 from rich.console import Console
 from rich.segment import Segment
@@ -24,6 +27,7 @@ from textual._compositor import ChopsUpdate, Compositor, CompositorUpdate
 from textual.app import App
 from textual.geometry import Offset
 from textual.screen import Screen
+from textual.timer import Timer
 from textual.widget import Widget
 
 KNOWN_TEXTUAL: Final = "8.2.8"
@@ -319,3 +323,19 @@ def ask_cursor(app: App[Any]) -> bool:
     driver.write(ASK_CURSOR)
     driver.flush()
     return True
+
+
+class OneShotTimer(Timer):
+    """A timer that leaves out no call if it fires a limited number of times.
+
+    Textual's leaves out the calls whose time has passed when its task gets to run. Of a timer that fires once there is no
+    other: on a busy machine the app then keeps a size that the terminal no longer has, and a picture stands still.
+    """
+
+    def __init__(self, *args: Any, repeat: int | None = None, skip: bool = True, **options: Any) -> None:
+        super().__init__(*args, repeat=repeat, skip=skip and repeat is None, **options)
+
+
+def fire_late_timers() -> None:
+    """From now on ``set_timer`` calls back even if it is late, in widgets, screens and apps, Textual's own calls among them."""
+    setattr(textual.message_pump, "Timer", OneShotTimer)  # noqa: B010  # mypy takes no assignment to a class's name

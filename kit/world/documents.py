@@ -6,16 +6,16 @@ limit on its size.
 
 from __future__ import annotations
 
-import os
 import re
-import stat
 from collections.abc import Iterator, Mapping
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from pathlib import Path
+from urllib.parse import unquote
 
+from kit.plain_files import read_plain_file
 from kit.plain_text import is_printable, quoted
 from kit.world.problems import Problem, ProblemCollector, WorldError
 from kit.world.records import SourceLocation
@@ -95,21 +95,33 @@ def read_bytes(path: Path, limit: int) -> bytes:
     if (collected := _READ_FILES.get()) is not None:
         collected.add(path)
     try:
-        with open(path, "rb", opener=_open_nonblocking) as file:
-            status = os.fstat(file.fileno())
-            if not stat.S_ISREG(status.st_mode):
-                raise UnusableFile("it is not a regular file")
-            content = file.read(limit + 1) if status.st_size <= limit else None
+        return read_plain_file(path, limit)
     except (OSError, ValueError) as error:
         raise UnusableFile(_error_text(error)) from error
-    if content is None or len(content) > limit:
-        raise UnusableFile(f"it is larger than {limit // 1_000_000} MB")
-    return content
 
 
-def _open_nonblocking(path: str, flags: int) -> int:
-    """Opens a named pipe at once too, where ``open`` would wait for a writer."""
-    return os.open(path, flags | os.O_NONBLOCK | os.O_CLOEXEC)
+def near_file(name: str, folder: Path) -> str:
+    """The name of a file that is there, relative to ``folder``, for one that is not: written with the separators of
+    Windows, in the other case, or as the address or the path that it has on another machine. Empty if there is none."""
+    words = unquote(name.removeprefix("file://")).replace("\\", "/").split("/")
+    words = [word for word in words if word not in ("", ".", "~") and not word.endswith(":")]
+    for first in range(len(words)):  # all of the path, then what is left without its first folders
+        found = folder
+        for word in words[first:]:
+            if word == "..":
+                found = found.parent
+                continue
+            with suppress(OSError):
+                names = [path.name for path in found.iterdir()]
+                match = word if word in names else next((n for n in names if n.lower() == word.lower()), None)
+                if match is not None:
+                    found = found / match
+                    continue
+            break
+        else:
+            if found.is_file() and found.is_relative_to(folder):
+                return str(found.relative_to(folder))
+    return ""
 
 
 def _resolve_links(path: Path) -> Path:
@@ -125,7 +137,7 @@ def _error_text(error: Exception) -> str:
     if isinstance(error, IsADirectoryError):
         return "it is a folder"
     if isinstance(error, OSError) and error.strerror:
-        return error.strerror.lower()
+        return error.strerror[:1].lower() + error.strerror[1:]
     return str(error).lower()
 
 
@@ -196,11 +208,17 @@ class WorldDocuments:
         name = section.name(key)
         if not name:
             return None
+        folder = section.location_of(key).file.parent
         try:
-            return self.allowed_root.resolve(name, section.location_of(key).file.parent)
+            file = self.allowed_root.resolve(name, folder)
         except UnusableFile as error:
-            section.error(str(error), key)
+            near = near_file(name, folder)
+            section.error(f"{error}{f'. Did you mean {quoted(near)}?' if near else ''}", key)
             return None
+        if not Path(file).exists() and (near := near_file(name, folder)):
+            section.error(f"{quoted(name)}: there is no such file. Did you mean {quoted(near)}?", key)
+            return None
+        return file
 
     def _read(
         self,

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
+from typing import Literal
 
 import numpy as np
 from PIL import Image
@@ -40,20 +41,47 @@ _LUMA = np.array([9798, 19235, 3735], dtype=np.uint32)
 _LUMA_SHIFT = 15
 
 
-def walls_from_image(file: Path, *, resolution: float, occupied_thresh: float) -> FloatArray:
+MapMode = Literal["trinary", "scale", "raw"]
+NEGATE: Mapping[str, bool] = MappingProxyType({"0": False, "1": True, "false": False, "true": True})
+MODES: Mapping[str, MapMode] = MappingProxyType({"trinary": "trinary", "scale": "scale", "raw": "raw"})
+
+
+def walls_from_image(
+    file: Path, *, resolution: float, occupied_thresh: float, negate: bool = False, mode: MapMode = "trinary"
+) -> FloatArray:
     """The walls (n, 4) ``x1 y1 x2 y2`` [m] of a picture whose lower left corner is the origin.
 
-    ``resolution``: metres per pixel; ``occupied_thresh``: a pixel is dark below this share of white.
+    ``resolution``: metres per pixel; ``occupied_thresh``: a pixel is dark below this share of white, as Flatland has it.
+    ``negate`` and ``mode`` as ROS's map_server has them: light pixels are walls; "raw": a grey level is an occupancy
+    in percent, and above 100 nothing is known; "scale": where a picture is transparent nothing is known, which is no wall.
     Raises Unusable.
     """
-    grey = read_grey_image(file)
-    shades = (np.arange(256) * (1 / 255)).astype(np.float32)
-    bright = (shades >= np.float32(occupied_thresh)) & (shades <= 1)
-    return trace_edges(~bright[grey], resolution)
+    grey, opaque = _read_image(file)
+    is_wall = wall_pixels(grey, occupied_thresh, negate=negate, mode=mode)
+    return trace_edges(is_wall if mode != "scale" or opaque is None else is_wall & opaque, resolution)
+
+
+def wall_pixels(
+    grey: Uint8Array, occupied_thresh: float, *, negate: bool = False, mode: MapMode = "trinary"
+) -> BoolArray:
+    """Which pixels of (rows, columns) grey levels are walls; see ``walls_from_image``."""
+    levels = np.arange(256)
+    if mode == "raw":
+        is_wall = (levels <= 100) & (levels > 100 * occupied_thresh)
+    else:
+        shades = ((255 - levels if negate else levels) * (1 / 255)).astype(np.float32)
+        is_wall = ~((shades >= np.float32(occupied_thresh)) & (shades <= 1))
+    found: BoolArray = is_wall[grey]
+    return found
 
 
 def read_grey_image(file: Path) -> Uint8Array:
     """A picture as (rows, columns) grey levels, the top row first; transparency is ignored. Raises Unusable."""
+    return _read_image(file)[0]
+
+
+def _read_image(file: Path) -> tuple[Uint8Array, BoolArray | None]:
+    """Grey levels, and which pixels are opaque; None where all are. Raises Unusable."""
     content = read_bytes(file, MAX_IMAGE_BYTES)
     try:
         with warnings.catch_warnings():
@@ -65,7 +93,10 @@ def read_grey_image(file: Path) -> Uint8Array:
                         f"the picture has {image.width} x {image.height} pixels, "
                         f"but at most {MAX_PIXELS} are read: reduce its resolution"
                     )
-                return _grey_levels(image)
+                opaque = None
+                if image.has_transparency_data:
+                    opaque = np.asarray(image.convert("RGBA"))[..., 3] == 255
+                return _grey_levels(image), opaque
     except UnusableFile:
         raise
     except Image.DecompressionBombError as error:
@@ -231,6 +262,14 @@ class LayerReader:
             self._maps[file] = None if found is None else self._read_map(found, file)
         return self._maps[file]
 
+    def _read_threshold(self, section: Section) -> float:
+        threshold = section.number("occupied_thresh")
+        if 1 < threshold <= 100:
+            section.error(
+                f"must be a share of 1: {threshold / 100:g} if {threshold:g} means percent", "occupied_thresh"
+            )
+        return threshold
+
     def _read_map(self, section: Section, file: Path) -> Walls | None:
         origin = section.pose("origin")
         if section.text("type", "") == "line_segments":
@@ -241,8 +280,11 @@ class LayerReader:
             read = partial(
                 walls_from_image,
                 resolution=section.number("resolution", above=0),
-                occupied_thresh=section.number("occupied_thresh"),
+                occupied_thresh=self._read_threshold(section),
+                negate=section.choice("negate", NEGATE, "0"),
+                mode=section.choice("mode", MODES, "trinary"),
             )
+            section.text("free_thresh", "")  # what is not a wall is free here
         source = self._documents.referenced_file(section, key)
         section.finish(ignore_unknown=True)
         if source is None:

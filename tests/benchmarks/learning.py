@@ -22,11 +22,12 @@ from typing import TypeAlias
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
+from kit.document.layout import lines_of
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.evaluation import EvaluationResult, Evaluator
 from kit.learning.training.algorithms import ALGORITHMS
-from kit.learning.training.crosstable import case_groups, crosstable_columns, format_crosstable
+from kit.learning.training.crosstable import case_groups, crosstable_columns, crosstable_tables
 from kit.learning.training.events import Evaluated, TrainingEnded
 from kit.learning.training.presets import KIT_PPO_HALLWAY, KIT_PPO_TURN
 from kit.learning.training.run_text import success_shares
@@ -153,7 +154,7 @@ def left_out(folder: Path, seeds: Seeds) -> None:
             config = RunConfig(replace(every, on=seen), seed=seed, keep_training=True, mirrored=mirrored)
             found = trained(config, folder, 500, test_on=replace(every, on=unseen))
             print(f"  {'mirrored' if mirrored else 'plain'}, seed {seed}: {found.row}", flush=True)
-            print("\n".join(f"    {row}" for row in found.result.rows()))
+            print("\n".join(f"    {row}" for row in lines_of([found.result.table()])))
 
 
 def table(folder: Path, seeds: Seeds) -> None:
@@ -164,7 +165,7 @@ def table(folder: Path, seeds: Seeds) -> None:
     )
     make_pool(sweep, os.cpu_count() or 1, lambda key: print(f"  {key} trained", flush=True)).run()
     columns = crosstable_columns(sweep)
-    print("\n".join(f"  {row}" for row in format_crosstable(columns, printed_means("hallway")[1])))
+    print("\n".join(f"  {row}" for row in lines_of(crosstable_tables(columns, printed_means("hallway")[1]))))
 
 
 def wheelchairs(folder: Path, seeds: Seeds) -> None:

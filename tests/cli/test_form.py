@@ -87,7 +87,7 @@ def test_what_was_learned_is_asked_once_more_after_the_quiz(tmp_path: Path) -> N
 
 def test_again_keeps_or_blanks(tmp_path: Path) -> None:
     answer(tmp_path, lines="2\n5\n3\nq\n")
-    answer(tmp_path, "before", "--again", lines="\n\n-\nq\n")
+    answer(tmp_path, "before", "--again", lines="\n\nx\nq\n")
     found = kept(tmp_path)
     assert found.value("experience.robotics", SurveyPhase.BEFORE) == 5
     assert found.is_answered("experience.ros1", SurveyPhase.BEFORE)

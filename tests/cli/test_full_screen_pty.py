@@ -15,18 +15,23 @@ pytestmark = [pytest.mark.pty, pytest.mark.long]
 PROGRAM = """
 import sys
 from pathlib import Path
+import click
 from textual.screen import Screen
-from kit.cli import options
+from kit.cli import options, run_as_process
 from kit.cli.full_screen import show_screen
 
 class Kept(Screen):
     def on_mount(self):
-        Path(sys.argv[1], "shown").touch()
+        Path(folder, "shown").touch()
 
     def on_unmount(self):
-        Path(sys.argv[1], "kept").touch()
+        Path(folder, "kept").touch()
 
-show_screen(options.full_screen("The screen"), lambda app: Kept())
+def show():
+    show_screen(options.full_screen("The screen"), lambda app: Kept())
+
+sys.argv, folder = sys.argv[:1], sys.argv[1]
+run_as_process(click.Command("show", callback=show), "show")
 """
 
 

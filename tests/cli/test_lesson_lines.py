@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import sys
@@ -68,7 +69,7 @@ def test_letters_and_words_lead_to_steps_and_others_do_nothing(tmp_path: Path) -
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    assert "'g' does nothing here" in done.stdout
+    assert "'g 1' does nothing here" in done.stdout
     assert done.stdout.count("Step 3 of") == 2  # by its number, and as the one before step 4
 
 
@@ -76,8 +77,8 @@ def test_nothing_is_checked_that_was_not_driven_and_no_run_is_shown_that_is_not_
     lines = "l 4\nc\nw\nl 6\na\nq\n"
     done = CliRunner().invoke(main, ["lesson", "1", "--plain", "--workspace", str(tmp_path)], input=lines)
     assert done.exit_code == 0, done.output
-    assert "you have not driven yet" in done.output
-    assert "no run was recorded yet" in done.output
+    assert "You have not driven yet" in done.output
+    assert "No run was recorded yet" in done.output
     assert "tmux" in done.output
 
 
@@ -97,7 +98,8 @@ def test_the_end_names_the_next_lesson(tmp_path: Path) -> None:
     done = CliRunner().invoke(
         main, ["lesson", "A1", "--plain", "--workspace", str(tmp_path)], input="l 5\nn\n"
     )
-    assert "The next lesson is A2 Drive: kit lesson A2" in done.output
+    assert "Enter opens the next lesson, A2 Drive." in done.output
+    assert "n next lesson" in done.output
 
 
 @pytest.mark.long
@@ -107,9 +109,10 @@ def test_the_students_own_run_is_said_in_words(tmp_path: Path) -> None:
     shutil.copy(solutions_folder() / "01-drive" / "square" / "solution.py", file)
     lines = "l 8\ny\nc\nw\ny\n2\n9\n1\n1\nq\n"
     done = CliRunner().invoke(main, ["lesson", "1", "--plain", "--workspace", str(tmp_path)], input=lines)
-    assert "Passed: ***. w your run" in done.output, done.output
-    assert "pass the exercise" in done.output.partition("Passed:")[0]
+    assert "Passed: ***" in done.output, done.output
+    assert "First pass the exercise" in done.output.partition("Passed:")[0]
     told = done.output.partition("Passed:")[2]
     assert "4.0 m driven, 0 bumps" in told
-    assert "After 10 s, is it standing still? Right." in told
-    assert "Which way does it first turn, by 30 degrees or more? Right." in " ".join(told.split())
+    told = " ".join(told.split())
+    assert re.search(r"After 10 s, is it standing still\? \+ ", told)
+    assert re.search(r"Which way does it first turn, by 30 degrees or more\? \+ ", told)

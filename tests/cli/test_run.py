@@ -319,3 +319,39 @@ def test_a_drive_on_a_level_is_replayed_under_its_conditions(level: str, tmp_pat
     gone = kit("replay", "--check", file)
     assert gone.exit_code == 2
     assert "gone" in gone.stderr
+
+
+@pytest.mark.parametrize(
+    ("controller", "topic", "said"),
+    [
+        ("random_walk", "scan", ("/static_laser", "/scan")),  # as most public robots call it
+        ("mine", "static_laser", ("/scan", "/static_laser")),
+        ("random_walk", "static_laser", ()),
+        ("mine", "scan", ()),
+    ],
+)
+def test_a_controller_that_hears_nothing_says_what_it_waits_for_and_what_there_is(
+    tmp_path: Path, controller: str, topic: str, said: tuple[str, ...]
+) -> None:
+    (tmp_path / "world.yaml").write_text(
+        "properties: {}\nlayers: []\nmodels: [{name: b, model: b.model.yaml, pose: [0, 0, 0]}]\n"
+    )
+    (tmp_path / "b.model.yaml").write_text(
+        "bodies: [{name: base, type: dynamic, footprints: [{type: circle, radius: 0.1, density: 1}]}]\n"
+        "plugins:\n- {type: DiffDrive, name: drive, body: base}\n"
+        "- {type: Laser, name: eyes, body: base, range: 3, topic: TOPIC, angle: {min: -1, max: 1, increment: 0.1}}\n".replace(
+            "TOPIC", topic
+        )
+    )
+    (tmp_path / "mine.py").write_text(
+        TALKER.replace(
+            "self.create_timer(0.5, self.go)", 'self.create_subscription(LaserScan, "scan", print, 1)'
+        ).replace("import rclpy\n", "import rclpy\nfrom sensor_msgs.msg import LaserScan\n")
+    )
+    name = controller if controller == "random_walk" else tmp_path / "mine.py"
+    result = kit("run", tmp_path / "world.yaml", "--controller", name, "--steps", "60")
+    lines = [
+        line for line in result.stderr.splitlines() if "has no publisher" in line and "laser" in line.lower()
+    ]
+    assert len(lines) == bool(said)
+    assert all(each in lines[0] for each in said)

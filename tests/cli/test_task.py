@@ -109,7 +109,7 @@ def test_keys_names_all_that_a_task_file_and_a_reward_may_say() -> None:
 
 def test_tasks_of_ones_own_are_listed(own_map: Path) -> None:
     kit("task", "new", "reach", "--from", own_map.name)
-    assert re.search(rf"^reach +{str(own_map)[:20]}", kit("task", "list").output, re.MULTILINE)
+    assert re.search(rf"^ *reach +{str(own_map)[:20]}", kit("task", "list").output, re.MULTILINE)
 
 
 def test_all_tasks_are_listed() -> None:

@@ -267,11 +267,11 @@ class RecordingTarget:
             counts=whole.counts[:SHORT_TICKS],
         )
         save_recording(short, self._file)
-        self._members = _members(self._file.read_bytes())
+        self._members = members_of(self._file.read_bytes())
 
     def attempt(self, rng: random.Random) -> str:
         """Reads one recording."""
-        self._file.write_bytes(_damaged_archive(rng, self._members))
+        self._file.write_bytes(damaged_archive(rng, self._members))
         if rng.random() < 0.5:
             with drive.collect(self._assignment, self._file, OPTIONS) as collector:
                 (evidence,) = collector.evidence(self._assignment.criteria[0])
@@ -320,7 +320,7 @@ class RunTarget:
             if rng.random() < 0.05:
                 del files[name]
             elif name.endswith((".zip", ".npz")):
-                files[name] = _damaged_archive(rng, _members(files[name]))
+                files[name] = damaged_archive(rng, members_of(files[name]))
             elif name.endswith(".jsonl"):
                 files[name] = _damaged_lines(rng, files[name])
             elif files[name]:
@@ -368,13 +368,13 @@ def _damaged_lines(rng: random.Random, content: bytes) -> bytes:
     return b"\n".join(lines) + b"\n"
 
 
-def _members(archive: bytes) -> Files:
+def members_of(archive: bytes) -> Files:
     """Returns the files of a zip archive: of a checkpoint, a policy, a recording."""
     with zipfile.ZipFile(io.BytesIO(archive)) as opened:
         return {name: opened.read(name) for name in opened.namelist()}
 
 
-def _damaged_archive(rng: random.Random, members: Mapping[str, bytes]) -> bytes:
+def damaged_archive(rng: random.Random, members: Mapping[str, bytes]) -> bytes:
     """Returns an archive with one member damaged and its checksum right, or one that is damaged itself."""
     members = dict(members)
     name = rng.choice(sorted(members))

@@ -32,11 +32,22 @@ from typing import Final, Protocol
 from kit.host.sandbox.reaper import descendants, end_descendants
 from tests.fuzz.files import ArchiveTarget, RecordingTarget, RunTarget, SubmittedYamlTarget, WorldTarget
 from tests.fuzz.frames import FrameTarget
+from tests.fuzz.readers import (
+    AssignmentTarget,
+    BagTarget,
+    ExportTarget,
+    MessageTarget,
+    PolicyTarget,
+    ResultTarget,
+    TaskTarget,
+)
 
 HANG_S: Final = 60.0
 """How long one input may take: a hundred times longer than on an idle machine [s]."""
 PREPARE_S: Final = 600.0
 """How long the preparation of a target may take: kernels may have to be compiled first [s]."""
+SLOW_S: Final = 10.0
+"""Processor time that one input may take [s]."""
 WARM_INPUTS: Final = 200
 """Inputs after which a process has loaded all that it will need; growth is counted from there."""
 MAX_GROWTH: Final = 64 << 20
@@ -62,6 +73,13 @@ TARGETS: Final[Mapping[str, Callable[[Path], FuzzTarget]]] = MappingProxyType(
         "recordings": RecordingTarget,
         "worlds": WorldTarget,
         "runs": RunTarget,
+        "policies": PolicyTarget,
+        "exports": ExportTarget,
+        "tasks": TaskTarget,
+        "assignments": AssignmentTarget,
+        "results": ResultTarget,
+        "messages": MessageTarget,
+        "bags": BagTarget,
     }
 )
 """By name; each is made with a folder for its files."""
@@ -200,10 +218,13 @@ def _try_all(target: FuzzTarget, name: str, numbers: range, seed: int, progress:
         progress[:8] = at.to_bytes(8, "little")
         if at == warm:
             before, peak = _Resources.now(), _peak_memory()
+        began = time.process_time()
         try:
             report.outcomes[target.attempt(input_rng(seed, name, number))] += 1
         except Exception as error:  # noqa: BLE001 - every one is a finding
             report.findings.append(Finding(name, number, _short_traceback(error)))
+        if (taken := time.process_time() - began) > SLOW_S:
+            report.findings.append(Finding(name, number, f"{taken:.0f} s of processor time"))
         if at > warm and _peak_memory() - peak > MAX_PEAK:
             report.findings.append(Finding(name, number, f"{(_peak_memory() - peak) >> 20} MiB at once"))
             peak = _peak_memory()

@@ -18,7 +18,7 @@ from grader.reading import read_assignment
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.probe import highest_level_up_to
+from kit.host.sandbox.probe import can_mount_scratch, highest_level_up_to
 from kit.school.result import CriterionStatus, GradingResult
 
 TOKEN = "735192468013"
@@ -137,7 +137,8 @@ class Attack:
     lift: Callable[[Assignment], Assignment] | None = None
     """Returns the assignment without the limit that stops the attack."""
     end_in_own_files: End | None = None
-    """How it ends from level 2 on, where that is another way: there, the program's own file system is full."""
+    """How it ends where the program's own file system is full, if that is another way: from level 2 on, and at level 1 wherever
+    that may be mounted."""
 
     @property
     def kind(self) -> str:
@@ -206,7 +207,8 @@ class Outcome:
 
     def holds(self, attack: Attack, level: Level) -> bool:
         """Whether it got nothing, earned what was honest, and was told the right reason."""
-        in_own_files = level >= Level.SEPARATE and attack.end_in_own_files is not None
+        own_disk = Level.FILTERED if can_mount_scratch() else Level.SEPARATE
+        in_own_files = level >= own_disk and attack.end_in_own_files is not None
         end = (attack.end_in_own_files if in_own_files else None) or attack.end
         return not self.got and self.points == end.points and self.status == end.status
 

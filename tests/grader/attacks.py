@@ -124,6 +124,8 @@ ATTACKS: tuple[Attack, ...] = (
 )  # fmt: skip
 
 
+NO_ATTACK = ("host/sandbox/test_confinement.py::test_no_attack_gets_anywhere",)
+
 WORKED_ONCE: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "a forged frame that says the level is out of reach, so that it is lowered": (
@@ -205,9 +207,142 @@ WORKED_ONCE: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "a compressed file that asks for 4 GB of memory": (
             "grader/cohort/test_unreadable.py::test_the_process_that_prepares_a_class_survives_every_bomb",
         ),
+        "a lesson of somebody else's that writes its starter anywhere": (
+            "school/lessons/test_foreign_lessons.py::test_an_exercise_writes_nothing_outside_its_folder",
+        ),
+        "a policy whose task names any file of the machine, or a pipe": (
+            "learning/tasks/test_task_reader.py::test_a_text_from_elsewhere_names_no_file_of_this_machine",
+            "learning/tasks/test_task_reader.py::test_whether_a_file_has_changed_is_not_looked_for_in_a_pipe",
+        ),
+        "a bag with a summary of other types, or a pipe in it": (
+            "ros/test_bags.py::test_a_pipe_in_a_bag_holds_no_reader",
+            "ros/test_bags.py::test_a_bag_whose_summary_has_other_types_is_refused",
+        ),
+        "an export from the year 9999, after which the quiz does not open": (
+            "school/test_progress.py::test_an_entry_from_another_century_is_refused",
+        ),
+        "a worker's result that is another submission's": (
+            "grader/cohort/test_queue.py::test_the_result_of_another_submission_gives_it_no_grade",
+            "grader/cohort/test_queue.py::test_no_verdict_is_lost_by_one_that_comes_late",
+        ),
+        "a robot whose names are escapes and whose requests end in tracebacks": (
+            "bridge/test_hostile_robot.py::test_nonsense_from_a_robot_leaves_no_traceback_and_sense_passes",
+            "bridge/test_hostile_robot.py::test_what_a_robot_calls_itself_is_no_command_of_a_terminal_and_fills_no_screen",
+        ),
     }
 )
 """What once worked against the grader, beside the rows of this catalogue, and the tests that hold it now."""
+
+
+THIRD_ROUND: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingProxyType(
+    {
+        "a pip.py beside a submission in CI": (
+            ("grader/test_ci.py::test_a_workflow_grades_and_runs_nothing_of_the_students",),
+            ("grader/test_ci.py::test_the_hostile_files_would_be_run_in_the_checkout",),
+        ),
+        "a secret handed on by the page cache": (
+            ("grader/test_secrets.py::test_nothing_that_a_student_reads_of_is_run_after_a_secret_run",),
+            (
+                "host/sandbox/test_promises.py::test_what_of_a_file_is_in_memory_is_seen_by_a_later_program_at_every_level",
+            ),
+        ),
+        "rewards whose sums are infinite": (
+            (
+                "grader/kinds/test_reward.py::test_the_iteration_ends_whatever_the_rewards_are",
+                "grader/test_returned_numbers.py::test_whatever_a_reward_returns",
+            ),
+            ("grader/test_returned_numbers.py::test_a_calculation_ends_with_the_submissions_time",),
+        ),
+        "a folder exchanged for a link while it is read": (
+            ("grader/test_submission.py::test_a_name_exchanged_for_a_link_while_it_is_read_leads_nowhere",),
+            ("test_plain_files.py::test_a_link_is_followed_only_where_that_is_wanted",),
+        ),
+        "memory in pipes": (NO_ATTACK, ("host/sandbox/test_promises.py::test_a_promise_is_broken_where_its_defence_is_taken_away",)),
+        "a disk of files that are mapped and unlinked": (
+            ("host/sandbox/test_confinement.py::test_files_that_nobody_sees_are_limited_too",),
+            ("host/sandbox/test_promises.py::test_files_that_nobody_sees_fill_a_disk_that_is_not_their_own",),
+        ),
+        "a lesson that is checked at its own level": (
+            ("grader/cli/test_check_level.py::test_a_lesson_checked_for_somebody_else_writes_nothing",),
+            ("grader/test_attacks.py::test_without_a_cage_the_secrets_lie_open",),
+        ),
+        "a queue and a workspace that everybody reads": (
+            ("test_neighbours.py::test_a_neighbour_reads_no_queue", "test_neighbours.py::test_a_neighbour_reads_no_workspace"),
+            ("test_neighbours.py::test_a_workspace_and_a_queue_that_are_open_are_closed",),
+        ),
+        "flags of the library, AIO of the machine, signals of the user, files in flight": (
+            NO_ATTACK,
+            (
+                "host/sandbox/test_promises.py::test_a_promise_is_broken_where_its_defence_is_taken_away",
+                "host/sandbox/test_confinement.py::test_without_confinement_the_attacks_do_work",
+            ),
+        ),
+        "an old result in a checkout": (
+            ("grader/test_ci.py::test_a_result_that_lay_in_the_checkout_is_not_reported",),
+            ("grader/test_ci.py::test_the_hostile_files_would_be_run_in_the_checkout",),
+        ),
+        "a header of very many records": (
+            ("grader/test_submission.py::test_a_header_of_very_many_records_is_refused_at_once",),
+            ("grader/test_submission.py::test_records_of_extended_headers_are_read_where_they_lie",),
+        ),
+        "a program that stands still in a race": (
+            ("grader/cohort/test_program_ladder.py::test_a_race_has_a_wall_clock",),
+            ("grader/cohort/test_program_ladder.py::test_the_verb_races_and_ranks",),
+        ),
+        "a recording or a policy that a teacher merely opens": (
+            (
+                "test_plain_files.py::test_an_archive_that_unpacks_to_far_more_takes_no_memory",
+                "test_plain_files.py::test_a_recording_names_no_file_elsewhere",
+            ),
+            ("test_plain_files.py::test_a_file_is_read_up_to_its_limit",),
+        ),
+        "exports that are huge, or a pipe": (
+            (
+                "school/report/test_class_data.py::test_a_file_larger_than_any_export_is_left_out",
+                "test_plain_files.py::test_what_is_no_plain_file_never_holds_a_reader",
+            ),
+            ("test_plain_files.py::test_a_pipe_would_hold_a_reader_that_does_not_look",),
+        ),
+        "an environment variable that grants folders": (
+            ("host/sandbox/test_grants.py::test_the_environment_grants_no_folder",),
+            ("host/sandbox/test_promises.py::test_the_kits_environment_is_inherited_where_it_is_not_replaced",),
+        ),
+        "an environment that moves its robot and never drives": (
+            ("grader/checks/test_drives.py::test_an_environment_moves_its_robot_only_where_an_episode_begins",),
+            ("grader/kinds/test_environment.py::test_a_good_one_earns_everything_locked_in",),
+        ),
+        "a program that drives the other robot": (
+            ("grader/checks/test_drives.py::test_a_program_drives_no_other_robot",),
+            ("grader/checks/test_drives.py::test_a_program_drives_no_other_robot",),
+        ),
+        "slow near walls by the clock, a training of nothing": (
+            ("test_every_lesson.py::test_every_work_loses_what_it_was_written_for",),
+            ("grader/checks/test_drives.py::test_the_speed_must_follow_what_the_laser_measures",),
+        ),
+        "all messages in the first tick": (
+            ("grader/checks/test_drives.py::test_all_messages_and_lines_in_the_first_tick_are_no_rate",),
+            ("grader/checks/test_drives.py::test_a_rate_is_kept_all_the_time",),
+        ),
+        "names that look alike": (
+            ("grader/cohort/test_cohort.py::test_no_two_names_of_a_class_look_alike",),
+            ("grader/cohort/test_cohort.py::test_everybody_gets_a_row_and_equal_work_is_graded_once",),
+        ),
+        "a command of a CI service in a note": (
+            ("grader/cohort/test_cohort.py::test_a_note_gives_a_ci_service_no_command",),
+            ("grader/test_submission.py::test_a_name_that_nothing_needs_is_ignored_and_named",),
+        ),
+        "how many processes run, and how full the disk is": (
+            ("host/sandbox/test_promises.py::test_what_a_level_prevents_and_what_it_does_not",),
+            ("host/sandbox/test_promises.py::test_what_a_level_prevents_and_what_it_does_not",),
+        ),
+        "a common folder of whoever came first": (
+            ("test_workspace.py::test_a_common_folder_of_another_user_is_refused",),
+            ("test_workspace.py::test_a_common_folder_of_another_user_is_refused",),
+        ),
+    }
+)  # fmt: skip
+"""What worked in the third round: the tests that hold it, and those that show that it works, or that honest work still does,
+without what holds it."""
 
 
 def table(levels: Sequence[Level], words: Sequence[str] = ()) -> Iterator[str]:

@@ -109,7 +109,7 @@ def test_secret_seeds_are_used_for_the_grade_alone(tmp_path: Path) -> None:
     with pytest.raises(LevelTooLow, match="level 1"):
         grade(assignment, handed_in(FORWARD), GradingOptions(Level.LIMITED, secret=True))
     trusting = dataclasses.replace(assignment, level=Level.LIMITED)
-    final = grade(trusting, handed_in(FORWARD), GradingOptions(Level.LIMITED, secret=True))
+    final = grade(trusting, handed_in(FORWARD), GradingOptions(Level.LIMITED, secret=True, examples=True))
     assert statuses(final)["reached"] == "fail"
     assert final.seeds == "public+secret"
     assert "123456789" not in json.dumps(final.as_dict())
@@ -127,7 +127,7 @@ def test_an_error_with_a_secret_seed_carries_nothing_out(tmp_path: Path) -> None
         "        self.drive.publish",
         "        import random; raise ValueError(f'I saw {random.random()}')\n        self.drive.publish",
     )
-    result = grade(assignment, handed_in(source), GradingOptions(Level.LIMITED, secret=True))
+    result = grade(assignment, handed_in(source), GradingOptions(Level.LIMITED, secret=True, examples=True))
     assert result.tests[0].status is CriterionStatus.STUDENT_ERROR
     saw = f"I saw {random.Random(child_seed(5)).random()}"
     assert saw not in json.dumps(result.as_dict()), "not even the teacher's copy holds it"

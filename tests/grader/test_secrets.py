@@ -17,6 +17,7 @@ from grader.evidence.contract import EvidenceOptions, EvidenceRecord, FixedEvide
 from grader.evidence.submission_clock import SubmissionClock
 from grader.grading import Grading, GradingOptions, grade
 from grader.kinds import environment
+from grader.kinds.contract import find_kind
 from grader.kinds.function import CaseDifference, FunctionComparison
 from grader.reading import read_assignment
 from grader.reports import FORMATS
@@ -30,8 +31,9 @@ from kit.school.result import CriterionResult, CriterionStatus, GradingResult, G
 from kit.world.problems import WorldError
 from tests.cases import every_case
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
+from tests.grader.kinds.test_damaged_works import exercise
 
-GRADE = GradingOptions(Level.LIMITED, secret=True)
+GRADE = GradingOptions(Level.LIMITED, secret=True, examples=True)
 SECRET_SEED = 4_182_736_451_928_374_651
 FOR_TEACHERS = ("json", "text", "gradescope")
 """Formats whose writers leave it to the caller, or to the service, what a student sees."""
@@ -83,6 +85,9 @@ class MeasuredOnly:
 
     def collected(self) -> Sequence[EvidenceRecord]:
         return self._evidence
+
+    def public_evidence(self, criterion: Criterion) -> Sequence[EvidenceRecord]:
+        return [each for each in self._evidence if not each.secret]
 
     def counterparts(self, criterion: Criterion) -> Iterator[EvidenceRecord]:
         return iter(())
@@ -308,7 +313,7 @@ def test_an_environment_is_told_no_secret_seed(tmp_path: Path, monkeypatch: pyte
 def replace_task(seed: int, secret_seed: int) -> object:
     """An assignment of which only the seeds count."""
     task = type("Task", (), {"seed": seed, "secret_seed": secret_seed})()
-    return type("OnlyTask", (), {"task": task})()
+    return type("OnlyTask", (), {"task": task, "secret_seeds": (secret_seed,)})()
 
 
 def test_evidence_has_counterparts_only_where_it_is_secret() -> None:
@@ -414,3 +419,76 @@ def test_a_teacher_reads_what_went_wrong_with_secret_seeds(function_assignment: 
     result = measured(function_assignment, comparison(0), secret_comparison(5000))
     assert "With secret seeds: It returns what it should in 50 % of the cases." in write_text(result)
     assert "With secret seeds" not in write_text(result.for_student())
+
+
+class OrderedRuns(MeasuredOnly):
+    """A collector that notes in which order it runs what: one public, one secret piece of evidence, and its counterparts.
+
+    ``is_lost``: whether the secret piece loses points, and the counterparts with it.
+    """
+
+    def __init__(self, level: Level, *, is_lost: bool) -> None:
+        self.level = level
+        self.order: list[str] = []
+        self._lost = int(is_lost)
+        self._kept: dict[str, EvidenceRecord] = {}
+
+    def _run(self, name: str, differences: int) -> EvidenceRecord:
+        if name not in self._kept:
+            self.order.append(name)
+            self._kept[name] = comparison(differences * 10_000, label=name, secret=name == "secret")
+        return self._kept[name]
+
+    def evidence(self, criterion: Criterion) -> Sequence[EvidenceRecord]:
+        return [self._run("public", 0), self._run("secret", self._lost)]
+
+    def public_evidence(self, criterion: Criterion) -> Sequence[EvidenceRecord]:
+        return [self._run("public", 0)]
+
+    def collected(self) -> Sequence[EvidenceRecord]:
+        return list(self._kept.values())
+
+    def counterparts(self, criterion: Criterion) -> Iterator[EvidenceRecord]:
+        for number in (1, 2):
+            yield self._run(f"counterpart {number}", self._lost)
+
+
+@pytest.mark.parametrize(
+    ("level", "examples", "is_lost", "order"),
+    [
+        (Level.FILTERED, False, True, ["public", "secret"]),
+        (Level.FILTERED, True, True, ["public", "counterpart 1", "secret"]),
+        (Level.FILTERED, True, False, ["public", "counterpart 1", "counterpart 2", "secret"]),
+        (Level.LIMITED, True, True, ["public", "secret", "counterpart 1"]),
+        (Level.LIMITED, True, False, ["public", "secret"]),
+    ],
+)
+def test_nothing_that_a_student_reads_of_is_run_after_a_secret_run(
+    function_assignment: Assignment, level: Level, examples: bool, is_lost: bool, order: list[str]
+) -> None:
+    """But at level 0, where a program can read the secrets themselves."""
+    collector, submission = (
+        OrderedRuns(level, is_lost=is_lost),
+        Submission("ada", "scans.py", {"scans.py": b""}),
+    )
+    result = Grading(
+        function_assignment, submission, collector, secret=True, clock=SubmissionClock(), examples=examples
+    ).result()
+    assert collector.order == order
+    assert ("It returns what it should in 0 %" in result.tests[0].rationale) == (is_lost and examples)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", ["controller", "function", "launch", "environment"])
+def test_every_kind_that_runs_programs_tells_public_evidence_from_secret(kind: str) -> None:
+    """``public_evidence`` of a real collector runs nothing secret, and ``evidence`` adds to it."""
+    assignment, submission = exercise(kind)
+    with submission.in_temporary_folder() as file:
+        options = EvidenceOptions(Level.LIMITED, secret=True)
+        with find_kind(kind).collect(assignment, file, options) as collector:
+            assert not any(each.secret for each in collector.collected())
+            for criterion in assignment.criteria:
+                assert not any(each.secret for each in collector.public_evidence(criterion))
+            assert not any(each.secret for each in collector.collected())
+            collector.evidence(assignment.criteria[-1])
+            assert any(each.secret for each in collector.collected())

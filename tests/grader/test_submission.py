@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import tarfile
+import time
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,7 +15,7 @@ import pytest
 
 from grader import archives
 from grader import submission as submission_module
-from grader.archives import MAX_COMPRESSION_RATIO, MAX_DIRECTORY_BYTES, MAX_HEADER_BYTES
+from grader.archives import MAX_COMPRESSION_RATIO, MAX_DIRECTORY_BYTES, MAX_HEADER_BYTES, _pax_values
 from grader.submission import MAX_NAMED, Submission, read_submission
 from grader.submitted_files import (
     MAX_BYTES,
@@ -22,6 +23,7 @@ from grader.submitted_files import (
     MAX_FILES,
     SubmissionRefused,
     SubmissionUnreadable,
+    SubmittedFiles,
     is_plain_name,
     reading_submission,
 )
@@ -418,3 +420,53 @@ def test_only_plain_files(tmp_path: Path, kind: str) -> None:
         (folder / "x.py").symlink_to("/dev/zero")
     with pytest.raises(SubmissionRefused):
         read_submission(folder, "controller.py")
+
+
+@pytest.mark.parametrize("what", ["folder", "file"])
+def test_a_name_exchanged_for_a_link_while_it_is_read_leads_nowhere(
+    what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whoever may write in the folder of a hand-in sees by inotify when it is read."""
+    secrets, work = tmp_path / "secrets", tmp_path / "work"
+    for folder in (secrets, work / "inner"):
+        folder.mkdir(parents=True)
+    (secrets / "notes.txt").write_text("seeds: [40302]")
+    (work / "controller.py").write_text("x = 1\n")
+    (work / "inner" / "notes.txt").write_text("mine")
+    needs = SubmittedFiles.needs
+
+    def exchanging(files: SubmittedFiles, path: str, *, is_folder: bool = False) -> bool:
+        needed = needs(files, path, is_folder=is_folder)
+        if path == ("inner" if what == "folder" else "inner/notes.txt"):
+            victim = work / path
+            victim.rename(tmp_path / "seen")
+            victim.symlink_to(secrets if what == "folder" else secrets / "notes.txt")
+        return needed
+
+    monkeypatch.setattr(SubmittedFiles, "needs", exchanging)
+    with pytest.raises(SubmissionRefused, match="link"):
+        read_submission(work, "controller.py")
+    assert (work / "inner" / "notes.txt").read_text() == "seeds: [40302]", "by its path it does lead there"
+
+
+def test_a_header_of_very_many_records_is_refused_at_once(tmp_path: Path) -> None:
+    """Where what follows a record was copied for each of them, such headers took 50 s of processor time a megabyte."""
+    record = b"5 a=\n"
+    header = tarfile.TarInfo("header")
+    header.type, header.size = tarfile.XHDTYPE, 13_000 * len(record)
+    with tarfile.open(tmp_path / "a.tar", "w") as archive:
+        for _ in range(200):
+            archive.addfile(header, io.BytesIO(record * 13_000))
+        archive.addfile(tarfile.TarInfo("controller.py"), io.BytesIO())
+    began = time.process_time()
+    with pytest.raises(SubmissionRefused, match="more than a program needs"):
+        read_submission(tmp_path / "a.tar", "controller.py")
+    assert time.process_time() - began < 0.5
+
+
+def test_records_of_extended_headers_are_read_where_they_lie() -> None:
+    path, size = _pax_values(b"12 path=a/b\n10 size=7\n30 comment=" + b"x" * 18 + b"\n", None)
+    assert (path, size) == ("a/b", 7)
+    for wrong in (b"5 a=\n9 b", b" 5a=\n", b"-5 a=\n", b"999999999999 a=\n", b"0 a\n", b"2 \n", b"x"):
+        with pytest.raises(ValueError, match=r"."):
+            _pax_values(wrong, None)

@@ -11,7 +11,8 @@ import pytest
 
 import kit
 from kit.msg.std_msgs import String
-from kit.ros.bags import BagRecorder, Storage, read_bag, read_messages
+from kit.ros.bag_storage import Storage
+from kit.ros.bags import BagRecorder, read_bag, read_messages
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from tests.inspection.conftest import SPEED, Kit, Stage

@@ -7,13 +7,14 @@ import re
 
 import pytest
 
+from kit.document.layout import lines_of
 from kit.layers.assignment import LayerAssignment, NamedLayer
 from kit.layers.drawing import (
     MAX_ENTITIES_IN_PICTURE,
     DrawingLine,
     DrawingSpan,
     GlyphStyle,
-    draw_assignment,
+    assignment_tables,
     draw_case,
     draw_graph,
     draw_layer_grid,
@@ -127,7 +128,7 @@ def test_too_many_for_a_picture_become_a_matrix() -> None:
 
 def test_the_tables_name_every_layer_entity_and_laser_within_eighty_columns() -> None:
     plan = solve_layers(SLIDES)
-    lines = draw_assignment(SLIDES, plan.assignment)
+    lines = lines_of(assignment_tables(SLIDES, plan.assignment))
     assert max(map(len, lines)) <= 80
     text = "\n".join(lines)
     assert all(layer.name in text for layer in plan.assignment.layers)
@@ -136,7 +137,7 @@ def test_the_tables_name_every_layer_entity_and_laser_within_eighty_columns() ->
 
 def test_who_is_in_no_layer_is_told_what_to_write() -> None:
     case = graph("a-b", lasers={"eye": ""})
-    lines = draw_assignment(case, LayerAssignment((NamedLayer("x", frozenset("a")),), {}))
+    lines = lines_of(assignment_tables(case, LayerAssignment((NamedLayer("x", frozenset("a")),), {})))
     assert any(line.startswith("b") and "layers: []" in line for line in lines)
     assert any(line.startswith("eye") and "layers: []" in line for line in lines)
 

@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kit.cli import main
-from kit.mapmaking.new_map import SCALES, DrawingError, MapSketch, read_drawing, squares_between
+from kit.mapmaking.new_map import SCALES, DrawingError, MapSketch, read_drawing, squares_between, write_map
+from kit.mapmaking.route import NoRoute
 from kit.run.scenario import find_scenario
 from tests.cases import every_case
 
@@ -153,3 +154,19 @@ def test_own_maps_are_listed_and_shown_by_name(tmp_path: Path, monkeypatch: pyte
     shown = CliRunner().invoke(main, ["maps", "hall"])
     assert shown.exit_code == 0
     assert "from (0.75, 1.75" in shown.output
+
+
+@pytest.mark.parametrize(
+    ("room", "said"),
+    [
+        ("###\n# #\n###", "No place for start and target was found"),
+        ("###\n#S#\n###", "No second place for the start was found"),
+        ("###\n#T#\n###", "No second place for the target was found"),
+        ("####\n#ST#\n####", "Start and target are 0.30 m apart"),
+    ],
+)
+def test_places_that_nobody_gave_are_not_blamed(tmp_path: Path, room: str, said: str) -> None:
+    plan = read_drawing(room, cell=0.3 if "ST" in room else 0.5)
+    with pytest.raises(NoRoute, match=said):
+        write_map(tmp_path / "small", plan, title="Small", source="drawn")
+    assert list(tmp_path.iterdir()) == []

@@ -55,8 +55,8 @@ def test_where_one_place_is_drawn_the_other_is_chosen_far_from_it(
         assert abs(chosen[0] - drawn[0]) > 3
 
 
-def test_a_map_whose_target_is_at_the_start_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(NoRoute, match="arrived before it moves"):
+def test_a_map_without_a_second_place_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(NoRoute, match="No second place for the start"):
         write_map(tmp_path / "cell", read_drawing("###\n#S#\n###\n", cell=CELL), title="Cell", source="drawn")
     assert not list(tmp_path.iterdir())
 

@@ -143,7 +143,7 @@ def column(frame_rows: list[str], at: int) -> str:
 
 def test_every_batch_stands_over_its_steps() -> None:
     rows = draw_stacked_chart(shares((50, 1, 3), (100, 1, 1)), PARTS, 25, 5).rows()
-    assert rows[0] == "Wwon 50 Llost 50"
+    assert rows[0] == "Wwon 50% Llost 50%"
     assert rows[1].startswith("100%")
     assert rows[4].startswith("  0%")
     assert [column(rows, at) for at in range(5, 25)] == ["WLLL"] * 10 + ["WWLL"] * 10

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import shutil
+from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 from mcap.reader import make_reader
@@ -17,7 +20,8 @@ from kit.msg.flatland_msgs import Collision, Collisions
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String
-from kit.ros.bags import MAX_PENDING, BagError, BagRecorder, Storage, read_bag, read_messages
+from kit.ros.bag_storage import BagError, Storage, restore_bags
+from kit.ros.bags import MAX_PENDING, BagRecorder, read_bag, read_messages
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -128,12 +132,54 @@ def test_nothing_is_overwritten_and_nothing_appears_before_it_is_complete(tmp_pa
         BagRecorder(Graph(), Path("/proc/nowhere/bag"))
 
 
-def test_what_a_killed_recording_left_is_no_hindrance_and_stays(tmp_path: Path) -> None:
-    killed = BagRecorder(Graph(), tmp_path / "bag")
-    killed._writer.abort()  # as if the process were gone: no index, no summary
-    record(tmp_path / "bag")
-    assert read_bag(tmp_path / "bag").count > 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == [".bag.part", "bag"]
+@pytest.mark.parametrize("storage", get_args(Storage))
+@pytest.mark.parametrize("torn", [0, 1, 40])
+def test_what_a_killed_recording_left_is_restored_at_the_next_start(
+    tmp_path: Path, storage: Storage, torn: int
+) -> None:
+    graph = Graph()
+    publisher = create_graph_node(graph, "robot").create_publisher(String, "words", 10)
+    killed = BagRecorder(graph, tmp_path / "bag", storage=storage)
+    for number in range(3):
+        publisher.publish(String(data=str(number)))
+        if number < 2:
+            killed._flushed_s = -10.0  # as if a second had passed
+            killed.exchange()
+    part = tmp_path / ".bag.part"
+    with BagRecorder(Graph(), tmp_path / "other") as other:
+        assert other.notices == (), "it is still being written"
+    with pytest.raises(BagError, match="another program is writing it"):
+        BagRecorder(Graph(), tmp_path / "bag")
+    with pytest.raises(BagError, match="records this bag now"):
+        read_bag(tmp_path / "bag")
+    left = tmp_path / "left"
+    shutil.copytree(part, left / part.name)  # what is on the disk at this moment
+    data = next((left / part.name / "bag").glob("bag.*"))
+    if torn and storage == "mcap":
+        data.write_bytes(data.read_bytes()[:-torn])
+    (notice,) = restore_bags(left)
+    kept = [message.data for _, _, message in read_messages(left / "bag", ["/words"])]
+    assert (
+        kept == ["0", "1"] if storage == "sqlite3" or torn < 40 else kept == ["0"]
+    )  # 1: of the index after it
+    assert f"{len(kept)} messages" in notice
+    assert sorted(path.name for path in left.iterdir()) == ["bag"]
+    assert list(restore_bags(left)) == []
+    killed.close()
+
+
+def test_the_name_that_is_recorded_next_stays_free(tmp_path: Path) -> None:
+    publisher = create_graph_node(graph := Graph(), "robot").create_publisher(String, "words", 10)
+    killed = BagRecorder(graph, tmp_path / "bag")
+    publisher.publish(String(data="kept"))
+    killed._flushed_s = -10.0
+    killed.exchange()
+    shutil.copytree(tmp_path / ".bag.part", tmp_path / "left" / ".bag.part")
+    killed.close()
+    with BagRecorder(Graph(), tmp_path / "left" / "bag") as recorder:
+        assert "bag-2" in recorder.notices[0]
+    assert read_bag(tmp_path / "left" / "bag").count == 0
+    assert read_bag(tmp_path / "left" / "bag-2").count == 1
 
 
 @pytest.mark.parametrize("lost", [2, MAX_PENDING])
@@ -147,8 +193,12 @@ def test_a_full_disk_ends_the_bag_and_not_the_publisher(
     for _ in range(MAX_PENDING):
         publisher.publish(String(data="written"))
 
-    def full(*_: object) -> None:
-        raise OSError(28, "No space left on device")
+    write, errors = Writer.write, [OSError(28, "No space left on device")]
+
+    def full(*arguments: Any) -> None:
+        if errors:
+            raise errors.pop()
+        write(*arguments)
 
     monkeypatch.setattr(Writer, "write", full)
     for _ in range(lost):
@@ -225,3 +275,35 @@ def test_damaged_bags_are_refused(damage: str, tmp_path: Path) -> None:
         folder = tmp_path / "other"
     with pytest.raises(BagError, match=r"bag|other"):
         list(read_messages(folder))
+
+
+@pytest.mark.parametrize("name", ["metadata.yaml", "bag.mcap", "beside"])
+def test_a_pipe_in_a_bag_holds_no_reader(name: str, tmp_path: Path) -> None:
+    folder = tmp_path / "bag"
+    record(folder)
+    (folder / name).unlink(missing_ok=True)
+    os.mkfifo(folder / name)
+    with pytest.raises(BagError):
+        read_bag(folder)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("nanoseconds: ", "nanoseconds: [1] # "),
+        ("type: std_msgs/msg/", "type: 1.5 # "),
+        ("message_count: ", "message_count: many # "),
+        ("offered_qos_profiles: ", "offered_qos_profiles: {} # "),
+    ],
+)
+def test_a_bag_whose_summary_has_other_types_is_refused(old: str, new: str, tmp_path: Path) -> None:
+    folder = tmp_path / "bag"
+    record(folder)
+    metadata = folder / "metadata.yaml"
+    whole = metadata.read_text()
+    if old not in whole:
+        pytest.skip("this storage keeps it elsewhere")
+    metadata.write_text(whole.replace(old, new))
+    with suppress(BagError):
+        assert read_bag(folder)
+        assert list(read_messages(folder)) is not None

@@ -15,6 +15,7 @@ from kit.controllers import find_controller, kit_controllers, prepare_workspace,
 from kit.plain_text import format_clock
 from kit.run.headless import run_headless
 from kit.run.recording import load_recording, rerun
+from kit.run.recording_file import RecordingFile
 from kit.run.scenario import find_scenario, scenario_on_map
 from kit.run.session import Session
 from kit.run.view import ROBOT_SIDES, ViewBuilder
@@ -207,7 +208,9 @@ def test_the_same_run_to_the_bit_and_another_seed_another() -> None:
 
 def test_a_run_is_recorded_and_runs_again(tmp_path: Path) -> None:
     file = tmp_path / "run.npz"
-    run_headless(find_scenario("maze"), find_controller("random_walk"), steps=1200, seed=2, record=file)
+    run_headless(
+        find_scenario("maze"), find_controller("random_walk"), steps=1200, seed=2, record=RecordingFile(file)
+    )
     recording = load_recording(file)
     again = rerun(recording, find_scenario(recording.place, recording.case).world)
     assert np.array_equal(again.poses, recording.poses)

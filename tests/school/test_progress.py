@@ -291,3 +291,27 @@ def test_a_kill_loses_nothing_that_was_confirmed(tmp_path: Path, round_: int) ->
 def test_fifty_kills_lose_nothing_that_was_confirmed(tmp_path: Path) -> None:
     for moment in MOMENTS:
         _killed(tmp_path, moment)
+
+
+@pytest.mark.parametrize(
+    ("at", "is_read"),
+    [
+        ("9999-12-31T23:59:59+00:00", False),
+        ("1999-12-31T23:59:59+00:00", False),
+        ("2000-01-01T00:00:00+00:00", True),
+        ("2099-12-31T23:59:59+00:00", True),
+    ],
+)
+def test_an_entry_from_another_century_is_refused(at: str, is_read: bool, tmp_path: Path) -> None:
+    """When its question is due again could not be computed, ever after."""
+    journal, file = ProgressJournal(tmp_path), tmp_path / "export.json"
+    journal.add(EventKind.STEP, "01-drive", {"step": 1})
+    journal.export(file)
+    content = json.loads(file.read_bytes())
+    content["events"][0]["at"] = at
+    file.write_text(json.dumps(content))
+    if is_read:
+        assert len(read_export(file)) == 1
+        return
+    with pytest.raises(ProgressError, match="another century"):
+        read_export(file)

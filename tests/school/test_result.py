@@ -7,6 +7,7 @@ import math
 
 import pytest
 
+from kit.document.layout import Page, lines_of
 from kit.school.result import (
     MARKS,
     MAX_LOG_LENGTH,
@@ -18,8 +19,7 @@ from kit.school.result import (
     GradingResult,
     GradingVerdict,
     Visibility,
-    criterion_lines,
-    line_text,
+    criterion_blocks,
     points_text,
     replay_lines,
 )
@@ -114,7 +114,7 @@ PASSED = CriterionResult(
 
 
 def shown(criterion: CriterionResult, width: int = 76, **more: object) -> list[str]:
-    return [line_text(line) for line in criterion_lines(criterion, width, **more)]  # type: ignore[arg-type]  # by name
+    return lines_of(criterion_blocks(criterion, **more), Page(width=width))  # type: ignore[arg-type]  # by name
 
 
 def test_a_passed_criterion_is_one_line() -> None:
@@ -167,8 +167,7 @@ def test_what_a_program_printed_is_kept_up_to_a_limit() -> None:
 
 def test_long_rationales_and_values_are_shortened() -> None:
     told = {"rationale": "why " * 400, "expected": "more " * 300, "actual": "less " * 300}
-    lines = list(criterion_lines(judged(CriterionStatus.FAIL, 0.0, **told), 80))
-    text = " ".join(line_text(line).strip() for line in lines)
+    text = " ".join(line.strip() for line in shown(judged(CriterionStatus.FAIL, 0.0, **told)))
     assert text.count("(shortened)") == 3
     assert text.count("why") <= MAX_RATIONALE / 4
     assert text.count("less") <= text.count("more") <= MAX_VALUE / 5

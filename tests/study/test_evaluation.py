@@ -12,10 +12,10 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
+from kit.document.blocks import Document, Table
 from kit.school.quiz.schedule import AnswerOutcome
 from kit.school.report.chapters import relations
 from kit.school.report.chapters.context import ReportContext
-from kit.school.report.document import ClassReport, ReportTable
 from kit.school.report.expertise import difference_sensitivity
 from kit.school.report.inference import (
     correlation,
@@ -190,11 +190,11 @@ def test_no_difference_of_outcomes_is_more_than_chance() -> None:
 
 @pytest.mark.long
 def test_the_report_names_every_slip() -> None:
-    report = ClassReport("", evaluation_chapters(study()))
+    report = Document("", evaluation_chapters(study()))
     slips = next(each for each in report.tables if each.id == "slips")
     assert len(slips.rows) == len(SLIPS)
     blocks = (block for number in CELLS for block in evaluation_table(study(), number))
-    printed = [block for block in blocks if isinstance(block, ReportTable)]
+    printed = [block for block in blocks if isinstance(block, Table)]
     said = [row[-1] for table in printed for row in table.rows if isinstance(row[-1], str)]
     assert sum(each.startswith("differs") for each in said) == len(SLIPS)
 

@@ -12,10 +12,10 @@ from textual.app import App
 from textual.pilot import Pilot
 from textual.screen import Screen
 
+from kit.document.rows import Row
 from kit.tui.app import KitApp
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row
 from tests.waiting import wait_until_shown
 
 Scene = Callable[[Pilot[None]], Awaitable[None]]

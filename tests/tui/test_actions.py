@@ -17,11 +17,14 @@ import pytest
 from rich.cells import cell_len
 from textual.screen import Screen
 
+import kit.school
 import kit.tui.screens
-from kit.tui.actions import ACTIONS, SHARED_IDS, ScreenAction, ScreenActions
+from kit.dialogue.actions import ACTIONS, SHARED_IDS, ScreenAction, ScreenActions
+from kit.dialogue.dialogue import Dialogue
+from kit.school.lessons.lesson_dialogue import LessonDialogue
 from kit.tui.rows.key_rows import footer, help_page
 from kit.tui.screens.dialogs import WIDTH
-from kit.tui.screens.lesson import LessonScreen
+from kit.tui.screens.dialogue import screen_actions_of
 from tests.cases import every_case
 from tests.tui.lesson_stage import row_text
 
@@ -46,11 +49,15 @@ for _kind in screen_classes():
     if hasattr(_kind, "screen_actions"):
         SCREENS[_kind.screen_actions.name] = _kind.screen_actions
         CLASSES[_kind.screen_actions.name].append(_kind)
+DIALOGUES: dict[str, type[Dialogue]] = {}
+"""Those that are asked on a screen, by name."""
+for _module in pkgutil.walk_packages(kit.school.__path__, f"{kit.school.__name__}."):
+    if _module.name.endswith("_dialogue"):
+        for _dialogue in vars(import_module(_module.name)).values():
+            if isinstance(_dialogue, type) and issubclass(_dialogue, Dialogue) and _dialogue is not Dialogue:
+                DIALOGUES[_dialogue.name] = _dialogue
+                SCREENS[_dialogue.name] = screen_actions_of(_dialogue)
 ALL_ACTIONS = {action.id: action for screen in SCREENS.values() for action in screen.records}
-
-
-def keys_of(action: ScreenAction) -> set[str]:
-    return {key for keys, _ in action.bindings for key in keys.split(",")}
 
 
 def screens_of(action: ScreenAction) -> list[str]:
@@ -79,7 +86,7 @@ def test_contributing_prints_the_shared_actions() -> None:
 
 def test_every_screen_declares_its_actions() -> None:
     without = {kind.__name__ for kind in screen_classes() if not hasattr(kind, "screen_actions")}
-    assert without == {*SAY_THEIR_KEYS, "WatchScreen"}
+    assert without == {*SAY_THEIR_KEYS, "WatchScreen", "DialogueScreen", "LessonScreen", "DefenceScreen"}
     for kinds in CLASSES.values():
         assert len({id(kind.screen_actions) for kind in kinds}) == 1  # type: ignore[attr-defined, unused-ignore]  # only screens that declare actions are among them
 
@@ -114,7 +121,9 @@ def _merged(kind: type[Screen[object]]) -> dict[str, str]:
 
 @every_case("name", SCREENS)
 def test_no_key_of_a_screen_does_two_things(name: str) -> None:
-    found = [key for action in SCREENS[name].records for key in keys_of(action)]
+    if name in DIALOGUES:
+        return  # there a key means the one action that is possible: tests/dialogue/test_both_faces.py
+    found = [key for action in SCREENS[name].records for key in action.key_names]
     assert sorted(found) == sorted(set(found))
 
 
@@ -123,7 +132,7 @@ def test_a_letter_that_screens_share_means_nothing_else() -> None:
     for screen in SCREENS.values():
         if not screen.drives:
             for action in screen.records:
-                for key in keys_of(action):
+                for key in action.key_names:
                     if len(key) == 1 and key.isalpha():
                         owners[key].add(action.id)
     shared = {key for key, ids in owners.items() if ids & SHARED_IDS}
@@ -133,13 +142,13 @@ def test_a_letter_that_screens_share_means_nothing_else() -> None:
 def test_enter_esc_question_mark_and_r_mean_the_same_everywhere() -> None:
     for screen in SCREENS.values():
         for action in screen.records:
-            keys = keys_of(action)
+            keys = action.key_names
             calls = {call.partition("(")[0] for _, call in action.bindings}
             assert "r" not in keys or action.id == "restart"
             assert "question_mark" not in keys or action.id == "help"
             assert "escape" not in keys or action.id == "back"
             assert "enter" not in keys or calls & {"next", "open", "back", "mark"}
-    assert "r" not in keys_of(ACTIONS["check"])
+    assert "r" not in ACTIONS["check"].key_names
 
 
 @every_case("name", SCREENS)
@@ -162,7 +171,7 @@ def test_the_line_of_keys_fits_and_names_the_way_out(name: str, width: int) -> N
 @pytest.mark.parametrize("width", [60, 80])
 @pytest.mark.parametrize("idle", [set(), {"predict", "drive_scene"}, {"questions", "drive"}])
 def test_the_lessons_line_of_keys_fits_whatever_is_possible(idle: set[str], width: int) -> None:
-    text = row_text(footer(LessonScreen.screen_actions, width, without=idle)).rstrip()
+    text = row_text(footer(screen_actions_of(LessonDialogue), width, without=idle)).rstrip()
     assert cell_len(text) <= width
     assert text.startswith("c check" if "predict" in idle else "1-4 predict")
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from kit.tui import suspend
-from kit.tui.suspend import editor_arguments, row_count, run_and_copy
+from kit.school.lessons import aside
+from kit.school.lessons.aside import editor_arguments, row_count, run_and_copy
 from tests.cases import every_case
 
 FILE = Path("/home/ada/square.py")
@@ -32,9 +32,9 @@ def test_the_named_editor_opens_the_file(
 
 
 def test_without_a_name_the_easiest_that_is_here(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(suspend.shutil, "which", lambda name: name if name == "vi" else None)
+    monkeypatch.setattr(aside.shutil, "which", lambda name: name if name == "vi" else None)
     assert editor_arguments({}, FILE, 1) == ["vi", str(FILE)]
-    monkeypatch.setattr(suspend.shutil, "which", lambda name: None)
+    monkeypatch.setattr(aside.shutil, "which", lambda name: None)
     assert editor_arguments({}, FILE, 1) is None
 
 

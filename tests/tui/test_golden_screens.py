@@ -25,10 +25,11 @@ from kit.layers.case_sources import open_task
 from kit.school.game import leaderboard
 from kit.school.progress import ProgressJournal
 from kit.school.quiz.items import read_bank
+from kit.school.quiz.quiz_dialogue import QuizDialogue
 from kit.school.quiz.quiz_session import QuizSession, lesson_plan
+from kit.tui.screens.dialogue import DialogueScreen
 from kit.tui.screens.layers import LayersScreen
 from kit.tui.screens.levels import LevelsScreen
-from kit.tui.screens.quiz import QuizScreen
 from kit.tui.screens.start import StartScreen
 from kit.tui.screens.trainings import TrainingsScreen
 from kit.tui.student_store import StudentStore
@@ -78,7 +79,9 @@ async def levels_are_ready(pilot: Pilot[None], screen: Screen[Any]) -> None:
 
 def open_quiz(theme: Theme, workspace: Workspace, progress: ProgressJournal) -> Screen[Any]:
     bank = read_bank()
-    return QuizScreen(QuizSession(progress, bank, lesson_plan(bank, bank.items[0].lesson), seed=1))
+    return DialogueScreen(
+        QuizDialogue(QuizSession(progress, bank, lesson_plan(bank, bank.items[0].lesson), seed=1))
+    )
 
 
 async def quiz_is_answered(pilot: Pilot[None], screen: Screen[Any]) -> None:

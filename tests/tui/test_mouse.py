@@ -10,15 +10,17 @@ from textual import events
 from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
+from kit.document.rows import Row, row
+from kit.school.lessons.lesson_dialogue import LessonDialogue
 from kit.school.progress import ProgressJournal
+from kit.school.quiz.quiz_dialogue import QuizDialogue
 from kit.tui.rows.key_rows import footer, key_row
 from kit.tui.screens.dialogs import MessageDialog
-from kit.tui.screens.lesson import LessonScreen
+from kit.tui.screens.dialogue import screen_actions_of
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.screens.play import PlayScreen
-from kit.tui.screens.quiz import QuizScreen
 from kit.tui.screens.start import StartScreen
-from kit.tui.widgets.text_rows import Row, key_at, row
+from kit.tui.widgets.text_rows import key_at
 from tests.cases import every_case
 from tests.tui.lesson_stage import rows, seen, stage, text, until
 from tests.tui.test_play_pty import KIT, User
@@ -49,8 +51,12 @@ def test_the_key_under_a_column(parts: Row, column: int, key: str) -> None:
 
 
 def test_every_footer_can_be_clicked() -> None:
-    for kind in (StartScreen, LevelsScreen, PlayScreen, LessonScreen, QuizScreen):
-        pressed = {key_at(footer(kind.screen_actions, 200), column) for column in range(200)}
+    kinds = (StartScreen, LevelsScreen, PlayScreen)
+    for actions in (
+        *(each.screen_actions for each in kinds),
+        *map(screen_actions_of, (LessonDialogue, QuizDialogue)),
+    ):
+        pressed = {key_at(footer(actions, 200), column) for column in range(200)}
         assert len(pressed) > 3
 
 

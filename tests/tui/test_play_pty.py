@@ -20,6 +20,7 @@ import kit as kit_package
 from kit.controllers import find_controller
 from kit.run.headless import run_headless
 from kit.run.recording import load_recording, rerun
+from kit.run.recording_file import RecordingFile
 from kit.run.scenario import find_scenario
 from tests.tui.input.conftest import Terminal
 from tests.tui.tape import Display
@@ -253,7 +254,9 @@ def test_ascii_glyphs_mean_ascii_everywhere(kit: Open) -> None:
 
 def test_a_recorded_run_is_watched_again_and_stands_still_at_its_end(kit: Open, tmp_path: Path) -> None:
     file = tmp_path / "run.npz"
-    run_headless(find_scenario("maze"), find_controller("random_walk"), steps=60, seed=2, record=file)
+    run_headless(
+        find_scenario("maze"), find_controller("random_walk"), steps=60, seed=2, record=RecordingFile(file)
+    )
     terminal = kit("replay", str(file))
     terminal.until(lambda: "run.npz" in terminal.text or "maze" in terminal.text, "run.npz")
     terminal.until(lambda: "0:00.60" in terminal.text, "the end")

@@ -114,7 +114,8 @@ def send_goal(
     """Send a goal, and print its result. Ctrl-C cancels the goal.
 
     \b
-    kit ros action send_goal -f /fibonacci example_interfaces/action/Fibonacci "{order: 5}"
+    kit ros action send_goal -f /fibonacci \\
+      example_interfaces/action/Fibonacci "{order: 5}"
     """
     cls = find_or_exit(find_action, type_name)
     if from_stdin and values is not None:

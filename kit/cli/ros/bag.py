@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,7 +20,7 @@ from kit.ros.node.node import Node
 from kit.ros.node.publisher import Publisher
 
 if TYPE_CHECKING:
-    from kit.ros.bags import Bag
+    from kit.ros.bags import Bag, BagRecorder
 
 
 @click.group()
@@ -136,7 +137,8 @@ def record(
     kit ros bag record /static_laser /cmd_vel
     kit ros bag record --all --exclude-topics /rosout /parameter_events
     """
-    from kit.ros.bags import RECORDER, BagError, BagRecorder
+    from kit.ros.bag_storage import BagError
+    from kit.ros.bags import RECORDER, BagRecorder
 
     topics = (*topics, *chosen)
     if (every or regex is not None) == bool(topics):
@@ -154,6 +156,9 @@ def record(
             client.graph, folder, topics=names, storage=storage, node=node, hidden=hidden, admits=admits
         )
 
+        for notice in recorder.notices:
+            log(notice)
+
         def has_stopped() -> bool:
             recorder.exchange()
             for name in sorted(set(recorder.topics) - known):
@@ -161,15 +166,12 @@ def record(
                 known.add(name)
             return recorder.failure is not None
 
-        with recorder:
+        with _told(recorder, log, folder):
             has_stopped()
             for name in recorder.missing:
                 log(f"No node publishes '{name}' yet; waiting for it")
             log("Recording... press Ctrl-C to stop")
-            try:
-                client.graph.wait(has_stopped)
-            finally:
-                log(f"{recorder.count} messages in {folder}")
+            client.graph.wait(has_stopped)
     except BagError as problem:
         exit_with_error(str(problem))
 
@@ -237,7 +239,8 @@ def play(
     kit ros bag play my_drive --topics /cmd_vel /odom
     kit ros bag play my_drive --start-offset 5 --exclude-topics /rosout
     """
-    from kit.ros.bags import BagError, read_messages
+    from kit.ros.bag_storage import BagError
+    from kit.ros.bags import read_messages
 
     folder = folder or given
     if folder is None:
@@ -284,10 +287,25 @@ def play(
         exit_with_error(str(problem))
 
 
+@contextmanager
+def _told(recorder: BagRecorder, log: Callable[[str], object], folder: Path) -> Iterator[None]:
+    """Closes a recorder at the end, and says how many messages are kept."""
+    try:
+        with recorder:
+            yield
+    finally:
+        log(f"{recorder.count} messages in {folder}")
+
+
 def _read(folder: Path) -> Bag:
-    from kit.ros.bags import BagError, read_bag
+    """The summary of a bag, restored before if its recording was killed; ends the command where there is none."""
+    from kit.ros.bag_storage import BagError, restore_bags
+    from kit.ros.bags import read_bag
 
     try:
+        if not folder.exists():
+            for notice in restore_bags(folder.absolute().parent):
+                click.echo(notice, err=True)
         return read_bag(folder)
     except BagError as problem:
         exit_with_error(str(problem))

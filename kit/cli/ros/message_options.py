@@ -112,7 +112,10 @@ def with_qos_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Decorator: adds the options, and passes their values as ``qos_options``."""
 
     @click.option(
-        "--qos-profile", type=click.Choice(QoSPresetProfiles.short_keys()), help="QoS preset to start from."
+        "--qos-profile",
+        type=click.Choice(QoSPresetProfiles.short_keys()),
+        metavar="PROFILE",
+        help=f"QoS preset to start from: {', '.join(QoSPresetProfiles.short_keys())}.",
     )
     @click.option("--qos-history", type=click.Choice(HistoryPolicy.short_keys()))
     @click.option("--qos-depth", type=click.IntRange(0))

@@ -15,7 +15,6 @@ from kit.cli.ros.world_client import EXIT_INTERRUPTED, exit_with_error
 from kit.host.program_terminal import ProgramTerminal, has_user_terminal
 from kit.inspection.client import InspectionClient, WorldDisconnected
 from kit.inspection.sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
-from kit.interruption import ended_by_signals
 from kit.launch.launch_file_process import SHARE_FOLDER, LaunchTarget
 from kit.launch.processes import PrintedLine, ProcessExit, ProcessStartError, suggest_fix
 from kit.launch.requests import StartRequest
@@ -34,7 +33,6 @@ from kit.workspace import Workspace
 @options.workspace
 @click.argument("package", metavar="PACKAGE|FILE.py")
 @click.argument("words", nargs=-1, type=click.UNPROCESSED, metavar="[EXECUTABLE] [ARGUMENTS ...]")
-@ended_by_signals()
 def command(world: str | None, seed: int, workspace: Path | None, package: str, words: Sequence[str]) -> None:
     """Run a package's program, or a Python file with a node, in the world of another terminal.
 

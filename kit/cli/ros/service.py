@@ -88,7 +88,8 @@ def call(
 
     \b
     kit ros service call /pause std_srvs/srv/Empty
-    kit ros service call /move_model flatland_msgs/srv/MoveModel "{name: serp, pose: {x: 0.5}}"
+    kit ros service call /move_model flatland_msgs/srv/MoveModel \\
+      "{name: serp, pose: {x: 0.5}}"
     """
     cls = find_or_exit(find_service, type_name)
     content = parse_fields(sys.stdin.read() if stdin else values)

@@ -14,7 +14,6 @@ import click
 from kit.cli import options
 from kit.inspection.client import InspectionClient, ServiceTimeout, WorldDisconnected
 from kit.inspection.sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
-from kit.interruption import ended_by_signals
 from kit.msg.interfaces import register_packages
 from kit.ros.packages import find_packages, interface_packages
 
@@ -76,7 +75,7 @@ def with_world_client(function: Callable[..., Any]) -> Callable[..., Any]:
         **rest: Any,
     ) -> None:
         # The last three are options of ROS 2 that users type by habit; they have no effect here.
-        with ended_by_signals(), connect_to_world(world, workspace) as client:
+        with connect_to_world(world, workspace) as client:
             function(client, *arguments, **rest)
 
     return verb

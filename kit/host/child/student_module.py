@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import builtins
+import errno
 import os
 import re
 import sys
 from contextlib import suppress
+from itertools import islice
 from types import ModuleType, TracebackType
 
 from kit.host.failure import NEARBY, Failure, FailureKind, StudentCodeError
+from kit.host.sandbox import seccomp
 from kit.host.wire import MAX_TEXT
 
 STDERR = 2
@@ -136,6 +139,8 @@ def explain(problem: BaseException, program: StudentProgram) -> Failure:
     frames = program.frames(problem.__traceback__)
     if isinstance(problem, SystemExit):
         return _exit_failure(problem, frames)
+    if isinstance(problem, OSError) and problem.errno == errno.ENOSPC and seccomp.is_installed():
+        return _failure(FailureKind.DISK, "its folder is full", frames)
     if len(frames) > 1:
         _print_frames(frames, program)
     kind = FailureKind.IMPORT if isinstance(problem, ImportError) else FailureKind.EXCEPTION
@@ -166,6 +171,12 @@ def _exit_failure(problem: SystemExit, frames: list[tuple[str, int, str]]) -> Fa
 
 def _way_out(problem: BaseException, program: StudentProgram) -> str:
     """Says what a name that does not exist was probably meant to be, as Python's own traceback does."""
+    if (
+        isinstance(problem, OSError)
+        and problem.errno in (errno.EPERM, errno.ENOSYS)
+        and seccomp.is_installed()
+    ):
+        return f". {_innermost_call(problem.__traceback__)} is refused to a program that is confined."
     name = getattr(problem, "name", None)
     if not isinstance(name, str):
         return ""
@@ -213,6 +224,26 @@ def _nearest(name: str, known: set[str]) -> str:
 
     near = get_close_matches(name, sorted(known), 1, 0.75)
     return f". Did you mean '{near[0]}'?" if near and near[0] != name else ""
+
+
+def _innermost_call(trace: TracebackType | None) -> str:
+    """Returns what was called where an exception was raised, as it is written there: ``os.fork()``."""
+    while trace is not None and trace.tb_next is not None:
+        trace = trace.tb_next
+    if trace is None:
+        return "That"
+    import linecache  # here: only a mistake needs it
+
+    code = trace.tb_frame.f_code
+    first, last, begin, end = next(islice(code.co_positions(), trace.tb_lasti // 2, None), (None,) * 4)
+    line = linecache.getline(code.co_filename, first or 0)
+    called = (
+        line.encode()[begin : end if first == last else None]
+        .decode(errors="replace")
+        .partition("(")[0]
+        .strip()
+    )
+    return f"{called}()" if called else f"What {code.co_name}() calls"
 
 
 def _innermost_names(trace: TracebackType | None) -> tuple[set[str], set[str]]:

@@ -28,6 +28,7 @@ from kit.host.child.import_hooks import on_import
 from kit.host.child.student_module import STDERR, StudentProgram, explain
 from kit.host.sandbox import confinement
 from kit.host.sandbox.limits import INTERVAL_S, PAUSE_PER_COUNT, exceeds_disk_limit
+from kit.host.sandbox.namespaces import unmount_scratch
 from kit.host.sandbox.reaper import end_descendants, remove_folder
 from kit.host.wire import LOST_PIPE, OVER_DISK_LIMIT
 
@@ -52,7 +53,7 @@ def _start_student() -> int:
     config = confinement.SandboxConfig.from_json(record)
     confinement.adopt_orphans()
     try:
-        confinement.prepare(config)
+        is_disk_limited = confinement.prepare(config)
     except confinement.ConfinementError as problem:
         channel.send(["refused", str(problem)])
         return 1
@@ -70,13 +71,14 @@ def _start_student() -> int:
         return _run_student(role, config, streams)
     for descriptor in {each for each in streams if each is not None and each > 2}:
         os.close(descriptor)
-    return _supervise(child, ended, config)
+    return _supervise(child, ended, config, is_disk_limited=is_disk_limited)
 
 
-def _supervise(child: int, ended: int, config: confinement.SandboxConfig) -> int:
+def _supervise(child: int, ended: int, config: confinement.SandboxConfig, *, is_disk_limited: bool) -> int:
     """Waits for the end, cleans up, and returns the child's exit status: 128 + n for signal n.
 
-    Ends a child that has written more than it may, and returns OVER_DISK_LIMIT.
+    Ends a child that has written more than it may, and returns OVER_DISK_LIMIT, unless ``is_disk_limited``: the file system
+    has the limits.
     """
     for number in signal.valid_signals() - {signal.SIGCHLD, signal.SIGKILL, signal.SIGSTOP}:
         with suppress(OSError):
@@ -86,7 +88,7 @@ def _supervise(child: int, ended: int, config: confinement.SandboxConfig) -> int
     poller.register(PIPE, 0)  # hanging up is always reported
     poller.register(ended, select.POLLIN)
     status = None
-    pause_s = None if config.makes_namespaces else INTERVAL_S  # there, the file system has the limits
+    pause_s = None if is_disk_limited else INTERVAL_S
     is_over_disk_limit = False
     while status is None and not is_over_disk_limit:
         ready = [descriptor for descriptor, _ in poller.poll(None if pause_s is None else pause_s * 1000)]
@@ -104,6 +106,8 @@ def _supervise(child: int, ended: int, config: confinement.SandboxConfig) -> int
         os.killpg(child, signal.SIGKILL)
     end_descendants(os.getpid())
     _reap(child)
+    if is_disk_limited and not config.makes_namespaces:
+        unmount_scratch(config.scratch)
     if not config.in_bubblewrap:  # from inside it is out of reach; the kit, or its next start, removes it
         remove_folder(config.folder)
     if is_over_disk_limit:

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 from kit.host.sandbox import landlock, libc, namespaces, seccomp
-from kit.host.sandbox.limits import Limits
+from kit.host.sandbox.limits import KIB, Limits
 from kit.host.wire import Json
 
 
@@ -99,6 +99,11 @@ class ConfinementError(Exception):
 
 
 _PR_SET_PDEATHSIG, _PR_SET_DUMPABLE, _PR_SET_CHILD_SUBREAPER, _PR_SET_NO_NEW_PRIVS = 1, 4, 36, 38
+_PR_SET_THP_DISABLE = 41
+MAX_PENDING_SIGNALS = 128
+"""Signals and timers that wait, of all programs of its user together."""
+MAX_LOCKED_BYTES = 64 * KIB
+"""Bytes of memory that cannot be written to the disk."""
 _KILL = 9
 _FIRST_USER, _USERS = 1_500_000_000, 100_000_000
 """User ids for runs, above those that systems give to people, services and containers."""
@@ -125,8 +130,12 @@ def shield_this_process() -> None:
 # Called in this order: ``prepare`` in the process above the student's, ``confine`` in the student's.
 
 
-def prepare(config: SandboxConfig) -> None:
-    """Prepares the process that will start the student's. Raises ConfinementError if the level is out of reach."""
+def prepare(config: SandboxConfig) -> bool:
+    """Prepares the process that will start the student's. Raises ConfinementError if the level is out of reach.
+
+    Returns whether the file system of the scratch folder limits it: always from level 2 on, and at level 1 wherever this
+    process may mount.
+    """
     if config.level >= Level.FILTERED:
         _require_filters()
     if config.makes_namespaces:
@@ -140,6 +149,9 @@ def prepare(config: SandboxConfig) -> None:
         raise ConfinementError(
             "a user for each run needs root. Run this as root, or in a container as its root."
         )
+    if config.level == Level.FILTERED:
+        return namespaces.mount_scratch(config.scratch, config.limits.scratch, config.limits.files)
+    return config.makes_namespaces
 
 
 def confine(config: SandboxConfig) -> None:
@@ -167,6 +179,7 @@ def confine(config: SandboxConfig) -> None:
     # Not inherited when a process changes its user, so only now.
     _prctl(_PR_SET_PDEATHSIG, _KILL)
     if config.level >= Level.FILTERED:
+        _prctl(_PR_SET_THP_DISABLE, 1)  # a page is 4 KiB: what holds one byte of it holds no more
         _restrict(config)
 
 
@@ -221,6 +234,10 @@ def _limit(config: SandboxConfig) -> None:
     if limits.processes is not None:
         running = 0 if config.level >= Level.ANOTHER_USER else _threads_of(os.getuid())
         wanted[resource.RLIMIT_NPROC] = running + limits.processes
+    if config.level >= Level.FILTERED and sys.platform == "linux":
+        wanted[resource.RLIMIT_MEMLOCK] = MAX_LOCKED_BYTES
+        wanted[resource.RLIMIT_MSGQUEUE] = 0
+        wanted[resource.RLIMIT_SIGPENDING] = MAX_PENDING_SIGNALS
     for kind, value in wanted.items():
         _set_limit(kind, value, value)
     if limits.cpu_s is not None:

@@ -32,6 +32,8 @@ _KIT_PARTS: Final = (
     "ros",
 )
 """The parts of the kit that a student's process consists of, and all that these import of the kit."""
+MAPPED_FILES: Final = "/proc/self/maps"
+"""What this process has mapped into its memory, its shared libraries among it."""
 _DISTRIBUTION: Final = "robot_learning_kit"
 _INSTALLED: Final = ("kit", "grader")
 _CHECKOUT: Final = (*_INSTALLED, "lessons", "tests")
@@ -91,8 +93,24 @@ _last_installed: _Installed | None = None
 def _searched_paths() -> tuple[str, ...]:
     """Returns the paths of Python, the installed packages and the system's libraries."""
     python = [sysconfig.get_path("stdlib"), sysconfig.get_path("platstdlib"), f"{sys.base_prefix}/lib"]
-    loader = [path for path in os.environ.get("LD_LIBRARY_PATH", "").split(":") if path]
+    loader = [library for folder in loader_folders() for library in _shared_libraries(folder)]
     return tuple(dict.fromkeys(map(os.path.abspath, [*python, *library_folders(), *loader, *_SYSTEM])))
+
+
+def loader_folders() -> list[str]:
+    """Returns the folders of LD_LIBRARY_PATH from which this very Python has loaded a library: a computing cluster keeps them
+    there. The variable may name anything else, such as a workspace, and grants nothing of that."""
+    named = [path for path in os.environ.get("LD_LIBRARY_PATH", "").split(":") if os.path.isabs(path)]
+    if not named:
+        return []
+    with suppress(OSError), open(MAPPED_FILES) as mapped:
+        loaded = {os.path.dirname(line.split(maxsplit=5)[-1].strip()) for line in mapped if ".so" in line}
+        return [path for path in named if os.path.realpath(path) in loaded]
+    return []
+
+
+def _shared_libraries(folder: str) -> list[str]:
+    return [f"{folder}/{name}" for name in sorted(_names_in(folder)) if ".so" in name]
 
 
 def _find_installed(searched: tuple[str, ...]) -> _Installed:

@@ -26,7 +26,35 @@ _PIVOT_ROOT = {"x86_64": 155, "aarch64": 41}
 
 def unshare_namespaces() -> None:
     """Makes the next child of this process the first of a process tree of its own, without a network."""
-    flags = _NEW_PID | _NEW_NET | _NEW_IPC | _NEW_UTS
+    _unshare_as_any_user(_NEW_PID | _NEW_NET | _NEW_IPC | _NEW_UTS)
+
+
+def mount_scratch(scratch: str, room: int, files: int) -> bool:
+    """Makes ``scratch`` a folder in memory, with room for ``room`` bytes and ``files`` files, that this process and those that
+    it starts see. It is gone when they have ended, however they end. Returns whether this machine allows that.
+    """
+    try:
+        _unshare_as_any_user(_NEW_MOUNT)
+        _mount("none", "/", "", _RECURSIVE | _PRIVATE)
+        _mount("none", scratch, "tmpfs", _NO_SUID | _NO_DEVICES, _scratch_options(room, files))
+    except OSError:
+        return False
+    os.chdir(scratch)
+    return True
+
+
+def unmount_scratch(scratch: str) -> None:
+    """Undoes ``mount_scratch``, so that the folder can be removed."""
+    os.chdir("/")
+    libc().umount2(os.fsencode(scratch), _DETACH)
+
+
+def _scratch_options(room: int, files: int) -> str:
+    return f"size={room},nr_inodes={files + 1},mode=700"
+
+
+def _unshare_as_any_user(flags: int) -> None:
+    """Makes namespaces as root, or with one in which this user has the rights for it."""
     if os.geteuid() == 0:
         try:
             _unshare(flags)
@@ -72,9 +100,7 @@ def restrict_file_tree(root: str, tree: FileTree, scratch: str, room: int, files
         elif _cover(root, mount.name):
             covers.append(root + mount.name)
     os.makedirs(root + scratch, exist_ok=True)  # it is there already if its surroundings are readable
-    _mount(
-        "none", root + scratch, "tmpfs", _NO_SUID | _NO_DEVICES, f"size={room},nr_inodes={files + 1},mode=700"
-    )
+    _mount("none", root + scratch, "tmpfs", _NO_SUID | _NO_DEVICES, _scratch_options(room, files))
     for folder in (*covers, root):
         _mount("none", folder, "tmpfs", _NO_SUID | _NO_DEVICES | _REMOUNT | _READ_ONLY, _TREE)
     os.chdir(root)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 from typing import Final
@@ -14,6 +16,10 @@ from kit.host.private_folder import private_folder
 from kit.host.sandbox import bubblewrap, landlock
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
+
+TRIAL_S: Final = 20.0
+"""How long a trial may take [s]."""
+_KIT: Final = str(Path(__file__).parents[3])
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +81,28 @@ def _try_level(level: Level, file: Path) -> SandboxSupport:
     return SandboxSupport(level, True, _DESCRIPTIONS[level]())
 
 
+@cache
+def can_mount_scratch() -> bool:
+    """Returns whether ``mount_scratch`` works on this machine. Tried once, by a process of its own."""
+    with private_folder() as folder:
+        call = f"mount_scratch({str(folder)!r}, 1 << 20, 10)"
+        trial = f"import sys; sys.path.insert(0, {_KIT!r}); import kit.host.sandbox.namespaces as n; sys.exit(not n.{call})"
+        try:
+            done = subprocess.run(
+                [sys.executable, "-S", "-P", "-c", trial], capture_output=True, timeout=TRIAL_S, check=False
+            )
+        except (OSError, subprocess.TimeoutExpired):
+            return False
+        return done.returncode == 0
+
+
 def _describe_limits() -> str:
     return "its own process and limits" + (", but not of memory (macOS)" if sys.platform == "darwin" else "")
+
+
+def _describe_filters() -> str:
+    disk = "limited" if can_mount_scratch() else "measured ten times a second"
+    return f"Landlock (version {landlock.abi()}) and a filter of system calls; its disk is {disk}"
 
 
 def _describe_namespaces() -> str:
@@ -87,7 +113,7 @@ def _describe_namespaces() -> str:
 _DESCRIPTIONS: Final[Mapping[Level, Callable[[], str]]] = MappingProxyType(
     {
         Level.LIMITED: _describe_limits,
-        Level.FILTERED: lambda: f"Landlock (version {landlock.abi()}) and a filter of system calls",
+        Level.FILTERED: _describe_filters,
         Level.SEPARATE: _describe_namespaces,
         Level.ANOTHER_USER: lambda: "a user of its own for every run",
     }

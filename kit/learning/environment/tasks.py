@@ -5,13 +5,12 @@ The kit's are the files of the folder ``tasks``. Where the seed's text and its c
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cache
 from pathlib import Path
-from types import UnionType
-from typing import Any, Final, Literal, Union, get_args, get_origin, get_type_hints
+from typing import Any, Final, Literal
 
+from kit.field_types import check_field_types
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.disturbances import Disturbances
 from kit.learning.environment.rewards import REWARD_SCALE, REWARDS
@@ -20,8 +19,10 @@ from kit.learning.tasks.learning_task import StartVariation as StartVariation
 from kit.learning.tasks.learning_task import UnknownTask as UnknownTask
 from kit.learning.tasks.own_files import workspace_task_file
 from kit.learning.tasks.task_reader import TASK_FILE, read_task, task_name
+from kit.plain_files import is_file_there, read_plain_file
 from kit.plain_text import quoted, suggestion
 from kit.workspace import expand_home
+from kit.world.documents import MAX_YAML_BYTES
 
 
 def tasks_folder() -> Path:
@@ -52,9 +53,9 @@ def find_task_file(name: str) -> Path | None:
     if name in names:
         return None
     path = expand_home(name)
-    if path.is_dir() and (path / TASK_FILE).is_file():
+    if is_file_there(path / TASK_FILE):
         return path / TASK_FILE
-    if path.is_file():
+    if is_file_there(path):
         return path
     if path.suffix in (".yaml", ".yml") or len(path.parts) > 1:
         raise UnknownTask(f"there is no file {quoted(name, 200)}")
@@ -96,33 +97,6 @@ TASKS: Final = (
 """Those of the dissertation, and what the kit made of them."""
 
 
-def check_field_types(record: type, values: Mapping[str, Any]) -> None:
-    """Raises ValueError unless every value, as JSON gives it, has the type that the dataclass declares for it."""
-    for name, value in values.items():
-        if not _is_of_type(value, _field_types(record)[name]):
-            raise ValueError(f"{name} cannot be {quoted(repr(value)[:60])}")
-
-
-@cache
-def _field_types(record: type) -> dict[str, Any]:
-    return get_type_hints(record)
-
-
-def _is_of_type(value: Any, declared: Any) -> bool:
-    origin, inner = get_origin(declared), get_args(declared)
-    if origin in (Union, UnionType):
-        return any(_is_of_type(value, each) for each in inner)
-    if origin is Literal:
-        return value in inner
-    if origin is dict:
-        return type(value) is dict and all(_is_of_type(each, inner[1]) for each in value.values())
-    if origin in (list, tuple):
-        return type(value) in (list, tuple) and all(_is_of_type(each, inner[0]) for each in value)
-    if declared is float:
-        return type(value) in (int, float)
-    return type(value) is declared
-
-
 @dataclass(frozen=True, slots=True)
 class TaskSpec:
     """A task of ``TASKS``, by name, and what is different from it. None leaves a setting as it is."""
@@ -162,7 +136,7 @@ class TaskSpec:
         if self.text is None:
             return False
         try:
-            return Path(self.task).read_text(encoding="utf-8-sig") != self.text
+            return read_plain_file(self.task, MAX_YAML_BYTES).decode("utf-8-sig") != self.text
         except (OSError, ValueError):  # gone, or no text any more: the task is kept here
             return False
 

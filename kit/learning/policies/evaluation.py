@@ -11,6 +11,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from kit.arrays import FloatArray, IndexArray
+from kit.document.blocks import Cell, CellStyle, Column, Table
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_map import load_batch_map
 from kit.learning.environment.batch_state import BatchStep
@@ -70,6 +71,11 @@ class CaseResult:
         return wilson_interval(self.reached, self.episodes)
 
 
+def _case_cells(case: CaseResult) -> tuple[Cell, ...]:
+    _, collided, timed_out = (count / case.episodes for count in case.outcomes)
+    return (case.case, case.share, case.interval, collided, timed_out, case.steps, case.adjacency)
+
+
 @dataclass(frozen=True, slots=True)
 class EvaluationResult:
     """Results of an evaluation on all cases."""
@@ -105,23 +111,25 @@ class EvaluationResult:
             name: float(np.mean([case.share for case in self.cases if case.group == name])) for name in names
         }
 
-    def rows(self) -> list[str]:
-        """An aligned table: a row for each case, then the mean and the worst."""
-        width = max(len("case"), *(len(case.case) for case in self.cases))
-        head = f"{'case':{width}}  success  95 % interval  collided  timed out  steps"
-        rows = [head + ("  adj rays" if self.is_pair else "")]
-        for case in self.cases:
-            low, high = case.interval
-            _, collided, timed_out = (count / case.episodes for count in case.outcomes)
-            steps = f"{case.steps:5.0f}" if case.reached else "    -"
-            row = f"{case.case:{width}}  {case.share:7.3f}  {low:.3f} to {high:.3f}  {collided:8.3f}  {timed_out:9.3f}  {steps}"
-            rows.append(row + (f"  {case.adjacency:8.2f}" if self.is_pair else ""))
+    def table(self) -> Table:
+        """A row for each case, then the mean; below it the worst case."""
+        columns = [
+            Column("case", CellStyle.TEXT),
+            Column("success", decimals=3),
+            Column("95 % interval", decimals=3),
+            Column("collided", decimals=3),
+            Column("timed out", decimals=3),
+            Column("steps", decimals=0),
+        ]
+        if self.is_pair:
+            columns.append(Column("adj rays"))
+        rows = [_case_cells(case)[: len(columns)] for case in self.cases]
+        rows.append(("mean", self.mean, *[""] * (len(columns) - 2)))
         worst = self.worst
-        rows.append(f"{'mean':{width}}  {self.mean:7.3f}")
-        rows.append(
-            f"{'worst':{width}}  {worst.share:7.3f}  in {worst.case}, {worst.episodes} episodes each, {self.action_choice}"
+        note = (
+            f"worst: {worst.share:.3f} in {worst.case}; {worst.episodes} episodes each, {self.action_choice}"
         )
-        return rows
+        return Table("test", "", tuple(columns), tuple(rows), note, is_ruled=False)
 
     @property
     def action_choice(self) -> str:

@@ -21,6 +21,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from kit.array_archives import read_arrays
 from kit.arrays import BoolArray, Float32Array, IntArray
 from kit.learning.environment.tasks import LearningTask, TaskSpec
 from kit.workspace import write_atomically
@@ -39,9 +40,11 @@ class PolicyError(Exception):
 
 
 def _check_numbers(array: NDArray[Any], dimensions: int) -> None:
-    """Raises ValueError unless it is an array of floating-point numbers with this many dimensions."""
+    """Raises ValueError unless it is an array of finite floating-point numbers with this many dimensions."""
     if array.ndim != dimensions or array.dtype.kind != "f":
         raise ValueError(f"an array of shape {array.shape} and type {array.dtype}")
+    if not np.isfinite(array).all():
+        raise ValueError("an array with numbers that are not finite")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -128,6 +131,10 @@ class PolicyNetwork:
 
     def scores(self, observations: Float32Array, memory: Float32Array) -> tuple[Float32Array, Float32Array]:
         """(n, outputs) and the next memory (n, 2, h), from (n, inputs) and the last one."""
+        with np.errstate(over="ignore", invalid="ignore"):  # weights of a damaged file may be as large as any
+            return self._scores(observations, memory)
+
+    def _scores(self, observations: Float32Array, memory: Float32Array) -> tuple[Float32Array, Float32Array]:
         x = observations
         if self.lstm is not None:
             x, memory = self.lstm.step(x, memory)
@@ -454,12 +461,7 @@ def load_policy(file: Path | str) -> Policy:
     """
     file = Path(file)
     try:
-        data = file.read_bytes()
-        if not zipfile.is_zipfile(io.BytesIO(data)):  # of another file numpy says that pickle might read it
-            raise ValueError("no .npz file, or a part of one")
-        with np.load(io.BytesIO(data), allow_pickle=False) as stored:
-            arrays = {name: stored[name] for name in stored.files}
-        return _policy_from_arrays(arrays)
+        return _policy_from_arrays(read_arrays(file))
     except FileNotFoundError:
         raise
     except Exception as error:  # noqa: BLE001 - whatever a damaged archive makes numpy raise

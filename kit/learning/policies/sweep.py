@@ -10,7 +10,6 @@ import csv
 import hashlib
 import io
 import json
-import textwrap
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
@@ -19,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from kit.document.blocks import Block, CellStyle, Column, Picture, Table, Text
 from kit.learning.environment.disturbances import (
     DISTURBANCE_KINDS,
     DisturbanceError,
@@ -174,27 +174,48 @@ def _counts(result: EvaluationResult) -> dict[str, Any]:
     }
 
 
-def format_sweep(
+def sweep_blocks(
     points: Sequence[SweepPoint], encoder: Encoder, columns: int = 79, rows: int = 10
-) -> list[str]:
+) -> list[Block]:
     """For each kind a chart of the success, with its interval, and the figures."""
-    lines: list[str] = []
+    blocks: list[Block] = []
     for kind in DISTURBANCE_KINDS:
         of_kind = [point for point in points if point.kind == kind.name]
         if not of_kind:
             continue
-        unit = f" [{kind.unit}]" if kind.unit else ""
-        lines += ["", *textwrap.wrap(f"{kind.option.replace('-', ' ')}{unit}: {kind.summary}", columns)]
+        label = kind.option.replace("-", " ") + (f" [{kind.unit}]" if kind.unit else "")
+        blocks.append(Text(f"{label}: {kind.summary}"))
         if len(of_kind) > 1:
-            lines += _chart(of_kind, f"{kind.option.replace('-', ' ')}{unit}", encoder, columns, rows)
-        lines.append("    value  success  95 % interval   collided  timed out  worst case")
-        for point in of_kind:
-            low, high = point.interval
-            lines.append(
-                f"{point.value:9g}  {point.share:7.3f}  {low:.3f} to {high:.3f}  {point.collided / point.episodes:8.3f}  "
-                f"{point.timed_out / point.episodes:9.3f}  {point.worst_share:.3f} {point.worst_case}"
+            blocks.append(
+                Picture(tuple(_chart(of_kind, label, encoder, columns, rows)), indent=0, is_tight=True)
             )
-    return lines[1:]
+        blocks.append(_figures(of_kind))
+    return blocks
+
+
+def _figures(points: Sequence[SweepPoint]) -> Table:
+    columns = (
+        Column("value"),
+        Column("success", decimals=3),
+        Column("95 % interval", decimals=3),
+        Column("collided", decimals=3),
+        Column("timed out", decimals=3),
+        Column("worst", decimals=3),
+        Column("case", CellStyle.TEXT),
+    )
+    rows = tuple(
+        (
+            f"{point.value:g}",
+            point.share,
+            point.interval,
+            point.collided / point.episodes,
+            point.timed_out / point.episodes,
+            point.worst_share,
+            point.worst_case,
+        )
+        for point in points
+    )
+    return Table("disturbances", "", columns, rows, is_ruled=False, is_tight=True)
 
 
 def _chart(points: Sequence[SweepPoint], label: str, encoder: Encoder, columns: int, rows: int) -> list[str]:

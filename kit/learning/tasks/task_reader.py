@@ -45,6 +45,7 @@ from kit.learning.tasks.learning_task import (
     WallGoal,
     read_curriculum,
 )
+from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import WORLD_FILE, MapCard, UnknownMap, allowed_root_of, find_map
 from kit.world.documents import MAX_YAML_BYTES, AllowedRoot, UnusableFile, WorldDocuments, read_text
@@ -91,7 +92,8 @@ def read_task(file: Path, text: str | None = None) -> ReadTask:
         raise WorldError([Problem(SourceLocation(file), f"cannot be read: {error}")]) from None
     documents = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, ProblemCollector())
     with documents.open(file, content) as section:
-        task, cases = _TaskReader(section, file, content, documents.allowed_root).read()
+        reader = _TaskReader(section, file, content, documents.allowed_root, is_kept=text is not None)
+        task, cases = reader.read()
     return ReadTask(task, content, cases, documents.problems)
 
 
@@ -100,14 +102,26 @@ def task_name(file: Path) -> str:
     return file.absolute().parent.name if file.name == TASK_FILE else file.stem
 
 
+def _world_named_in(file: Path) -> str | None:
+    """Returns the world that a task's file names now; None if there is no such file, or it names none."""
+    try:
+        documents = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, ProblemCollector())
+        section = documents.section(file, SourceLocation(file))
+        return section.name("world") if section is not None and section.has("world") else None
+    except (UnusableFile, WorldError):
+        return None
+
+
 class _TaskReader:
     """Reads one file's mapping."""
 
-    def __init__(self, section: Section, file: Path, text: str, root: AllowedRoot) -> None:
+    def __init__(self, section: Section, file: Path, text: str, root: AllowedRoot, *, is_kept: bool) -> None:
+        """``is_kept``: the text comes from elsewhere, such as a policy of somebody else's, and may name any file."""
         self._section = section
         self._file = file
         self._text = text
         self._root = root
+        self._is_kept = is_kept
 
     def read(self) -> tuple[LearningTask, tuple[PlacedCase, ...]]:
         """The task and its cases. What is wrong is noted, and something else stands in its place."""
@@ -164,23 +178,33 @@ class _TaskReader:
         for name in names:
             try:
                 card = find_map(name)
-                cards.append(replace(card, world_file=card.folder / world_file))
-                if not cards[-1].world_file.is_file():
+                file = AllowedRoot.of_folder(card.folder).resolve(world_file, card.folder)
+                cards.append(replace(card, world_file=file))
+                if not is_file_there(file):
                     section.error(f"the map {name} has no file {quoted(world_file)}", "world_file")
             except UnknownMap as error:
                 section.error(f"{error}; for a file of your own write world: FILE", "maps")
+            except UnusableFile as error:
+                section.error(str(error), "world_file")
         return names, tuple(cards)
 
     def _own_world(self) -> tuple[MapCard, ...]:
         section, name = self._section, self._section.name("world")
+        if self._is_kept and name != _world_named_in(self._file):
+            section.error(
+                f"its world is not here: there is no task {quoted(str(self._file), 200)} that names {quoted(name)}. "
+                "Choose another task, such as one of the kit's",
+                "world",
+            )
+            return ()
         try:
             file = self._root.resolve(name, self._file.parent)
         except UnusableFile as error:
             section.error(str(error), "world")
             return ()
-        if file.is_dir():
+        if is_file_there(file / "world.yaml"):
             file /= "world.yaml"
-        if not file.is_file():
+        if not is_file_there(file):
             section.error(f"there is no file {quoted(str(file), 200)}", "world")
             return ()
         names = section.names("robots") if section.has("robots") else ("serp",)
@@ -210,7 +234,7 @@ class _TaskReader:
             except UnusableFile as error:
                 section.error(str(error), "file")
                 return SUCCESS_REWARD, None
-            if not file.is_file():
+            if not is_file_there(file):
                 section.error(f"there is no file {quoted(str(file), 200)}", "file")
             return SUCCESS_REWARD, file
         if section.has("name"):

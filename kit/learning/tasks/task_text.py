@@ -5,12 +5,13 @@ from __future__ import annotations
 import ast
 import inspect
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from importlib.resources import files
 
 import numpy as np
 
+from kit.document.blocks import Block, CellStyle, Column, Table, Text, Tone, ToneText, labelled_table
 from kit.geometry import Pose
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.batch import BatchEnv
@@ -27,7 +28,7 @@ from kit.learning.tasks.learning_task import (
     TaskCase,
     practices,
 )
-from kit.plain_text import WIDTH, counted, indent_lines, join_names, table
+from kit.plain_text import counted, join_names
 from kit.render.scene import Disc, Scene, SceneMark
 from kit.world.catalogue import MapCard
 
@@ -41,27 +42,35 @@ SHAPE = re.compile(r"^\(\.\.\.(, R)?(, \d+)?\):? ?")
 """Start of the description of a transition's field: its shape for many worlds."""
 
 
-def describe_task(task: LearningTask) -> list[str]:
-    """The lines that ``kit task show`` prints beside the maps."""
+def tasks_table(tasks: Iterable[LearningTask]) -> Table:
+    """The tasks there are: a name, and what is learned."""
+    return labelled_table((ToneText(task.name, Tone.BOLD), task.summary) for task in tasks)
+
+
+def task_blocks(task: LearningTask) -> list[Block]:
+    """What ``kit task show`` prints below the maps."""
     kind = "one of the kit's tasks" if task.file is None or not task.version else f"version {task.version}"
     cases = task.map_cases()
     where = join_names(task.maps) if task.maps else str(task.map_cards[0].world_file)
-    return [
-        f"{task.name}: {task.summary}" if task.summary else task.name,
-        f"{'file':9} {task.file} ({kind})",
-        f"{'on':9} {where}; {counted(len(cases), 'case')}, {_robots(task)}",
-        f"{'goal':9} {task.goal.description}",
-        *_titled("sees", _seen(task.observation)),
-        *_titled("does", _actions(task)),
-        *_titled("earns", _earned(task)),
+    about = [
+        ("file", f"{task.file} ({kind})"),
+        ("on", f"{where}; {counted(len(cases), 'case')}, {_robots(task)}"),
+        ("goal", task.goal.description),
         *_titled("ends", _ends(task)),
         *_titled("learns", _curriculum(task)),
         *_titled("differs", _randomness(task)),
     ]
+    return [
+        Text(f"{task.name}: {task.summary}" if task.summary else task.name),
+        replace(labelled_table(about), is_tight=True),
+        *_seen(task.observation),
+        *_actions(task),
+        *_earned(task),
+    ]
 
 
-def describe_keys(width: int = WIDTH) -> list[str]:
-    """The lines that ``kit task keys`` prints: what a task file, the terms of its reward and a reward of one's own may name."""
+def key_tables() -> list[Table]:
+    """What ``kit task keys`` prints: what a task file, the terms of its reward and a reward of one's own may name."""
     written = (files(__package__) / "README.md").read_text(encoding="utf-8").replace("`", "")
     keys = [
         (key, text)
@@ -72,16 +81,15 @@ def describe_keys(width: int = WIDTH) -> list[str]:
     terms = [(f"{term}{_usual_settings(term)}", term_summary(term).replace("``", "")) for term in TERMS]
     asked = _transition_docs()
     facts = [(name, SHAPE.sub("", asked[name])) for name in TRANSITION_FIELDS]
-    titled = (
-        ("Keys of a task file:", keys),
-        ("Terms that reward: {terms: ...} weighs, with their settings:", terms),
-        (
-            "What reward() in a Python file may ask for, in metres and radians; of several robots a list:",
-            facts,
-        ),
+    facts_title = (
+        "What reward() in a Python file may ask for, in metres and radians; of several robots a list:"
     )
-    lines = [line for title, rows in titled for line in (title, *indent_lines(table(rows, width - 2)), "")]
-    return [*lines, "Cases:", *indent_lines(table([(cases,)], width - 2))]
+    return [
+        labelled_table(keys, "Keys of a task file:", indent=2),
+        labelled_table(terms, "Terms that reward: {terms: ...} weighs, with their settings:", indent=2),
+        labelled_table(facts, facts_title, indent=2),
+        labelled_table([(cases,)], "Cases:", indent=2),
+    ]
 
 
 def _usual_settings(term: str) -> str:
@@ -99,57 +107,71 @@ def _transition_docs() -> dict[str, str]:
     return {name: " ".join(text.replace("``", "").split()) for name, text in found.items()}
 
 
-def _titled(title: str, lines: Iterator[str]) -> Iterator[str]:
+def _titled(title: str, lines: Iterator[str]) -> Iterator[tuple[str, str]]:
+    """The rows of a table, whose title stands beside the first."""
     for number, line in enumerate(lines):
-        yield f"{title if number == 0 else '':9} {line}"
+        yield "" if number else title, line
 
 
 def _robots(task: LearningTask) -> str:
     return "one robot" if task.robots == 1 else f"{task.robots} robots driven by one agent"
 
 
-def _seen(seen: ObservationSpec) -> Iterator[str]:
-    size = f"{seen.size} numbers" + (
-        f" ({seen.frames} frames of {seen.frame_size})" if seen.frames > 1 else ""
-    )
-    yield f"{size} per robot:"
+def _seen(seen: ObservationSpec) -> Iterator[Block]:
+    frames = f" ({seen.frames} frames of {seen.frame_size})" if seen.frames > 1 else ""
+    yield Text(f"{seen.size} numbers{frames} per robot:", lead="sees")
     limit = f"at most {seen.clip:g} m, times {seen.scale:g}"
-    if seen.rays:
-        yield f"  {len(seen.rays)} rays, {limit}"
-    if seen.side_rays:
-        yield f"  2 rays towards the other robot, {limit}"
+    parts = [f"{part.name}: {PART_NAMES[part.name]}" for part in seen.parts]
     if seen.sectors:
-        yield f"  the shortest range of each of {seen.sector_count} sectors, {limit}"
-    for part in seen.parts:
-        yield f"  {part.name}: {PART_NAMES[part.name]}"
+        parts.insert(0, f"the shortest range of each of {seen.sector_count} sectors, {limit}")
+    if seen.side_rays:
+        parts.insert(0, f"2 rays towards the other robot, {limit}")
+    if seen.rays:
+        parts.insert(0, f"{len(seen.rays)} rays, {limit}")
+    yield from (Text(part, indent=2, hang=2, is_tight=True) for part in parts)
 
 
-def _actions(task: LearningTask) -> Iterator[str]:
+def _actions(task: LearningTask) -> Iterator[Block]:
     actions = task.actions
+    checks = "" if task.collision_checks == 1 else f", {task.collision_checks} collision checks"
+    time = f"for {task.step_time:g} s{checks}"
     if not isinstance(actions, DiscreteActions):
         (slow, fast), (right, left) = actions.linear, actions.angular
-        yield f"any speed from {slow:g} to {fast:g} m/s and turn from {right:g} to {left:g} rad/s"
-    else:
-        yield f"one of {len(actions.names)} twists:"
-        for name, (speed, turn) in zip(actions.names, actions.twist_table, strict=True):
-            yield f"  {name:14} {speed:6.2f} m/s {turn:6.2f} rad/s"
-    checks = "" if task.collision_checks == 1 else f", {task.collision_checks} collision checks"
-    yield f"for {task.step_time:g} s{checks}"
+        speeds = f"any speed from {slow:g} to {fast:g} m/s and turn from {right:g} to {left:g} rad/s"
+        yield Text(f"{speeds}, {time}", lead="does")
+        return
+    yield Text(f"one of {len(actions.names)} twists, {time}:", lead="does")
+    columns = (Column("", CellStyle.TEXT), Column("m/s"), Column("rad/s"))
+    rows = tuple((name, *twist) for name, twist in zip(actions.names, actions.twist_table, strict=True))
+    yield Table("actions", "", columns, rows, is_ruled=False, indent=2, is_tight=True)
 
 
-def _earned(task: LearningTask) -> Iterator[str]:
+def _earned(task: LearningTask) -> Iterator[Block]:
     if task.reward_file is not None:
-        yield f"what reward() in {task.reward_file} returns"
+        yield Text(f"what reward() in {task.reward_file} returns", lead="earns")
         return
     reward = task.reward
-    yield f"the sum of these terms{'' if reward.scale == 1.0 else f', times {reward.scale:g}'};"
-    yield "after each, its mean value per step for random actions:"
+    scale = "" if reward.scale == 1.0 else f", times {reward.scale:g}"
+    yield Text(f"the sum of these terms{scale}; of each its mean per step for random actions:", lead="earns")
     average = average_step(task)
-    for weight in reward.weights:
-        head = f"  {weight.value:8g} {weight.term}{_settings(weight)}"
-        yield f"{head:32} {average[weight.term]:9.4f}  {term_summary(weight.term)}"
+    columns = (
+        Column("weight"),
+        Column("term", CellStyle.TEXT),
+        Column("mean", decimals=4),
+        Column("", CellStyle.TEXT),
+    )
+    rows = tuple(
+        (
+            f"{weight.value:g}",
+            f"{weight.term}{_settings(weight)}",
+            average[weight.term],
+            term_summary(weight.term),
+        )
+        for weight in reward.weights
+    )
     total = sum(average.values()) * reward.scale
-    yield f"total {total:.4g} per step"
+    note = f"total {total:.4g} per step"
+    yield Table("reward", "", columns, rows, note, is_ruled=False, indent=2, is_tight=True)
 
 
 def _curriculum(task: LearningTask) -> Iterator[str]:

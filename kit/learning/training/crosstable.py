@@ -10,6 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from kit.document.blocks import Cell, CellStyle, Column, Table
 from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.evaluation import Evaluator, derive_seed
 from kit.learning.training.runs import RunConfig, RunError, TrainingRun
@@ -96,27 +97,28 @@ def _mean(columns: Sequence[CrosstableColumn]) -> CrosstableColumn:
     )
 
 
-def format_crosstable(columns: Sequence[CrosstableColumn], compare: Mapping[str, float]) -> list[str]:
-    """An aligned table: a row for each case tested on; means, and below them ``compare``, the means of the dissertation for
-    this task, by group."""
+def crosstable_tables(columns: Sequence[CrosstableColumn], compare: Mapping[str, float]) -> list[Table]:
+    """A row for each case tested on; means, and below them ``compare``, the means of the dissertation for this task, by group.
+    For pairs a second table of how long the two robots are side by side."""
     cases = list(columns[0].shares)
-    width = max(len("dissertation"), *(len(case) for case in cases))
-    wide = [max(9, len(column.group)) for column in columns]
-
-    def row(head: str, cells: Sequence[str]) -> str:
-        return "  ".join([f"{head:{width}}", *(f"{cell:>{w}}" for cell, w in zip(cells, wide, strict=True))])
-
-    rows = [row("tested on", [column.group for column in columns])]
-    rows += [row(case, [f"{column.shares[case]:.3f}" for column in columns]) for case in cases]
-    rows.append(row("mean", [f"{column.mean:.3f}" for column in columns]))
-    rows.append(row("spread", [f"{column.spread:.3f}" for column in columns]))
-    rows.append(row("steps", [f"{column.steps:,.0f}" for column in columns]))
-    rows.append(row("seconds", [f"{column.seconds:.0f}" for column in columns]))
+    rows: list[tuple[Cell, ...]] = [
+        *_case_rows(cases, [column.shares for column in columns]),
+        ("spread", *(column.spread for column in columns)),
+        ("steps", *(f"{column.steps:,.0f}" for column in columns)),
+        ("seconds", *(f"{column.seconds:.0f}" for column in columns)),
+    ]
     if any(column.group in compare for column in columns):
-        means = [f"{compare[column.group]:.3f}" if column.group in compare else "" for column in columns]
-        rows.append(row("dissertation", means))
+        rows.append(("dissertation", *(compare.get(column.group, "") for column in columns)))
+    heads = (Column("tested on", CellStyle.TEXT), *(Column(column.group, decimals=3) for column in columns))
+    tables = [Table("crosstable", "", heads, tuple(rows), is_ruled=False)]
     if all(column.adjacency for column in columns):
-        rows += ["", "side by side, as rays tell: the share of an episode's steps (equations 4.7 to 4.9)"]
-        rows += [row(case, [f"{column.adjacency[case]:.3f}" for column in columns]) for case in cases]
-        rows.append(row("mean", [f"{np.mean([*column.adjacency.values()]):.3f}" for column in columns]))
-    return rows
+        title = "side by side, as rays tell: the share of an episode's steps (equations 4.7 to 4.9)"
+        beside = _case_rows(cases, [column.adjacency for column in columns])
+        tables.append(Table("crosstable-adjacency", title, heads, tuple(beside), is_ruled=False))
+    return tables
+
+
+def _case_rows(cases: Sequence[str], columns: Sequence[Mapping[str, float]]) -> list[tuple[Cell, ...]]:
+    """A row for each case, and their mean."""
+    rows: list[tuple[Cell, ...]] = [(case, *(column[case] for column in columns)) for case in cases]
+    return [*rows, ("mean", *(fmean(column.values()) for column in columns))]

@@ -17,6 +17,7 @@ from kit.learning.environment.batch import ALL_WORLDS, BatchEnv
 from kit.learning.environment.tasks import LearningTask
 from kit.learning.environment.transition import average_speeds
 from kit.learning.policies.policies import Policy
+from kit.plain_files import open_plain_file
 from kit.plain_text import quoted
 from kit.run.recording import ACCEPT, Recording
 
@@ -217,7 +218,7 @@ class PolicyDemonstrator:
 def is_recording(file: Path) -> bool:
     """Whether an ``.npz`` file is a recording; else it may be a policy."""
     try:
-        with np.load(file, allow_pickle=False) as arrays:
+        with open_plain_file(file) as opened, np.load(opened, allow_pickle=False) as arrays:
             return "header" in arrays.files
     except (OSError, ValueError):
         return False

@@ -13,7 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Literal, Self, TypeAlias
 
-from kit.learning.environment.tasks import check_field_types
+from kit.field_types import check_field_types
 
 
 @dataclass(frozen=True, slots=True)

@@ -116,7 +116,8 @@ def plan_of_run(config: RunConfig) -> RunPlan:
     preset = resolve_preset(config)
     strategy = preset.stopping_rule
     goal: float | None = getattr(strategy, "goal", None)
-    words = [config.choice.title, config.algorithm, config.preset_text, f"seed {config.seed}"]
+    # In the order in which they may be cut off where room is short.
+    words = [config.choice.title, config.algorithm, f"seed {config.seed}", config.preset_text]
     return RunPlan(
         ", ".join(words),
         tuple(case.name for _, case in config.choice.resolve().map_cases()),

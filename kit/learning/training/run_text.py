@@ -1,9 +1,10 @@
-"""Formats what happens in runs as text: one line for an event, a table for several policies."""
+"""Formats what happens in runs as text: one line for an event, tables that compare policies."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
+from kit.document.blocks import Cell, CellStyle, Column, Table
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.policies.evaluation import EvaluationResult
 from kit.learning.training.events import (
@@ -63,37 +64,26 @@ def success_shares(event: Evaluated) -> dict[str, float]:
     return {name: counts[0] / max(1, sum(counts)) for name, counts in event.cases.items()}
 
 
-def format_comparison(results: dict[str, EvaluationResult]) -> list[str]:
-    """A row for each case, a column for each policy: success, and below it the adjacency of those that drive two robots."""
+def comparison_tables(results: Mapping[str, EvaluationResult]) -> list[Table]:
+    """A row for each case, a column for each policy: success, and a second table of the adjacency of those that drive two robots."""
     shares = {name: {case.case: case.share for case in each.cases} for name, each in results.items()}
-    rows = _comparison_table("case", shares, with_worst=True)
     pairs = {
         name: {case.case: case.adjacency for case in each.cases}
         for name, each in results.items()
         if each.is_pair
     }
-    if pairs:
-        rows += ["", *_comparison_table("adj rays", pairs, with_worst=False)]
-    return rows
+    tables = [_comparison_table("case", shares, with_worst=True)]
+    return [*tables, _comparison_table("adj rays", pairs, with_worst=False)] if pairs else tables
 
 
-def _comparison_table(
-    title: str, columns: Mapping[str, Mapping[str, float]], *, with_worst: bool
-) -> list[str]:
+def _comparison_table(title: str, columns: Mapping[str, Mapping[str, float]], *, with_worst: bool) -> Table:
     """``columns``: by policy, its value in each case."""
-    cases = list(dict.fromkeys(case for values in columns.values() for case in values))
-    width = max(len(title), len("worst"), *(len(case) for case in cases))
-
-    def row(name: str, texts: Iterable[str]) -> str:
-        found = (f"{text:>{max(7, len(policy))}}" for policy, text in zip(columns, texts, strict=True))
-        return "  ".join([f"{name:{width}}", *found])
-
-    rows = [row(title, columns)]
-    rows += [
-        row(case, (f"{values[case]:.3f}" if case in values else "" for values in columns.values()))
-        for case in cases
+    cases = dict.fromkeys(case for values in columns.values() for case in values)
+    rows: list[tuple[Cell, ...]] = [
+        (case, *(each.get(case, "") for each in columns.values())) for case in cases
     ]
-    rows.append(row("mean", (f"{sum(each.values()) / len(each):.3f}" for each in columns.values())))
+    rows.append(("mean", *(sum(each.values()) / len(each) for each in columns.values())))
     if with_worst:
-        rows.append(row("worst", (f"{min(each.values()):.3f}" for each in columns.values())))
-    return rows
+        rows.append(("worst", *(min(each.values()) for each in columns.values())))
+    heads = (Column(title, CellStyle.TEXT), *(Column(name, decimals=3) for name in columns))
+    return Table("comparison", "", heads, tuple(rows), is_ruled=False)

@@ -4,11 +4,14 @@ work still need."""
 from __future__ import annotations
 
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
 
 import numpy as np
 
+from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText
 from kit.learning.environment.tasks import UnknownTask
 from kit.learning.training.algorithms import UnknownAlgorithm
 from kit.learning.training.events import Evaluated
@@ -18,6 +21,18 @@ from kit.learning.training.runs import NAME_PATTERN, RunError, TrainingRun, Trai
 from kit.plain_text import counted, format_size, quoted
 from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import Encoder
+
+STATE_TONES: Final[Mapping[str, Tone]] = MappingProxyType(
+    {
+        "running": Tone.GOOD,
+        "paused": Tone.WARN,
+        "finished": Tone.PLAIN,
+        "stopped": Tone.WARN,
+        "interrupted": Tone.WARN,
+        "failed": Tone.BAD,
+        "new": Tone.DIM,
+    }
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,25 +120,52 @@ def _check_idle(run: TrainingRun, what: str) -> None:
         )
 
 
-def format_runs(runs: Sequence[RunOverview]) -> list[str]:
-    """A row for each run, and the disk that all of them take."""
-    width = max([len("run"), *(len(each.run.name) for each in runs)])
-    rows = [
-        f"{'run':{width}}  {'state':11}  {'steps':>11}  {'time':>8}  best: mean  worst  {'disk':>10}  left, reward"
+def runs_table(runs: Sequence[RunOverview]) -> Table:
+    """A row for each run."""
+    columns = (
+        Column("run", CellStyle.TEXT),
+        Column("state", CellStyle.TEXT),
+        Column("disk", is_spare=True),
+        Column("steps"),
+        Column("best", decimals=3),
+        Column("worst", decimals=3, is_spare=True),
+        Column("time", is_spare=True),
+        Column("left", CellStyle.TEXT),
+        Column("reward", CellStyle.TEXT),
+    )
+    rows = list(map(_run_cells, runs))
+    needed = [
+        n
+        for n, column in enumerate(columns)
+        if column.title not in ("left", "reward") or any(each[n] for each in rows)
     ]
-    for each in runs:
-        summary = each.summary
-        if summary is None:
-            rows.append(f"{each.run.name:{width}}  damaged: {each.problem}")
-            continue
-        left = "" if each.remaining_s is None else f"  {format_seconds(each.remaining_s)}"
-        reward = f"  {each.reward}" if each.reward else ""
-        rows.append(
-            f"{each.run.name:{width}}  {summary.state:11}  {summary.steps:>11,}  {summary.seconds:6.1f} s  "
-            f"{format_best(summary)}  {format_size(each.disk_bytes):>10}{left}{reward}"
-        )
+    cells = tuple(tuple(each[n] for n in needed) for each in rows)
+    return Table("runs", "", tuple(columns[n] for n in needed), cells, is_ruled=False)
+
+
+def _run_cells(each: RunOverview) -> tuple[Cell, ...]:
+    name, disk, summary = each.run.name, format_size(each.disk_bytes), each.summary
+    if summary is None:
+        return (name, ToneText("damaged", Tone.BAD), disk, None, None, None, None, "", "")
+    best = worst = None
+    if summary.best_evaluation is not None:
+        shares = success_shares(summary.best_evaluation).values()
+        best, worst = sum(shares) / len(shares), min(shares)
+    left = "" if each.remaining_s is None else ToneText(format_seconds(each.remaining_s), Tone.BOLD)
+    state = ToneText(summary.state, STATE_TONES[summary.state])
+    time = f"{summary.seconds:.1f} s"
+    return (name, state, disk, f"{summary.steps:,}", best, worst, time, left, each.reward)
+
+
+def runs_blocks(runs: Sequence[RunOverview]) -> list[Block]:
+    """The table, what is wrong with a damaged run, and the disk that all of them take."""
     total = sum(each.disk_bytes for each in runs)
-    return [*rows, f"{counted(len(runs), 'run')}, {format_size(total)} on disk"]
+    damaged = [Text(each.problem, hang=2, is_tight=True) for each in runs if each.problem]
+    return [
+        runs_table(runs),
+        *damaged,
+        Text(f"{counted(len(runs), 'run')}, {format_size(total)} on disk", is_tight=True),
+    ]
 
 
 def format_seconds(seconds: float) -> str:
@@ -142,11 +184,3 @@ def draw_test_curves(runs: Sequence[TrainingRun], columns: int, rows: int, encod
         means = [float(np.mean([*success_shares(test).values()])) for test in tests]
         drawn.append(Curve(run.name, np.array([float(test.steps) for test in tests]), np.array(means)))
     return draw_curves(drawn, Axes("steps", 0.0, 1.0), columns, rows, encoder).rows()
-
-
-def format_best(summary: TrainingSummary) -> str:
-    """Mean and worst success of the best test, in 16 columns."""
-    if summary.best_evaluation is None:
-        return "         -      -"
-    shares = success_shares(summary.best_evaluation).values()
-    return f"     {sum(shares) / len(shares):5.3f}  {min(shares):5.3f}"

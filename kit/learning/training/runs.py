@@ -20,7 +20,8 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import IO, Any, Literal, get_args
 
-from kit.learning.environment.tasks import TaskSpec, check_field_types
+from kit.field_types import check_field_types
+from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import Policy, load_policy
 from kit.learning.training.events import (
     Evaluated,

@@ -25,7 +25,9 @@ from statistics import fmean, median
 from types import MappingProxyType
 from typing import Any, Final
 
-from kit.host.job_executors import in_shard
+from kit.document.blocks import Cell, CellStyle, Column, Table
+from kit.field_types import check_field_types
+from kit.host.job_executors import in_shard, read_result
 from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.policies.evaluation import Evaluator, derive_seed
@@ -162,8 +164,10 @@ class TrainingSweep:
     def result(self, key: str) -> SweepResult | None:
         """None if there is none that can be read."""
         try:
-            return SweepResult(**json.loads((self.folder / "results" / f"{key}.json").read_bytes()))
-        except (OSError, TypeError, ValueError):
+            content = read_result(self._result_file(key))
+            check_field_types(SweepResult, content)
+            return SweepResult(**content)
+        except (OSError, KeyError, TypeError, ValueError):
             return None
 
     def run_of(self, entry: SweepEntry) -> TrainingRun:
@@ -216,8 +220,9 @@ class TrainingSweep:
         self._save(key, result)
 
     def record_loss(self, key: str) -> None:
-        """Saves that a training's process died every time it was tried."""
-        self._save(key, SweepResult(problem="its process died twice; is there enough memory?"))
+        """Saves that a training's process died every time it was tried, unless it had saved its result before."""
+        if self.result(key) is None:
+            self._save(key, SweepResult(problem="its process died twice; is there enough memory?"))
 
     def _train(self, run: TrainingRun, interrupted: Callable[[], bool]) -> str:
         """Trains to the end; why it failed."""
@@ -240,7 +245,10 @@ class TrainingSweep:
         )
 
     def _save(self, key: str, result: SweepResult) -> None:
-        write_atomically(self.folder / "results" / f"{key}.json", json.dumps(asdict(result)).encode())
+        write_atomically(self._result_file(key), json.dumps(asdict(result)).encode())
+
+    def _result_file(self, key: str) -> Path:
+        return self.folder / "results" / f"{key}.json"
 
 
 def combine(
@@ -315,34 +323,40 @@ def _row(sweep: TrainingSweep, group: SweepGroup, entries: list[SweepEntry], goa
     return SweepRow(group, len(entries), tuple(results), goal, resolve_preset(config).steps)
 
 
-def format_sweep_table(rows: Sequence[SweepRow]) -> list[str]:
-    """An aligned table: what differs among the rows, how many seeds have learned with the 95 % interval of the true share
-    (Wilson), success over all seeds, the worst case of all, medians of steps and minutes."""
+def sweep_table(rows: Sequence[SweepRow]) -> Table:
+    """What differs among the rows, how many seeds have learned with the 95 % interval of the true share (Wilson), success over
+    all seeds, the worst case of all, medians of steps and minutes."""
     names = ("task", "cases", "algorithm", "preset", "reward", "settings")
     shown = [n for n in range(len(names)) if n == 0 or len({row.group[n] for row in rows}) > 1]
-    widths = [max(len(names[n]), *(len(row.group[n]) for row in rows)) for n in shown]
-    head = "  ".join(f"{names[n]:{width}}" for n, width in zip(shown, widths, strict=True))
-    lines = [f"{head}  learned  95 % interval  success  worst      steps  minutes"]
-    for row in rows:
-        text = "  ".join(f"{row.group[n]:{width}}" for n, width in zip(shown, widths, strict=True))
-        lines.append(f"{text}  {_figures(row)}")
-    goals = sorted({row.goal for row in rows})
-    lines.append(
-        f"learned: seeds whose worst case has a success rate of {' or '.join(f'{goal:g}' for goal in goals)} or more."
-    )
-    return lines
+    columns = [
+        *(Column(names[n], CellStyle.TEXT) for n in shown),
+        Column("learned"),
+        Column("95 % interval"),
+        Column("success", decimals=3),
+        Column("worst", decimals=3),
+        Column("steps"),
+        Column("minutes", decimals=1, is_spare=True),
+    ]
+    if any(len(row.results) < row.seeds for row in rows):
+        columns.append(Column("missing"))
+    cells = tuple((*(row.group[n] for n in shown), *_figures(row))[: len(columns)] for row in rows)
+    goals = " or ".join(f"{goal:g}" for goal in sorted({row.goal for row in rows}))
+    note = f"learned: seeds whose worst case has a success rate of {goals} or more."
+    return Table("sweep", "", tuple(columns), cells, note, is_ruled=False)
 
 
-def _figures(row: SweepRow) -> str:
-    results = row.results
+def _figures(row: SweepRow) -> tuple[Cell, ...]:
+    results, missing = row.results, row.seeds - len(row.results)
     if not results:
-        return f"0 of {row.seeds:<2}  no result yet"
-    low, high = wilson_interval(row.learned, len(results))
-    mean = sum(result.mean for result in results) / len(results)
-    missing = f"  {row.seeds - len(results)} missing" if len(results) < row.seeds else ""
+        return (f"0 of {row.seeds}", *[None] * 5, missing)
     return (
-        f"{row.learned} of {len(results):<2}  {low:.2f} to {high:.2f}   {mean:7.3f}  {min(r.worst for r in results):.3f}  "
-        f"{median(r.steps for r in results):9,.0f}  {median(r.seconds for r in results) / 60:7.1f}{missing}"
+        f"{row.learned} of {len(results)}",
+        wilson_interval(row.learned, len(results)),
+        fmean(each.mean for each in results),
+        min(each.worst for each in results),
+        f"{median(each.steps for each in results):,.0f}",
+        median(each.seconds for each in results) / 60,
+        missing or "",
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers
-from kit.host.failure import Failure
+from kit.host.failure import Failure, FailureKind
 from kit.host.private_folder import private_folder
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.confinement import Level as Confinement
@@ -374,15 +375,21 @@ class RaceReferee(Observer):
 
 
 def race_controller(
-    level: GameLevel, controller: ControllerFile, *, on_second: Callable[[float], None] | None = None
+    level: GameLevel,
+    controller: ControllerFile,
+    *,
+    on_second: Callable[[float], None] | None = None,
+    wall_limit_s: float = math.inf,
 ) -> tuple[RaceFinish, Recording]:
-    """Lets a controller drive the level, as fast as the simulation runs."""
+    """Lets a controller drive the level, as fast as the simulation runs. ``wall_limit_s``: seconds of wall clock after which it
+    has failed."""
 
     def install_driver(session: Session) -> None:
         session.drive_with(controller)
         session.wait_until_driven()
 
-    return run_race(level, level.find_scenario(), install_driver, on_second, _confinement(controller))
+    scenario, confinement = level.find_scenario(), _confinement(controller)
+    return run_race(level, scenario, install_driver, on_second, confinement, wall_limit_s)
 
 
 def open_race(
@@ -448,7 +455,9 @@ def run_race(
     install_driver: Callable[[Session], None],
     on_second: Callable[[float], None] | None = None,
     confinement: Confinement = INTERACTIVE_LEVEL,
+    wall_limit_s: float = math.inf,
 ) -> tuple[RaceFinish, Recording]:
+    ends_at = time.monotonic() + wall_limit_s
     with Session(scenario, seed=SEED, level=confinement) as session:
         simulation = session.runner.simulation
         referee, recorder = RaceReferee(level, scenario), Recorder.for_scenario(scenario, simulation)
@@ -462,13 +471,23 @@ def run_race(
                 if on_second is not None:
                     on_second(tick * step)
 
-        run_until(
+        reason = run_until(
             session.runner,
             ticks=math.ceil(level.time_limit / step),
-            ends=(when_failed(session), when(lambda: referee.is_over)),
+            ends=(
+                when_failed(session),
+                when(lambda: referee.is_over),
+                when(lambda: time.monotonic() > ends_at),
+            ),
             before_tick=listen,
         )
-        finish = replace(referee.finish, failure=session.failure, sensors=sensors_in_use(session))
+        failure = session.failure
+        if failure is None and reason is EndReason.STOPPED and not referee.is_over:
+            failure = Failure(
+                FailureKind.TIMEOUT,
+                f"the race took longer than {wall_limit_s:g} s. Is the program very slow?",
+            )
+        finish = replace(referee.finish, failure=failure, sensors=sensors_in_use(session))
         return finish, recorder.recording()
 
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
+from kit.dialogue.actions import ACTIONS
+from kit.dialogue.dialogue import Action, Refused
+from kit.dialogue.effects import Effect, Tell
+from kit.document.blocks import Block, Text, Tone
 from kit.plain_text import quoted, suggestion
-from kit.school.lessons.reading import TEXT_WIDTH, lesson_number, lessons_folder
+from kit.school.lessons.reading import lesson_number, lessons_folder
 from kit.world.documents import open_document
 from kit.world.yaml_section import Section
 
@@ -41,11 +44,11 @@ class GlossaryTerm:
         word = " ".join(word.split()).casefold()
         return bool(known & {word, word.removesuffix("s"), word.removesuffix("es")})
 
-    def lines(self, width: int = TEXT_WIDTH) -> tuple[str, ...]:
-        """The term and its lesson in one line, and the meaning below, indented, in lines of at most ``width``."""
+    def blocks(self) -> tuple[Block, ...]:
+        """The term with its lesson, and the meaning below, indented."""
         named = " or ".join(self.spellings)
-        text = textwrap.wrap(self.meaning, width, initial_indent="    ", subsequent_indent="    ")
-        return (f"{named}  (lesson {lesson_number(self.lesson)})", *text)
+        tail = f"  (lesson {lesson_number(self.lesson)})"
+        return (Text(named, Tone.BOLD, tail=tail), Text(self.meaning, indent=4, is_tight=True))
 
 
 def read_glossary(folder: Path | None = None) -> tuple[GlossaryTerm, ...]:
@@ -69,6 +72,24 @@ def find_terms(terms: Sequence[GlossaryTerm], word: str) -> tuple[GlossaryTerm, 
         known = [spelling for each in terms for spelling in each.spellings]
         raise UnknownTerm(f"The glossary has no {quoted(word)}: {suggestion(word, known)}.")
     return tuple(found)
+
+
+def glossary_blocks(terms: Sequence[GlossaryTerm]) -> list[Block]:
+    """The terms one below the other."""
+    return [block for each in terms for block in each.blocks()]
+
+
+def glossary_action() -> Action[Any]:
+    """``,`` in a dialogue: the glossary, or with a word after it one term."""
+    return Action(ACTIONS["glossary"], _show_glossary, takes_text=True, is_listed=False, while_busy=True)
+
+
+def _show_glossary(dialogue: object, word: str = "") -> Effect:
+    terms = read_glossary()
+    try:
+        return Tell("Glossary", glossary_blocks(find_terms(terms, word) if word else terms))
+    except UnknownTerm as error:
+        raise Refused(str(error)) from None
 
 
 def _read_terms(section: Section) -> Iterator[GlossaryTerm]:

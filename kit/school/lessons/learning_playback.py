@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from textwrap import wrap
 from typing import Final
 
 import numpy as np
 
 from kit.learning.environment.grid_world import CLIFF, GridCell, GridWorld
 from kit.learning.training.grid_learner import GridLearner, GridLearnerSettings, NetworkLearner, PolicyLearner
-from kit.plain_text import counted
+from kit.plain_text import counted, wrap
 from kit.render.curve import Axes, Curve, draw_curves, paste_frame, write_text
 from kit.render.encode import AsciiEncoder, Encoder, Frame
 from kit.render.value_grid import ValueGrid, draw_value_grids, value_grids_height, value_grids_width

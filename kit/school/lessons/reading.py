@@ -7,14 +7,16 @@ import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from string import ascii_uppercase
 from typing import Final
 
+from kit.document.markup import MarkupError, parse_markup, wrap_blocks
 from kit.learning.environment.grid_world import GridMapError, GridRewards, GridWorld
 from kit.learning.training.grid_learner import GRID_ALGORITHMS, GridLearnerSettings
+from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
-from kit.school.lessons.markup import MarkupError, markdown_to_markup, parse_markup, wrap_blocks
+from kit.school.lessons.markdown import markdown_to_markup
 from kit.school.lessons.records import (
     CommandKind,
     Exercise,
@@ -528,11 +530,14 @@ def _read_exercise(section: Section, folder: Path, seen: set[str]) -> Exercise |
         section.number("seconds", 10.0, above=0, maximum=120),
         section.text("edit", ""),
     )
-    if exercise.edited_first and not (exercise.folder / STARTER_FOLDER / exercise.edited_first).is_file():
+    for key, path in (("file", PurePosixPath(exercise.file)), ("edit", PurePosixPath(exercise.edited_first))):
+        if path.is_absolute() or ".." in path.parts:  # it is written in the student's workspace
+            section.error(f"{quoted(str(path))} leads out of the exercise's folder", key)
+    if exercise.edited_first and not is_file_there(exercise.folder / STARTER_FOLDER / exercise.edited_first):
         section.error(f"the starter has no file {quoted(exercise.edited_first)}", "edit")
     if name in seen:
         section.error(f"the exercise {quoted(name)} has a step already", "exercise")
-    elif "/" in name or name.startswith(".") or not (exercise.folder / ASSIGNMENT_FILE).is_file():
+    elif "/" in name or name.startswith(".") or not is_file_there(exercise.folder / ASSIGNMENT_FILE):
         section.error(f"there is no {name}/{ASSIGNMENT_FILE} beside this file", "exercise")
     seen.add(name)
     return exercise

@@ -1,7 +1,6 @@
-"""Paths and commands as a student copies them from the screen into a shell, and how to open a second terminal on this machine.
+"""Paths as a student copies them from the screen into a shell, and how to open a second terminal on this machine.
 
-A path below the home folder begins with ``~``. A command that is too long for the screen goes on after a backslash,
-which a shell takes as one line.
+A path below the home folder begins with ``~``.
 """
 
 from __future__ import annotations
@@ -15,11 +14,6 @@ from pathlib import Path
 from typing import Final
 
 from kit.workspace import USUAL_WORKSPACE, Workspace, expand_home
-
-PROGRAMS: Final = ("kit", "grader")
-"""The first words of lines that are commands."""
-LEAST_ROOM: Final = 20
-QUOTES: Final = "'\"\\"
 
 
 def shell_path(path: Path) -> str:
@@ -47,59 +41,6 @@ def fill_in_paths(text: str, file: Path | None) -> str:
 def expand_words(words: list[str]) -> list[str]:
     """Words of a command as a shell hands them on: a leading ``~/`` is the home folder."""
     return [str(Path(word).expanduser()) if word.startswith("~/") else word for word in words]
-
-
-def is_command(line: str) -> bool:
-    """Whether a line is a command to type."""
-    return line.split()[:1] in ([name] for name in PROGRAMS)
-
-
-def broken_command(line: str, room: int) -> list[str]:
-    """A command on as many lines of at most ``room`` characters as it needs, each but the last ending in a backslash.
-
-    It is broken between its words. A word that is too long for an indented line begins in the first column of its own; one
-    that is longer than a line is broken too, and then goes on in the first
-    column, for a shell joins what stands before the backslash with what follows the line's end.
-
-    >>> broken_command("  kit run maze --controller avoid", 22)
-    ['  kit run maze \\\\', '    --controller avoid']
-    """
-    room = max(room, LEAST_ROOM)
-    indent = line[: len(line) - len(line.lstrip())]
-    parts: list[str] = []
-    while len(line) > room:
-        quotes = _open_quotes(line)
-        first = len(line) - len(line.lstrip())
-        blanks = [at for at in range(first, room - 1) if line[at] == " " and not quotes[at]]
-        if blanks:
-            parts.append(f"{line[: blanks[-1]]} \\")
-            line = f"{indent}  {line[blanks[-1] :].lstrip()}"
-            continue
-        if first and len(line) - first <= room:  # a word that fits where it begins further left
-            line = line.lstrip()
-            continue
-        cut = room - 2
-        while quotes[cut] == "\\":  # what follows a backslash stays with it
-            cut -= 1
-        quote = quotes[cut]
-        parts.append(f"{line[:cut]}{quote}\\")
-        line = quote + line[cut:]
-    return [*parts, line]
-
-
-def _open_quotes(line: str) -> list[str]:
-    """For each character of a command the quotation mark that is open before it, or the backslash; "" for neither."""
-    states: list[str] = []
-    state = ""
-    for character in line:
-        states.append(state)
-        if state == "\\":
-            state = ""
-        elif state:
-            state = "" if character == state else state
-        elif character in QUOTES:
-            state = character
-    return states
 
 
 TITLE: Final = "A second terminal"

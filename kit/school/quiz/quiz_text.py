@@ -1,15 +1,14 @@
-"""Feedback, scores by topic, calibration of confidence and the schedule as lines of plain text, for the screens and the line
-mode."""
+"""Feedback, scores by topic, calibration of confidence and the schedule, as blocks."""
 
 from __future__ import annotations
 
-import textwrap
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
 from typing import Final
 
+from kit.document.blocks import Block, CellStyle, Column, Table, Text, Tone
 from kit.school.quiz.items import (
     OPTION_COUNT,
     QuestionBank,
@@ -146,12 +145,15 @@ def feedback_text(item: QuizItem, choice: AnswerChoice) -> str:
     return item.options[item.right_option if choice.option is None else choice.option].feedback
 
 
-def follow_up_lines(item: QuizItem, width: int) -> list[str]:
-    """The lesson to repeat and the command to try: in one line where both fit."""
-    parts = [f"See {lesson_reference(item.lesson_to_repeat)}: {lesson_command(item.lesson_to_repeat)}"]
-    parts += [f"Try: {item.command_to_try}"] if item.command_to_try else []
-    line = "   ".join(parts)
-    return [line] if len(line) <= width else parts
+_WORDS: Final = CellStyle.TEXT
+
+
+def follow_up_blocks(item: QuizItem) -> list[Block]:
+    """The lesson to repeat and the command to try."""
+    lesson = item.lesson_to_repeat
+    parts = [(f"See {lesson_reference(lesson)}:", lesson_command(lesson))]
+    parts += [("Try:", item.command_to_try)] if item.command_to_try else []
+    return [Text(words, Tone.DIM, tail=f" {command}", hang=2, is_tight=True) for words, command in parts]
 
 
 def days_text(day: date, today: date) -> str:
@@ -160,24 +162,26 @@ def days_text(day: date, today: date) -> str:
     return "today" if days <= 0 else "tomorrow" if days == 1 else f"in {days} days"
 
 
-def schedule_lines(schedule: PracticeSchedule) -> list[str]:
+def schedule_blocks(schedule: PracticeSchedule) -> list[Block]:
     """The schedule: for every topic the number of questions today, or the next day."""
     if not schedule.topics:
-        return ["Nothing is scheduled yet: a topic returns the day after its first question."]
-    widest = max(len(each.topic.label) for each in schedule.topics)
-    lines = []
+        return [Text("Nothing is scheduled yet: a topic returns the day after its first question.")]
+    rows = []
     for each in schedule.topics:
         left = each.questions_left(schedule.today)
         words = f"{left} due today" if left else f"again {days_text(each.due, schedule.today)}"
-        lines.append(f"{each.topic.label:<{widest}}  {words}")
+        rows.append((each.topic.label, words))
+    blocks: list[Block] = [
+        Table("schedule", "", (Column("", _WORDS), Column("", _WORDS)), tuple(rows), is_tight=True)
+    ]
     if schedule.practice_days:
         count = len(schedule.practice_days)
-        lines.append(f"Days with a practice finished: {count}. Each day counts once.")
-    return lines
+        blocks.append(Text(f"Days with a practice finished: {count}. Each day counts once.", is_tight=True))
+    return blocks
 
 
 def today_line(schedule: PracticeSchedule) -> str:
-    """The questions due today, in one line."""
+    """The questions due today, in one sentence."""
     due = [
         (each.topic.label, left) for each in schedule.topics if (left := each.questions_left(schedule.today))
     ]
@@ -202,29 +206,38 @@ def tally_line(counts: OutcomeCounts) -> str:
     return ", ".join(parts)
 
 
-def topic_table(scores: Mapping[QuizTopic, OutcomeCounts]) -> list[str]:
+def topic_table(scores: Mapping[QuizTopic, OutcomeCounts]) -> Table:
     """A table with one row per topic."""
-    head = f"{'':<16} {'items':>5} {'right':>6} {'wrong':>6} {'not sure':>9} {'blank':>6} {'not asked':>10}"
-    return [
-        head,
-        *(
-            f"{topic.label:<16} {t.total:>5} {t.right:>6} {t.wrong:>6} {t.not_sure:>9} {t.blank:>6} {t.not_asked:>10}"
-            for topic, t in scores.items()
-        ),
-    ]
+    columns = (
+        Column("", _WORDS),
+        Column("questions"),
+        Column("right"),
+        Column("wrong"),
+        Column("not sure"),
+        Column("blank"),
+        Column("not asked", is_spare=True),
+    )
+    rows = tuple(
+        (topic.label, t.total, t.right, t.wrong, t.not_sure, t.blank, t.not_asked)
+        for topic, t in scores.items()
+    )
+    return Table("topics", "", columns, rows, is_ruled=False)
 
 
-def calibration_lines(calibration: Calibration) -> list[str]:
-    """Confidence against the share of right answers, one line per level."""
+def calibration_blocks(calibration: Calibration) -> list[Block]:
+    """Confidence against the share of right answers, one row per level."""
     if not calibration.answers:
-        return ["No answer says yet how sure you were."]
-    lines = []
+        return [Text("No answer says yet how sure you were.", is_tight=True)]
+    rows = []
     for level in calibration.levels:
         share = level.right / level.answers if level.answers else 0.0
-        bar = "#" * round(BAR * share)
         result = f"{level.right} of {level.answers}" if level.answers else "-"
-        lines.append(f"{CONFIDENCE_LABELS[level.confidence]:<14} {result:>9}  {bar}".rstrip())
-    return [*lines, _calibration_summary(calibration)]
+        rows.append((CONFIDENCE_LABELS[level.confidence], result, "#" * round(BAR * share)))
+    columns = (Column("", _WORDS), Column(""), Column("", _WORDS))
+    return [
+        Table("calibration", "", columns, tuple(rows), is_tight=True),
+        Text(_calibration_summary(calibration), is_tight=True),
+    ]
 
 
 def _calibration_summary(calibration: Calibration) -> str:
@@ -247,30 +260,31 @@ def round_lines(history: RoundHistory) -> list[str]:
     return lines
 
 
-def closing_lines(session: QuizSession) -> list[str]:
+def closing_blocks(session: QuizSession) -> list[Block]:
     """The end of a session: results by topic, calibration, and what comes next."""
     plan = session.plan
     answers = session.all_answers()
-    lines: list[str] = []
+    blocks: list[Block] = []
     if isinstance(plan, QuizRoundPlan):
         history = plan.history(answers)
         scores = count_by_topic(plan.items, history.last)
-        lines += [f"{plan.title}: {round_lines(history)[0]}.", *round_lines(history)[1:]]
+        first, *rest = round_lines(history)
+        blocks += [Text(f"{plan.title}: {first}."), *(Text(each, is_tight=True) for each in rest)]
         answered: Iterable[QuizAnswer] = history.last.values()
     else:
         items = _answered_items(session.bank, session.session_answers)
         scores = count_by_topic(items, latest_answers(session.session_answers))
-        lines.append(
-            f"Practised: {tally_line(count_outcomes(items, latest_answers(session.session_answers)))}."
-            if items
-            else ""
-        )
+        if items:
+            blocks.append(
+                Text(
+                    f"Practised: {tally_line(count_outcomes(items, latest_answers(session.session_answers)))}."
+                )
+            )
         answered = session.session_answers
     if len(scores) > 1:
-        lines += ["", *topic_table(scores)]
-    lines += ["", f"{CALIBRATION_HEADING}:", *calibration_lines(measure_calibration(answered))]
-    lines += ["", today_line(session.build_schedule())]
-    return [line for index, line in enumerate(lines) if line or index]
+        blocks.append(topic_table(scores))
+    blocks += [Text(f"{CALIBRATION_HEADING}:"), *calibration_blocks(measure_calibration(answered))]
+    return [*blocks, Text(today_line(session.build_schedule()))]
 
 
 def restart_line(plan: QuizRoundPlan) -> str:
@@ -278,31 +292,26 @@ def restart_line(plan: QuizRoundPlan) -> str:
     return f"`{plan.command} --again` asks {'them' if len(plan.items) > 1 else 'it'} again."
 
 
-def scores_lines(
+def scores_blocks(
     bank: QuestionBank, answers: Sequence[QuizAnswer], schedule: PracticeSchedule
-) -> Iterator[str]:
+) -> list[Block]:
     """All scores of the answers so far."""
     quiz = quiz_plan(bank).history(answers)
-    yield "The quiz of twelve"
+    blocks: list[Block] = [Text("The quiz of twelve", Tone.BOLD)]
     if quiz.last:
-        yield from (f"  {line}" for line in round_lines(quiz))
-        yield from (f"  {line}" for line in topic_table(count_by_topic(quiz.items, quiz.last)))
+        blocks += [Text(each, is_tight=True) for each in round_lines(quiz)]
+        blocks.append(topic_table(count_by_topic(quiz.items, quiz.last)))
     else:
-        yield "  not begun; `kit quiz` asks it"
-    yield ""
-    yield "All questions, by the latest answer to each"
-    yield from (f"  {line}" for line in topic_table(count_by_topic(bank.items, latest_answers(answers))))
-    yield ""
-    yield CALIBRATION_HEADING
-    yield from (f"  {line}" for line in calibration_lines(measure_calibration(answers)))
-    yield ""
-    yield "What comes back when"
-    yield from (f"  {line}" for line in schedule_lines(schedule))
-
-
-def wrap_text(text: str, width: int, indent: str = "") -> list[str]:
-    """Wraps text to lines, each with the indent."""
-    return textwrap.wrap(text, width, initial_indent=indent, subsequent_indent=indent) or [indent]
+        blocks.append(Text("Not begun; `kit quiz` asks it.", is_tight=True))
+    return [
+        *blocks,
+        Text("All questions, by the latest answer to each", Tone.BOLD),
+        topic_table(count_by_topic(bank.items, latest_answers(answers))),
+        Text(CALIBRATION_HEADING, Tone.BOLD),
+        *calibration_blocks(measure_calibration(answers)),
+        Text("What comes back when", Tone.BOLD),
+        *schedule_blocks(schedule),
+    ]
 
 
 def _answered_items(bank: QuestionBank, answers: Iterable[QuizAnswer]) -> list[QuizItem]:

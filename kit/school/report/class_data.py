@@ -20,8 +20,6 @@ from kit.school.quiz.schedule import AnswerOccasion, answer_from_event
 from kit.school.report.measures import BLANK, AnswerSheet, ClassRatings, ItemReply, ReportItem
 from kit.school.survey import AnswerShape, FormAnswers, SurveyForm, SurveyPhase, SurveyQuestion
 
-MAX_FILE_SIZE: Final = 100_000_000
-"""Largest file that is read [bytes]: a year of a student's work is a hundredth of it."""
 MAX_NAME_LENGTH: Final = 40
 
 
@@ -99,10 +97,6 @@ def _list_files(paths: Iterable[Path], warnings: list[str]) -> Iterator[Path]:
 def _add_file(file: Path, students: list[_StudentFiles], warnings: list[str]) -> None:
     """Reads a file, and merges it with the student with whom it shares events, if there is one."""
     try:
-        if file.is_file() and file.stat().st_size > MAX_FILE_SIZE:
-            raise ProgressError(
-                f"{file}: is larger than {MAX_FILE_SIZE // 1_000_000} MB; no export of progress is."
-            )
         events = {event.uid: event for event in read_export(file)}
     except ProgressError as error:
         warnings.append(f"{error} It is left out.")

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Final
 
+from kit.document.blocks import Chapter, Document
 from kit.school.report.chapters import people, quiz, relations
 from kit.school.report.chapters.context import ReportContext
 from kit.school.report.class_data import ClassData
-from kit.school.report.document import ClassReport, ReportChapter
 from kit.school.report.expertise import DIVISION_METHODS, divide_class, expertise_scores
 from kit.school.survey import QuestionPurpose, SurveyPhase
 
@@ -57,7 +57,7 @@ def prepare_report(data: ClassData, *, method: str = "mean", seed: int = 0) -> R
     return ReportContext(data, score, divisions, chosen, seed)
 
 
-def build_chapters(context: ReportContext, chapter_ids: Collection[str] = ()) -> tuple[ReportChapter, ...]:
+def build_chapters(context: ReportContext, chapter_ids: Collection[str] = ()) -> tuple[Chapter, ...]:
     """Builds the chapters that there is data for, all or those with the ids given; without the one about files."""
     chapters = (make(context) for make in _CHAPTER_BUILDERS)
     return tuple(
@@ -65,11 +65,11 @@ def build_chapters(context: ReportContext, chapter_ids: Collection[str] = ()) ->
     )
 
 
-def build_report(context: ReportContext, file_count: int, chapter_ids: Collection[str] = ()) -> ClassReport:
+def build_report(context: ReportContext, file_count: int, chapter_ids: Collection[str] = ()) -> Document:
     """Builds the whole report of a class that was read from ``file_count`` files."""
     first = people.class_chapter(context, file_count)
     head = (first,) if not chapter_ids or first.id in chapter_ids else ()
-    return ClassReport("Class report", (*head, *build_chapters(context, chapter_ids)))
+    return Document("Class report", (*head, *build_chapters(context, chapter_ids)))
 
 
 def question_topics(data: ClassData) -> dict[str, str]:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
+from kit.document.rows import Row, row
+from kit.plain_text import wrap
 from kit.school.game.challenge_answers import task_lines
 from kit.school.game.challenges import AnswerComparison, Challenge, Judgement
 from kit.school.game.player_progress import Medal
 from kit.school.lessons.reading import lesson_number
 from kit.school.lessons.shell_lines import shell_path
 from kit.tui.rows.level_rows import MEDAL_SIGNS, MEDAL_STYLES, TITLE_WIDTH, medal_row
-from kit.tui.widgets.text_rows import Row, row
 
 TITLE_COLUMNS: Final = TITLE_WIDTH + 8
 HEADER: Final = f"  {'challenge':<{TITLE_COLUMNS}} medal  lesson"
@@ -44,7 +44,7 @@ def about_challenge(challenge: Challenge, medal: Medal, width: int) -> list[Row]
         row(
             ("best   ", "dim"),
             medal.title,
-            (f"   lesson {lesson_number(challenge.lesson)} prepares it", "dim"),
+            (f"   lesson {lesson_number(challenge.lesson)} teaches it", "dim"),
         ),
     ]
 
@@ -103,7 +103,5 @@ def _wrapped(word: str, text: str, width: int, style: str = "bold") -> list[Row]
     """A text that begins with a word in a style of its own, in rows of at most ``width`` columns."""
     start = f"{word} " if word else ""
     indent = " " * len(start) if style == "dim" or not word.strip() else ""
-    first, *others = textwrap.wrap(
-        start + text, max(20, width), subsequent_indent=indent, drop_whitespace=True
-    )
+    first, *others = wrap(text, max(20, width), start, indent)
     return [row((start, style), first[len(start) :]), *(row(line) for line in others)]

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from kit.document.rows import PLAIN, Row, row, spread
 from kit.msg.message import Message
-from kit.plain_text import counted
+from kit.plain_text import counted, wrap
 from kit.render.graph import GraphElement, rate_text
 from kit.render.graph_layout import GraphData, message_field_rows
 from kit.ros.graph.snapshot import (
@@ -20,7 +20,6 @@ from kit.ros.graph.snapshot import (
     ServiceState,
     TopicState,
 )
-from kit.tui.widgets.text_rows import PLAIN, Row, row, spread
 
 MARKED: Final = "key"
 """The style of the field that is chosen in a message."""
@@ -106,7 +105,7 @@ def _of_topic(
 ) -> Iterator[Row]:
     yield row((topic.name, "bold"), f"  {', '.join(topic.types)}")
     for mismatch in topic.mismatches:
-        for line in textwrap.wrap(f"nothing arrives: {mismatch.reason}", width):
+        for line in wrap(f"nothing arrives: {mismatch.reason}", width):
             yield row((line, "bad"))
     if not full:
         yield row(*_ends("from", topic.publishers), *_ends("  to", topic.subscriptions))

@@ -8,8 +8,8 @@ from typing import Final
 
 from textual.binding import Binding, BindingType
 
-from kit.tui.actions import ScreenActions
-from kit.tui.widgets.text_rows import Row, row
+from kit.dialogue.actions import ScreenActions
+from kit.document.rows import Row, row
 
 KEY_WIDTH: Final = 17
 """Columns of the keys on a help page."""

@@ -1,59 +1,28 @@
-"""A lesson's step as rows of text: heading, words, what can be predicted, and what a check said. Pure.
-
-The list of lessons and a student's progress, as rows of text. Pure.
-"""
+"""The rows around a lesson's step, the list of lessons, and a student's progress. Pure."""
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
 from typing import Final
 
-from kit.school.game.levels import GameLevel, opened_levels_text
+from kit.document.rows import TEXT_WIDTH, Row, row, spread
+from kit.plain_text import wrap
+from kit.school.game.levels import GameLevel
 from kit.school.lessons.catalogue import LessonEntry, LessonProgress
-from kit.school.lessons.checking import CheckReport
-from kit.school.lessons.glossary import GlossaryTerm
-from kit.school.lessons.lesson_session import LessonHint
-from kit.school.lessons.markup import TextStyle, parse_markup, wrap_blocks
 from kit.school.lessons.records import (
-    CommandKind,
-    Exercise,
-    Lesson,
-    LessonCommand,
     LessonStep,
-    PredictionOption,
     StepKind,
 )
-from kit.school.lessons.shell_lines import broken_command, is_command
-from kit.school.result import TextRole, criterion_lines, points_text
-from kit.tui.widgets.text_rows import MARGIN, TEXT_WIDTH, Row, entry_rows, row, spread, text_width
 
 LONGEST_BAR: Final = 12
 LEAST_TITLE: Final = 8
 
-_STYLES: Final = {TextStyle.PLAIN: "", TextStyle.CODE: "code", TextStyle.BOLD: "bold"}
-_ROLE_STYLES: Final = {
-    TextRole.PASSED: "good",
-    TextRole.LOST: "bad",
-    TextRole.NOT_JUDGED: "dim",
-    TextRole.PLAIN: "",
-    TextRole.HEADING: "bold",
-    TextRole.DETAIL: "dim",
-    TextRole.HINT: "bold",
-}
 _KINDS: Final = {
     StepKind.PREDICT: "Predict",
     StepKind.RUN: "Run",
     StepKind.EXPLAIN: "Read",
     StepKind.MODIFY: "Change",
     StepKind.MAKE: "Make",
-}
-_WHERE: Final = {
-    CommandKind.ALONE: "In a second terminal, or here: press o. For how to open one, press a.",
-    CommandKind.SCREEN: "To run it here, press o:",
-    CommandKind.BESIDE: "In a second terminal (press a for how to open one), while a world runs:",
 }
 
 
@@ -89,136 +58,9 @@ def title(step: LessonStep, caption: Row, width: int) -> Row:
     return spread(row((f"{_KINDS[step.kind]}: ", "dim"), (step.title, "bold")), caption, width)
 
 
-def words(text: str, width: int) -> list[Row]:
-    """A lesson's text."""
-    room = min(width - 2 * MARGIN, TEXT_WIDTH)
-    made: list[Row] = []
-    for each in wrap_blocks(parse_markup(text), room):
-        if len(each) == 1 and len(each[0].text) > room:
-            made += code(each[0].text, room)
-        else:
-            made.append(
-                row(" " * MARGIN, *((piece.text, _STYLES[piece.style]) for piece in each)) if each else row()
-            )
-    return made
-
-
-def code(line: str, room: int) -> list[Row]:
-    """A line of code; one that is too long on several. What goes on in the middle of a word has no margin."""
-    parts = (
-        broken_command(line, room)
-        if is_command(line)
-        else [line[at : at + room] for at in range(0, len(line), room)]
-    )
-    made = [row(" " * MARGIN, (parts[0], "code"))]
-    for before, part in pairwise(parts):
-        in_a_word = before.endswith("\\") and not before.endswith(" \\")
-        made.append(row("" if in_a_word else " " * MARGIN, (part, "code")))
-    return made
-
-
-def commands(filled: Sequence[tuple[LessonCommand, str]], width: int) -> list[Row]:
-    """The commands of a step, those of a kind under one line that says where to type them."""
-    made: list[Row] = []
-    for how, where in _WHERE.items():
-        lines = [line for command, line in filled if command.kind is how]
-        if lines:
-            made += [row(), row(" " * MARGIN, (where, "dim"))]
-            made += [each for line in lines for each in code(" " * MARGIN + line, text_width(width))]
-    return made
-
-
-def question(step: LessonStep, chosen: PredictionOption | None, told: bool, width: int) -> list[Row]:
-    """The question and its options, ``>`` before the chosen one; once it is told, ``+`` before the right and ``x``
-    before a wrong choice."""
-    made = [row(" " * MARGIN, (line, "bold")) for line in _wrapped(step.question, width)]
-    for number, option in enumerate(step.options, 1):
-        mark, style = (">", "bold") if option is chosen else (" ", "")
-        if told and option.is_right:
-            mark, style = "+", "good"
-        elif told:
-            mark, style = ("x", "bad") if option is chosen else (" ", "dim")
-        made += entry_rows(mark, str(number), option.text, style, text_width(width))
-    return made
-
-
-def feedback(step: LessonStep, chosen: PredictionOption, width: int) -> list[Row]:
-    """Returns the feedback to the prediction, and that of the right option where it was another."""
-    right = next(option for option in step.options if option.is_right)
-    if chosen.is_right:
-        return [row(), *_wrapped_after("Right.", "good", chosen.feedback, width)]
-    numbers = {id(option): number for number, option in enumerate(step.options, 1)}
-    return [
-        row(),
-        *_wrapped_after(
-            f"Not this time: you predicted {numbers[id(chosen)]}.", "bold", chosen.feedback, width
-        ),
-        row(),
-        *_wrapped_after(f"The answer is {numbers[id(right)]}.", "good", right.feedback, width),
-    ]
-
-
-@dataclass(frozen=True, slots=True)
-class VerdictRows:
-    """The rows of a check's result, and the one to look at first."""
-
-    rows: Sequence[Row]
-    first_lost: int
-    """The row of the first criterion that is lost; 0 where none is."""
-    last_hint: int
-    """The row in which the newest hint begins; 0 where none is open."""
-
-
-def verdict(report: CheckReport, hints: Sequence[LessonHint], width: int) -> VerdictRows:
-    """Shows a check's result, criterion by criterion; the hints opened so far below the criterion they help with."""
-    made: list[Row] = [row()]
-    first_lost = last_hint = 0
-    if report.problem:
-        style = "warn" if report.is_broken else "bad"
-        made += [row(" " * MARGIN, (line, style)) for line in _wrapped(report.problem, width)]
-    for each in report.criteria:
-        opened = sum(hint.criterion.id == each.id for hint in hints)
-        first_lost = first_lost or (0 if each.is_passed else len(made))
-        for line in criterion_lines(each, text_width(width), hints=opened):
-            if opened and line[0].role is TextRole.HINT and f"Hint {opened} of" in line[0].text:
-                last_hint = len(made)
-            made.append(row(" " * MARGIN, *((span.text, _ROLE_STYLES[span.role]) for span in line)))
-    return VerdictRows(made, first_lost, last_hint)
-
-
-def status(report: CheckReport | None, progress: LessonProgress, exercise: Exercise, by_hand: bool) -> Row:
-    """One line of where one is with an exercise."""
-    begin = (
-        "Press d to drive; leaving the drive checks it"
-        if by_hand
-        else "Save the file to check it, or press c"
-    )
-    passed = exercise.name in progress.passed_exercises
-    if report is None:
-        best = progress.best_shares.get(exercise.name)
-        if passed:
-            return row((" Passed before.", "good"), f" {begin}.")
-        return row((f" {begin}.", ""), (f" Best so far: {best:.0%}." if best else "", "dim"))
-    if report.is_broken:
-        return row((" The check itself failed. Press c to try again.", "warn"))
-    level = f", isolation level {report.result.level}" if report.result and report.result.level else ""
-    points = (
-        f"{points_text(report.points, report.max_points)} points, checked in {report.seconds:.1f} s{level}."
-    )
-    if report.is_passed:
-        return row((" Passed: ", "good"), ("*** ", "warn"), points)
-    if not report.criteria:
-        return row((" Not checked.", "bad"))
-    return row(
-        (" Not yet: ", "bad"),
-        points,
-        " Press h for a hint." if any(each.hints for each in report.lost_criteria) else "",
-    )
-
-
 def checking(seconds: float, progress: str = "") -> Row:
     """One line of a check that is running. ``progress``: what it is doing."""
-    return row((f" {seconds:.1f} s: {progress}" if progress else f" Checking ... {seconds:.1f} s", "bold"))
+    return row((f"  {seconds:.1f} s: {progress}" if progress else f"  Checking ... {seconds:.1f} s", "bold"))
 
 
 def file_rows(path: str, by_hand: bool, others: bool, width: int) -> list[Row]:
@@ -246,80 +88,6 @@ def _broken_path(path: str, room: int) -> list[str]:
         parts.append(path[:cut])
         path = path[cut:]
     return [*parts, path]
-
-
-def ending(
-    progress: LessonProgress, width: int, following: Lesson | None = None, levels: Sequence[GameLevel] = ()
-) -> list[Row]:
-    """The page after the last step. ``following``: the lesson that Enter opens. ``levels``: those that this one opens."""
-    lesson = progress.lesson
-    made = [row()]
-    if progress.is_completed:
-        made.append(row(" " * MARGIN, (f"{lesson.title} is done.", "good")))
-        made += [row(), row(" " * MARGIN, "You can now:")]
-        made += [
-            line
-            for outcome in lesson.outcomes
-            for line in entry_rows(" ", "-", outcome, "", text_width(width))
-        ]
-    else:
-        open_steps = [step for step in lesson.steps if not progress.is_step_completed(step)]
-        made.append(row(" " * MARGIN, ("That was the last step. Not done yet:", "bold")))
-        made += [
-            line
-            for step in open_steps
-            for line in entry_rows(" ", str(step.number), step.title, "", text_width(width))
-        ]
-        made += [
-            row(),
-            *(
-                row(" " * MARGIN, line)
-                for line in _wrapped("Press b for the previous step, l for the list of steps.", width)
-            ),
-        ]
-    best = [f"{each.name} {progress.best_shares.get(each.name, 0.0):.0%}" for each in lesson.exercises]
-    if best:
-        made += [row(), *_indented("Exercises: " + ", ".join(best), "", width, MARGIN)]
-    if progress.is_completed and (text := opened_levels_text(tuple(levels))):
-        made += [row(), *_indented(text, "", width, MARGIN)]
-    if following is not None:
-        made += [
-            row(),
-            *_indented(
-                f"Enter opens the next lesson, {following.number} {following.title}.", "bold", width, MARGIN
-            ),
-        ]
-    return made
-
-
-def _wrapped_after(head: str, style: str, text: str, width: int) -> list[Row]:
-    first, *rest = textwrap.wrap(text, text_width(width), initial_indent=" " * (len(head) + 1)) or [""]
-    return [
-        row(" " * MARGIN, (head, style), " ", first.strip()),
-        *(row(" " * MARGIN + line) for line in rest),
-    ]
-
-
-def _indented(text: str, style: str, width: int, indent: int = MARGIN + 5) -> list[Row]:
-    lines = [
-        line
-        for part in text.splitlines()
-        for line in textwrap.wrap(part, max(20, text_width(width) - indent + MARGIN))
-    ]
-    return [row(" " * indent, (line, style)) for line in lines]
-
-
-def _wrapped(text: str, width: int) -> list[str]:
-    return [line for part in text.splitlines() for line in textwrap.wrap(part, text_width(width))]
-
-
-def glossary_rows(terms: Sequence[GlossaryTerm]) -> list[Row]:
-    """Each term in bold, its meaning below it, and a blank row between two."""
-    rows: list[Row] = []
-    for each in terms:
-        first, *rest = each.lines()
-        rows += [row(("  " + first, "bold")), *(row(line) for line in rest), row()]
-    return rows
 
 
 TITLE: Final = 46
@@ -363,17 +131,14 @@ def summary(entry: LessonEntry, rows: int) -> list[Row]:
     """What the chosen lesson is about, and what one can do after it; at most so many rows."""
     lesson = entry.lesson
     if lesson is None:
-        lines = [each for part in entry.problem.splitlines() for each in textwrap.wrap(part, TEXT_WIDTH)]
+        lines = [each for part in entry.problem.splitlines() for each in wrap(part, TEXT_WIDTH)]
         return [row("  ", (each, "bad")) for each in lines[:rows]]
     made = []
     if entry.opened_unit is not None:
-        made += [row("  ", (each, "dim")) for each in textwrap.wrap(entry.opened_unit.opener, TEXT_WIDTH)]
-    made += [row("  ", each) for each in textwrap.wrap(lesson.summary, TEXT_WIDTH)]
+        made += [row("  ", (each, "dim")) for each in wrap(entry.opened_unit.opener, TEXT_WIDTH)]
+    made += [row("  ", each) for each in wrap(lesson.summary, TEXT_WIDTH)]
     for outcome in lesson.outcomes:
-        made += [
-            row("  ", (each, "dim"))
-            for each in textwrap.wrap(f"- {outcome}", TEXT_WIDTH, subsequent_indent="  ")
-        ]
+        made += [row("  ", (each, "dim")) for each in wrap(f"- {outcome}", TEXT_WIDTH, "", "  ")]
     return made[:rows]
 
 
@@ -389,13 +154,13 @@ def details(entry: LessonEntry, levels: Sequence[GameLevel], width: int) -> list
         row((f"{entry.number}  {lesson.title}", "bold")),
         row((f"{lesson.minutes} min, {done}", "dim")),
         row(),
-        *(row((each, "dim")) for each in textwrap.wrap(opener, room)),
-        *(row(each) for each in textwrap.wrap(lesson.summary, room)),
+        *(row((each, "dim")) for each in (wrap(opener, room) if opener else ())),
+        *(row(each) for each in wrap(lesson.summary, room)),
         row(),
         row(("Afterwards you can:", "bold")),
     ]
     for outcome in lesson.outcomes:
-        made += [row(each) for each in textwrap.wrap(f"- {outcome}", room, subsequent_indent="  ")]
+        made += [row(each) for each in wrap(f"- {outcome}", room, "", "  ")]
     made += [row(), row(("Steps", "bold"))]
     for step in lesson.steps:
         is_done = progress.is_step_completed(step)
@@ -411,7 +176,7 @@ def details(entry: LessonEntry, levels: Sequence[GameLevel], width: int) -> list
         )
     if levels:
         titles = ", ".join(level.title for level in levels)
-        made += [row(), *(row((each, "dim")) for each in textwrap.wrap(f"Opens in the game: {titles}", room))]
+        made += [row(), *(row((each, "dim")) for each in wrap(f"Opens in the game: {titles}", room))]
     return made
 
 

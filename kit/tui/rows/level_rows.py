@@ -7,6 +7,9 @@ from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 from typing import Final
 
+from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText
+from kit.document.layout import Page, rows_of
+from kit.document.rows import Row, row, spread
 from kit.plain_text import counted
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
@@ -25,7 +28,6 @@ from kit.school.game.player_progress import (
 )
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedGameState, SharedMode, SharedPhase
-from kit.tui.widgets.text_rows import Row, row, spread
 
 TITLE_WIDTH: Final = 24
 STAR, NO_STAR, SHUT = "*", ".", "-"
@@ -56,44 +58,59 @@ def medal_counts(summary: GameSummary) -> str:
 
 def game_progress(summary: GameSummary) -> list[Row]:
     """One row for all that was won, and one for each world: how many of its levels have a medal, and its belt."""
-    made = [row(f"  {medal_counts(summary)}"), row()]
+    rows: list[tuple[Cell, ...]] = []
     for title, entries in summary.best_by_world.items():
         won = sum(medal is not Medal.NONE for medal in entries)
-        made.append(
-            row(
-                f"  {title:<28}",
-                (f"{won:>2} of {len(entries):<2}   {belt_of(entries)} belt", "bold" if won else "dim"),
-            )
-        )
-    return made
+        tone = Tone.BOLD if won else Tone.DIM
+        figures = (f"{won} of {len(entries)}", f"{belt_of(entries)} belt")
+        rows.append((title, *(ToneText(text, tone) for text in figures)))
+    columns = (Column("", CellStyle.TEXT), Column(""), Column("", CellStyle.TEXT))
+    table = Table("worlds", "", columns, tuple(rows))
+    return [row(f"  {medal_counts(summary)}"), row(), *rows_of([table], Page(margin=2))]
 
 
 BEST: Final = 3
 """Rows of the leaderboard per level."""
 
 
-def leaderboard_standings(standings: Sequence[PlayerStanding], offer: str = "") -> list[Row]:
+def leaderboard_standings(standings: Sequence[PlayerStanding], offer: str = "") -> list[Block]:
     """A table of all who have joined. ``offer``: what can be done about it."""
-    rows = [row((f"  {'':<28}gold  silver  bronze  stars  quickest on", "dim"))]
-    for place, each in enumerate(standings, 1):
-        gold, silver, bronze = (each.medals[medal] for medal in (Medal.GOLD, Medal.SILVER, Medal.BRONZE))
-        figures = f"{gold:>5}{silver:>8}{bronze:>8}{each.stars:>7}  {counted(each.fastest, 'level')}"
-        rows.append(row(f"{place:>3}. ", (f"{each.name:<23.23}", "bold" if each.is_mine else ""), figures))
+    offered = [Text(offer, Tone.DIM)] if offer else []
     if not standings:
-        rows = [row("  Nobody is on the leaderboard of this machine yet.")]
-    return [row(), *rows, row(), *([row((f"  {offer}", "dim"))] if offer else [])]
+        return [Text("Nobody is on the leaderboard of this machine yet."), *offered]
+    columns = (
+        Column(""),
+        Column("", CellStyle.TEXT),
+        *map(Column, ("gold", "silver", "bronze", "stars")),
+        Column("quickest on", CellStyle.TEXT),
+    )
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
+        (
+            f"{place}.",
+            _player(each.name, each.is_mine),
+            *(each.medals[medal] for medal in (Medal.GOLD, Medal.SILVER, Medal.BRONZE)),
+            each.stars,
+            counted(each.fastest, "level"),
+        )
+        for place, each in enumerate(standings, 1)
+    )
+    return [Table("standings", "", columns, rows, is_ruled=False), *offered]
 
 
-def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> list[Row]:
+def _player(name: str, is_mine: bool) -> ToneText:
+    return ToneText(name, Tone.BOLD if is_mine else Tone.PLAIN)
+
+
+def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
     """The quickest drives of today's level and of each other. ``entries``: in the order of ``read_entries``."""
-    rows = [row()]
     titles = {daily_level(today()).id: "Today's level", **{each.id: each.title for each in all_levels()}}
-    for level, title in titles.items():
-        best = [each for each in entries if each.level == level][:BEST]
-        for shown, each in zip((title, *[""] * BEST), best, strict=False):
-            name = (f"{each.name:<20.20}", "bold" if each.is_mine else "")
-            rows.append(row(f"  {shown:<20.20} ", name, f" {each.seconds:7.2f} s  {each.driver.phrase}"))
-    return rows
+    rows = tuple(
+        (title, _player(each.name, each.is_mine), f"{each.seconds:.2f} s", each.driver.phrase)
+        for level, title in titles.items()
+        for each in [each for each in entries if each.level == level][:BEST]
+    )
+    columns = (Column("", CellStyle.TEXT), Column("", CellStyle.TEXT), Column(""), Column("", CellStyle.TEXT))
+    return Table("times", "", columns, rows, grouped=True)
 
 
 def world_levels(
@@ -132,9 +149,9 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
         row((level.title, "bold"), f"  {level.story}"),
         row(("task   ", "dim"), level.hint),
         row(
-            ("needs  ", "dim"),
+            ("skill  ", "dim"),
             level.skill,
-            (f"   lesson {level.lesson_number} prepares it" if level.opened_by_lesson else "", "dim"),
+            (f"   lesson {level.lesson_number} opens it too" if level.opened_by_lesson else "", "dim"),
         ),
     ]
     if not progress.is_open:

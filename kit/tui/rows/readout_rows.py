@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
+from kit.document.rows import Row, StyledText, row, spread
 from kit.geometry import whole_degrees
-from kit.plain_text import format_clock
+from kit.plain_text import format_clock, wrap
 from kit.run.pacing import MAXIMUM, PacingStatus
-from kit.tui.widgets.text_rows import Row, StyledText, row, spread
 
 if TYPE_CHECKING:
     from kit.learning.policies.agent_view import AgentView, RatedAction
@@ -102,7 +101,7 @@ def _figure(name: str, value: str, unit: str) -> Row:
 def failure_or_messages(view: View, rows: int, width: int) -> tuple[Row, ...]:
     """What went wrong with the controller, in sight as long as it holds; else the newest messages."""
     if view.failure is not None:
-        lines = textwrap.wrap(str(view.failure), width, max_lines=rows, placeholder=" ...")
+        lines = wrap(str(view.failure), width, most=rows)
         return tuple(row((line, "bad")) for line in lines)
     return tuple(message_row(record, width) for record in view.messages[-rows:])
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Collection, Mapping, Sequence
 from itertools import pairwise
 from types import MappingProxyType
@@ -11,13 +10,16 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from kit.arrays import FloatArray
+from kit.dialogue.actions import ScreenActions
+from kit.document.blocks import Text
+from kit.document.layout import Page, rows_of
+from kit.document.rows import Row, row, spread
+from kit.document.tables import list_rows
 from kit.plain_text import format_size
 from kit.render.curve import Axes, ChartPart, Curve, StackedCounts
 from kit.render.roles import Role
-from kit.tui.actions import ScreenActions
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import agent_panel
-from kit.tui.widgets.text_rows import Row, row, spread
 
 if TYPE_CHECKING:
     from kit.learning.environment.tasks import LearningTask
@@ -26,78 +28,27 @@ if TYPE_CHECKING:
     from kit.learning.training.run_upkeep import RunOverview
 
 
-STATE_WIDTH: Final = 11
-FIGURES_WIDTH: Final = 36
-"""Steps, best, disk, left."""
-STATE_STYLES: Final = {
-    "running": "good",
-    "paused": "warn",
-    "finished": "",
-    "stopped": "warn",
-    "interrupted": "warn",
-    "failed": "bad",
-    "new": "dim",
-}
-
-
 def no_trainings(tasks: Sequence[LearningTask], width: int, height: int) -> list[Row]:
     """Says how to start the first training, and lists the tasks, as far as there is room."""
     begin = (
         "No trainings yet. Press t to start one: choose a task, its cases, an algorithm, a reward, a seed."
     )
-    rows = [*(row(f" {line}") for line in textwrap.wrap(begin, width - 2)), row()]
-    name_width = max((len(task.name) for task in tasks), default=0)
-    for task in tasks:
-        summary = textwrap.shorten(task.summary, max(4, width - name_width - 4), placeholder=" ...")
-        rows.append(row((f" {task.name:{name_width}}", "bold"), f"  {summary}"))
-    return rows[:height]
+    from kit.learning.tasks.task_text import tasks_table
+
+    rows = rows_of([Text(begin), tasks_table(tasks)], Page(width=width - 2, margin=1))
+    if len(rows) <= height:
+        return rows
+    return [*rows[: max(0, height - 1)], row((" ... and more: kit task list", "dim"))]
 
 
 def training_list(
     runs: Sequence[RunOverview], chosen: int, marked: Collection[str], width: int, height: int
 ) -> list[Row]:
-    """A head and as many rows as there is room for, the chosen one among them."""
-    name_width = max(
-        12, min(width - STATE_WIDTH - FIGURES_WIDTH - 6, max(len(each.run.name) for each in runs))
-    )
-    head = f"   {'run':{name_width}}  {'state':{STATE_WIDTH}} {'steps':>9}  {'best':>5}  {'disk':>10}  left, reward"
-    room = max(1, height - 1)
-    first = max(0, min(chosen - room // 2, len(runs) - room))
-    shown = runs[first : first + room]
-    return [
-        row((head[:width], "dim")),
-        *(
-            _run_row(each, name_width, is_chosen=first + place == chosen, is_marked=each.run.name in marked)
-            for place, each in enumerate(shown)
-        ),
-    ]
+    """The table of the runs, with the chosen one in sight."""
+    from kit.learning.training.run_upkeep import runs_table
 
-
-def _run_row(each: RunOverview, name_width: int, *, is_chosen: bool, is_marked: bool) -> Row:
-    from kit.learning.training.run_text import success_shares
-    from kit.learning.training.run_upkeep import format_seconds
-
-    head = row(
-        (">" if is_chosen else " ", "bold"),
-        ("*" if is_marked else " ", "warn"),
-        (f" {each.run.name:{name_width}.{name_width}} ", "chosen" if is_chosen else ""),
-        " ",
-    )
-    summary = each.summary
-    if summary is None:
-        return (*head, (f"{'damaged':{STATE_WIDTH}}", "bad"), (f" {format_size(each.disk_bytes):>28}", "dim"))
-    best = "-"
-    if summary.best_evaluation is not None:
-        shares = success_shares(summary.best_evaluation).values()
-        best = f"{sum(shares) / len(shares):.2f}"
-    left = "" if each.remaining_s is None else f"  {format_seconds(each.remaining_s)}"
-    return (
-        *head,
-        (f"{summary.state:{STATE_WIDTH}}", STATE_STYLES[summary.state]),
-        (f" {summary.steps:>9,}  {best:>5}  {format_size(each.disk_bytes):>10}", ""),
-        (left, "bold"),
-        (f"  {each.reward}" if each.reward else "", ""),
-    )
+    places = [place for place, each in enumerate(runs) if each.run.name in marked]
+    return list_rows(runs_table(runs), width, height, chosen, places)
 
 
 def about_run(each: RunOverview | None, total_bytes: int, width: int) -> Row:

@@ -12,6 +12,8 @@ from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
 
+from kit.dialogue.actions import ScreenActions
+from kit.document.rows import Row, row
 from kit.host.file_watcher import FileWatcher
 from kit.school.game.challenge_answers import answers_folder, prepare_answer, read_answer
 from kit.school.game.challenges import (
@@ -25,13 +27,12 @@ from kit.school.game.challenges import (
 )
 from kit.school.game.player_progress import Medal
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
-from kit.tui.actions import ScreenActions
 from kit.tui.rows.challenge_rows import challenge_page, judged
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.lesson_rows import checking
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, TextScreen, wrapped
 from kit.tui.suspend import edit_aside
-from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
 from kit.world.problems import WorldError
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from asyncio import create_task
 from collections.abc import Awaitable, Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -18,14 +17,16 @@ from textual.screen import ModalScreen
 from textual.widgets import Input, OptionList
 from textual.widgets.option_list import Option
 
+from kit.dialogue.actions import ScreenAction, ScreenActions
+from kit.document.rows import Row, broken, row, side_by_side
+from kit.plain_text import wrap
 from kit.render.roles import COLOR_SCHEMES
-from kit.tui.actions import ScreenAction, ScreenActions
 from kit.tui.input.driver import key_driver
 from kit.tui.input.modes import base_key
 from kit.tui.rows.key_rows import bindings, footer, help_page
 from kit.tui.terminal import MOUSE_VARIABLE
 from kit.tui.textual_patches import ActivePaintScreen
-from kit.tui.widgets.text_rows import Row, TextRows, broken, row, side_by_side
+from kit.tui.widgets.text_rows import TextRows
 
 if TYPE_CHECKING:
     from textual.app import App
@@ -51,7 +52,7 @@ def wrapped(text: str, style: str = "") -> list[Row]:
     return [
         row((part, style))
         for line in text.splitlines()
-        for part in textwrap.wrap(line, WIDTH - 4, subsequent_indent="    ") or [""]
+        for part in wrap(line, WIDTH - 4, " " * (len(line) - len(line.lstrip())), "    ")
     ]
 
 
@@ -384,9 +385,7 @@ class Picker(ModalScreen[str | None]):
 
     def _line(self, choice: PickerItem, *, is_chosen: bool) -> Text:
         """Name and text; what does not fit on a line stands below the text."""
-        lines = textwrap.wrap(
-            choice.text, max(20, min(LINE, self.size.width - COLUMNS_AROUND) - self._width)
-        ) or [""]
+        lines = wrap(choice.text, max(20, min(LINE, self.size.width - COLUMNS_AROUND) - self._width))
         text = f"{choice.name:{self._width}}" + ("\n  " + " " * self._width).join(lines)
         return Text.assemble("> " if is_chosen else "  ", (text, "reverse bold" if is_chosen else ""))
 

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, ClassVar, Final
 from textual.binding import BindingType
 
 from kit.arrays import FloatArray
+from kit.dialogue.actions import VIEW_IDS, ScreenAction, ScreenActions, letter
+from kit.document.rows import Row, row
 from kit.fields import adjacency
 from kit.fields.controller_setup import ControllerSetup, mean_position
 from kit.fields.minima import Trap
@@ -22,11 +24,9 @@ from kit.geometry import Pose
 from kit.render.camera import Camera
 from kit.render.field import FieldPicture, scaled_intensity, with_field
 from kit.render.scene import Scene
-from kit.tui.actions import VIEW_IDS, ScreenAction, ScreenActions, letter
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.play import PlayScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, row
 from kit.world.problems import WorldError
 
 if TYPE_CHECKING:

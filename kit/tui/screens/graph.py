@@ -14,6 +14,8 @@ from textual.message import Message as ScreenMessage
 from textual.timer import Timer
 from textual.widgets import Input
 
+from kit.dialogue.actions import ScreenActions, letter
+from kit.document.rows import row
 from kit.msg.conversion import FieldValue, field_values
 from kit.render.graph import (
     ASCII_LINES,
@@ -39,7 +41,6 @@ from kit.ros.graph.snapshot import (
     TopicStats,
     snapshot,
 )
-from kit.tui.actions import ScreenActions, letter
 from kit.tui.rows.graph_rows import MARKED, GraphUpdate, about, heading, rates, ruled
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog
@@ -47,7 +48,7 @@ from kit.tui.session_host import SessionHost
 from kit.tui.theme import Theme
 from kit.tui.widgets.field_plot import FieldPlot, first_field, item_count, why_not
 from kit.tui.widgets.frame_view import FrameView
-from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows, row
+from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows
 
 if TYPE_CHECKING:
     from kit.run.session import Session

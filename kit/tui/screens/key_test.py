@@ -14,7 +14,7 @@ from textual.binding import BindingType
 from textual.containers import Container, Vertical
 from textual.widgets import Static
 
-from kit.tui.actions import ScreenActions, letter
+from kit.dialogue.actions import ScreenActions, letter
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import DRIVE_KEYS, Clock, DriveKey, KeyEventKind
 from kit.tui.input.screen import DriveScreen

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, ClassVar
 from textual.binding import BindingType
 from textual.message import Message
 
+from kit.dialogue.actions import VIEW_IDS, ScreenAction, ScreenActions
 from kit.inspection.sockets import sockets_folder, world_name
-from kit.tui.actions import VIEW_IDS, ScreenAction, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.watch import WatchScreen

@@ -16,6 +16,8 @@ from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input
 
+from kit.dialogue.actions import ScreenAction, ScreenActions, digits, letter
+from kit.document.rows import PLAIN, Row, row, spread, window
 from kit.layers.case_sources import PlanningTask, UnknownPlanningTask, open_task, solve_task
 from kit.layers.case_table import CaseTable, RowKind
 from kit.layers.drawing import (
@@ -33,11 +35,10 @@ from kit.layers.guided_tour import GreedyTour, TourPage, TourPart, case_page, me
 from kit.layers.guided_tour import TourPage as Step
 from kit.layers.planning import LayerPlan
 from kit.layers.requirements import LayerCase, LayerCaseError
-from kit.tui.actions import ScreenAction, ScreenActions, digits, letter
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import PLAIN, Row, RowsScreen, TextRows, row, spread, window
+from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.workspace import write_atomically
 from kit.world.catalogue import map_names
 from kit.world.problems import WorldError

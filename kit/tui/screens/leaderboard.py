@@ -9,14 +9,15 @@ from typing import ClassVar
 from textual import events, work
 from textual.binding import BindingType
 
+from kit.dialogue.actions import ScreenActions, letter
+from kit.document.layout import Page, rows_of
+from kit.document.rows import Row, row
 from kit.school.game import leaderboard
 from kit.school.game.drive_records import join_leaderboard
 from kit.school.progress import ProgressError, ProgressJournal
-from kit.tui.actions import ScreenActions, letter
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.dialogs import MessageDialog, TextScreen, wrapped
-from kit.tui.widgets.text_rows import Row
+from kit.tui.screens.dialogs import COLUMN, MessageDialog, TextScreen, wrapped
 from kit.workspace import Workspace
 
 
@@ -50,8 +51,10 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
     def _read(self) -> None:
         self._has_joined = leaderboard.has_joined(self._folder)
         entries = leaderboard.read_entries(self._folder)
-        self._rows = tuple(level_rows.leaderboard_standings(leaderboard.standings(entries), self._offer))
-        self._beside = tuple(level_rows.leaderboard_times(entries))
+        standings = level_rows.leaderboard_standings(leaderboard.standings(entries), self._offer)
+        page = Page(width=COLUMN - 4, margin=2)
+        self._rows = (row(), *rows_of(standings, page))
+        self._beside = (row(), *rows_of([level_rows.leaderboard_times(entries)], page))
         self._width = 0
 
     @property

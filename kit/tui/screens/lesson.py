@@ -1,34 +1,34 @@
-"""The screen of a lesson: one step at a time, the picture first; nothing moves on by itself."""
+"""A lesson on the full screen: the picture first, the words below or beside it, what is asked and what works now in sight."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar
+from asyncio import to_thread
+from typing import TYPE_CHECKING, Any, Final
 
-from textual import events, work
 from textual.app import ComposeResult
-from textual.binding import BindingType
 
+from kit.dialogue.dialogue import Dialogue
+from kit.document.blocks import Block
+from kit.document.layout import Page, place, rows_of
+from kit.document.rows import MARGIN, Row, row, spread, text_width
 from kit.inspection.sockets import sockets_folder
-from kit.run.scenario import Scenario
+from kit.run.scenario import find_scenario
+from kit.school.lessons.aside import plain_lines
+from kit.school.lessons.defence_dialogue import DefenceDialogue
+from kit.school.lessons.lesson_dialogue import Drive, Edit, LessonDialogue, Replay, RunCommand
 from kit.school.lessons.lesson_session import LessonSession
-from kit.school.lessons.records import CommandKind, LessonCommand, LessonStep, PredictionOption
-from kit.school.lessons.shell_lines import TITLE as SECOND_TERMINAL
-from kit.school.lessons.shell_lines import fill_in_paths, second_terminal_here
-from kit.school.lessons.translation import missing_translation_text
-from kit.school.progress import ProgressError
-from kit.tui.actions import ScreenAction, ScreenActions, digits, letter
-from kit.tui.exercise_model import ExerciseModel
+from kit.school.lessons.records import LessonStep
+from kit.school.lessons.shell_lines import shell_path
+from kit.school.lessons.training_curves import CURVE_ROWS, ROOMY_CURVE_ROWS
 from kit.tui.input.drive import DriveState
 from kit.tui.input.driver import KeyRepeated
 from kit.tui.input.modes import base_key, named
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows import lesson_rows
-from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, TextScreen, wrapped
-from kit.tui.screens.lesson_exercise import ExerciseListener, ExercisePanel
-from kit.tui.screens.quiz import ask_of_lesson
-from kit.tui.suspend import plain_lines, run_aside
+from kit.tui.screens.defence import DefenceScreen
+from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogue import DialogueScreen
+from kit.tui.suspend import edit_aside, run_aside
 from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_page import (
     BESIDE,
@@ -38,330 +38,265 @@ from kit.tui.widgets.lesson_page import (
     PageLayout,
     PlaybackSceneView,
 )
-from kit.tui.widgets.text_rows import Row, RowsScreen, TextRows, row
+from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:
     from kit.run.recording import Recording
+    from kit.run.scenario import Scenario
 
-ARROWS = ("up", "down", "left", "right")
-HELD = (*ARROWS, "pageup", "pagedown", "space")
+ARROWS: Final = ("up", "down", "left", "right")
+HELD: Final = (*ARROWS, "pageup", "pagedown", "space")
 """Keys that do more the longer they are held."""
-POLL_S = 0.2
-"""Seconds between two polls of the exercise's file and its check."""
-ENDING_IDS = frozenset(("next", "questions", "previous", "help", "back"))
-"""Actions after the last step."""
+MOST_DRAWN: Final = 10
+"""Rows of a picture of a check that is shown at once, as many as a step's own has; `w` shows longer ones."""
 BREAKPOINTS = [(0, "-usual"), (130, "-wide")]
 
 
-class LessonScreen(RowsScreen[None], DriveScreen):
+class ScenePair:
+    """The stage on the full screen: a world, or tables and messages that are played back; one of them is seen at a time."""
+
+    is_described: Final = False
+
+    def __init__(self, world: LessonSceneView, playback: PlaybackSceneView) -> None:
+        self.world = world
+        self.playback = playback
+        self._is_played_back = False
+
+    @property
+    def scene(self) -> LessonSceneView | PlaybackSceneView:
+        """The one that is shown."""
+        return self.playback if self._is_played_back and not self.world.is_recorded else self.world
+
+    @property
+    def is_open(self) -> bool:
+        return self.scene.is_open
+
+    @property
+    def is_resting(self) -> bool:
+        return self.scene.is_resting
+
+    @property
+    def is_recorded(self) -> bool:
+        return self.world.is_recorded
+
+    @property
+    def is_paused(self) -> bool:
+        return self.playback.is_paused
+
+    def open(self, step: LessonStep, *, still: bool) -> None:
+        self._is_played_back = step.playback_scene is not None
+        if step.scene is not None:
+            self.world.open(step.scene, still=still)
+        else:
+            self.world.close_session()
+        if step.playback_scene is not None:
+            self.playback.open(step.playback_scene, still=still)
+        else:
+            self.playback.close_session()
+
+    def play(self, recording: Recording, place: Scenario, *, still: bool = False) -> None:
+        self.world.play(recording, place, still=still)
+
+    def go(self) -> None:
+        self.scene.go()
+
+    def again(self) -> None:
+        self.scene.again()
+
+    def hold(self, held: bool) -> None:
+        self.scene.hold(held)
+
+    def step_once(self) -> None:
+        self.playback.step()
+
+    def close(self) -> None:
+        self.world.close_session()
+        self.playback.close_session()
+
+
+class LessonScreen(DialogueScreen, DriveScreen):
     """Shows one lesson, step by step. Redraws only what a key, a scene or a check has changed."""
 
-    AUTO_FOCUS = ""
-    screen_actions = ScreenActions(
-        "lesson",
-        (
-            "predict", "drive_scene", "check", "edit_file", "hint", "drive", "replay", "solution", "next",
-            "defend", "run_command", "second_terminal", "output", "questions", "previous", "restart",
-            "pause", "step", "start_over", "help", "back",
-        ),
-        ("steps", "scroll", "quit"),
-        own=(
-            ScreenAction("predict", "1 2 3 4", "predict", "predict; your first choice counts", digits("predict", 1, 4), "1-4"),
-            ScreenAction("drive_scene", "arrows", "drive", "drive the robot, in a scene that waits for you", (), "←↑↓→"),
-            letter("run_command", "o", "run", "run a command of this step here"),
-            letter("questions", "k", "questions", "answer the lesson's questions, after its last step"),
-        ),
-    )  # fmt: skip
-    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
+    dialogue: LessonDialogue
     DEFAULT_CSS = """
     LessonScreen { layout: vertical; }
     LessonScreen #heading, LessonScreen #title, LessonScreen #keys { height: 1; }
+    LessonScreen #file, LessonScreen #status { height: auto; }
     """
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
 
     def __init__(self, theme: Theme, session: LessonSession, workspace: Workspace) -> None:
-        super().__init__(theme.terminal)
+        DriveScreen.__init__(self, theme.terminal)
+        self.take(LessonDialogue(session))
         self.theme = theme
-        self.visit = session
         self.workspace = workspace
-        self.step: LessonStep = session.first_step
-        self._opening_step = self.step
-        """Where it is said that the lesson is in another language than the one asked for."""
-        self._exercise = ExercisePanel(
-            theme, workspace, ExerciseListener(self.show, self.show_answer, self.show_run, self.show_error)
-        )
-        self._world_scene = LessonSceneView(theme, workspace.controllers, sockets_folder(workspace.folder))
-        self._playback_scene = PlaybackSceneView(theme)
-        self._is_answer_shown = True
-        """Whether what there is to say of a prediction may be said: the scene has been seen."""
-        self.is_over = False
-        self._following: LessonSession | None = None
-        """The next lesson, once this one is over."""
-        self._page = LessonPage(self._world_scene, self._playback_scene)
-        self._answer_row = self._lost_row = self._hint_row = 0
+        world = LessonSceneView(theme, workspace.controllers, sockets_folder(workspace.folder))
+        self.stage = ScenePair(world, PlaybackSceneView(theme))
+        self._page = LessonPage(self.stage.world, self.stage.playback)
         self._strength = 1.0
-        self._allowed_lines: set[str] = set()
-        """Commands of somebody else's lesson that the student has seen and let run."""
+        self._said_row = self._look_row = 0
+        """Rows of the words in which what was said begins, and what was said last; 0: nothing was."""
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
         yield TextRows(id="title")
         yield self._page
-        yield self._exercise
+        yield TextRows(id="file")
+        yield TextRows(id="status")
         yield TextRows(id="keys")
 
     def on_mount(self) -> None:
-        self.set_interval(POLL_S, self._exercise.poll)
-        self.enter(self.step)
-
-    def on_resize(self, event: events.Resize) -> None:
-        self.call_after_refresh(self.show)
+        self.dialogue.begin(self.stage)
+        self.show()
 
     def on_screen_resume(self) -> None:
-        self.hold_scene(False)
-        self._scene.draw()
+        self._hold_scene(False)
+        self.stage.scene.draw()
         self.show()
 
     def on_screen_suspend(self) -> None:
-        self.hold_scene(True)
+        self._hold_scene(True)
 
-    def hold_scene(self, held: bool) -> None:
+    def _hold_scene(self, held: bool) -> None:
         """Has the scene stand still while something else is looked at, or go on if it was going."""
-        self._scene.hold(held or self._is_still)
-
-    # Steps
-
-    @property
-    def model(self) -> ExerciseModel | None:
-        """The step's exercise; None where it has none."""
-        return self._exercise.model
-
-    @property
-    def _scene(self) -> LessonSceneView | PlaybackSceneView:
-        """The scene that is shown in this step."""
-        if self.step.playback_scene is None or self._world_scene.is_recorded:
-            return self._world_scene
-        return self._playback_scene
-
-    @property
-    def chosen(self) -> PredictionOption | None:
-        """The prediction that was made in this step."""
-        return self.visit.prediction(self.step)
-
-    @property
-    def _has_scene(self) -> bool:
-        """Whether something moves in this step: its own scene, or the student's run."""
-        return not self.is_over and (self.step.moves or self._world_scene.is_recorded)
-
-    @property
-    def _is_waiting(self) -> bool:
-        """Whether the step waits for a prediction."""
-        return bool(self.step.options) and self.chosen is None
-
-    @property
-    def _is_still(self) -> bool:
-        """Whether the scene is to stand at its first instant: until a prediction, or until it is opened to be driven."""
-        return self._begins_still and not self._world_scene.is_recorded
-
-    @property
-    def _begins_still(self) -> bool:
-        """The same of the step's own scene, whatever is shown."""
-        return self._is_waiting or (self.model is not None and self.model.by_hand)
-
-    @property
-    def _is_driving(self) -> bool:
-        """Whether the arrow keys drive in the scene."""
-        return self._scene.by_hand and not self._is_still
-
-    @property
-    def _is_playing_back(self) -> bool:
-        """Whether tables learn or messages move in the picture, or would if they were not held."""
-        return self.step.playback_scene is not None and not self._is_still and not self.is_over
-
-    def enter(self, step: LessonStep) -> None:
-        """Shows a step from its beginning."""
-        self.step, self.is_over = step, False
-        self._page.scroll_words_to(0)
-        self._is_answer_shown = not self._is_waiting
-        self._exercise.enter(self.visit, step)
-        self._open_scene()
-        self.show()
-
-    def _open_scene(self) -> None:
-        """The step's own scene from its beginning, if it has one."""
-        if self.step.scene is not None:
-            self._world_scene.open(self.step.scene, still=self._begins_still)
-        else:
-            self._world_scene.close_session()
-        if self.step.playback_scene is not None:
-            self._playback_scene.open(self.step.playback_scene, still=self._begins_still)
-        else:
-            self._playback_scene.close_session()
-
-    def show_error(self, title: str, text: str) -> None:
-        """Shows an error as a page over the step."""
-        self.app.push_screen(MessageDialog(title, wrapped(text)))
+        self.stage.hold(held or self.dialogue.is_still)
 
     # What is shown
 
     def show(self) -> None:
-        """Everything, as it stands now. Rows that are the same cost nothing."""
-        width = self.size.width
-        if not width or not self.is_mounted:
+        width, dialogue = self.room.width, self.dialogue
+        if not self.is_attached:
             return
-        over, step = self.is_over, self.step
-        exercise_rows = self._exercise.show(width)
-        self._rows("heading").show([lesson_rows.heading(self.visit.lesson_progress, step, width)])
+        step, work, layout = dialogue.step, dialogue.work, self._layout
+        file = (
+            lesson_rows.file_rows(shell_path(work.edited_file), work.by_hand, work.has_others, width)
+            if work is not None
+            else []
+        )
+        status = [self._status_row()] if work is not None or dialogue.note is not None else []
+        self._rows("file").show_all(file)
+        self._rows("status").show_all(status)
+        self._rows("heading").show([lesson_rows.heading(dialogue.session.lesson_progress, step, width)])
         self._show_title()
-        self._rows("keys").show(
-            [self._exercise.busy_keys(self.screen_actions, width) or self._key_row(width)]
-        )
-        written = self._text_rows()
-        answer = self._longest_answer()
-        is_roomy = self._layout is PageLayout.ROOMY
-        hides_work = over or self._world_scene.is_recorded
-        shown = [] if hides_work else self._exercise.work_picture(self._width - 2, is_roomy=is_roomy)
-        picture = shown or step.picture.splitlines()
+        self._rows("keys").show([self._keys()])
+        words = self._word_rows()
+        # With the empty row before it.
+        answer = max((len(self._placed_rows(each)) + 1 for each in dialogue.possible_answers()), default=0)
+        is_roomy = layout is PageLayout.ROOMY
+        hides_work = dialogue.has_ended or self.stage.is_recorded
+        drawn = [] if hides_work else self._work_picture(self._width - 2, is_roomy=is_roomy)
+        asked = dialogue.asked()
+        has_work = work is not None and not work.by_hand and is_roomy
+        lines = work.edited_lines() if work is not None and has_work else ()
+        digits = len(str(len(lines)))
         content = LessonContent(
-            written,
-            [] if over or not step.options else self._question_rows(),
-            () if over or self._world_scene.is_recorded else tuple(picture),
-            moves=self._scene if self._has_scene and not shown else None,
+            words,
+            [row(), *self._placed_rows(asked)] if asked else [],
+            () if hides_work else tuple(drawn or step.picture.splitlines()),
+            moves=self.stage.scene if dialogue.has_scene and not drawn else None,
             # Not all at once, where there is little room.
-            moves_rows=self._graph_rows,
-            first_words=max(self._answer_row, answer, len(written) - self._answer_row),
-            most_words=self._answer_row + answer,
-            scrolls_with="PgDn" if self._is_driving else "down",
+            moves_rows=self._playback_rows,
+            first_words=max(self._said_row, answer, len(words) - self._said_row),
+            most_words=self._said_row + answer,
+            scrolls_with="PgDn" if dialogue.is_driving else "down",
+            file=[row((f"{number:>{digits}} ", "dim"), line) for number, line in enumerate(lines, 1)],
+            file_title=work.edited_file.name if work is not None and has_work else "",
+            file_line=max(work.error_line, work.changed_line) - 1 if work is not None and has_work else 0,
+            log=[row("  ", line) for line in work.printed_lines] if work is not None and has_work else (),
         )
-        if is_roomy:
-            content = self._exercise.with_work(content)
-        self._page.show(content, self.size.height - 3 - exercise_rows, self._layout)
+        self._page.show(content, self.room.height - 3 - len(file) - len(status), layout)
+
+    def _word_rows(self) -> list[Row]:
+        """The words of the step, and below them what is said to what the student did."""
+        told, said = self.dialogue.told(), self.dialogue.said()
+        placed = place([*told, *said], self._page_of_words)
+        starts = [start + 1 for start in placed.starts]
+        self._said_row = starts[len(told)] - 1 if said else len(placed.rows) + 1
+        look = self.dialogue.look
+        self._look_row = starts[len(told) + said.index(look)] if look is not None else 0
+        return [row(), *placed.rows]
+
+    def _placed_rows(self, blocks: list[Block]) -> list[Row]:
+        return rows_of(blocks, self._page_of_words)
+
+    @property
+    def _page_of_words(self) -> Page:
+        return Page(text_width(self._width), MARGIN)
 
     def _show_title(self) -> None:
-        self._rows("title").show(
-            [row() if self.is_over else lesson_rows.title(self.step, self._caption(), self.size.width)]
-        )
-
-    def _text_rows(self) -> list[Row]:
-        """The words of the step, and below them what is said to what the student did."""
-        if self.is_over:
-            following = self._following.lesson if self._following is not None else None
-            levels = self.visit.opened_levels()
-            return lesson_rows.ending(self.visit.lesson_progress, self._width, following, levels)
-        text = self.with_paths(self.step.text)
-        filled = [
-            (each, line) for each in self.step.commands if (line := self.with_paths(each.line)) not in text
-        ]
-        made = [row(), *self._language_rows(), *lesson_rows.words(text, self._width)]
-        made += lesson_rows.commands(filled, self._width)
-        self._answer_row = len(made)
-        if self.chosen is not None and self._is_answer_shown:
-            made += lesson_rows.feedback(self.step, self.chosen, self._width)
-        model, self._lost_row, self._hint_row = self.model, 0, 0
-        if model is not None and model.report is not None and model.seconds is None:
-            said = lesson_rows.verdict(model.report, self.visit.opened_hints(model.exercise), self._width)
-            self._lost_row = len(made) + said.first_lost if said.first_lost else 0
-            self._hint_row = len(made) + said.last_hint if said.last_hint else 0
-            made += said.rows
-        return made
-
-    def _language_rows(self) -> list[Row]:
-        missing = self.visit.lesson.missing_language if self.step is self._opening_step else ""
-        return [*lesson_rows.words(missing_translation_text(missing), self._width), row()] if missing else []
-
-    def _longest_answer(self) -> int:
-        """Rows of the longest thing that may be said to a prediction."""
-        answers = (len(lesson_rows.feedback(self.step, option, self._width)) for option in self.step.options)
-        return max(answers, default=0)
-
-    def _question_rows(self) -> list[Row]:
-        return [row(), *lesson_rows.question(self.step, self.chosen, self._is_answer_shown, self._width)]
+        width, caption = self.room.width, self._caption()
+        if self.dialogue.has_ended:
+            title = spread((), caption, width)
+        else:
+            title = lesson_rows.title(self.dialogue.step, caption, width)
+        self._rows("title").show([title])
 
     def _caption(self) -> Row:
-        """The state of the scene, or what is said to a key that does nothing now."""
-        if self._exercise.step_notice is not None:
-            return self._exercise.step_notice
+        """The state of the scene; in a step without an exercise, what is said to the last key."""
+        dialogue, scene, remark = self.dialogue, self.stage.scene, self.turn.remark
+        if remark is not None and dialogue.work is None and dialogue.note is None:
+            return row((remark.text, remark.tone))
         state = ""
-        if self._has_scene:
-            state = self._scene.caption
-            if self._is_waiting and self._scene.is_open:
+        if dialogue.has_scene:
+            state = scene.caption
+            if dialogue.is_waiting and scene.is_open:
                 state = "waiting for your prediction"
-            elif self._scene.by_hand and self._scene.is_open:
-                state = "you drive" if self._is_driving else "press d to drive"
+            elif scene.by_hand and scene.is_open:
+                state = "you drive" if dialogue.is_driving else "press d to drive"
         return row((state, "dim"))
 
-    def _key_row(self, width: int) -> Row:
-        """The keys that do something now."""
-        if self.is_over:
-            ended = ENDING_IDS if self._following is not None else ENDING_IDS - {"next"}
-            return footer(
-                self.screen_actions,
-                width,
-                without=set(self.screen_actions.footer) - ended,
-                labels={"next": "next lesson"},
-            )
-        can = {
-            "predict": self._is_waiting,
-            "drive_scene": self._is_driving,
-            "next": not self._is_waiting,
-            "second_terminal": any(each.kind is CommandKind.BESIDE for each in self.step.commands),
-            "run_command": bool(self.step.runnable_commands),
-            "questions": False,
-            "previous": self.step.number > 1,
-            "restart": self._has_scene and not self._is_still,
-            "pause": self._is_playing_back and not self._playback_scene.is_resting,
-            "step": self._is_playing_back and self._playback_scene.is_paused,
-            **self._exercise.possible_actions(),
-        }
-        return footer(
-            self.screen_actions,
-            width,
-            without=[each for each, possible in can.items() if not possible],
-            keys={"predict": f"1-{len(self.step.options)}"},
-        )
+    def _status_row(self) -> Row:
+        """One row: where one is with the exercise, or what is said to the last key."""
+        work = self.dialogue.work
+        if work is not None and work.seconds is not None:
+            return lesson_rows.checking(work.seconds, work.progress)
+        return self._remark()
+
+    def _work_picture(self, width: int, *, is_roomy: bool = False) -> list[str]:
+        """What the student's work does, in characters: the curves of its trainings as they grow, and the robot with the newest
+        policy (where motion is reduced, once they are whole), or what a check drew of it, such as the way of a perfect learner."""
+        work = self.dialogue.work
+        if work is None or (work.seconds is not None and self.theme.terminal.reduce_motion.value):
+            return []
+        curves = work.training_curves
+        if curves is not None:
+            rows = ROOMY_CURVE_ROWS if is_roomy else CURVE_ROWS
+            return curves.picture(width, self.theme.encoder, *work.training_drive(), rows)
+        drawn = [] if work.seconds is not None else [line[:width] for line in work.picture_lines]
+        return drawn if len(drawn) <= MOST_DRAWN else []
 
     @property
     def _width(self) -> int:
         """Width of the words."""
-        return self.size.width if self._layout is PageLayout.STACKED else min(self.size.width, BESIDE)
+        return self.room.width if self._layout is PageLayout.STACKED else min(self.room.width, BESIDE)
 
     @property
-    def _graph_rows(self) -> int:
-        """Rows of the step's graph; 0: none is shown, and a scene takes the rows that there are."""
-        is_played = self._has_scene and self._scene is self._playback_scene
-        return self._playback_scene.rows if is_played else 0
+    def _playback_rows(self) -> int:
+        """Rows that what is played back has a use for; 0: nothing is, and a scene takes the rows that there are."""
+        is_played = self.dialogue.has_scene and self.stage.scene is self.stage.playback
+        return self.stage.playback.rows if is_played else 0
 
     @property
     def _layout(self) -> PageLayout:
-        if self._graph_rows:  # is low, and as wide as the screen
+        if self._playback_rows:  # is low, and as wide as the screen
             return PageLayout.STACKED
-        return PageLayout.of(self.size.width, self.size.height, is_wide=self.has_class("-wide"))
+        return PageLayout.of(self.room.width, self.room.height, is_wide=self.has_class("-wide"))
 
-    def with_paths(self, text: str) -> str:
-        """Inserts the student's own paths."""
-        return fill_in_paths(text, None if self.model is None else self.model.file)
-
-    def show_answer(self) -> None:
-        """Scrolls to what is said to what the student did: to a new hint, or to the first criterion that is lost."""
-        if self._world_scene.is_recorded and not (
-            self.model and self.model.report and self.model.report.is_passed
-        ):
-            self._open_scene()
+    def look(self) -> None:
+        """Shows everything, and brings what was just said into sight."""
         self.show()
-        self._page.scroll_words_to(self._answer_row)
-        if self._hint_row:
-            self._page.scroll_words_into_sight(self._hint_row)
-        elif self._lost_row:
-            self._page.scroll_words_into_sight(self._lost_row)
+        if not self._look_row:
+            self._page.scroll_words_to(0)
+            return
+        self._page.scroll_words_to(self._said_row)
+        self._page.scroll_words_into_sight(self._look_row)
 
-    def show_run(self, recording: Recording, place: Scenario) -> None:
-        """Plays the student's own run, in place of the scene."""
-        self._world_scene.play(recording, place)
-        self.show_answer()
+    def look_again(self) -> None:
+        self.show()  # the words stay where they were scrolled to
 
-    # The scene
+    # What moves
 
     def on_playback_scene_view_updated(self) -> None:
         self.on_lesson_scene_view_moved()
@@ -369,222 +304,99 @@ class LessonScreen(RowsScreen[None], DriveScreen):
     def on_lesson_scene_view_moved(self) -> None:
         if not self.is_active:
             return
-        if not self._is_answer_shown and not self._is_waiting and self._scene.is_resting:
-            self._reveal_answer()
-        self._rows("title").show(
-            [row() if self.is_over else lesson_rows.title(self.step, self._caption(), self.size.width)]
-        )
+        if self.stage.is_resting and self.dialogue.rested():
+            self.look()
+        self._show_title()
 
     def on_error_event(self, event: ErrorEvent) -> None:
-        self.show_error("The scene cannot be shown", event.text)
-        if not self._is_waiting:
-            self._reveal_answer()
+        self.app.push_screen(MessageDialog("The scene cannot be shown", wrapped(event.text)))
+        if self.dialogue.rested():
+            self.look()
 
-    def is_drive_key(self, key: str) -> bool:
-        return self._is_driving and base_key(key) in ARROWS
-
-    def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
-        strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
-        if (messages or strength != self._strength) and self._is_driving:
-            self._world_scene.press(messages, strength)
-        self._strength = strength
+    def _poll(self) -> None:
+        work, is_checking = self.dialogue.work, bool(self.dialogue.busy)
+        if work is None or not (self.is_active or is_checking):
+            return
+        is_read_anew = work.reads_anew()
+        super()._poll()
+        if is_read_anew:
+            self.show()
 
     # Keys
 
-    def on_key(self, event: events.Key) -> None:
-        if event.key != "enter" and self._exercise.cancel_start_over():
-            event.stop()
-            event.prevent_default()
-        else:
-            self._exercise.drop_step_notice()
+    def takes_key(self, key: str) -> bool:
+        return not self.is_drive_key(key)
+
+    def is_drive_key(self, key: str) -> bool:
+        return self.dialogue.is_driving and base_key(key) in ARROWS
+
+    def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
+        strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
+        if (messages or strength != self._strength) and self.dialogue.is_driving:
+            self.stage.world.press(messages, strength)
+        self._strength = strength
 
     def on_key_repeated(self, event: KeyRepeated) -> None:
         """A key that is held scrolls and drives; it does not go on and on."""
         if not self.is_drive_key(event.key) and base_key(event.key) not in HELD:
             event.prevent_default()
 
-    def action_predict(self, number: int) -> None:
-        if not self._is_waiting or number > len(self.step.options):
-            return
-        try:
-            self.visit.predict(self.step, number - 1)
-        except ProgressError as error:
-            self.show_error("Your prediction could not be saved", str(error))
-            return
-        if self.step.moves and self._scene.is_open:
-            self._scene.go()
-            self.show()
-        else:
-            if self.step.moves:
-                self._scene.again()
-            self._reveal_answer()
-
-    def _reveal_answer(self) -> None:
-        self._is_answer_shown = True
-        self.show_answer()
-
-    def action_next(self) -> None:
-        if self._exercise.confirm_start_over():
-            return
-        if self.is_over:
-            if self._following is not None:
-                is_told = bool(self.visit.lesson.missing_language)
-                self.visit, self._following = self._following, None
-                self._opening_step = self._opening_step if is_told else self.visit.first_step
-                self.enter(self.visit.first_step)
-            return
-        if self._is_waiting:
-            self._exercise.notify_row(
-                f"Predict first: press 1 to {len(self.step.options)}. A wrong guess costs nothing.", "warn"
-            )
-            return
-        if not self._is_answer_shown:
-            self._reveal_answer()
-            return
-        if self.step.exercise is None:
-            try:
-                self.visit.complete_step(self.step)
-            except ProgressError as error:
-                self.show_error("This step could not be saved", str(error))
-                return
-        if self.step.number == len(self.visit.lesson.steps):
-            self._exercise.close()
-            self._world_scene.close_session()
-            self._playback_scene.close_session()
-            self.is_over = True
-            self._following = self.visit.following()
-            self.show()
-            self._page.scroll_words_to(0)
-        else:
-            self.enter(self.visit.find_step(self.step.number + 1))
-
-    def action_previous(self) -> None:
-        if self.is_over:
-            self.enter(self.step)
-        elif self.step.number > 1:
-            self.enter(self.visit.find_step(self.step.number - 1))
-
-    def action_restart(self) -> None:
-        """The scene from its beginning. Never a check."""
-        if self._has_scene and not self._is_still:
-            self._scene.again()
-        elif self.model is not None and self.model.by_hand:
-            self._exercise.notify_row(" Press d to drive; r restarts the drive there.")
-        elif self.model is not None:
-            self._exercise.notify_row(" c checks the exercise, x starts it over.")
-
-    def action_pause(self) -> None:
-        """Stills tables that learn and messages on their way, and lets them go on."""
-        if self._is_playing_back:
-            self._playback_scene.hold(not self._playback_scene.is_paused)
-            self.show()
-
-    def action_step(self) -> None:
-        """One update of tables, or one place of messages, that stand still."""
-        if self._is_playing_back:
-            self._playback_scene.step()
-            self.show()
-
     def action_scroll(self, lines: int) -> None:
         self._page.scroll_words(lines)
 
-    @work
-    async def action_steps(self) -> None:
-        progress = self.visit.lesson_progress
-        choices = [
-            PickerItem(
-                str(step.number),
-                f"{'[x]' if progress.is_step_completed(step) else '[ ]'} {step.number}",
-                step.title,
-            )
-            for step in self.visit.lesson.steps
-        ]
-        chosen = await self.app.push_screen_wait(
-            Picker(self.visit.lesson.title, choices, str(self.step.number))
-        )
-        if chosen is not None:
-            self.enter(self.visit.find_step(int(chosen)))
+    # What is shown beside the lesson
 
-    def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("This lesson", self.screen_actions))
+    def screen_for(self, dialogue: Dialogue) -> DialogueScreen:
+        if isinstance(dialogue, DefenceDialogue):
+            return DefenceScreen(dialogue, self.theme, self.workspace)
+        return super().screen_for(dialogue)
 
-    async def _choose_command(self, commands: Sequence[LessonCommand]) -> LessonCommand | None:
-        """The only command, or the one that the student picks; None: none."""
-        if len(commands) <= 1:
-            return commands[0] if commands else None
-        choices = [PickerItem(str(at), self.with_paths(each.line)) for at, each in enumerate(commands)]
-        chosen = await self.app.push_screen_wait(Picker("Run", choices))
-        return None if chosen is None else commands[int(chosen)]
+    async def show_request(self, request: object) -> Any:
+        match request:
+            case Edit(file, line):
+                return edit_aside(self.app, file, line, self.theme.terminal)
+            case RunCommand():
+                return self._run_command(request)
+            case Drive():
+                return await self._drive(request)
+            case Replay(file):
+                return await self._replay(file)
+        return await super().show_request(request)
 
-    async def _may_run(self, command: LessonCommand) -> bool:
-        """Shows a command of somebody else's lesson before it runs for the first time."""
-        line = self.with_paths(command.line)
-        if not self.visit.lesson.is_foreign or line in self._allowed_lines:
-            return True
-        choices = [PickerItem("no", "do not run it"), PickerItem("run", "run", line)]
-        chosen = await self.app.push_screen_wait(Picker("The author's command", choices))
-        if chosen == "run":
-            self._allowed_lines.add(line)
-        return chosen == "run"
-
-    @work
-    async def action_run_command(self) -> None:
-        command = await self._choose_command([] if self.is_over else self.step.runnable_commands)
-        if command is None or not await self._may_run(command):
-            return
-        self.hold_scene(True)
+    def _run_command(self, request: RunCommand) -> str | None:
+        self._hold_scene(True)
         printed = run_aside(
             self.app,
-            self.with_paths(command.line),
+            request.line,
             self.theme.terminal,
             workspace=self.workspace.folder,
-            folder=self.model.file.parent if self.model is not None else None,
-            waits=command.kind is CommandKind.ALONE,
+            folder=request.folder,
+            waits=request.waits,
         )
-        self.hold_scene(False)
-        if printed:
-            self.app.push_screen(TextScreen(command.line, [row(each) for each in plain_lines(printed)]))
-        if printed is None:
-            self.show_error(
-                "This command cannot run here",
-                f"Type it in a second terminal: {self.with_paths(command.line)}",
-            )
+        self._hold_scene(False)
+        return printed and "\n".join(plain_lines(printed))
 
-    def action_second_terminal(self) -> None:
-        """How to open one."""
-        text = second_terminal_here(self.workspace)
-        self.app.push_screen(TextScreen(SECOND_TERMINAL, lesson_rows.words(text, self.size.width)))
+    async def _drive(self, request: Drive) -> str | None:
+        from kit.tui.screens.lesson_drive import RecordedDriveScreen  # of no use to the first frame
 
-    @work
-    async def action_questions(self) -> None:
-        if self.is_over:
-            await ask_of_lesson(self, self.visit.journal, self.visit.lesson.name)
+        drive = RecordedDriveScreen(self.theme, request.scene, request.file, self.workspace)
+        await self.app.push_screen_wait(drive)
+        return drive.problem or ("" if drive.was_kept else None)
 
-    # Keys of the exercise
+    async def _replay(self, file: Any) -> str:
+        from kit.tui.screens.lesson_drive import RecordingScreen  # of no use to the first frame
 
-    def action_check(self) -> None:
-        self._exercise.check()
+        try:
+            recording, place = await to_thread(_load, file)
+        except Exception as error:  # noqa: BLE001 - a recording, a world or a disk that is not as it should be
+            return str(error)
+        await self.app.push_screen_wait(RecordingScreen(self.theme, place, recording, "your last run"))
+        return ""
 
-    def action_edit_file(self) -> None:
-        self._exercise.edit_file()
 
-    def action_hint(self) -> None:
-        self._exercise.hint()
+def _load(file: Any) -> tuple[Recording, Scenario]:
+    """Loads a recording and its scenario, in another thread: the physics takes a moment to import."""
+    from kit.run.recording import load_recording
 
-    def action_output(self) -> None:
-        self._exercise.output()
-
-    def action_solution(self) -> None:
-        self._exercise.solution()
-
-    def action_start_over(self) -> None:
-        self._exercise.start_over()
-
-    def action_replay(self) -> None:
-        self._exercise.replay()
-
-    def action_defend(self) -> None:
-        self._exercise.defend()
-
-    def action_drive(self) -> None:
-        self._exercise.drive()
+    recording = load_recording(file)
+    return recording, find_scenario(recording.place, recording.case)

@@ -9,16 +9,16 @@ from textual.binding import BindingType
 from textual.message import Message
 
 from kit.controllers import find_controller
+from kit.dialogue.actions import VIEW_IDS, ScreenAction, ScreenActions
+from kit.document.rows import Row, row
 from kit.inspection.sockets import sockets_folder
 from kit.run.recording import Recording, save_recording
 from kit.run.scenario import Scenario, find_scenario
-from kit.tui.actions import VIEW_IDS, ScreenAction, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import drive_key, named
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, row
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:

@@ -14,18 +14,20 @@ from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.screen import Screen
 
+from kit.dialogue.actions import ScreenActions
+from kit.document.layout import lines_of
+from kit.document.rows import Row, row, spread
 from kit.school.game.levels import GameLevel, levels_of_lesson
 from kit.school.lessons.catalogue import LessonEntry
 from kit.school.lessons.records import Lesson
 from kit.school.progress import EventKind, ProgressError
 from kit.school.quiz.items import read_bank
-from kit.tui.actions import ScreenActions
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, TextScreen, wrapped
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, RowClicked, RowsScreen, TextRows, row, spread
+from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows
 from kit.tui.widgets.world_view import WorldView
 from kit.world.problems import WorldError
 
@@ -226,7 +228,7 @@ def _game(store: StudentStore) -> list[Row]:
 
 def _quiz(store: StudentStore) -> list[str]:
     from kit.school.quiz.quiz_session import local_now
-    from kit.school.quiz.quiz_text import scores_lines
+    from kit.school.quiz.quiz_text import scores_blocks
     from kit.school.quiz.schedule import answers_from_events, build_schedule
 
     events = store.progress().events()
@@ -237,4 +239,4 @@ def _quiz(store: StudentStore) -> list[str]:
     answers = answers_from_events(events)
     if not answers:
         return ["Nothing answered yet."]
-    return list(scores_lines(bank, answers, build_schedule(bank, events, local_now())))
+    return lines_of(scores_blocks(bank, answers, build_schedule(bank, events, local_now())))

@@ -15,6 +15,8 @@ from textual.message import Message
 from textual.screen import ModalScreen
 
 from kit.controllers import ControllerFile, find_controller
+from kit.dialogue.actions import VIEW_IDS, ScreenActions
+from kit.document.rows import Row, row, spread
 from kit.inspection.sockets import sockets_folder
 from kit.plain_text import format_clock
 from kit.render.scene import Scene, SceneMark
@@ -30,7 +32,6 @@ from kit.school.game.player_progress import BY_HAND, DriverFacts, Medal, medal_o
 from kit.school.game.race import SEED, DriverKind, RaceFinish, RaceReferee, open_race, sensors_in_use
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.progress import ProgressError, ProgressJournal
-from kit.tui.actions import VIEW_IDS, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import drive_key, named
 from kit.tui.rows import level_rows
@@ -40,7 +41,7 @@ from kit.tui.screens.lesson_drive import RecordingScreen
 from kit.tui.screens.level_pictures import ghost_paths
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, TextRows, row, spread
+from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:

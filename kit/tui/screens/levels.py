@@ -15,6 +15,8 @@ from textual.binding import BindingType
 from textual.containers import Horizontal
 
 from kit.controllers import ControllerFile, kit_controllers, user_controllers
+from kit.dialogue.actions import ScreenActions, letter
+from kit.document.rows import Row, row, spread
 from kit.plain_text import counted
 from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
@@ -49,7 +51,6 @@ from kit.school.game.player_progress import (
 )
 from kit.school.game.race import DriverKind, agent_controller
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
-from kit.tui.actions import ScreenActions, letter
 from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_rows import LevelPlace, level_at, map_places, map_rows
@@ -57,7 +58,7 @@ from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerIte
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_pictures import ghost_paths, picture_of, scene_of
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, RowClicked, RowsScreen, TextRows, row, spread
+from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows
 from kit.tui.widgets.world_view import WorldView
 from kit.workspace import Workspace
 
@@ -93,7 +94,7 @@ class LevelsScreen(RowsScreen[None]):
         ("choose", "open", "hand_over", "agent", "replay", "hall_of_fame", "daily", "help", "back"),
         own=(
             letter("agent", "a", "agent", "let an agent that you trained drive the level"),
-            letter("hall_of_fame", "f", "fame", "show this machine's leaderboard"),
+            letter("hall_of_fame", "f", "leaderboard", "show this machine's leaderboard"),
             letter("daily", "d", "daily", "drive the level of the day, the same for everyone"),
         ),
     )  # fmt: skip

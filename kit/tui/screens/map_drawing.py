@@ -12,15 +12,16 @@ from textual.binding import BindingType
 from textual.containers import Horizontal
 from textual.message import Message
 
+from kit.dialogue.actions import ScreenAction, ScreenActions, digits
+from kit.document.rows import Row, row
 from kit.mapmaking.new_map import MapSketch, NewMap, SketchMark, Square
 from kit.render.encode import Frame
 from kit.render.roles import Role
-from kit.tui.actions import ScreenAction, ScreenActions, digits
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.frame_view import FrameView
-from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.text_rows import TextRows
 
 if TYPE_CHECKING:
     from kit.tui.theme import Theme
@@ -154,10 +155,22 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (60, "-wide")]  # noqa: RUF012 - Textual's own
 
     def __init__(
-        self, theme: Theme, name: str, sketch: MapSketch, save: Callable[[MapSketch], NewMap]
+        self,
+        theme: Theme,
+        name: str,
+        sketch: MapSketch,
+        save: Callable[[MapSketch], NewMap],
+        *,
+        note: str = "",
+        keep: Callable[[MapSketch], str] = lambda sketch: "",
     ) -> None:
-        """``save`` writes the map, called in another thread; ValueError and OSError are told and nothing is lost."""
+        """``save`` writes the map, called in another thread; ValueError and OSError are told and nothing is lost. ``note``:
+        what is said first. ``keep`` is called after each change, and returns what is to be said of it."""
         super().__init__()
+        self._note = note
+        self._keep = keep
+        self.is_given_up = False
+        """Whether the user has said that the drawing is not wanted."""
         self._name = name
         self._save = save
         self.sketch = sketch
@@ -180,7 +193,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
         yield TextRows(id="keys")
 
     def on_mount(self) -> None:
-        self.call_after_refresh(self._show)
+        self.call_after_refresh(self._show, self._note)
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show)
@@ -226,8 +239,8 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
     def _change(self, sketch: MapSketch, *, remembers: bool = True) -> None:
         if remembers and sketch != self.sketch:
             self._before = [*self._before, self.sketch][-MAX_UNDO:]
-        self.sketch = sketch
-        self._show()
+        is_changed, self.sketch = sketch != self.sketch, sketch
+        self._show(self._keep(sketch) if is_changed else "")
 
     # Keys and mouse
 
@@ -270,8 +283,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
 
     def action_undo(self) -> None:
         if self._before:
-            self.sketch = self._before.pop()
-            self._show()
+            self._change(self._before.pop(), remembers=False)
 
     @work(exclusive=True)
     async def action_save(self) -> None:
@@ -286,10 +298,11 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
 
     @work(exclusive=True)
     async def action_back(self) -> None:
-        if self._before:
+        if self._before or self._note:
             choices = [PickerItem("stay", "go on drawing"), PickerItem("leave", "leave without saving")]
             if await self.app.push_screen_wait(Picker("The map is not saved", choices)) != "leave":
                 return
+        self.is_given_up = True
         self._leave()
 
     def _leave(self) -> None:

@@ -14,12 +14,13 @@ from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
 
-from kit.tui.actions import ScreenAction, ScreenActions
+from kit.dialogue.actions import ScreenAction, ScreenActions
+from kit.document.rows import row
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.training_rows import settings
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
-from kit.tui.widgets.text_rows import TextRows, row
+from kit.tui.widgets.text_rows import TextRows
 
 if TYPE_CHECKING:
     from kit.learning.training.runs import PresetName, RunConfig, TrainingRun
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 ALL: Final = "all"
 OWN_REWARD: Final = "the task's own"
 PRESETS: Final[Mapping[PresetName, str]] = {
-    "kit": "the kit's: quick and sure",
+    "kit": "the kit's own: learns fast and reliably",
     "seed": "the dissertation's",
     "seed-text": "as its text has it",
 }
@@ -42,8 +43,8 @@ ABOUT: Final = {
     "algorithm": "how it is learned",
     "preset": "the algorithm's settings",
     "reward": "what a step earns: a file of yours needs a function reward()",
-    "seed": "of all chance: the same seed, the same training",
-    "trainings": "from how many seeds, this one and the next: several are a sweep",
+    "seed": "where random numbers start: the same seed, the same training",
+    "trainings": "how many, each with the next seed; more than one is a sweep",
 }
 SWEEP_SIZES: Final = {
     1: "one training, to be watched",

@@ -12,18 +12,19 @@ from textual.binding import BindingType
 from textual.message import Message
 
 from kit.arrays import FloatArray
+from kit.dialogue.actions import ScreenAction, ScreenActions
+from kit.document.rows import row
 from kit.mapmaking.photo import order_corners
 from kit.mapmaking.pixels import Corners
 from kit.render import raster
 from kit.render.curve import write_text
 from kit.render.encode import Encoder
 from kit.render.roles import Role
-from kit.tui.actions import ScreenAction, ScreenActions
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.frame_view import FrameView
-from kit.tui.widgets.text_rows import TextRows, row
+from kit.tui.widgets.text_rows import TextRows
 
 if TYPE_CHECKING:
     from kit.tui.theme import Theme

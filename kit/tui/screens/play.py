@@ -12,7 +12,7 @@ from textual import work
 from textual.binding import BindingType
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
-from kit.tui.actions import VIEW_IDS, ScreenAction, ScreenActions
+from kit.dialogue.actions import VIEW_IDS, ScreenAction, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.input.driver import key_driver
 from kit.tui.input.modes import named
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
     from kit.run.lockstep import Observer
     from kit.run.place_driver import PlaceDriver
+    from kit.run.recording import RecordingStore
     from kit.run.scenario import Scenario
     from kit.run.session import Session
     from kit.tui.widgets.program_editor import ProgramEditor
@@ -79,9 +80,9 @@ class PlayScreen(WatchScreen):
         runs: Path,
         seed: int = 0,
         socket_dir: Path | None = None,
-        records: bool = False,
+        record: RecordingStore | None = None,
     ) -> None:
-        super().__init__(theme, case or place, seed=seed, socket_dir=socket_dir, records=records)
+        super().__init__(theme, case or place, seed=seed, socket_dir=socket_dir, store=record)
         self._theme = theme
         self._runs = runs
         self._folder = folder
@@ -92,6 +93,8 @@ class PlayScreen(WatchScreen):
         self._strength = 1.0
         self._place_driver: PlaceDriver | None = None
         self._editor: ProgramEditor | None = None
+        self.draft_problem = ""
+        """Why what was typed and not saved could not be kept, once the screen has been left."""
         self._editor_keys = {
             keys for each in self.screen_actions.records if each.id in EDITOR_IDS for keys, _ in each.bindings
         }
@@ -234,7 +237,7 @@ class PlayScreen(WatchScreen):
 
     def on_unmount(self) -> None:
         if self._editor is not None:
-            self._editor.keep_draft()
+            self.draft_problem = self._editor.keep_draft()
 
     def _show(self) -> None:
         super()._show()

@@ -13,6 +13,8 @@ from textual.binding import BindingType
 from textual.message import Message
 
 from kit.arrays import FloatArray
+from kit.dialogue.actions import VIEW_IDS, ScreenActions
+from kit.document.rows import row
 from kit.geometry import Pose
 from kit.render.scene import Disc, Scene, SceneBody, ScenePath
 from kit.run.recording import Recorder, Recording
@@ -30,7 +32,6 @@ from kit.school.game.two_players import (
     shared_scenario,
 )
 from kit.sim.simulation import Simulation
-from kit.tui.actions import VIEW_IDS, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_rows import shared_heading, shared_message
@@ -39,7 +40,6 @@ from kit.tui.screens.level_drive import LETTER_NOTES, ghost_marks
 from kit.tui.screens.level_pictures import ghost_paths
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import row
 from kit.workspace import Workspace
 
 HOST_PLAYER: Final = 0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from asyncio import Event, get_running_loop, to_thread
 from collections.abc import Awaitable, Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -14,8 +13,10 @@ from textual import work
 from textual.binding import BindingType
 from textual.screen import Screen
 
+from kit.dialogue.actions import ScreenAction, ScreenActions
+from kit.document.rows import Row, row, spread
 from kit.inspection.sockets import sockets_folder
-from kit.tui.actions import ScreenAction, ScreenActions
+from kit.plain_text import wrap
 from kit.tui.input.drive import DriveState
 from kit.tui.input.modes import base_key
 from kit.tui.rows.key_rows import bindings
@@ -23,7 +24,6 @@ from kit.tui.screens.dialogs import MessageDialog, PaletteCommand, wrapped
 from kit.tui.screens.play import TELEOP, PlayScreen
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, row, spread
 
 if TYPE_CHECKING:
     from kit.run.view import View
@@ -106,7 +106,7 @@ def _status(name: str, overview: StudentOverview | None) -> str:
 
 
 def _padded(text: str, rows: int, width: int) -> list[str]:
-    lines = textwrap.wrap(text, width, max_lines=rows, placeholder=" ...")
+    lines = wrap(text, width, most=rows)
     return lines + [""] * (rows - len(lines))
 
 

@@ -15,14 +15,15 @@ from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.message import Message
 
+from kit.dialogue.actions import ScreenActions, letter
+from kit.document.rows import row
 from kit.render.scene import Scene
-from kit.tui.actions import ScreenActions, letter
 from kit.tui.rows import readout_rows, training_rows
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.theme import Theme
 from kit.tui.widgets.chart_view import CurveView, StackedChartView
-from kit.tui.widgets.text_rows import RowsScreen, TextRows, row
+from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
@@ -388,7 +389,7 @@ class TrainingScreen(RowsScreen[None]):
             return
         caption = self._rows("caption")
         if self.view is None:
-            caption.show([row(("drives from the first test on", "dim"))])
+            caption.show([row(("shown driving after its first test", "dim"))])
         else:
             caption.show([training_rows.caption(self.view, caption.size.width)])
             self._world.offer(self._newest_scene)

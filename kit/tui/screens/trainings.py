@@ -12,8 +12,10 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal
 
+from kit.dialogue.actions import ScreenAction, ScreenActions, letter
+from kit.document.blocks import Block, Text
+from kit.document.rows import row, spread
 from kit.plain_text import counted, format_size
-from kit.tui.actions import ScreenAction, ScreenActions, letter
 from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import (
@@ -28,7 +30,7 @@ from kit.tui.screens.dialogs import (
 from kit.tui.screens.new_training import SWEEPS, NewTrainingScreen
 from kit.tui.screens.training import TrainingScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import RowsScreen, TextRows, row, spread
+from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.tui.widgets.training_preview import TrainingPreview
 
 if TYPE_CHECKING:
@@ -205,7 +207,9 @@ class TrainingsScreen(RowsScreen[None]):
     def action_evaluate(self) -> None:
         if self._chosen_run is not None:
             run = self._chosen_run.run
-            self._tell(f"testing {run.name} ...", f"Test of {run.name}", lambda columns: _test_rows(run))
+            self._tell(
+                f"testing {run.name} ...", f"Test of {run.name}", lambda columns: _test_rows(run, columns)
+            )
 
     def action_compare(self) -> None:
         marked = [each.run for each in self._overviews or () if each.run.name in self._marked]
@@ -244,7 +248,9 @@ class TrainingsScreen(RowsScreen[None]):
             wish = await self.app.push_screen_wait(Picker(folder.name, items))
         if wish == "table":
             self._tell(
-                f"reading {folder.name} ...", f"Sweep {folder.name}", lambda columns: _sweep_table(folder)
+                f"reading {folder.name} ...",
+                f"Sweep {folder.name}",
+                lambda columns: _sweep_table(folder, columns),
             )
         elif wish is not None:
             await self._do(sweep.stop if wish == "stop" else lambda: start_sweep(sweep))
@@ -330,18 +336,21 @@ def _read_tasks() -> Sequence[LearningTask]:
     return all_tasks()
 
 
-def _test_rows(run: TrainingRun) -> list[str]:
+def _test_rows(run: TrainingRun, columns: int) -> list[str]:
+    from kit.document.layout import Page, lines_of
     from kit.learning.policies.evaluation import Evaluator, derive_seed
 
     policy = run.policy()
     result = Evaluator(policy.trained_on.resolve()).test(policy, EPISODES, derive_seed(1, "evaluate"))
     head = f"trained on {policy.trained_on.title}, {policy.steps:,} steps"
-    return [head, "", *result.rows(), "", f"`kit evaluate {run.name} --paths 5` draws its ways."]
+    ways = Text(f"`kit evaluate {run.name} --paths 5` draws its ways.")
+    return lines_of([Text(head), result.table(), ways], Page(width=columns))
 
 
 def _comparison_rows(runs: Sequence[TrainingRun], theme: Theme, columns: int) -> list[str]:
+    from kit.document.layout import Page, lines_of
     from kit.learning.policies.evaluation import Evaluator, derive_seed
-    from kit.learning.training.run_text import format_comparison
+    from kit.learning.training.run_text import comparison_tables
     from kit.learning.training.run_upkeep import draw_test_curves
 
     results = {}
@@ -350,7 +359,8 @@ def _comparison_rows(runs: Sequence[TrainingRun], theme: Theme, columns: int) ->
         evaluator = Evaluator(policy.trained_on.resolve())
         results[run.name] = evaluator.test(policy, EPISODES, derive_seed(1, "evaluate"))
     curves = draw_test_curves(runs, columns, CURVE_ROWS, theme.encoder)
-    return [*format_comparison(results), "", "success in the tests of the training", *curves]
+    blocks: list[Block] = [*comparison_tables(results), Text("success in the tests of the training")]
+    return [*lines_of(blocks, Page(width=columns)), *curves]
 
 
 def _sweep_items(folder: Path) -> list[PickerItem]:
@@ -369,16 +379,20 @@ def _sweep_items(folder: Path) -> list[PickerItem]:
     return items
 
 
-def _sweep_table(folder: Path) -> list[str]:
-    from kit.learning.training.training_sweep import TrainingSweep, format_sweep_table, problems, sweep_rows
+def _sweep_table(folder: Path, columns: int) -> list[str]:
+    from kit.document.layout import Page, lines_of, text_blocks
+    from kit.learning.training.training_sweep import TrainingSweep, problems, sweep_rows, sweep_table
 
     sweep = TrainingSweep(folder)
-    return [*format_sweep_table(sweep_rows(sweep)), "", *problems(sweep)]
+    return lines_of(
+        [sweep_table(sweep_rows(sweep)), Text(""), *text_blocks(problems(sweep))], Page(width=columns)
+    )
 
 
 def _robustness_rows(run: TrainingRun, theme: Theme, columns: int) -> list[str]:
+    from kit.document.layout import Page, lines_of
     from kit.learning.policies.evaluation import derive_seed
-    from kit.learning.policies.sweep import PolicySweep, find_kinds, format_sweep
+    from kit.learning.policies.sweep import PolicySweep, find_kinds, sweep_blocks
 
     policy = run.policy()
     sweep = PolicySweep(
@@ -389,4 +403,5 @@ def _robustness_rows(run: TrainingRun, theme: Theme, columns: int) -> list[str]:
         seed=derive_seed(1, "evaluate"),
         journal=run.folder / "sweep.jsonl",
     )
-    return list(format_sweep(list(sweep.points()), theme.encoder, min(79, columns)))
+    columns = min(79, columns)
+    return lines_of(sweep_blocks(list(sweep.points()), theme.encoder, columns), Page(width=columns))

@@ -11,8 +11,9 @@ from textual.app import ComposeResult
 from textual.containers import Horizontal
 from textual.message import Message
 
+from kit.dialogue.actions import ACTIONS, ScreenActions
+from kit.document.rows import Row, row
 from kit.run.pacing import MAXIMUM, REAL_TIME
-from kit.tui.actions import ACTIONS, ScreenActions
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import (
@@ -30,7 +31,7 @@ from kit.tui.rows.readout_rows import (
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
 from kit.tui.session_host import SessionHost
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, RowsScreen, TextRows, row
+from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
     from kit.render.scene import Scene, SceneCells
     from kit.run.laser_map import LaserMapper
     from kit.run.lockstep import Observer
-    from kit.run.recording import Recording
+    from kit.run.recording import Recording, RecordingStore
     from kit.run.session import Session
     from kit.run.view import View
 
@@ -105,8 +106,10 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         seed: int = 0,
         socket_dir: Path | None = None,
         records: bool = False,
+        store: RecordingStore | None = None,
     ) -> None:
-        """``socket_dir``: where other terminals find the world; see ``kit.inspection``. ``records``: the drive is kept."""
+        """``socket_dir``: where other terminals find the world; see ``kit.inspection``. ``records``: the drive is kept.
+        ``store``: where it is written as it goes on."""
         super().__init__(theme.terminal)
         self.place_name = place_name
         self.world = WorldView(lambda: theme.encoder, theme.palette)
@@ -123,7 +126,8 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         )  # a lit floor costs next to nothing; lines of dots would hide the picture
         self._seed = seed
         self._socket_dir = socket_dir
-        self._records = records
+        self._records = records or store is not None
+        self._recording_store = store
         self.agent_name = ""
         """Name of the agent that drives; empty if none does."""
         self.agent_view: AgentView | None = None
@@ -156,6 +160,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
             seed=self._seed,
             socket_dir=self._socket_dir,
             records=self._records,
+            store=self._recording_store,
         )
         self.host.show_beams(self._beams)
         self.open_world()

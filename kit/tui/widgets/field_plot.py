@@ -9,12 +9,13 @@ import numpy as np
 from textual.app import ComposeResult
 from textual.containers import Vertical
 
+from kit.document.rows import Row, row
 from kit.msg.conversion import FieldValue, number_at
 from kit.render.curve import Axes, Curve, nice_ceiling
 from kit.ros.graph.snapshot import FieldSample
 from kit.tui.theme import Theme
 from kit.tui.widgets.chart_view import CurveView
-from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.text_rows import TextRows
 
 LARGEST: Final = 1e300
 """What is further from 0 counts as not finite: the scale of the plot could not hold it."""

@@ -17,6 +17,7 @@ from textual.timer import Timer
 from textual.widget import Widget
 
 from kit.controllers import find_controller
+from kit.document.rows import Row, row
 from kit.render.scene import Scene as Picture
 from kit.run.lockstep import Observer
 from kit.run.view import View
@@ -24,7 +25,7 @@ from kit.school.lessons.records import GraphScene, LearningScene, LessonScene, s
 from kit.tui.session_host import SessionHost
 from kit.tui.theme import Theme
 from kit.tui.widgets.frame_view import FrameView
-from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:

@@ -15,19 +15,25 @@ from textual.binding import Binding, BindingType
 from textual.containers import Vertical
 from textual.highlight import HighlightTheme, TokenType, highlight
 from textual.message import Message
+from textual.timer import Timer
 from textual.widgets import TextArea
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers
+from kit.document.rows import Row, row
 from kit.host.failure import Failure
 from kit.tui.rows.key_rows import key_row
 from kit.tui.widgets.text_field import KitTextArea
-from kit.tui.widgets.text_rows import Row, TextRows, row
+from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import write_atomically
 
 DRAFT_SUFFIX: Final = ".unsaved"
 """Ending of the file beside the program that keeps what was typed and not saved when the screen was left."""
 MAX_BYTES: Final = 1_000_000
 """A file larger than this is no program that anybody types."""
+
+
+DRAFT_INTERVAL_S: Final = 1.0
+"""What has been typed is on the disk after so long, saved or not [s]."""
 
 
 class ProgramFileError(Exception):
@@ -73,12 +79,16 @@ class ProgramFile:
         self._known = text
         self.drop_draft()
 
-    def keep_draft(self, text: str) -> None:
-        """Keeps what is not saved beside the file, for the next time. What cannot be kept is lost, silently: nobody looks
-        any more."""
-        with suppress(OSError):
+    def keep_draft(self, text: str) -> str:
+        """Keeps what is not saved beside the file, for the next time. Returns why that was not possible; empty if it was."""
+        try:
             if text != self._known:
                 write_atomically(self.draft_file, text.encode())
+            else:
+                self.draft_file.unlink(missing_ok=True)
+        except OSError as error:
+            return f"not on the disk: {error.strerror}"
+        return ""
 
     def drop_draft(self) -> None:
         """Forgets the draft."""
@@ -232,6 +242,7 @@ class ProgramEditor(Vertical):
         self._notice: Row = ()
         self._may_overwrite = False
         self.area = PythonTextArea()
+        self._draft_timer: Timer | None = None
 
     @property
     def program(self) -> ProgramFile:
@@ -262,9 +273,17 @@ class ProgramEditor(Vertical):
         self.area.mark_line(None)
         self._show()
 
-    def keep_draft(self) -> None:
-        """Keeps what is not saved."""
-        self._program.keep_draft(self.area.text)
+    def keep_draft(self) -> str:
+        """Keeps what is not saved. Returns why that was not possible; empty if it was."""
+        if self._draft_timer is not None:
+            self._draft_timer.stop()
+            self._draft_timer = None
+        return self._program.keep_draft(self.area.text)
+
+    def _keep_draft_and_say(self) -> None:
+        if problem := self.keep_draft():
+            self._notice = row((problem, "bad"))
+            self._show()
 
     def save(self) -> None:
         """Saves; if somebody else has saved the file meanwhile, only when asked twice."""
@@ -305,6 +324,8 @@ class ProgramEditor(Vertical):
     def on_text_area_changed(self, event: TextArea.Changed) -> None:
         if not self.is_saved and not self._may_overwrite and self._program.draft is None:
             self._notice = ()
+        if self._draft_timer is None and not self.is_saved:
+            self._draft_timer = self.set_timer(DRAFT_INTERVAL_S, self._keep_draft_and_say)
         self._show()
 
     def on_descendant_focus(self) -> None:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
-from itertools import zip_longest
 from typing import Final
 
-from rich.cells import cell_len, set_cell_size
+from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
 from textual import events
@@ -16,13 +14,9 @@ from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
 
+from kit.document.rows import CUT, PLAIN, Row, row_width
 from kit.tui.textual_patches import ActivePaintScreen, Result, crop_left
 
-MARGIN: Final = 2
-"""Columns that are left free beside a text."""
-TEXT_WIDTH: Final = 76
-"""Columns of a text where nothing else is said: longer lines are hard to read, however wide the terminal."""
-PLAIN: Final = ""
 STYLES: Final = {
     PLAIN: Style(),
     "dim": Style(dim=True),
@@ -84,74 +78,6 @@ SIGNS_OF_KEYS: Final = {
 LONGEST_GAP: Final = 12
 """Columns between two changes that are painted with them: to move the cursor and set the style again takes as many bytes."""
 
-StyledText = tuple[str, str]
-"""A text and the name of its style."""
-
-Row = tuple[StyledText, ...]
-
-
-def row(*parts: str | StyledText) -> Row:
-    """A row of texts; a bare string is plain."""
-    return tuple((part, PLAIN) if isinstance(part, str) else part for part in parts)
-
-
-def spread(left: Row, right: Row, width: int) -> Row:
-    """``left`` at the left edge and ``right`` at the right one; the left is cut where they meet."""
-    used = sum(cell_len(text) for text, _ in right)
-    kept: list[StyledText] = []
-    room = max(0, width - used - 1)
-    for text, style in left:
-        text = text if cell_len(text) <= room else set_cell_size(text, room)
-        room -= cell_len(text)
-        kept.append((text, style))
-    return (*kept, (" " * (room + 1), PLAIN), *right)
-
-
-def side_by_side(left: Sequence[Row], right: Sequence[Row], column: int) -> list[Row]:
-    """Rows with others to their right, which begin at a column; a row of the left is cut there.
-
-    >>> side_by_side([row("one"), row("two")], [row("three")], 6)
-    [(('one', ''), ('   ', ''), ('three', '')), (('two', ''),)]
-    """
-    return [
-        (*spread(here, (), column), *there) if there else here
-        for here, there in zip_longest(left, right, fillvalue=())
-    ]
-
-
-def text_width(width: int, widest: int = TEXT_WIDTH) -> int:
-    """Columns of a text of at most ``widest`` between the margins of a screen of ``width``."""
-    return max(20, min(width - 2 * MARGIN, widest))
-
-
-def entry_rows(mark: str, key: str, text: str, style: str, columns: int) -> list[Row]:
-    """A text of ``columns`` with the key that chooses it, and its mark in the margin; later lines begin below its first word."""
-    first, *rest = textwrap.wrap(text, columns - 3) or [""]
-    indent = " " * (MARGIN + 3)
-    return [
-        row((f"{mark:>{MARGIN - 1}} ", style), (key, "press"), "  ", (first, style)),
-        *(row((indent + line, style)) for line in rest),
-    ]
-
-
-def broken(parts: Row, width: int) -> list[Row]:
-    """Wraps a row to rows of at most ``width`` columns.
-
-    >>> broken(row("a long ", ("line", "bold")), 9)
-    [(('a long ', ''), ('li', 'bold')), (('ne', 'bold'),)]
-    """
-    made: list[list[StyledText]] = [[]]
-    room = width = max(2, width)  # some characters take two columns
-    for text, style in parts:
-        while cell_len(text) > room:
-            fitting = next(count for count in range(room, -1, -1) if cell_len(text[:count]) <= room)
-            made[-1] += [(text[:fitting], style)] if fitting else []
-            made.append([])
-            text, room = text[fitting:], width
-        made[-1].append((text, style))
-        room -= cell_len(text)
-    return [tuple(each) for each in made]
-
 
 def key_at(parts: Row, column: int) -> str:
     """Textual's name of the key that a click at this column of a row means; empty where it means none.
@@ -183,7 +109,7 @@ def changed_spans(old: Row, new: Row) -> list[tuple[int, int]]:
     if len(before) != len(after) or any(
         cell_len(char) != 1 for char, _ in (*before, *after) if char > "\xff"
     ):
-        return [(0, max(_width(old), _width(new)))]
+        return [(0, max(row_width(old), row_width(new)))]
     spans: list[tuple[int, int]] = []
     for column, (was, now) in enumerate(zip(before, after, strict=True)):
         if was != now:
@@ -198,10 +124,6 @@ def _cells(parts: Row) -> list[tuple[str, str]]:
     return [(char, style) for text, style in parts for char in text]
 
 
-def _width(parts: Row) -> int:
-    return sum(cell_len(text) for text, _ in parts)
-
-
 class RowClicked(Message):
     """A row that names no key was clicked."""
 
@@ -211,17 +133,6 @@ class RowClicked(Message):
         self.number = number
         """From 0."""
         self.column = column
-
-
-def window(rows: Sequence[Row], top: int, room: int) -> tuple[list[Row], int]:
-    """As many rows as there is room for, from ``top`` on as far as there are so many, and that top; the last one
-    says if there are more."""
-    top = max(0, min(top, len(rows) - room))
-    shown = list(rows[top : top + room])
-    below = len(rows) - top - len(shown)
-    if below > 0 and shown:
-        shown[-1] = row((f"... {below + 1} more lines below: down", "dim"))
-    return shown, top
 
 
 class TextRows(Widget):
@@ -266,7 +177,7 @@ class TextRows(Widget):
             self.post_message(RowClicked(self, event.y, event.x))
 
     def get_content_width(self, container: Size, viewport: Size) -> int:
-        return max((sum(cell_len(text) for text, _ in parts) for parts in self._rows), default=0)
+        return max(map(row_width, self._rows), default=0)
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
         return len(self._rows)
@@ -274,7 +185,7 @@ class TextRows(Widget):
     def render_line(self, y: int) -> Strip:
         parts = self._rows[y] if y < len(self._rows) else ()
         if self.app.has_class(ASCII_ONLY):
-            parts = tuple((text.translate(_ASCII), style) for text, style in parts)
+            parts = tuple((".." if text == CUT else text.translate(_ASCII), style) for text, style in parts)
         # In the terminal's own colours a style says nothing of the background, which costs no bytes.
         paper = STYLES[PLAIN] if self.app.native_ansi_color else self.rich_style
         strip = Strip([Segment(text, paper + STYLES[style]) for text, style in parts if text])

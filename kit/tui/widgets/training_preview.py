@@ -10,11 +10,12 @@ from textual.containers import Vertical
 from textual.message import Message
 from textual.timer import Timer
 
+from kit.document.rows import row
 from kit.tui.rows import training_rows
 from kit.tui.screens.training import TrainingFollower
 from kit.tui.theme import Theme
 from kit.tui.widgets.chart_view import CurveView
-from kit.tui.widgets.text_rows import TextRows, row
+from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import WorldView
 
 if TYPE_CHECKING:
@@ -131,7 +132,9 @@ class TrainingPreview(Vertical):
         if self._problem:
             self._caption.show([row((self._problem[:width], "warn"))])
         elif view is None:
-            self._caption.show([row(("no policy yet: it drives from the first test on"[:width], "dim"))])
+            self._caption.show(
+                [row(("no policy yet: it is shown driving after its first test"[:width], "dim"))]
+            )
         else:
             self._caption.show([training_rows.caption(view, width)])
             self._world.offer(lambda: view.scene)

@@ -14,15 +14,17 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime, timedelta, tzinfo
 from importlib.util import find_spec
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner
 
-from grader import grading
+from grader import version
 from grader.__main__ import main
+from grader.assignment import Assignment
 from grader.cohort import gradebook
 from grader.cohort.gradebook import (
     RULES,
@@ -33,6 +35,7 @@ from grader.cohort.gradebook import (
     as_json,
     changes,
     choose_submissions,
+    find_zone,
     gradebook_rows,
     parse_time,
     read_policy,
@@ -47,6 +50,7 @@ from grader.cohort.queue import (
     grade_one_job,
     job_key,
     prepare_queue,
+    record_incident,
     run_locally,
     run_on_dask,
     run_on_slurm,
@@ -167,14 +171,14 @@ def test_another_grader_grades_anew(queue: Queue, tmp_path: Path, monkeypatch: p
     """Its code may be brought up to date without another version number."""
     for key in queue.waiting():
         grade_job(queue, key)
-    assert grading.grader_version() == grading.grader_version.__wrapped__()
-    seen = list(grading._source_files())
+    assert version.grader_version() == version.grader_version.__wrapped__()
+    seen = list(version._source_files())
     assert {name.partition("/")[0] for name, _ in seen} == {"grader", "kit", "maps"}
     edited = tmp_path / "edited.py"
     edited.write_text(seen[0][1].read_text() + "# another line\n")
-    monkeypatch.setattr(grading, "_source_files", lambda: [(seen[0][0], edited), *seen[1:]])
-    other = grading.grader_version.__wrapped__()
-    assert other != grading.grader_version()
+    monkeypatch.setattr(version, "_source_files", lambda: [(seen[0][0], edited), *seen[1:]])
+    other = version.grader_version.__wrapped__()
+    assert other != version.grader_version()
     monkeypatch.setattr("grader.cohort.queue.grader_version", lambda: other)
     prepare_queue(queue, tmp_path / "in", queue.assignment(), TERMS)
     assert len(queue.waiting()) == 4
@@ -222,8 +226,8 @@ def test_late_rules_are_applied_when_the_table_is_made(queue: Queue, tmp_path: P
     for key in queue.waiting():
         grade_job(queue, key)
     policy_file, times_file = tmp_path / "late.yaml", tmp_path / "times.csv"
-    policy_file.write_text("due: 2026-11-30T12:00:00\nper_day: 0.5\n")
-    times_file.write_text("name,submitted\ns2,2026-11-30T13:00:00\ns1,2026-11-30T11:00:00\n")
+    policy_file.write_text("due: 2026-11-30T12:00:00Z\nper_day: 0.5\n")
+    times_file.write_text("name,submitted\ns2,2026-11-30T13:00:00Z\ns1,2026-11-30T11:00:00Z\n")
     results = {path.name: path.read_bytes() for path in (queue.folder / "results").iterdir()}
     table = {
         row.name: row
@@ -274,9 +278,9 @@ def test_a_submission_without_a_grade_is_not_passed_over() -> None:
 def test_the_gradebook_says_which_counts_and_who_has_no_time(queue: Queue, tmp_path: Path) -> None:
     times, late = tmp_path / "times.csv", tmp_path / "late.yaml"
     times.write_text(
-        "name,submitted,student\ns0,2026-11-30T11:00:00,ada\ns1,2026-11-29T11:00:00,ada\ns2,2026-11-29T11:00:00,\n"
+        "name,submitted,student\ns0,2026-11-30T11:00:00Z,ada\ns1,2026-11-29T11:00:00Z,ada\ns2,2026-11-29T11:00:00Z,\n"
     )
-    late.write_text("due: 2026-11-30T12:00:00\n")
+    late.write_text("due: 2026-11-30T12:00:00Z\n")
     book = ["gradebook", str(queue.folder), "--times", str(times), "--late", str(late), "--json"]
     done = CliRunner().invoke(main, book)
     assert done.exit_code == 0
@@ -284,7 +288,7 @@ def test_the_gradebook_says_which_counts_and_who_has_no_time(queue: Queue, tmp_p
     table = {row.name: row for row in gradebook.read_json(done.stdout)}
     assert list(table) == ["ada", "broken", "copy", "link", "s2"]
     assert table["ada"].note.startswith("s0, the latest of 2")
-    times.write_text("name,submitted\nnobody,2026-11-30T11:00:00\n")
+    times.write_text("name,submitted\nnobody,2026-11-30T11:00:00Z\n")
     done = CliRunner().invoke(main, book)
     assert (done.exit_code, "nobody" in done.stderr) == (2, True)
 
@@ -324,6 +328,8 @@ class Future:
         self._problem = problem
 
     def exception(self) -> Exception | None:
+        if isinstance(self._problem, LookupError):  # what Dask does for a task that was cancelled
+            raise self._problem
         return self._problem
 
 
@@ -333,9 +339,16 @@ class StandIn:
     class KilledWorker(Exception):
         """What Dask says when a task has ended several workers."""
 
-    def __init__(self, deadly: str) -> None:
+    def __init__(self, deadly: str, problem: Exception | None = None) -> None:
         self.deadly = deadly
-        self.as_completed = list
+        self.problem = problem or self.KilledWorker()
+        self.has_workers = True
+
+    def wait(self, futures: list[Future], *, timeout: float | None, return_when: str) -> SimpleNamespace:
+        assert timeout is not None, "a cluster that stands still is not waited for"
+        if not self.has_workers:
+            raise TimeoutError
+        return SimpleNamespace(done=futures[:1], not_done=futures[1:])
 
     def Client(self, address: str) -> StandIn:
         assert address == "tcp://cluster:1"
@@ -349,8 +362,8 @@ class StandIn:
 
     def submit(self, function: Callable[..., str], *names: str, **options: object) -> Future:
         assert all(isinstance(each, str) for each in names)
-        problem = self.KilledWorker() if names[-1] == self.deadly else None
-        if problem is None:
+        problem = self.problem if names[-1] == self.deadly else None
+        if problem is None and self.has_workers:
             function(*names)
         return Future(problem)
 
@@ -369,6 +382,30 @@ def test_a_cluster_gets_names_alone_and_outlives_a_job_that_kills(
     assert [verdict is GradingVerdict.BROKEN for verdict in verdicts] == [False, True, False, False]
     with pytest.raises(ExecutorUnavailable, match="--cluster"):
         run_on_dask(queue, keys, "", done.append)
+
+
+@pytest.mark.parametrize(
+    "problem", [OSError(28, "No space left on device"), LookupError("cancelled")], ids=str
+)
+def test_a_job_that_fails_on_the_cluster_costs_no_other_job_its_result(
+    problem: Exception, queue: Queue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keys = queue.waiting()
+    monkeypatch.setitem(sys.modules, "distributed", StandIn(keys[0], problem))  # type: ignore[arg-type]
+    monkeypatch.setattr("grader.cohort.queue.grade_job", record_incident)
+    done: list[str] = []
+    with pytest.raises(ExecutorUnavailable, match=r"1 of 4 jobs failed .*the same command"):
+        run_on_dask(queue, keys, "tcp://cluster:1", done.append)
+    assert sorted(done) == sorted(keys)
+    assert queue.waiting() == keys[:1]
+
+
+def test_a_cluster_without_workers_is_not_waited_for(queue: Queue, monkeypatch: pytest.MonkeyPatch) -> None:
+    cluster = StandIn("none")
+    cluster.has_workers = False
+    monkeypatch.setitem(sys.modules, "distributed", cluster)  # type: ignore[arg-type]  # a stand-in
+    with pytest.raises(ExecutorUnavailable, match="does the scheduler have workers"):
+        run_on_dask(queue, queue.waiting(), "tcp://cluster:1", lambda key: None)
 
 
 @pytest.mark.long
@@ -518,9 +555,13 @@ def test_a_class_is_not_graded_at_level_0_by_silence(tmp_path: Path) -> None:
     asked = one_of_a_class(tmp_path)
     code, told = verb("cohort", *asked)
     queue = Queue(tmp_path / "queue")
-    assert (code, queue.manifest()["level"], gradebook_rows(queue)[0].level) == (0, 1, 1)
-    assert "1 fail, at confinement level 1: " in told
-    assert json.loads(next((queue.folder / "results").iterdir()).read_bytes())["level"] == 1
+    highest = int(probe.highest_level())
+    assert highest >= 1
+    assert (code, queue.manifest()["level"], gradebook_rows(queue)[0].level) == (0, highest, highest)
+    assert f"1 fail, at confinement level {highest}: " in told
+    assert json.loads(next((queue.folder / "results").iterdir()).read_bytes())["level"] == highest
+    code, told = verb("cohort", *asked, "--level", "1")
+    assert (code, gradebook_rows(queue)[0].level) == (0, 1)
     code, told = verb("cohort", *asked, "--level", "0")
     assert (code, gradebook_rows(queue)[0].level) == (0, 0)
     assert "1 fail, at confinement level 0: " in told
@@ -545,7 +586,13 @@ def test_one_work_with_secrets_is_not_graded_at_level_0_by_silence(tmp_path: Pat
     folder, file = write_assignment(tmp_path / "quick", secret="seeds: {turn: [5]}"), tmp_path / "ada.py"
     file.write_text(FORWARD)
     asked = (file, "--assignment", folder, "--json")
-    for more, level in ((("--secret",), 1), (("--secret", "--level", "0"), 0), ((), 1)):
+    highest = int(probe.highest_level())
+    for more, level in (
+        (("--secret",), highest),
+        (("--secret", "--level", "0"), 0),
+        ((), 1),
+        (("--level", "highest"), highest),
+    ):
         code, told = verb("check", *asked, *more)
         result = told[told.index("{") :]  # before it, on standard error: that the secret seeds were not used
         assert (code, json.loads(result)["level"]) == (1, level)
@@ -559,3 +606,110 @@ def test_a_machine_no_level_1_uses_no_secrets_unless_told(tmp_path: Path) -> Non
     code, told = verb("check", file, "--assignment", folder, "--secret")
     assert (code, "--level 0" in told) == (2, True)
     assert verb("check", file, "--assignment", folder, "--secret", "--level", "0")[0] == 1
+
+
+LISBON, BERLIN = find_zone("Europe/Lisbon"), find_zone("Europe/Berlin")
+
+
+@every_case(
+    ("text", "zone", "read"),
+    [
+        ("2026-03-28T23:59:00+01:00", None, "2026-03-28T22:59:00"),
+        ("2026-03-28T23:59:00Z", LISBON, "2026-03-28T23:59:00"),
+        ("2026-07-01 12:00", LISBON, "2026-07-01T11:00:00"),  # summer time
+        ("2026-07-01 12:00", find_zone("UTC"), "2026-07-01T12:00:00"),
+        ("2026-03-28", BERLIN, "2026-03-28T22:59:59"),  # the end of the day
+        ("2026-03-29", BERLIN, "2026-03-29T21:59:59"),  # of the day on which clocks change too
+        ("2026-07-01 12:00", None, "no time zone"),
+        ("2026-03-28", None, "no time zone"),
+        ("2026-03-29 02:30", BERLIN, "comes never"),
+        ("2026-10-25 02:30", BERLIN, "comes twice"),
+        ("2026-03-28 24:00", BERLIN, "must be a date and time"),
+        ("29/03/2026 23:59", BERLIN, "must be a date and time"),
+        ("03.04.2026", BERLIN, "must be a date and time"),
+    ],
+)
+def test_a_due_date_is_read_in_one_way_or_refused(text: str, zone: tzinfo | None, read: str) -> None:
+    try:
+        found = parse_time(text, zone, whole_day=True).astimezone(UTC).isoformat()
+    except ValueError as problem:
+        found = str(problem)
+    assert found.removesuffix("+00:00") == read or (read[0].isalpha() and read in found)
+
+
+def test_when_a_submission_came_needs_a_time_of_day() -> None:
+    with pytest.raises(ValueError, match="names a day and no time"):
+        parse_time("2026-03-28", BERLIN)
+
+
+@pytest.mark.parametrize(
+    ("rules", "kept"),
+    [
+        ("due: 2026-03-28\nzone: Europe/Lisbon\nper_day: 0.1\n", [1.0, 1.0, 0.8]),
+        ("due: 2026-03-28\nzone: Europe/Berlin\nper_day: 0.1\n", [1.0, 0.9, 0.8]),
+        ("due: 2026-03-28T23:30:00+01:00\nper_day: 0.1\n", [1.0, 0.9, 0.8]),
+    ],
+)
+def test_the_end_of_the_day_is_meant_and_said(tmp_path: Path, rules: str, kept: list[float]) -> None:
+    file, times = tmp_path / "late.yaml", tmp_path / "times.csv"
+    file.write_text(rules)
+    times.write_text(
+        "name,submitted\na,2026-03-28T22:30:00Z\nb,2026-03-28T22:59:59.5Z\nc,2026-03-30T12:00:00+02:00\n"
+    )
+    policy = read_policy(file)
+    submitted = read_submission_times(times, policy.zone)
+    assert [policy.kept(each.at) for each in submitted.values()] == pytest.approx(kept)
+    assert policy.due_text.startswith("due 2026-03-28 23:")
+
+
+@pytest.mark.parametrize(
+    "rules", ["due: 2026-07-01 12:00\n", "due: 2026-03-28\n", "due: 2026-03-28\nzone: Mars/Base\n"]
+)
+def test_a_due_date_in_no_zone_is_refused(tmp_path: Path, rules: str) -> None:
+    file = tmp_path / "late.yaml"
+    file.write_text(rules)
+    with pytest.raises(WorldError, match="zone"):
+        read_policy(file)
+
+
+def test_clocks_that_change_take_no_hour_from_a_student(tmp_path: Path) -> None:
+    policy = LatePolicy(parse_time("2026-03-28 23:00", BERLIN), per_day=0.1)
+    assert policy.kept(parse_time("2026-03-29 23:30", BERLIN)) == pytest.approx(0.9)  # 23.5 h later
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ("ada", "ada "),
+        ("ada lovelace", "ada\u00a0lovelace", "ada  lovelace"),
+        ("ada", "Ada"),
+        ("ada", "a\u200bda"),
+    ],
+)
+def test_no_two_names_of_a_class_look_alike(
+    names: tuple[str, ...], tmp_path: Path, quick: Assignment
+) -> None:
+    folder = tmp_path / "in"
+    for name in names:
+        (folder / name).mkdir(parents=True)
+        (folder / name / "controller.py").write_text(FORWARD)
+    entries = prepare_queue(Queue(tmp_path / "queue"), folder, quick, TERMS)
+    shown = {
+        " ".join("".join(c for c in each.name if c.isprintable() or c == "\u00a0").split()).casefold()
+        for each in entries
+    }
+    assert len(shown) == len(names), shown
+
+
+@pytest.mark.long
+def test_a_note_gives_a_ci_service_no_command(tmp_path: Path) -> None:
+    folder = write_assignment(tmp_path / "quick")
+    work = tmp_path / "in"
+    work.mkdir()
+    (work / "::error title=Passed::all.py").write_text("1/0\n")
+    (work / "##[add-mask]x.pdf").write_text("x")
+    code, told = verb("check", work, "--assignment", folder, "--level", "0")
+    assert code == 1
+    assert "all.py was taken as controller.py" in told
+    assert "::" not in told
+    assert "##[" not in told

@@ -11,8 +11,9 @@ import pytest
 from click.testing import CliRunner
 
 from grader.cli.cohort import ladder
-from grader.cohort.program_ladder import LadderRace, find_programs, fit_elo, rank
+from grader.cohort.program_ladder import LadderRace, find_programs, fit_elo, race_all, rank
 from kit.host.sandbox import probe
+from kit.school.game.levels import find_level
 
 FORWARD = """
 import rclpy
@@ -146,3 +147,14 @@ def test_broken_programs_are_named_and_end_no_ladder(tmp_path: Path) -> None:
     assert sorted(row[1] for row in rows[1:])[0] == "'=1+1,a"
     for word in ("SyntaxError", "ValueError", "larger than", "null bytes"):
         assert word in result.stderr
+
+
+@pytest.mark.long
+def test_a_race_has_a_wall_clock(tmp_path: Path) -> None:
+    """A program that waits within its time for each reply would stand there for as long as a race has ticks."""
+    slow = "import rclpy, select\nfrom rclpy.node import Node\nrclpy.init()\nnode = Node('slow')\n"
+    slow += "node.create_timer(0.01, lambda: select.select([], [], [], 0.2))\nrclpy.spin(node)\n"
+    (tmp_path / "slow.py").write_text(slow)
+    (race,) = race_all(find_programs(tmp_path), [find_level("left-turn")], wall_limit_s=1.0)
+    assert not race.reached
+    assert "longer than 1 s" in race.failure

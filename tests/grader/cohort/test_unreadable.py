@@ -21,7 +21,7 @@ from grader.cohort.gradebook import (
     SAME_ERRORS,
     UNREADABLE,
     GradebookRow,
-    attention_lines,
+    attention_blocks,
     gradebook_rows,
 )
 from grader.cohort.queue import Queue, grade_job, prepare_queue, record_incident
@@ -29,6 +29,7 @@ from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
 from grader.submitted_files import SubmissionUnreadable
+from kit.document.layout import Page, lines_of
 from kit.host.sandbox.confinement import Level
 from tests.grader.conftest import FORWARD, QUICK, write_assignment
 from tests.grader.test_submission import nested_folders, zipped
@@ -194,7 +195,7 @@ def test_unreadable_work_is_listed_first_with_its_way_out(tmp_path: Path) -> Non
     prepare_queue(queue, cohort, read_assignment(folder), TERMS)
     assert len(queue.waiting()) == 1, "equal works, whatever lies beside them"
     record_incident(queue, *queue.waiting())
-    lines = list(attention_lines(gradebook_rows(queue)))
+    lines = lines_of(attention_blocks(gradebook_rows(queue)), Page(width=200))
     assert lines[0] == "3 have no grade and need your attention:"
     assert lines[1].startswith("  j.doe_hw1: unreadable. controller.py is missing.")
     assert "7-Zip archive: unpack it" in lines[1]
@@ -303,8 +304,8 @@ def test_of_many_works_that_need_attention_the_first_are_listed() -> None:
             for number in range(count)
         ]
 
-    assert len(list(attention_lines(rows(MAX_LISTED)))) == 1 + MAX_LISTED
-    head, *lines, last = attention_lines(rows(MAX_LISTED + 1))
+    assert len(attention_blocks(rows(MAX_LISTED))) == 1 + MAX_LISTED
+    head, *lines, last = lines_of(attention_blocks(rows(MAX_LISTED + 1)))
     assert head == f"{MAX_LISTED + 1} have no grade and need your attention:"
     assert [line.split(":")[0].strip() for line in lines] == [each.name for each in rows(MAX_LISTED)]
     assert last == "  and 1 more: see the gradebook"

@@ -54,7 +54,7 @@ def halves_cases(chance):
 NEAREST = "import math\ndef nearest(ranges):\n    return min((r for r in ranges if not math.isnan(r)), default=2.0)\n"
 HALVES = "def halves(ranges, side):\n    return side, ranges[:2] if side == 'right' else ranges[2:]\n"
 DESK = GradingOptions(Level.LIMITED)
-GRADE = GradingOptions(Level.LIMITED, secret=True)
+GRADE = GradingOptions(Level.LIMITED, secret=True, examples=True)
 
 
 @pytest.fixture

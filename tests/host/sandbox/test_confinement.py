@@ -15,6 +15,7 @@ import tempfile
 import textwrap
 import time
 from array import array
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -26,7 +27,7 @@ from kit.host.node_process import NodeProcess
 from kit.host.sandbox import landlock, seccomp
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import MIB
-from kit.host.sandbox.probe import SandboxSupport, highest_level, probe_levels
+from kit.host.sandbox.probe import SandboxSupport, can_mount_scratch, highest_level, probe_levels
 from kit.host.student_functions import StudentFunctions
 from kit.msg.geometry_msgs import Twist
 from kit.msg.sensor_msgs import LaserScan
@@ -64,6 +65,7 @@ ATTACKS_BY_PROMISE = {
         "read the passwords' file": "return len(open('/etc/passwd').read())",
         "read through a link": "os.symlink(secret, 'link'); return len(open('link').read())",
         "read through a hard link": "os.link(secret, 'link'); return len(open('link').read())",
+        "read an attribute outside": "return 1 + len(os.listxattr(secret))",
         "open a file by handle": "return 1 + call(304, 265, 3, None, 0)",
     },
     "write": {
@@ -82,6 +84,9 @@ ATTACKS_BY_PROMISE = {
         "change a file's rights": "os.chmod(secret, 0o777); return 1",
         "change a file's time": "os.utime(secret, (0, 0)); return 1",
         "change a file's owner": "os.chown(secret, os.getuid(), os.getgid()); return 1",
+        "read a file's flags": "flags = ctypes.c_long(); return 1 + call(16, 29, os.open(__file__, 0), 0x80086601, ctypes.byref(flags))",
+        "leave a hint with a file": "import fcntl; return len(fcntl.fcntl(os.open(__file__, 0), 1036, (3).to_bytes(8, 'little')))",
+        "set a file's flags": "flags = ctypes.c_long(0x40); return 1 + call(16, 29, os.open(__file__, 0), 0x40086602, ctypes.byref(flags))",
     },
     "start": {
         "fork": "return 1 + os.fork()",
@@ -118,6 +123,9 @@ ATTACKS_BY_PROMISE = {
         "have the grader signalled by a socket": "import socket; end = socket.socketpair()[0]; return 1 + call(16, 29, end.fileno(), 0x8902, ctypes.byref(ctypes.c_int(grader)))",
         "choose the signal of a pipe": "import fcntl; ends = os.pipe(); return 1 + fcntl.fcntl(ends[0], 10, 9)",
         "live on after the kit": "return 1 + call(157, 167, 1, 0, 0, 0, 0)",
+        "use up the machine's requests": "context = ctypes.c_ulong(); return 1 + call(206, 0, 8, ctypes.byref(context))",
+        "use up its user's signals": "timers = [ctypes.c_int() for _ in range(500)]; return sum(1 + call(222, 107, 1, None, ctypes.byref(timer)) for timer in timers)",
+        "write all to the disk": "os.sync(); return 0 if ctypes.get_errno() else 1 + call(162, 81)",
     },
     "rights": {
         "raise its own limits": "import resource; resource.setrlimit(resource.RLIMIT_AS, (2**40, 2**40)); return 1",
@@ -140,6 +148,14 @@ ATTACKS_BY_PROMISE = {
     "uncounted": {
         "use memory that nobody counts": "return 1 + call(319, 279, b'x', 0)",
         "use shared memory": "return 1 + call(29, 194, 0, 4096, 0o600)",
+        "leave pages in a pipe": "part = (ctypes.c_size_t * 2)(ctypes.addressof(kept := ctypes.create_string_buffer(9)), 1); return 1 + call(278, 75, os.pipe()[1], part, 1, 0)",
+        "copy a pipe's pages": "ends = os.pipe(); os.write(ends[1], b'x'); return 1 + call(276, 77, ends[0], os.pipe()[1], 1, 0)",
+        "move pages into a pipe": "return 1 + call(275, 76, os.open(__file__, 0), None, os.pipe()[1], None, 1, 0)",
+        "widen a pipe": "import fcntl; return fcntl.fcntl(os.pipe()[1], 1031, 1 << 20)",
+        "reserve the disk beyond every limit": "return 1 + call(285, 47, os.open('reserved', os.O_RDWR | os.O_CREAT), 1, ctypes.c_long(0), ctypes.c_long(1 << 20))",
+        "send a file that nobody sees": "import socket; ends = socket.socketpair(); return socket.send_fds(ends[0], [b'x'], [os.open(__file__, 0)])",
+        "lock memory": "import mmap; kept = mmap.mmap(-1, 1 << 20); return 1 + call(149, 228, ctypes.c_void_p(ctypes.addressof(ctypes.c_char.from_buffer(kept))), ctypes.c_size_t(1 << 20))",
+        "use large pages again": "return 1 + call(157, 167, 41, 0, 0, 0, 0)",
     },
 }  # fmt: skip
 """By the key of the promise that each attack would break, if it worked; all of them hold from level 1 on."""
@@ -202,7 +218,10 @@ def test_without_confinement_the_attacks_do_work(student: Student, tmp_path: Pat
         "read the grader's environment", "read the grader's arguments", "open the grader's files",
         "use shared memory", "use memory that nobody counts", "hold back whoever opens a file",
         "watch what others open", "have the grader signalled by a pipe", "have the grader signalled by a socket",
-        "choose the signal of a pipe", "live on after the kit",
+        "choose the signal of a pipe", "live on after the kit", "use up the machine's requests",
+        "use up its user's signals", "leave pages in a pipe", "copy a pipe's pages", "move pages into a pipe",
+        "widen a pipe", "leave a hint with a file", "read an attribute outside", "reserve the disk beyond every limit", "send a file that nobody sees", "lock memory",
+        "use large pages again",
     )  # fmt: skip
     record = {"secret": str(secret), "grader": os.getpid()}
     names = list(ATTACKS)
@@ -471,39 +490,87 @@ def test_the_filter_decides_each_call_rightly(machine: str) -> None:
     architecture = seccomp.ARCHITECTURES[machine]
     column = architecture.column
     code = seccomp.program(architecture, own_process=4711)
-    allow, kill = 0x7FFF0000, 0x80000000
+    allow, kill, refused = 0x7FFF0000, 0x80000000, 0x00050001
 
-    def decide(number: int, first: int = 0, second: int = 0, audit: int = architecture.audit) -> int:
-        return _interpret(code, number, audit, first, second)
+    def decide(number: int | None, *arguments: int, audit: int = architecture.audit) -> int:
+        assert number is not None
+        return _interpret(code, number, audit, arguments)
 
-    for name, numbers in seccomp.DENIED.items():
-        number = numbers[column]
-        if number is not None:
-            assert decide(number) == 0x00050001, name
-    assert decide(seccomp.CLONE3) == 0x00050026
-    assert decide(500) == 0x00050026
-    assert decide(architecture.clone, 0x003D0F00) == allow  # what a new thread asks for
-    assert decide(architecture.clone, 0x01200011) == 0x00050001  # what fork() asks for
-    assert decide(architecture.kill, 4711) == allow
-    assert decide(architecture.kill, 4712) == 0x00050001
-    assert decide(architecture.kill, 2**32 - 1) == 0x00050001
-    assert decide(architecture.tgkill, 4711) == allow
-    assert decide(architecture.prlimit64, 0) == allow
-    assert decide(architecture.prlimit64, 4711) == allow
-    assert decide(architecture.prlimit64, 1) == 0x00050001
+    checked = seccomp.checked_calls(4711)
+    clone, socketpair = ((56, 220)[column], (53, 199)[column])
+    for table, decision in ((seccomp.ALLOWED, allow), (seccomp.DENIED, refused)):
+        for name, numbers in table.items():
+            if numbers[column] is not None:
+                assert decide(numbers[column]) == decision, name
+    clone3, newest, not_in_any_table = 435, 462, 500
+    for number in (clone3, newest, not_in_any_table, 0x40000000 + 39):
+        assert decide(number) == 0x00050026, "as on a kernel that does not have it"
+    assert decide(clone, 0x003D0F00) == allow  # what a new thread asks for
+    assert decide(clone, 0x01200011) == refused  # what fork() asks for
+    for name, good, bad in (
+        ("kill", (4711,), (4712,)),
+        ("kill", (4711,), (2**32 - 1,)),
+        ("tgkill", (4711,), (1,)),
+        ("prlimit64", (0,), (1,)),
+        ("prlimit64", (4711,), (4712,)),
+        ("ioctl", (3, 0x5401), (3, 0x40086602)),
+        ("ioctl", (3, 0x541B), (3, 0x8902)),
+        ("fcntl", (3, 1030), (3, 1031)),
+        ("fcntl", (3, 6), (3, 8)),
+        ("madvise", (0, 0, 4), (0, 0, 21)),
+        ("fadvise64", (3, 0, 0, 3), (3, 0, 0, 4)),
+        ("fallocate", (3, 0, 0, 9), (3, 1, 0, 9)),
+        ("preadv2", (3, 0, 1, 0, 0, 0), (3, 0, 1, 0, 0, 8)),
+        ("prctl", (15,), (1,)),
+        ("prctl", (15,), (41,)),
+    ):
+        assert decide(checked[name].numbers[column], *good) == allow, name
+        assert decide(checked[name].numbers[column], *bad) == refused, name
     for flags in (0, socket.SOCK_CLOEXEC, socket.SOCK_NONBLOCK, socket.SOCK_CLOEXEC | socket.SOCK_NONBLOCK):
-        assert decide(architecture.socketpair, socket.AF_UNIX, socket.SOCK_STREAM | flags) == allow
+        assert decide(socketpair, socket.AF_UNIX, socket.SOCK_STREAM | flags) == allow
         for kind in (socket.SOCK_DGRAM, socket.SOCK_RAW, socket.SOCK_SEQPACKET):
-            assert decide(architecture.socketpair, socket.AF_UNIX, kind | flags) == 0x00050001
-    assert decide(architecture.socketpair, 30, socket.SOCK_STREAM) == 0x00050001  # AF_TIPC
+            assert decide(socketpair, socket.AF_UNIX, kind | flags) == 0x00050001
+    assert decide(socketpair, 30, socket.SOCK_STREAM) == 0x00050001  # AF_TIPC
     read, mmap = {"x86_64": (0, 9), "aarch64": (63, 222)}[machine]
     assert decide(read) == decide(mmap) == allow
     assert decide(read, audit=0x40000003) == kill
 
 
-def _interpret(code: bytes, number: int, audit: int, first: int, second: int) -> int:
+@pytest.mark.parametrize("machine", seccomp.ARCHITECTURES)
+def test_no_call_is_in_two_tables(machine: str) -> None:
+    column = seccomp.ARCHITECTURES[machine].column
+    tables = (
+        seccomp.ALLOWED,
+        seccomp.DENIED,
+        {each: c.numbers for each, c in seccomp.checked_calls(1).items()},
+    )
+    numbers = [call[column] for table in tables for call in table.values() if call[column] is not None]
+    assert len(numbers) == len(set(numbers))
+
+
+@LINUX
+@pytest.mark.parametrize(
+    ("body", "called"),
+    [
+        ("os.fork()", "os.fork()"),
+        ("subprocess.run(['true'])", "_fork_exec()"),
+        ("socket.socket()", "_socket.socket.__init__()"),
+        ("os.chmod('x', 0)", "os.chmod()"),
+    ],
+)
+def test_a_refused_call_is_named(body: str, called: str, student: Student) -> None:
+    file = student(f"import os, socket, subprocess\ndef f():\n    {body}\n")
+    with (
+        StudentFunctions(file, limits=QUICK, level=Level.FILTERED) as functions,
+        pytest.raises(StudentCodeError) as caught,
+    ):
+        functions.call_json("f", {})
+    assert f". {called} is refused to a program that is confined" in caught.value.failure.message
+
+
+def _interpret(code: bytes, number: int, audit: int, arguments: Sequence[int]) -> int:
     """Classic BPF, as far as the filter uses it."""
-    data = struct.pack("<IIQ6Q", number, audit, 0, first, second, 0, 0, 0, 0)
+    data = struct.pack("<IIQ6Q", number, audit, 0, *arguments, *[0] * (6 - len(arguments)))
     instructions = list(struct.iter_unpack("=HBBI", code))
     accumulator = at = 0
     while True:
@@ -541,3 +608,46 @@ def test_confinement_costs_little_time(student: Student) -> None:
 
     file = student("")
     assert best(Level.FILTERED) - best(Level.LIMITED) < 0.12
+
+
+@pytest.mark.parametrize(
+    "hide",
+    [
+        "kept.append(mmap.mmap(file.fileno(), 4096))",
+        "kept.append(os.dup(file.fileno()))",
+    ],
+    ids=["mapped", "duplicated"],
+)
+def test_files_that_nobody_sees_are_limited_too(hide: str, student: Student, level: Level) -> None:
+    """Unlinked, closed, and kept by something else: no list of a process's files shows them all."""
+    if level is Level.FILTERED and not can_mount_scratch():
+        pytest.skip("at level 1 this machine only measures")
+    file = student(
+        f"""
+        import mmap, os
+        kept = []
+        def fill():
+            written = 0
+            try:
+                while written < 40:
+                    with open("x", "w+b") as file:
+                        file.write(bytes(1 << 20)); file.flush()
+                        {hide}
+                        os.unlink("x")
+                    written += 1
+            except OSError: pass
+            return written
+        """
+    )
+    limits = dataclasses.replace(QUICK, scratch=8 * MIB, open_files=200)
+    with StudentFunctions(file, limits=limits, level=level) as functions:
+        assert functions.call_batch("fill", [{}])[0] <= 8
+
+
+def test_an_own_disk_at_level_1_is_gone_with_its_processes(student: Student, tmp_path: Path) -> None:
+    if not can_mount_scratch():
+        pytest.skip("this machine allows no mounts")
+    with StudentFunctions(student("def f(): return 1"), limits=QUICK, level=Level.FILTERED) as functions:
+        mounts = Path(f"/proc/{functions._process.pid}/mounts").read_text()
+        assert "/scratch tmpfs" in mounts
+        assert "/scratch tmpfs" not in Path("/proc/self/mounts").read_text(), "only its processes see it"

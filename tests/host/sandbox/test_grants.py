@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from kit.host.process import process_environment
+from kit.host.sandbox import grants
 from kit.host.sandbox.confinement import Level, SandboxConfig
 from kit.host.sandbox.grants import find_grants
 from kit.host.sandbox.namespaces import FileTree, plan_mounts
@@ -40,9 +42,8 @@ def library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (folder / "aside").symlink_to(folder / "kit" / "data")
     (tmp_path / "python" / "lib64").symlink_to("site-packages")
     monkeypatch.syspath_prepend(str(folder))
-    monkeypatch.setenv(
-        "LD_LIBRARY_PATH", str(tmp_path / "python")
-    )  # granted as a whole, if nothing hid in it
+    # Granted as a whole, if nothing hid in it.
+    monkeypatch.setattr(grants, "_SYSTEM", (*grants._SYSTEM, str(tmp_path / "python")))
     return folder
 
 
@@ -124,3 +125,23 @@ def test_few_mounts_whatever_is_installed() -> None:
         Level.SEPARATE, QUICK, "/nowhere", granted.readable, granted.listed, granted.hidden
     )
     assert len(list(plan_mounts(config.file_tree))) < 60
+
+
+def test_the_environment_grants_no_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever sets LD_LIBRARY_PATH to a workspace grants nothing of it; a cluster's libraries of this Python stay usable."""
+    workspace, cluster = tmp_path / "workspace", tmp_path / "cluster"
+    for folder in (workspace, cluster):
+        folder.mkdir()
+        for name in ("secret.yaml", "libown.so.1"):
+            (folder / name).write_text("x")
+    maps = tmp_path / "maps"
+    maps.write_text(f"7f00-7f01 r-xp 00000000 08:01 1234       {cluster}/libown.so.1\n")
+    monkeypatch.setenv("LD_LIBRARY_PATH", f"{workspace}:{cluster}:relative:")
+    monkeypatch.setattr(grants, "MAPPED_FILES", str(maps))
+    assert grants.loader_folders() == [str(cluster)]
+    readable = find_grants([Path("/nowhere")]).readable
+    below = [path for path in readable if path.startswith(str(tmp_path))]
+    assert below == [f"{cluster}/libown.so.1"]
+    assert process_environment("/scratch")["LD_LIBRARY_PATH"] == str(cluster)
+    monkeypatch.setenv("LD_LIBRARY_PATH", str(workspace))
+    assert "LD_LIBRARY_PATH" not in process_environment("/scratch")

@@ -6,17 +6,26 @@
 from __future__ import annotations
 
 import os
+import signal
 from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
 import pytest
 
+from kit.host import process
+from kit.host.failure import StudentCodeError
+from kit.host.sandbox import grants
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.probe import is_level_available
+from kit.host.sandbox.limits import MIB, Limits
+from kit.host.sandbox.probe import can_mount_scratch, is_level_available
 from kit.host.sandbox.promises import PROMISES, Promise, markdown_table, promises_since
+from kit.host.sandbox.reaper import descendants
 from kit.host.student_functions import StudentFunctions
+from tests.grader import test_returned_numbers, test_secrets
 from tests.host import test_forgery, test_process, test_states
 from tests.host.conftest import LINUX, QUICK, Student
 from tests.host.sandbox import test_confinement, test_grants
@@ -30,6 +39,7 @@ TRIALS: Final[Mapping[str, str]] = MappingProxyType(
     {
         "stat": "return os.stat(secret).st_size",
         "list": "return os.stat(f'/proc/{grader}').st_nlink",
+        "load": "return sum(os.getloadavg()) + os.sysconf('SC_AVPHYS_PAGES')",
     }
 )
 """By promise: what returns more than 0 where the level does not prevent it."""
@@ -52,6 +62,11 @@ TESTS: Final[Mapping[str, tuple[Callable[..., Any], ...]]] = MappingProxyType(
             test_forgery.test_a_forged_answer_ends_the_process,
         ),
         "solutions": (test_grants.test_every_package_but_ours_can_be_read,),
+        "numbers": (
+            test_returned_numbers.test_a_calculation_ends_with_the_submissions_time,
+            test_returned_numbers.test_what_takes_too_long_to_measure_is_the_submissions_timeout,
+        ),
+        "order": (test_secrets.test_nothing_that_a_student_reads_of_is_run_after_a_secret_run,),
         "disk": (test_confinement.test_a_separate_program_is_alone_and_its_disk_is_small,),
         "threads": (test_confinement.test_threads_are_counted,),
         "user": (test_confinement.test_two_runs_have_two_users,),
@@ -73,7 +88,7 @@ def find_promise(key: str) -> Promise:
 
 
 def test_every_promise_is_tried() -> None:
-    here = {*TRIALS, "access times", "locks"}
+    here = {*TRIALS, "access times", "locks", "cache"}
     keys = [*here, *TESTS, *test_confinement.ATTACKS_BY_PROMISE]
     assert sorted(keys) == sorted(promise.key for promise in PROMISES)
     for key in test_confinement.ATTACKS_BY_PROMISE:
@@ -141,6 +156,210 @@ def test_a_lock_is_seen_by_another_program_at_every_level(student: Student, leve
     ):
         got = [functions.call_batch("lock", [{}]) for functions in (first, second)]
     assert (got == [[1.0], [1.0]]) == find_promise("locks").holds_at(level)
+
+
+@pytest.mark.long
+@LINUX
+def test_what_of_a_file_is_in_memory_is_seen_by_a_later_program_at_every_level(
+    student: Student, tmp_path: Path, level: Level
+) -> None:
+    """One reads the file, or does not; the other counts the pages that it waits for. So the table promises no less than is so."""
+    data = student("", "data.bin")
+    pages, size = 64, 64 * 4096 * 16
+    data.write_bytes(os.urandom(size))
+    file = student(
+        f"""
+        import mmap, resource
+        def read():
+            with open({str(data)!r}, "rb") as opened: return len(opened.read())
+        def waited():
+            with open({str(data)!r}, "rb") as opened:
+                mapped = mmap.mmap(opened.fileno(), 0, prot=mmap.PROT_READ)
+                before = resource.getrusage(resource.RUSAGE_SELF).ru_majflt
+                total = sum(mapped[place] for place in range(0, {size}, {size // pages})) * 0
+                return total + resource.getrusage(resource.RUSAGE_SELF).ru_majflt - before
+        """
+    )
+    seen = []
+    for is_read in (False, True):
+        with data.open("rb") as opened:
+            os.fsync(opened.fileno())
+            os.posix_fadvise(opened.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)
+        with StudentFunctions(file, limits=QUICK, level=level) as functions:
+            if is_read:
+                functions.call_batch("read", [{}])
+        with StudentFunctions(file, limits=QUICK, level=level) as functions:
+            seen += functions.call_batch("waited", [{}])
+    if seen[0] == 0:
+        pytest.skip("this file system keeps its files in memory")
+    assert (seen[1] < seen[0]) != find_promise("cache").holds_at(level)
+
+
+NO_FILTER = "confinement.seccomp.install = lambda **options: None; "
+NO_LANDLOCK = "confinement.landlock.restrict = lambda *granted: None; "
+NO_LIMITS = "confinement._limit = lambda config: None; "
+WITHOUT_DEFENCE: Final[Mapping[str, tuple[str, tuple[str, ...]]]] = MappingProxyType(
+    {
+        "read": (NO_LANDLOCK, ("read a file outside", "list a folder outside", "read through a link")),
+        "write": (NO_LANDLOCK, ("write a file outside", "make a file outside", "change its own source")),
+        "attributes": (NO_FILTER, ("change a file's rights", "change a file's time", "read a file's flags")),
+        "start": (NO_FILTER + NO_LANDLOCK, ("start a program", "spawn a program")),
+        "network": (NO_FILTER, ("send over UDP", "open a local socket")),
+        "processes": (
+            NO_FILTER + NO_LANDLOCK + NO_LIMITS,
+            ("signal the grader", "signal by descriptor", "use up the machine's requests", "use up its user's signals"),
+        ),
+        "rights": (NO_FILTER, ("make a namespace",)),
+        "kernel": (NO_FILTER, ("use a keyring",)),
+        "uncounted": (
+            NO_FILTER,
+            ("use memory that nobody counts", "use shared memory", "leave pages in a pipe", "widen a pipe"),
+        ),
+    }
+)  # fmt: skip
+"""By promise: what takes its defence away in a process that is confined to level 1 in all else, and attacks that then work."""
+
+
+@pytest.mark.long
+@LINUX
+@pytest.mark.parametrize("key", WITHOUT_DEFENCE)
+def test_a_promise_is_broken_where_its_defence_is_taken_away(
+    student: Student, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, key: str
+) -> None:
+    """So each row rests on the defence that is thought to hold it, and its test would see that this is gone."""
+    if not is_level_available(Level.FILTERED):
+        pytest.skip("not on this machine")
+    secret = tmp_path / "solution.txt"
+    record = {"secret": str(secret), "grader": os.getpid()}
+    taken_away, attacks = WITHOUT_DEFENCE[key]
+    start = process._START
+    gained: dict[str, list[str]] = {}
+    for prelude in ("", f"from kit.host.sandbox import confinement; {taken_away}"):
+        monkeypatch.setattr(process, "_START", start.replace("os._exit(", f"{prelude}os._exit("))
+        gained[prelude] = []
+        for name in attacks:
+            secret.write_text("forty-two")
+            (tmp_path / "solution.txt.new").unlink(missing_ok=True)
+            file = test_confinement._attack_file(student)
+            with StudentFunctions(file, limits=QUICK, level=Level.FILTERED) as functions:
+                number = list(test_confinement.ATTACKS).index(name)
+                if functions.call_batch(f"attack{number}", [record]) != [0.0]:
+                    gained[prelude].append(name)
+    assert list(gained.values()) == [[], list(attacks)]
+
+
+def without(monkeypatch: pytest.MonkeyPatch, taken_away: str) -> None:
+    """Takes something away in the processes that are started from now on."""
+    prelude = f"from kit.host.sandbox import confinement; {taken_away}"
+    monkeypatch.setattr(process, "_START", process._START.replace("os._exit(", f"{prelude}os._exit("))
+
+
+@pytest.mark.long
+@LINUX
+@pytest.mark.parametrize(
+    ("body", "limits"),
+    [
+        ("x = bytearray(400 << 20); return 1", replace(QUICK, memory=300 * MIB, reply_s=10)),
+        (
+            "until = time.process_time() + 1.6\n    while time.process_time() < until: pass\n    return 1",
+            replace(QUICK, cpu_s=1, reply_s=20),
+        ),
+    ],
+    ids=["memory", "time"],
+)
+def test_a_limit_is_exceeded_where_it_is_not_set(
+    student: Student, monkeypatch: pytest.MonkeyPatch, body: str, limits: Limits
+) -> None:
+    file = student(f"import time\ndef f():\n    {body}\n")
+    with StudentFunctions(file, limits=limits) as functions, pytest.raises(StudentCodeError):
+        functions.call_batch("f", [{}])
+    without(monkeypatch, NO_LIMITS)
+    with StudentFunctions(file, limits=limits) as functions:
+        assert functions.call_batch("f", [{}]) == [1.0]
+
+
+@pytest.mark.long
+@LINUX
+def test_a_daemon_is_left_behind_where_nobody_ends_it(
+    student: Student, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    without(monkeypatch, "supervisor.end_descendants = lambda *processes: None; ")
+    before = set(descendants(os.getpid()))
+    marker = f"daemon-of-{tmp_path}"
+    try:
+        with pytest.raises(AssertionError):
+            test_process.test_a_daemon_is_not_left_behind(student, tmp_path)
+    finally:
+        for found in Path("/proc").glob("[0-9]*/cmdline"):
+            with suppress(OSError):
+                if marker.encode() in found.read_bytes() and int(found.parent.name) not in before:
+                    os.kill(int(found.parent.name), signal.SIGKILL)
+
+
+def test_the_kits_environment_is_inherited_where_it_is_not_replaced(
+    student: Student, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(process, "process_environment", lambda scratch: {**os.environ, "HOME": scratch})
+    with pytest.raises(StudentCodeError, match="py:4: AssertionError"):  # the line that looks for it
+        test_process.test_nothing_of_ours_is_in_its_surroundings(student, monkeypatch)
+
+
+@LINUX
+def test_solutions_can_be_read_where_they_are_not_hidden(
+    student: Student, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not is_level_available(Level.FILTERED):
+        pytest.skip("not on this machine")
+    solution = next((Path(__file__).parents[2] / "solutions").rglob("solution.py"))
+    file = student(
+        f"def f():\n    try: return len(open({str(solution)!r}).read())\n    except OSError: return 0\n"
+    )
+    gained = []
+    for hides in (True, False):
+        if not hides:
+            monkeypatch.setattr(grants, "_hidden_paths", list)
+            monkeypatch.setattr(grants, "_last_installed", None)
+            monkeypatch.syspath_prepend(str(Path(__file__).parents[3]))
+            monkeypatch.setattr(grants, "library_folders", lambda: [str(Path(__file__).parents[3])])
+        with StudentFunctions(file, limits=QUICK, level=Level.FILTERED) as functions:
+            gained.append(functions.call_batch("f", [{}])[0] > 0)
+    assert gained == [False, True]
+
+
+@pytest.mark.long
+@LINUX
+def test_files_that_nobody_sees_fill_a_disk_that_is_not_their_own(
+    student: Student, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At level 1 where the kit may not mount: the table says so."""
+    if not can_mount_scratch():
+        pytest.skip("at level 1 this machine only measures")
+    file = student(
+        """
+        import mmap, os
+        kept = []
+        def fill():
+            try:
+                for _ in range(20):
+                    with open("x", "w+b") as file:
+                        file.write(bytes(1 << 20)); file.flush()
+                        kept.append(mmap.mmap(file.fileno(), 4096))
+                        os.unlink("x")
+            except OSError: pass
+            return len(kept)
+        """
+    )
+    limits, filled = replace(QUICK, scratch=8 * MIB, open_files=200), []
+    for _ in range(2):
+        with StudentFunctions(file, limits=limits, level=Level.FILTERED) as functions:
+            filled += functions.call_batch("fill", [{}])
+        without(monkeypatch, "confinement.namespaces.mount_scratch = lambda *folder: False; ")
+    assert filled[0] <= 8
+    assert filled[1] == 20
+
+
+def test_every_promise_of_level_1_is_tried_without_its_defence() -> None:
+    assert set(WITHOUT_DEFENCE) == set(test_confinement.ATTACKS_BY_PROMISE)
 
 
 if __name__ == "__main__":

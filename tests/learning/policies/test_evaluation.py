@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from kit.document.layout import lines_of
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
 from kit.learning.environment.tasks import StartVariation, TaskSpec, find_task
@@ -99,14 +100,14 @@ def test_two_robots_are_judged_side_by_side() -> None:
     (case,) = result.cases
     assert case.reached == 20
     assert case.adjacency > 0.8
-    assert "adj rays" in result.rows()[0]  # the measure is named
+    assert "adj rays" in lines_of([result.table()])[0]  # the measure is named
     json.dumps(result.as_dict())
 
 
 def test_a_result_is_told_with_its_worst_case() -> None:
     result = Evaluator(AHEAD_ONLY).test(STOP, 10, 1)
     json.dumps(result.as_dict(), allow_nan=False)
-    text = "\n".join(result.rows())
+    text = "\n".join(lines_of([result.table()]))
     assert "0.000 to 0.278" in text
     assert "worst" in text
     assert "greedy" in text

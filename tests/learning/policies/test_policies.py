@@ -354,3 +354,18 @@ def test_a_table_policy_does_not_drive_with_continuous_actions() -> None:
         made().check_fits(find_task("smooth-turn"))
     with pytest.raises(PolicyError, match="discrete actions"):
         continuous().check_fits(find_task("turn"))
+
+
+@pytest.mark.parametrize("number", [np.nan, np.inf, -np.inf])
+def test_a_policy_of_numbers_that_are_not_finite_is_refused(tmp_path: Path, number: float) -> None:
+    for policy in (made(), made(recurrent=True), table()):
+        model = policy.model
+        array = model.values if isinstance(model, ActionValueTable) else model.layers[0].weights
+        kept = array[1, 1]
+        array[1, 1] = number
+        (tmp_path / "best.npz").write_bytes(policy_bytes(policy))
+        with pytest.raises(PolicyError, match="not finite"):
+            load_policy(tmp_path / "best.npz")
+        array[1, 1] = kept
+        (tmp_path / "best.npz").write_bytes(policy_bytes(policy))
+        assert load_policy(tmp_path / "best.npz").choices == policy.choices

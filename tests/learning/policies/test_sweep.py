@@ -10,12 +10,13 @@ from pathlib import Path
 
 import pytest
 
+from kit.document.layout import lines_of
 from kit.learning.environment.disturbances import DISTURBANCE_KINDS, DisturbanceError, Disturbances
 from kit.learning.environment.tasks import StartVariation
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.policies.policies import Policy
-from kit.learning.policies.sweep import PolicySweep, SweepPoint, find_kinds, format_sweep, sweep_csv
+from kit.learning.policies.sweep import PolicySweep, SweepPoint, find_kinds, sweep_blocks, sweep_csv
 from kit.render.encode import ENCODERS
 from tests.learning.policies.test_evaluation import FORWARD, STRAIGHT
 
@@ -77,7 +78,7 @@ def test_a_chart_and_figures_for_each_kind() -> None:
         SweepPoint("latency", value, reached, 10 - reached, 0, "a", 0.5)
         for value, reached in ((0, 10), (0.5, 3))
     ]
-    lines = format_sweep(points, ENCODERS["braille"](True), columns=70)
+    lines = lines_of(sweep_blocks(points, ENCODERS["braille"](True), columns=70))
     assert max(map(len, lines)) <= 80
     assert any("latency [s]" in line for line in lines)
     assert any("0.300" in line and "0.108 to 0.603" in line for line in lines)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from kit.document.layout import lines_of
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_map import UnsupportedWorld
 from kit.learning.environment.batch_state import BatchStep
@@ -16,7 +17,7 @@ from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.environment.tasks import TaskSpec, find_task
 from kit.learning.tasks.learning_task import CurriculumStage, practices
 from kit.learning.tasks.task_reader import read_task
-from kit.learning.tasks.task_text import describe_task
+from kit.learning.tasks.task_text import task_blocks
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.events import TrainingNote
 from kit.learning.training.presets import find_preset
@@ -48,10 +49,10 @@ def test_stages_are_read_and_shown(tmp_path: Path) -> None:
         CurriculumStage(("straight",), 0.01),
         CurriculumStage(("straight", "doors"), 0.9),
     )
-    shown = "\n".join(describe_task(task))
+    shown = "\n".join(lines_of(task_blocks(task)))
     assert "1. straight, until each has a success rate of 0.01" in shown
     assert "3. all cases" in shown
-    assert "learns" not in "\n".join(describe_task(find_task("turn")))
+    assert "learns" not in "\n".join(lines_of(task_blocks(find_task("turn"))))
 
 
 MISTAKES = {

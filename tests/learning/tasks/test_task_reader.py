@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -233,3 +234,46 @@ def test_a_choice_keeps_the_text_of_its_file(tmp_path: Path) -> None:
     file.unlink()
     assert again.resolve().max_steps == 77
     assert TaskSpec("turn").frozen() == TaskSpec("turn")
+
+
+OWN_WORLD = """
+summary: In a world of its own
+world: WORLD
+cases: [{start: [0.5, 0.5, 0], target: [0.8, 0.5]}]
+actions: {twists: {forward: [0.3, 0], left: [0, 1]}}
+observation: {sectors: 1}
+reward: {terms: {progress: 1.0}}
+"""
+
+
+def test_a_text_from_elsewhere_names_no_file_of_this_machine(tmp_path: Path) -> None:
+    """A policy brings the text of its task, and the path of a file: the world is read only where that file names it too."""
+    secret, file = tmp_path / "secret.yaml", tmp_path / "task.yaml"
+    secret.write_text("hunter2: [40302]\n")
+    text = OWN_WORLD.replace("WORLD", "secret.yaml")
+    for present in (None, "nothing: of it\n", "[", OWN_WORLD.replace("WORLD", "other.yaml")):
+        if present is not None:
+            file.write_text(present)
+        with pytest.raises(WorldError) as caught:
+            TaskSpec(str(file), text=text).resolve()
+        assert "its world is not here" in str(caught.value)
+        assert "hunter2" not in str(caught.value)
+    file.write_text(text)
+    assert TaskSpec(str(file), text=text).resolve().maps == ()  # its own author's: it is read later
+
+
+def test_whether_a_file_has_changed_is_not_looked_for_in_a_pipe(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    text = (tasks_folder() / "turn.yaml").read_text()
+    for place in (tmp_path / "pipe", Path("/dev/zero"), tmp_path / "none"):
+        assert not TaskSpec(str(place), text=text).has_changed
+    (tmp_path / "mine.yaml").write_text("summary: another\n")
+    assert TaskSpec(str(tmp_path / "mine.yaml"), text=text).has_changed
+
+
+def test_the_worlds_file_of_a_map_lies_in_its_folder(tmp_path: Path) -> None:
+    file = tmp_path / "task.yaml"
+    for name in ("../../pyproject.toml", "/etc/passwd", "x" * 300):
+        file.write_text(f"{(tasks_folder() / 'turn.yaml').read_text()}\nworld_file: {name}\n")
+        with pytest.raises(WorldError, match=r"outside|no file"):
+            read_task(file)

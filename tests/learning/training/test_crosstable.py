@@ -10,13 +10,14 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
+from kit.document.layout import lines_of
 from kit.learning.environment.tasks import TaskSpec
 from kit.learning.training.crosstable import (
     CrosstableColumn,
     case_groups,
     check_crosstable,
     crosstable_columns,
-    format_crosstable,
+    crosstable_tables,
 )
 from kit.learning.training.runs import RunError
 from kit.learning.training.training_sweep import ALL_CASES, TrainingSweep, combine
@@ -79,17 +80,19 @@ def test_the_table_stands_beside_the_dissertation_s() -> None:
     column = CrosstableColumn("doors", 1000, 5.0, {"straight": 0.99, "left_door": 0.75})
     assert column.mean == pytest.approx(0.87)
     assert column.spread == pytest.approx(0.12)
-    rows = format_crosstable([column], printed_means("hallway")[1])
+    rows = lines_of(crosstable_tables([column], printed_means("hallway")[1]))
     assert rows[0].split() == ["tested", "on", "doors"]
     assert rows[-1].split() == ["dissertation", "0.797"]
 
 
 def test_a_table_is_compared_with_its_own_task_alone() -> None:
     columns = [CrosstableColumn(group, 1000, 5.0, {"one": 0.5}) for group in ("doors", "90_turns", ALL_CASES)]
-    pair = format_crosstable(columns, printed_means("wheelchairs")[1])
+    pair = lines_of(crosstable_tables(columns, printed_means("wheelchairs")[1]))
     assert not any("side by side" in row for row in pair)
-    beside = format_crosstable([replace(column, adjacency={"one": 0.25}) for column in columns], {})
+    beside = lines_of(crosstable_tables([replace(column, adjacency={"one": 0.25}) for column in columns], {}))
     assert beside[-1].split() == ["mean", *["0.250"] * len(columns)]
     assert pair[-1].split() == ["dissertation", "0.443"]
     for task in ("turn", "turn-seed", "wheelchairs-seed-49"):
-        assert not any("dissertation" in row for row in format_crosstable(columns, printed_means(task)[1]))
+        assert not any(
+            "dissertation" in row for row in lines_of(crosstable_tables(columns, printed_means(task)[1]))
+        )

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 
+from kit.document.layout import lines_of
 from kit.learning.policies.evaluation import CaseResult, EvaluationResult
-from kit.learning.training.run_text import format_comparison
+from kit.learning.training.run_text import comparison_tables
 
 
 def result(**cases: tuple[int, float]) -> EvaluationResult:
@@ -18,8 +19,10 @@ def result(**cases: tuple[int, float]) -> EvaluationResult:
 
 
 def test_policies_for_one_robot_are_compared_by_success_alone() -> None:
-    rows = format_comparison(
-        {"a": result(left=(9, math.nan), right=(5, math.nan)), "b": result(right=(8, math.nan))}
+    rows = lines_of(
+        comparison_tables(
+            {"a": result(left=(9, math.nan), right=(5, math.nan)), "b": result(right=(8, math.nan))}
+        )
     )
     assert [row.split() for row in rows] == [
         ["case", "a", "b"],
@@ -31,8 +34,10 @@ def test_policies_for_one_robot_are_compared_by_success_alone() -> None:
 
 
 def test_those_for_two_robots_by_their_adjacency_too() -> None:
-    rows = format_comparison(
-        {"pair": result(left=(9, 0.25), right=(5, 0.75)), "one": result(left=(3, math.nan))}
+    rows = lines_of(
+        comparison_tables(
+            {"pair": result(left=(9, 0.25), right=(5, 0.75)), "one": result(left=(3, math.nan))}
+        )
     )
     success, adjacency = rows[: rows.index("")], rows[rows.index("") + 1 :]
     assert "one" in success[0]

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import fcntl
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from kit.document.layout import lines_of
 from kit.learning.environment.rewards import REWARDS
 from kit.learning.environment.tasks import TaskSpec
 from kit.learning.training.events import EventWriter, TrainingProgress
@@ -14,10 +16,11 @@ from kit.learning.training.run_check import check_run_config
 from kit.learning.training.run_upkeep import (
     delete_run,
     disk_bytes,
-    format_runs,
     format_seconds,
     read_overviews,
     rename_run,
+    runs_blocks,
+    runs_table,
 )
 from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run, find_run, list_runs
 
@@ -65,7 +68,7 @@ def test_the_list_tells_disk_and_time_left(run: TrainingRun) -> None:
         fcntl.flock(lock, fcntl.LOCK_EX)
         (active,) = read_overviews([run])
     assert active.remaining_s == pytest.approx(80.0)
-    rows = format_runs([active])
+    rows = lines_of(runs_blocks([active]))
     assert "1.9 MiB" in rows[1]
     assert rows[1].endswith("80 s")
     assert "1 run, 1.9 MiB" in rows[-1]
@@ -75,7 +78,10 @@ def test_a_damaged_run_is_listed_too(run: TrainingRun) -> None:
     (run.folder / "config.json").write_text("{")
     (found,) = read_overviews([run])
     assert found.summary is None
-    assert "damaged" in format_runs([found])[1]
+    lines = lines_of(runs_blocks([found]))
+    assert "damaged" in lines[1]
+    assert found.problem
+    assert "".join(found.problem.split()) == "".join("".join(lines[2:-1]).split())
 
 
 @pytest.mark.parametrize(("seconds", "text"), [(40, "40 s"), (720, "12 min"), (11_100, "3 h 05 min")])
@@ -101,6 +107,17 @@ def test_a_reward_of_ones_own_stands_in_the_list(run: TrainingRun, tmp_path: Pat
         "mine": "",
         "kits": kits_own,
     }
-    rows = format_runs(tuple(overviews.values()))
+    rows = lines_of(runs_blocks(tuple(overviews.values())))
     assert ["straight_ahead.py" in each for each in rows if each.startswith("own")] == [True]
     assert not any("straight_ahead.py" in each for each in rows if not each.startswith("own"))
+
+
+def test_what_no_run_has_needs_no_column(run: TrainingRun) -> None:
+    (plain,) = read_overviews([run])
+    heads = [column.title for column in runs_table([plain]).columns]
+    assert heads[-1] == "time"
+    waiting = replace(plain, remaining_s=80.0)
+    assert runs_table([plain, waiting]).columns[-1].title == "left"
+    both = runs_table([plain, replace(waiting, reward="mine.py")])
+    assert [column.title for column in both.columns[-2:]] == ["left", "reward"]
+    assert all(len(each) == len(both.columns) for each in both.rows)

@@ -18,7 +18,8 @@ from kit.msg.std_msgs import String
 from kit.msg.tf2_msgs import LookupTransform
 from kit.ros.action.client import ActionClient, ClientGoalHandle, uuid_bytes
 from kit.ros.action.server import ActionServer, CancelResponse, GoalResponse, ServerGoalHandle
-from kit.ros.bags import BagRecorder, Storage, read_messages
+from kit.ros.bag_storage import Storage
+from kit.ros.bags import BagRecorder, read_messages
 from kit.ros.exceptions import InvalidHandle, RCLError, ServerGoneError, WouldDeadlock
 from kit.ros.execution.callback_groups import ReentrantCallbackGroup
 from kit.ros.execution.context import context_of

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 import kit
+from kit.dialogue.dialogue import Turn
+from kit.document.layout import lines_of
 from kit.school.lessons.catalogue import lesson_progress_from_events
 from kit.school.lessons.defence import DefenceError, prepare_defence
+from kit.school.lessons.defence_dialogue import DefenceDialogue
 from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressJournal
 from kit.school.report.class_data import student_work
 from kit.tui.rows.lesson_rows import stars
-from kit.tui.rows.quiz_rows import defence_rows
 
 PROGRAM = '''"""Tells the robot the same again and again."""
 
@@ -63,9 +66,18 @@ def test_the_run_decides_what_is_right(tmp_path: Path, speed: float, turn: float
     assert (again.recording.poses == defence.recording.poses).all()
     other = prepare_defence(file, run, 1002)
     assert other.start != defence.start
-    assert "Question 2 of 3" in "".join(text for each in defence_rows(defence, [0], 80) for text, _ in each)
-    said = "".join(text for each in defence_rows(defence, facts, 80) for text, _ in each)
-    assert "one more star" in said
+    recorded: list[list[int]] = []
+    session = SimpleNamespace(
+        record_defence=lambda exercise, defence, answers: recorded.append(list(answers))
+    )
+    exercise = find_lesson("1").exercises[-1]
+    dialogue = DefenceDialogue(session, exercise, defence)  # type: ignore[arg-type]  # keeps what is recorded
+    turn = Turn(dialogue)
+    assert dialogue.position == "question 1 of 3"
+    for fact in facts:
+        turn.press(str(fact + 1))
+    assert recorded == [list(facts)]
+    assert "one more star" in " ".join(lines_of(dialogue.blocks()))
 
 
 @pytest.mark.long

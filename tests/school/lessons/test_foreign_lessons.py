@@ -9,10 +9,11 @@ from click.testing import CliRunner
 from textual.pilot import Pilot
 
 from kit.cli import main
+from kit.document.markup import parse_markup
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.probe import is_level_available
 from kit.school.lessons.lesson_session import LessonSession
-from kit.school.lessons.markup import markdown_to_markup, parse_markup
+from kit.school.lessons.markdown import markdown_to_markup
 from kit.school.lessons.reading import read_lesson
 from kit.school.lessons.records import scene_confinement_level
 from kit.school.progress import ProgressJournal
@@ -119,7 +120,8 @@ def test_its_commands_are_shown_before_they_run(lesson: Path, tmp_path: Path) ->
         await seen(pilot, "step 1 of")
         screen = pilot.app.screen
         assert isinstance(screen, LessonScreen)
-        screen.enter(screen.visit.find_step(2))
+        screen.dialogue.enter(screen.dialogue.session.find_step(2))
+        screen.look()
         await seen(pilot, "A list of maps")
         await pilot.press("o")
         await seen(pilot, "kit keys")
@@ -146,3 +148,14 @@ def test_names_of_folders_command_no_terminal(tmp_path: Path) -> None:
         shown = CliRunner().invoke(main, ["lesson", *words]).output
         assert "owned" in shown or "[2J" in shown
         assert all(sign.isprintable() or sign == "\n" for sign in shown)
+
+
+@pytest.mark.parametrize("file", ["../../../../out.yaml", "/tmp/out.yaml", "a/../../out.yaml"])
+def test_an_exercise_writes_nothing_outside_its_folder(file: str, tmp_path: Path) -> None:
+    """The starter would be copied there, wherever it is."""
+    folder = write_lessons(tmp_path / "theirs") / "01-colours"
+    whole = read_lesson(folder, is_foreign=True)
+    sheet = folder / "lesson.yaml"
+    sheet.write_text(sheet.read_text().replace(f"file: {whole.exercises[0].file}", f"file: {file}"))
+    with pytest.raises(WorldError, match="leads out of the exercise's folder"):
+        read_lesson(folder, is_foreign=True)

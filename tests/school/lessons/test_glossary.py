@@ -9,9 +9,9 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.school.lessons.glossary import UnknownTerm, find_terms, read_glossary
+from kit.document.layout import lines_of
+from kit.school.lessons.glossary import UnknownTerm, find_terms, glossary_blocks, read_glossary
 from kit.school.lessons.reading import lesson_names
-from kit.tui.rows.lesson_rows import glossary_rows
 from kit.world.problems import WorldError
 from tests.kit_content import kit_lesson
 
@@ -64,8 +64,8 @@ def test_meanings_are_a_sentence_or_two_that_fit_the_screen() -> None:
     for each in TERMS:
         assert each.meaning.endswith("."), each.term
         assert len(re.findall(r"[.?!](?= |$)", each.meaning)) <= 3, each.term
-        assert all(len(line) <= 76 for line in each.lines())
-    assert len(glossary_rows(TERMS)) > 2 * len(TERMS)
+        assert all(len(line) <= 78 for line in lines_of(each.blocks()))
+    assert len(lines_of(glossary_blocks(TERMS))) > 2 * len(TERMS)
 
 
 @pytest.mark.parametrize("word", ["node", "Nodes", "QoS", "quality of service", "footprints"])
@@ -73,7 +73,7 @@ def test_a_term_is_found_by_any_of_its_spellings(word: str) -> None:
     (found,) = find_terms(TERMS, word)
     shown = CliRunner().invoke(main, ["glossary", *word.split()])
     assert shown.exit_code == 0
-    assert shown.output.splitlines() == list(found.lines())
+    assert shown.output.splitlines() == lines_of(found.blocks())
 
 
 def test_an_unknown_term_has_a_nearest_one() -> None:

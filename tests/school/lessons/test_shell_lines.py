@@ -8,11 +8,13 @@ from pathlib import Path
 
 import pytest
 
+from kit.document.layout import Page, rows_of
+from kit.document.markup import parse_markup, plain_text, wrap_blocks
+from kit.document.rows import MARGIN, text_width
 from kit.school.lessons.checking import exercise_file
-from kit.school.lessons.markup import parse_markup, plain_text, wrap_blocks
+from kit.school.lessons.lesson_text import command_blocks
 from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.shell_lines import expand_words, fill_in_paths, second_terminal_text, shell_path
-from kit.tui.rows import lesson_rows
 from kit.workspace import open_workspace
 from tests.kit_content import kit_lesson
 
@@ -42,7 +44,10 @@ def test_every_command_is_pasted_as_it_stands_on_the_screen(tmp_path: Path, name
     for step in lesson.steps:
         file = exercise_file(workspace, lesson, step.exercise) if step.exercise is not None else None
         for command in step.commands:
-            shown = lesson_rows.commands([(command, fill_in_paths(command.line, file))], COLUMNS)
+            shown = rows_of(
+                command_blocks([(command, fill_in_paths(command.line, file))]),
+                Page(text_width(COLUMNS), MARGIN),
+            )
             code = [
                 "".join(text for text, _ in row) for row in shown if any(style == "code" for _, style in row)
             ]

@@ -5,9 +5,13 @@ from __future__ import annotations
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+from kit.document.layout import Page, rows_of
+from kit.document.rows import MARGIN, Row, text_width
 from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.items import AnswerOption, QuestionBank, QuizItem, QuizTopic, build_bank
-from kit.school.quiz.schedule import AnswerChoice, AnswerOccasion, event_content
+from kit.school.quiz.quiz_dialogue import QuizDialogue
+from kit.school.quiz.schedule import NOT_SURE, AnswerChoice, AnswerOccasion, event_content
+from kit.tui.screens.dialogue import WIDEST
 from kit.world.records import SourceLocation
 
 MONDAY = datetime(2026, 3, 2, 10, 0, tzinfo=UTC)
@@ -50,3 +54,38 @@ def answered(
         what.id,
         content,
     )
+
+
+class OneQuestion:
+    """Stands in for a session that asks one question and keeps nothing."""
+
+    question_number = question_count = 1
+
+    def __init__(self, item: QuizItem) -> None:
+        self.current_item: QuizItem | None = item
+
+    def answer(self, choice: AnswerChoice, confidence: int | None = None) -> None:
+        self.current_item = None
+
+
+def told_rows(item: QuizItem, choice: AnswerChoice, width: int = 80) -> list[Row]:
+    """The rows of a question once it is answered."""
+    dialogue = asked(item)
+    if choice.option is not None:
+        dialogue.choose(choice.option + 1)
+        dialogue.rate(1)
+    elif choice is NOT_SURE:
+        dialogue.say_not_sure()
+    else:
+        dialogue.leave_blank()
+    return shown_rows(dialogue, width)
+
+
+def asked(item: QuizItem) -> QuizDialogue:
+    """A dialogue that asks this question."""
+    return QuizDialogue(OneQuestion(item))  # type: ignore[arg-type]  # stands in for a QuizSession
+
+
+def shown_rows(dialogue: QuizDialogue, width: int = 80) -> list[Row]:
+    """The rows between a screen's heading and its last two."""
+    return rows_of(dialogue.blocks(), Page(text_width(width, WIDEST - 2 * MARGIN), MARGIN))

@@ -13,9 +13,9 @@ from kit.cli import main
 from kit.school.lessons.reading import lesson_names, lessons_folder
 from kit.school.quiz.items import IDEA_COUNT, OPTION_COUNT, QUIZ_FILE, QuizItem, QuizTopic
 from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice
-from kit.tui.rows.quiz_rows import option_rows, question_rows, sure_rows, told_rows
 from tests.cases import every_case
 from tests.kit_content import kit_bank, kit_lesson
+from tests.school.quiz.item_builders import asked, shown_rows, told_rows
 
 BANK = kit_bank()
 LESSONS = lesson_names()
@@ -81,16 +81,9 @@ def test_every_choice_is_told_something_of_its_own(item: QuizItem) -> None:
 def test_it_fits_the_smallest_full_screen(item: QuizItem) -> None:
     width = 80
     choices = [*(AnswerChoice(i) for i in range(OPTION_COUNT)), NOT_SURE, BLANK]
-    asked = [*question_rows(item, width), *option_rows(item, width, choices[0]), *sure_rows()]
-    pages = [asked]
-    pages += [
-        [
-            *question_rows(item, width),
-            *option_rows(item, width, each, told=True),
-            *told_rows(item, each, width),
-        ]
-        for each in choices
-    ]
+    chosen = asked(item)
+    chosen.choose(1)
+    pages = [shown_rows(chosen, width), *(told_rows(item, each, width) for each in choices)]
     for rows in pages:
         assert len(rows) + 1 <= ROOM
         assert all(sum(len(text) for text, _ in row) <= width for row in rows)

@@ -43,7 +43,7 @@ def asked(output: str) -> list[QuizItem]:
 def test_from_the_first_question_to_the_result(folder: Path) -> None:
     result = quiz(folder, said="1\n4\n" * 12)
     assert result.exit_code == 0
-    assert "Question 12 of 12" in result.output
+    assert "question 12 of 12" in result.output
     given = answers(folder)
     assert [event.subject for event in given] == [item.id for item in asked(result.output)]
     assert {event.subject for event in given} == {item.id for item in BANK.quiz_items}
@@ -63,16 +63,19 @@ def test_a_wrong_answer_gets_feedback(folder: Path) -> None:
 
 def test_a_right_answer_gets_feedback(folder: Path) -> None:
     first = asked(quiz(folder, said="q\n").output)[0]
-    output = " ".join(quiz(folder, said=f"{first.right_option + 1}\n\n").output.split())
+    output = " ".join(quiz(folder, said=f"{first.right_option + 1}\n\n2\n").output.split())
+    assert "Say how sure you are" in output
     assert " ".join(first.options[first.right_option].feedback.split()) in output
-    assert [event.content["confidence"] for event in answers(folder)] == [None]
+    assert [event.content["confidence"] for event in answers(folder)] == [2]
 
 
 def test_not_sure_and_blank(folder: Path) -> None:
-    result = quiz(folder, said="?\n\n\n\nx\n?\n")
+    result = quiz(folder, said="0\n\nx\nx\nx\n0\n?\n")
     kept = [(event.content["chosen"], event.content["not_sure"]) for event in answers(folder)]
     assert kept == [(None, True), (None, False), (None, True)]
-    assert result.output.count("Press Enter again to leave it blank") == 2
+    assert result.output.count("x once more leaves it blank") == 2
+    assert "0 says that you are not sure" in result.output
+    assert "Choose 1 to 3" in result.output
     assert all(event.content["confidence"] is None for event in answers(folder))
 
 

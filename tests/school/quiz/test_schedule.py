@@ -7,9 +7,10 @@ from itertools import pairwise
 
 import pytest
 
+from kit.document.layout import lines_of
 from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.items import QuestionBank, QuizItem, QuizTopic
-from kit.school.quiz.quiz_text import schedule_lines, today_line
+from kit.school.quiz.quiz_text import schedule_blocks, today_line
 from kit.school.quiz.schedule import (
     BLANK,
     GAP_DAYS,
@@ -181,9 +182,9 @@ def test_the_schedule_in_words() -> None:
     events = [answered(FIRST["ros2-0"]), answered(FIRST["layers-0"], 2)]
     today = at(2, events)
     assert today_line(today) == "Due today: 4 from ROS 2."
-    assert schedule_lines(today) == ["ROS 2   4 due today", "layers  again tomorrow"]
+    assert lines_of(schedule_blocks(today)) == ["ROS 2   4 due today", "layers  again tomorrow"]
     practise(events, 2)
     after = at(2, events)
     assert today_line(after) == "Nothing is due today. Next: tomorrow."
-    assert schedule_lines(after)[:2] == ["layers  again tomorrow", "ROS 2   again in 3 days"]
-    assert "1" in schedule_lines(after)[2]
+    assert lines_of(schedule_blocks(after))[:2] == ["layers  again tomorrow", "ROS 2   again in 3 days"]
+    assert "1" in lines_of(schedule_blocks(after))[2]

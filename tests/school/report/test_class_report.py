@@ -13,23 +13,25 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from kit.school.progress import EventKind
-from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
-from kit.school.report.as_files import plot_to_svg, report_to_html, report_to_json, table_to_csv
-from kit.school.report.as_text import ASCII_GLYPHS, BLOCK_GLYPHS, MAX_CELL_LENGTH, report_lines, table_lines
-from kit.school.report.class_data import ClassData, build_class_data, read_roster
-from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
-from kit.school.report.document import (
+from kit.document.blocks import (
     BarChart,
-    ClassReport,
+    Caution,
+    Chapter,
+    Column,
+    Document,
     Histogram,
     Quote,
-    ReportChapter,
-    ReportTable,
-    ReportWarning,
     ScatterPlot,
-    TableColumn,
+    Table,
 )
+from kit.document.files import document_to_html, document_to_json, plot_to_svg, table_to_csv
+from kit.document.glyphs import ASCII_GLYPHS, BLOCK_GLYPHS
+from kit.document.layout import document_lines, lines_of
+from kit.document.tables import MAX_CELL_LENGTH
+from kit.school.progress import EventKind
+from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
+from kit.school.report.class_data import ClassData, build_class_data, read_roster
+from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
 from kit.school.report.measures import ReportItem
 from tests.school.report.class_builder import Diary, classroom, diaries, the_bank, the_form
 
@@ -47,24 +49,24 @@ def data_of(folder: Path, made: Sequence[Diary]) -> ClassData:
     return build_class_data(read_roster([folder], use_names=True), the_form(), known())
 
 
-def report_of(folder: Path, made: Sequence[Diary]) -> ClassReport:
+def report_of(folder: Path, made: Sequence[Diary]) -> Document:
     return build_report(prepare_report(data_of(folder, made)), len(made))
 
 
 @pytest.fixture(scope="module")
-def report(tmp_path_factory: pytest.TempPathFactory) -> ClassReport:
+def report(tmp_path_factory: pytest.TempPathFactory) -> Document:
     folder = tmp_path_factory.mktemp("class")
     classroom(folder)
     roster = read_roster([folder], use_names=True)
     return build_report(prepare_report(build_class_data(roster, the_form(), known())), roster.file_count)
 
 
-def table(report: ClassReport, identity: str) -> ReportTable:
+def table(report: Document, identity: str) -> Table:
     return next(each for each in report.tables if each.id == identity)
 
 
 @pytest.mark.long
-def test_a_whole_class_has_every_chapter(report: ClassReport) -> None:
+def test_a_whole_class_has_every_chapter(report: Document) -> None:
     assert tuple(each.id for each in report.chapters) == CHAPTER_IDS
     assert len({each.id for each in (*report.tables, *report.plots)}) == len(report.tables) + len(
         report.plots
@@ -73,14 +75,14 @@ def test_a_whole_class_has_every_chapter(report: ClassReport) -> None:
 
 @pytest.mark.long_cases("blocks")
 @pytest.mark.parametrize("glyphs", [BLOCK_GLYPHS, ASCII_GLYPHS], ids=["blocks", "ascii"])
-def test_it_fits_eighty_columns(report: ClassReport, glyphs: Any) -> None:
-    rows = list(report_lines(report, glyphs))
+def test_it_fits_eighty_columns(report: Document, glyphs: Any) -> None:
+    rows = list(document_lines(report, glyphs))
     assert max(map(len, rows)) <= 79
     assert all(row == row.rstrip() for row in rows)
     assert glyphs is BLOCK_GLYPHS or "\n".join(rows).isascii()
 
 
-def test_every_mean_has_its_n_and_interval(report: ClassReport) -> None:
+def test_every_mean_has_its_n_and_interval(report: Document) -> None:
     means = [each for each in report.tables if "M" in {column.title for column in each.columns}]
     assert len(means) >= 8
     for each in means:
@@ -91,8 +93,8 @@ def test_every_mean_has_its_n_and_interval(report: ClassReport) -> None:
 
 
 @pytest.mark.long
-def test_the_same_class_makes_the_same_report(report: ClassReport, tmp_path: Path) -> None:
-    assert report_to_json(report_of(tmp_path, list(diaries(12)))) == report_to_json(report)
+def test_the_same_class_makes_the_same_report(report: Document, tmp_path: Path) -> None:
+    assert document_to_json(report_of(tmp_path, list(diaries(12)))) == document_to_json(report)
 
 
 def nothing_but(*kinds: EventKind, count: int = 3) -> list[Diary]:
@@ -104,7 +106,7 @@ def nothing_but(*kinds: EventKind, count: int = 3) -> list[Diary]:
 
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_small_classes_are_reported(tmp_path: Path, count: int) -> None:
-    rows = list(report_lines(report_of(tmp_path, list(diaries(count)))))
+    rows = list(document_lines(report_of(tmp_path, list(diaries(count)))))
     assert max(map(len, rows)) <= 79
     assert not any("nan" in row.split() for row in rows)
 
@@ -126,9 +128,9 @@ def test_a_class_that_did_only_a_part(
     chapters = {each.id for each in report.chapters}
     assert there in chapters
     assert missing not in chapters
-    assert list(report_lines(report))
-    assert json.loads(report_to_json(report))
-    assert report_to_html(report)
+    assert list(document_lines(report))
+    assert json.loads(document_to_json(report))
+    assert document_to_html(report)
 
 
 def test_a_class_of_which_all_say_the_same(tmp_path: Path) -> None:
@@ -150,11 +152,11 @@ def test_a_class_of_which_all_say_the_same(tmp_path: Path) -> None:
         for each in row[2:4]
         if isinstance(each, float)
     )
-    json.loads(report_to_json(report))
+    json.loads(document_to_json(report))
 
 
-def report_warnings(report: ClassReport) -> list[ReportWarning]:
-    return [each for chapter in report.chapters for each in chapter.blocks if isinstance(each, ReportWarning)]
+def report_warnings(report: Document) -> list[Caution]:
+    return [each for chapter in report.chapters for each in chapter.blocks if isinstance(each, Caution)]
 
 
 def test_blank_not_sure_and_wrong_stay_apart(tmp_path: Path) -> None:
@@ -219,8 +221,8 @@ def test_nothing_a_student_wrote_does_anything(tmp_path: Path) -> None:
     ):
         diary.note(EventKind.ANSWER, the_bank().quiz_items[0].id, content)
     report = report_of(tmp_path, [diary])
-    text = "\n".join(report_lines(report))
-    page = report_to_html(report)
+    text = "\n".join(document_lines(report))
+    page = document_to_html(report)
     assert "\x1b" not in text + page
     assert "<script" not in page
     assert "&lt;script&gt;" in page
@@ -231,15 +233,15 @@ def test_nothing_a_student_wrote_does_anything(tmp_path: Path) -> None:
     assert [each.text for each in said] == [WICKED]
 
 
-def test_a_page_needs_nothing_from_elsewhere(report: ClassReport) -> None:
-    page = report_to_html(report)
+def test_a_page_needs_nothing_from_elsewhere(report: Document) -> None:
+    page = document_to_html(report)
     assert "http://www.w3.org/2000/svg" in page
     loaders = ("<script", "<link", "<img", "src=", "@import", "url(")
     assert [each for each in loaders if each in page] == []
     assert "default-src 'none'" in page
 
 
-def test_every_plot_is_a_picture_with_what_it_shows(report: ClassReport) -> None:
+def test_every_plot_is_a_picture_with_what_it_shows(report: Document) -> None:
     for plot in report.plots:
         root = ElementTree.fromstring(plot_to_svg(plot))
         tags = [element.tag.rpartition("}")[2] for element in root.iter()]
@@ -253,7 +255,7 @@ def test_every_plot_is_a_picture_with_what_it_shows(report: ClassReport) -> None
                 assert tags.count("circle") == len(set(plot.points))
 
 
-def test_tables_as_csv_hold_the_numbers_in_full(report: ClassReport) -> None:
+def test_tables_as_csv_hold_the_numbers_in_full(report: Document) -> None:
     rows = list(csv.reader(io.StringIO(table_to_csv(table(report, "gained")))))
     assert rows[0] == ["", "group", "n", "M", "SD", "95% of M low", "95% of M high", "p"]
     assert all(len(row) == len(rows[0]) and row[0] for row in rows[1:])
@@ -265,14 +267,14 @@ def test_a_bar_is_as_long_as_its_value() -> None:
     bars = BarChart(
         "b", "Bars", ("one",), (("full", (7.0,)), ("none", (1.0,)), ("gone", (float("nan"),))), 1, 7
     )
-    lines = list(report_lines(ClassReport("r", (ReportChapter("c", "C", (bars,)),)), ASCII_GLYPHS))
+    lines = list(document_lines(Document("r", (Chapter("c", "C", (bars,)),)), ASCII_GLYPHS))
     assert [line.count("#") for line in lines if "|" in line] == [40, 0, 0]
     assert "nobody" in lines[-1]
 
 
 def test_a_point_lies_where_it_belongs() -> None:
     scatter = ScatterPlot("s", "S", "x", "y", ((1, 0), (7, 1), (7, 1)), (1, 7), (0, 1), (1 / 6, -1 / 6))
-    lines = list(report_lines(ClassReport("r", (ReportChapter("c", "C", (scatter,)),)), ASCII_GLYPHS))
+    lines = list(document_lines(Document("r", (Chapter("c", "C", (scatter,)),)), ASCII_GLYPHS))
     field = [line.partition("|")[2] for line in lines if "|" in line]
     assert field[-1][0] == "o"
     assert field[0][55] == "2"
@@ -281,7 +283,7 @@ def test_a_point_lies_where_it_belongs() -> None:
 
 @pytest.mark.parametrize("name", ["=1+1", "\uff1d1+1", "|x", "x;=1+1", "a\x1b[2J"])
 def test_no_name_is_a_formula_or_a_command_in_a_table(name: str) -> None:
-    made = ReportTable("t", "T", (TableColumn("name"),), ((name,),))
+    made = Table("t", "T", (Column("name"),), ((name,),))
     line = table_to_csv(made).splitlines()[1]
     assert line.startswith('"')
     assert line.endswith('"')
@@ -291,7 +293,7 @@ def test_no_name_is_a_formula_or_a_command_in_a_table(name: str) -> None:
 
 def test_a_long_cell_is_cut_at_its_limit_and_says_so() -> None:
     def shown(length: int) -> str:
-        lines = list(table_lines(ReportTable("t", "T", (TableColumn("name"),), (("x" * length,),))))
+        lines = lines_of([Table("t", "T", (Column("name"),), (("x" * length,),))])
         return "".join(lines[3:])  # below its title, head and line
 
     assert shown(MAX_CELL_LENGTH) == "x" * MAX_CELL_LENGTH

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,15 +11,24 @@ import pytest
 from rich.cells import cell_len
 
 from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
+from kit.document.blocks import Block, Code, Marked
+from kit.document.layout import Page, rows_of
+from kit.document.rows import MARGIN, Row, row, text_width
 from kit.school.lessons.catalogue import LessonProgress, lesson_progress_from_events
 from kit.school.lessons.checking import CheckReport
 from kit.school.lessons.lesson_session import LessonHint
+from kit.school.lessons.lesson_text import (
+    ending_blocks,
+    feedback_blocks,
+    question_blocks,
+    status_text,
+    verdict_blocks,
+)
 from kit.school.lessons.reading import find_lesson, lesson_names, read_lesson
 from kit.school.lessons.records import Lesson
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 from kit.tui.rows import lesson_rows
 from kit.tui.widgets.lesson_page import LEAST_PICTURE
-from kit.tui.widgets.text_rows import Row, row
 from tests.tui.lesson_folder import write_lessons
 from tests.tui.lesson_stage import row_text
 
@@ -56,6 +66,11 @@ def as_a_shell_takes(lines: list[str]) -> list[str]:
     ).stdout.splitlines()
 
 
+def shown(blocks: Sequence[Block], width: int = 80) -> list[Row]:
+    """The blocks as a lesson's screen shows them."""
+    return rows_of(blocks, Page(text_width(width), MARGIN))
+
+
 def widest(rows: list[Row]) -> int:
     return max(cell_len(row_text(row)) for row in rows)
 
@@ -73,12 +88,12 @@ def test_nothing_is_wider_than_the_screen(lesson: Lesson, stand: LessonProgress,
         )
         <= width
     )
-    assert widest(lesson_rows.words("word " * 99 + "\n\n    " + "x" * 300, width)) <= width
-    assert widest(lesson_rows.question(predict, predict.options[0], True, width)) <= width
-    assert widest(lesson_rows.feedback(predict, predict.options[1], width)) <= width
-    assert widest(lesson_rows.verdict(REPORT, hints, width).rows) <= width
+    assert widest(shown([Marked("word " * 99 + "\n\n    " + "x" * 300)], width)) <= width
+    assert widest(shown(question_blocks(predict, predict.options[0], is_told=True), width)) <= width
+    assert widest(shown(feedback_blocks(predict, predict.options[1]), width)) <= width
+    assert widest(shown(verdict_blocks(REPORT, hints), width)) <= width
     assert widest(lesson_rows.file_rows("/home/" + "ada" * 60, False, True, width)) <= width
-    assert widest(lesson_rows.ending(stand, width)) <= width
+    assert widest(shown(ending_blocks(stand), width)) <= width
 
 
 def test_a_long_path_is_there_to_the_last_character() -> None:
@@ -88,29 +103,29 @@ def test_a_long_path_is_there_to_the_last_character() -> None:
 
 
 def test_a_long_command_can_be_copied_and_typed_as_it_stands() -> None:
-    line = "    kit play simple --controller /home/" + "ada/" * 12 + "controller.py --seed 1"
-    shown = [row_text(each) for each in lesson_rows.code(line, 76)]
-    assert len(shown) > 1
-    assert all(len(part) <= 78 for part in shown)
-    assert as_a_shell_takes(shown) == line.split()[1:]
+    line = "kit play simple --controller /home/" + "ada/" * 12 + "controller.py --seed 1"
+    rows = [row_text(each) for each in shown([Code((line,))])]
+    assert len(rows) > 1
+    assert all(len(part) <= 78 for part in rows)
+    assert as_a_shell_takes(rows) == line.split()[1:]
     path = "/home/" + "ada" * 40 + "/controller.py"
-    torn = [row_text(each) for each in lesson_rows.code(f"    kit run {path} --steps 3", 76)]
+    torn = [row_text(each) for each in shown([Code((f"kit run {path} --steps 3",))])]
     assert as_a_shell_takes(torn) == ["run", path, "--steps", "3"]
-    code = "    x = " + "1 + " * 30 + "1"
-    assert "".join(row_text(each)[2:] for each in lesson_rows.code(code, 76)) == code
+    code = "x = " + "1 + " * 30 + "1"
+    assert "".join(row_text(each) for each in shown([Code((code,))])).split() == code.split()
 
 
 def test_the_goal_is_whole_where_a_lessons_title_is_long(lesson: Lesson) -> None:
     stand = lesson_progress_from_events(replace(lesson, title="Services, parameters and looking inside"), [])
     step = replace(lesson.steps[0], goal="Foresee what the robot is told")
-    shown = row_text(lesson_rows.heading(stand, step, 80))
-    assert "Foresee what the robot is told" in shown
-    assert "..." in shown
-    assert shown.rstrip().endswith("▒░░░░")
+    heading = row_text(lesson_rows.heading(stand, step, 80))
+    assert "Foresee what the robot is told" in heading
+    assert "..." in heading
+    assert heading.rstrip().endswith("▒░░░░")
 
 
 def test_a_verdict_names_points_and_what_was_wanted() -> None:
-    told = "\n".join(map(row_text, lesson_rows.verdict(REPORT, (LessonHint(LOST, 1, "Go.", 2),), 80).rows))
+    told = "\n".join(map(row_text, shown(verdict_blocks(REPORT, (LessonHint(LOST, 1, "Go.", 2),)))))
     assert "[ok] It runs: 1 of 1" in told
     assert "[no] It comes near" in told
     assert "0.5 of 3" in told
@@ -121,34 +136,34 @@ def test_a_verdict_names_points_and_what_was_wanted() -> None:
 
 def test_a_broken_check_is_nobodys_fault(lesson: Lesson, stand: LessonProgress) -> None:
     broken = replace(REPORT, verdict=GradingVerdict.BROKEN, result=None, problem="The check broke: no disk")
-    assert "The check broke: no disk" in "\n".join(map(row_text, lesson_rows.verdict(broken, (), 80).rows))
-    assert "itself failed" in row_text(lesson_rows.status(broken, stand, lesson.exercises[-1], False))
+    assert "The check broke: no disk" in "\n".join(map(row_text, shown(verdict_blocks(broken, ()))))
+    assert "itself failed" in status_text(broken, stand, lesson.exercises[-1]).text
 
 
 def test_a_right_prediction_and_a_wrong_one(lesson: Lesson) -> None:
     step = lesson.steps[0]
-    right = "\n".join(map(row_text, lesson_rows.feedback(step, step.options[0], 80)))
+    right = "\n".join(map(row_text, shown(feedback_blocks(step, step.options[0]))))
     assert "It goes ahead while there is room." in right
     assert "Only a wall" not in right
-    wrong = "\n".join(map(row_text, lesson_rows.feedback(step, step.options[1], 80)))
+    wrong = "\n".join(map(row_text, shown(feedback_blocks(step, step.options[1]))))
     assert wrong.index("Only a wall") < wrong.index("It goes ahead")
 
 
 @pytest.mark.parametrize("name", lesson_names())
 def test_every_question_is_in_sight_at_80x24_with_the_scene_and_some_words(name: str) -> None:
     for step in find_lesson(name).steps:
-        asked = len(lesson_rows.question(step, None, False, 80)) + 1 if step.options else 0
+        asked = len(shown(question_blocks(step, None, is_told=False))) + 1 if step.options else 0
         picture = LEAST_PICTURE if step.scene is not None else len(step.picture.splitlines())
         fixed = 3 + (2 if step.exercise is not None else 0)  # heading, title, keys; file and status
         assert 24 - fixed - asked - picture >= 3, f"{name} step {step.number}: no room for the words"
 
 
 def test_a_running_check_fits_into_a_line() -> None:
-    shown: list[str] = []
-    progress = TrainingProgressReport(SubmissionClock(show_progress=shown.append), 10, 10, 120_000)
+    lines: list[str] = []
+    progress = TrainingProgressReport(SubmissionClock(show_progress=lines.append), 10, 10, 120_000)
     for steps in range(10_000, 120_000, 10_000):
         progress.add_test(steps, 1.0)
-    line = row_text(lesson_rows.checking(123.4, shown[-1]))
+    line = row_text(lesson_rows.checking(123.4, lines[-1]))
     assert "training 10 of 10" in line
     assert len(line) <= 80
     assert "Checking" in row_text(lesson_rows.checking(0.4))

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from kit.controllers import find_controller
+from kit.document.rows import Row
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from kit.run.view import LASER_DIRECTIONS, View, ViewBuilder
 from kit.tui.rows.readout_rows import CHART_ROWS, SpeedHistory, instruments, laser_chart, readout, time_chart
-from kit.tui.widgets.text_rows import Row
 from tests.cases import every_case
 from tests.tui.lesson_stage import row_text
 

@@ -111,6 +111,14 @@ def test_the_lines_fit_into_eighty_columns() -> None:
         assert "mine" in training_rows.farewell("mine", state)
 
 
+def test_the_tasks_to_begin_with_say_where_they_are_cut() -> None:
+    whole = [row_text(each) for each in training_rows.no_trainings(TASKS, 80, 100)]
+    assert all(any(task.name in line for line in whole) for task in TASKS)
+    cut = [row_text(each) for each in training_rows.no_trainings(TASKS, 80, 8)]
+    assert len(cut) == 8
+    assert "kit task list" in cut[-1]
+
+
 def test_two_windows_of_averaging_have_two_names() -> None:
     found = full(("a",), 2)
     present = row_text(training_rows.figures(found, 200))

@@ -11,6 +11,7 @@ from textual.pilot import Pilot
 from textual.screen import Screen
 from textual.widgets import OptionList
 
+from kit.document.rows import row
 from kit.render.roles import COLOR_SCHEMES, Role
 from kit.tui.app import KitApp
 from kit.tui.screens.dialogs import LINE, MessageDialog, Picker, PickerItem, TextScreen
@@ -19,7 +20,6 @@ from kit.tui.screens.lessons import LessonsScreen
 from kit.tui.screens.new_training import NewTrainingScreen
 from kit.tui.screens.play import PlayScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
-from kit.tui.widgets.text_rows import row
 from tests.tui.lesson_stage import rows, seen, stage, text, until
 from tests.tui.screens.test_start import House
 from tests.tui.screens.test_start import house as house  # the fixture

@@ -8,11 +8,13 @@ from pathlib import Path
 import pytest
 from textual.pilot import Pilot
 
+from kit.school.form_dialogue import FormDialogue
 from kit.school.form_session import FormSession
 from kit.school.progress import EventKind, ProgressJournal
 from kit.school.survey import AnswerShape, AnswerValue, FormAnswers, SurveyPhase, read_form
 from kit.tui.screens.dialogs import MessageDialog
-from kit.tui.screens.form import FormScreen
+from kit.tui.screens.dialogue import DialogueScreen
+from kit.tui.widgets.text_field import AnswerField
 from tests.cases import every_case
 from tests.tui.lesson_stage import rows, stage, text, until
 
@@ -40,12 +42,16 @@ def play(
         async def scene(pilot: Pilot[None]) -> None:
             await act(pilot, session)
 
-        stage(lambda theme: FormScreen(session), scene, size=size, ascii_only=ascii_only)
+        stage(lambda theme: DialogueScreen(FormDialogue(session)), scene, size=size, ascii_only=ascii_only)
         return FormAnswers.from_events(FORM, journal.events(EventKind.FORM))
 
 
 def value(answers: FormAnswers, question: str, phase: SurveyPhase = SurveyPhase.BEFORE) -> AnswerValue:
     return answers.value(question, phase)
+
+
+def _field(screen: DialogueScreen) -> AnswerField:
+    return screen.query_one(AnswerField)
 
 
 def test_a_number_chooses_and_enter_keeps_it_and_goes_on(tmp_path: Path) -> None:
@@ -59,7 +65,7 @@ def test_a_number_chooses_and_enter_keeps_it_and_goes_on(tmp_path: Path) -> None
         assert sum(row.startswith("> 3") for row in rows(pilot)) == 1
         await pilot.press("enter")
         assert f"question 2 of {session.count}" in rows(pilot)[0]
-        await pilot.press("7", "n", "enter")
+        await pilot.press("7", "enter", "enter")
         assert f"question 4 of {session.count}" in rows(pilot)[0]
 
     kept = play(tmp_path, act)
@@ -151,8 +157,8 @@ def test_words_are_typed_and_letters_are_keys_only_outside_the_field(tmp_path: P
 def test_an_answer_that_is_too_long_is_said_and_not_lost(tmp_path: Path) -> None:
     async def act(pilot: Pilot[None], session: FormSession) -> None:
         screen = pilot.app.screen
-        assert isinstance(screen, FormScreen)
-        screen._field.load_text("word " * 1000)
+        assert isinstance(screen, DialogueScreen)
+        _field(screen).load_text("word " * 1000)
         await pilot.press("enter")
         assert "Not saved" in rows(pilot)[-2]
         await pilot.press("escape", "escape")
@@ -195,7 +201,7 @@ def test_help(tmp_path: Path) -> None:
         assert isinstance(pilot.app.screen, MessageDialog)
         assert "your teacher" in text(pilot)
         await pilot.press("x")
-        assert isinstance(pilot.app.screen, FormScreen)
+        assert isinstance(pilot.app.screen, DialogueScreen)
 
     play(tmp_path, act)
 
@@ -248,8 +254,8 @@ def test_a_text_is_kept_while_the_terminal_changes_its_size(tmp_path: Path) -> N
 def test_pasted_lines_become_one_and_nothing_else_of_a_text_changes(tmp_path: Path) -> None:
     async def act(pilot: Pilot[None], session: FormSession) -> None:
         screen = pilot.app.screen
-        assert isinstance(screen, FormScreen)
-        screen._field.load_text("two\n  lines,  so\n")
+        assert isinstance(screen, DialogueScreen)
+        _field(screen).load_text("two\n  lines,  so\n")
         await pilot.press("enter", "b", "escape")
 
     kept = play(tmp_path, act, phase=SurveyPhase.AFTER, start="driving_words")

@@ -62,7 +62,7 @@ def test_the_slides_method_step_by_step() -> None:
         assert all(f"[{name}]" in text(screen) for name in ("Map1", "M4.B1", "M4.B2"))
         await pilot.press("right", "right", "right", "right", "right")
         assert "layer 6 of 6" in rows(screen)[0]
-        assert "None left." in words(screen)
+        assert "no edge left." in words(screen)
         await pilot.press("right")
         assert "<Ls1>" in text(screen)
         await pilot.press("left")

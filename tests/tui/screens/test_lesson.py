@@ -214,11 +214,12 @@ def test_beginning_again_is_asked_for_and_keeps_what_was_there(student: Student,
         student.file.write_text("colour: mine\n")
         await seen(pilot, "[no]")
         await pilot.press("x")
-        await seen(pilot, "Start this exercise over?")
-        await pilot.press("n")  # no, and not: on
+        await seen(pilot, "x once more starts this exercise over")
+        await pilot.press("u")  # something else: not meant
         assert "step 4 of 5" in rows(pilot)[0]
+        await pilot.press("x")
         assert "mine" in student.file.read_text()
-        await pilot.press("x", "enter")
+        await pilot.press("x")
         await seen(pilot, "Started over.")
 
     play(scene)
@@ -440,11 +441,11 @@ def test_a_passed_program_is_defended(student: Student, play: Play) -> None:
         await pilot.press("c")
         await seen(pilot, "Passed: ***")
         await pilot.press("y")
-        await seen(pilot, "Question 1 of 3")
+        await seen(pilot, "question 1 of 3")
         await pilot.press("3", "1")  # there is no third answer
-        await seen(pilot, "Question 2 of 3")
+        await seen(pilot, "question 2 of 3")
         await pilot.press("3")
-        await seen(pilot, "Question 3 of 3")
+        await seen(pilot, "question 3 of 3")
         await pilot.press("1")
         await seen(pilot, "All correct: one more star.")
         await pilot.press("escape")

@@ -78,5 +78,5 @@ def test_line_by_line_it_is_shown_after_the_prediction(
     monkeypatch.setattr("kit.school.lessons.reading.lessons_folder", lambda: lesson.parent)
     command = ["lesson", "1", "--plain", "--workspace", str(tmp_path / "home")]
     output = CliRunner().invoke(main, command, input="r\n2\nr\nq\n").output
-    assert output.index("predict first") < output.index("Table: 1 of 3 episodes")
+    assert output.index("Predict first") < output.index("Table: 1 of 3 episodes")
     assert output.count("Table, after 3 episodes: the best moves") == 2

@@ -12,14 +12,15 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
+from kit.school.quiz.quiz_dialogue import QuizDialogue, QuizStage
 from kit.school.quiz.quiz_session import QuizSession, lesson_plan, quiz_plan
 from kit.tui.screens.dialogs import MessageDialog
-from kit.tui.screens.quiz import QuizScreen, QuizStage
+from kit.tui.screens.dialogue import DialogueScreen
 from tests.kit_content import kit_bank
 from tests.tui.lesson_stage import rows
 
 BANK = kit_bank()
-Scene = Callable[[QuizScreen, Pilot[None]], Awaitable[None]]
+Scene = Callable[[DialogueScreen, Pilot[None]], Awaitable[None]]
 
 
 @pytest.fixture
@@ -36,7 +37,7 @@ def play(
     async def run() -> None:
         app: App[None] = App()
         async with app.run_test(size=size) as pilot:
-            screen = QuizScreen(QuizSession(progress, BANK, plan, seed=1))
+            screen = DialogueScreen(QuizDialogue(QuizSession(progress, BANK, plan, seed=1)))
             await app.push_screen(screen)
             await pilot.pause()
             await scene(screen, pilot)
@@ -44,7 +45,12 @@ def play(
     asyncio.run(run())
 
 
-def flat(screen: QuizScreen) -> str:
+def quiz(screen: DialogueScreen) -> QuizDialogue:
+    assert isinstance(screen.dialogue, QuizDialogue)
+    return screen.dialogue
+
+
+def flat(screen: DialogueScreen) -> str:
     return " ".join(" ".join(rows(screen)).split())
 
 
@@ -53,14 +59,14 @@ def kept(progress: ProgressJournal) -> list[ProgressEvent]:
 
 
 def test_choose_say_how_sure_be_told_go_on(progress: ProgressJournal) -> None:
-    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
-        item = screen._item
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
+        item = quiz(screen).item
         assert item is not None
         assert "question 1 of 12" in rows(screen)[0]
         assert all(option.text in flat(screen) for option in item.options)
         wrong = (item.right_option + 1) % 3
         await pilot.press(str(wrong + 1))
-        assert screen.stage is QuizStage.CHOSEN
+        assert quiz(screen).stage is QuizStage.CHOSEN
         assert any(row.startswith(f"> {wrong + 1}") for row in rows(screen))
         assert "How sure are you?" in flat(screen)
         assert kept(progress) == []
@@ -72,14 +78,14 @@ def test_choose_say_how_sure_be_told_go_on(progress: ProgressJournal) -> None:
         assert any(row.startswith(f"+ {item.right_option + 1}") for row in rows(screen))
         await pilot.press("n")
         assert "question 2 of 12" in rows(screen)[0]
-        assert screen.stage is QuizStage.ASKED
+        assert quiz(screen).stage is QuizStage.ASKED
 
     play(scene, progress)
 
 
 @pytest.mark.long
 def test_another_answer_before_one_says_how_sure(progress: ProgressJournal) -> None:
-    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
         await pilot.press("1", "b", "3", "2")
         (event,) = kept(progress)
         assert (event.content["chosen"], event.content["confidence"]) == (2, 2)
@@ -89,7 +95,7 @@ def test_another_answer_before_one_says_how_sure(progress: ProgressJournal) -> N
 
 @pytest.mark.long
 def test_not_sure_and_blank_are_told_too(progress: ProgressJournal) -> None:
-    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
         await pilot.press("0")
         assert "not counted as wrong" in flat(screen)
         await pilot.press("enter", "x")
@@ -104,13 +110,13 @@ def test_not_sure_and_blank_are_told_too(progress: ProgressJournal) -> None:
 
 @pytest.mark.long
 def test_a_key_too_many_changes_nothing(progress: ProgressJournal) -> None:
-    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
         await pilot.press("n", "4", "b")
-        assert screen.stage is QuizStage.ASKED
+        assert quiz(screen).stage is QuizStage.ASKED
         await pilot.press("1", "0", "x", "n")
-        assert screen.stage is QuizStage.CHOSEN
+        assert quiz(screen).stage is QuizStage.CHOSEN
         await pilot.press("1", "2", "3", "0", "x", "x")
-        assert screen.stage is QuizStage.TOLD
+        assert quiz(screen).stage is QuizStage.TOLD
         assert len(kept(progress)) == 1
 
     play(scene, progress)
@@ -120,12 +126,12 @@ def test_a_key_too_many_changes_nothing(progress: ProgressJournal) -> None:
 def test_to_the_end_and_what_came_of_it(progress: ProgressJournal) -> None:
     count = len(BANK.lesson_items("08-fewest-layers"))
 
-    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
         for _ in range(count):
-            item = screen._item
+            item = quiz(screen).item
             assert item is not None
             await pilot.press(str(item.right_option + 1), "4", "n")
-        assert screen.stage is QuizStage.OVER
+        assert quiz(screen).stage is QuizStage.OVER
         assert f"{count} of {count} right" in flat(screen)
         assert f"certain {count} of {count}" in flat(screen)
         assert "Next: tomorrow" in flat(screen)
@@ -136,7 +142,7 @@ def test_to_the_end_and_what_came_of_it(progress: ProgressJournal) -> None:
 
 @pytest.mark.long
 def test_the_keys_that_work_are_in_sight_all_the_time(progress: ProgressJournal) -> None:
-    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
         seen = []
         for key in ("1", "3", "n"):
             seen.append(rows(screen)[-1])
@@ -150,17 +156,17 @@ def test_the_keys_that_work_are_in_sight_all_the_time(progress: ProgressJournal)
 
 
 def test_an_answer_that_cannot_be_kept_is_said(progress: ProgressJournal) -> None:
-    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
         progress.close()
         await pilot.press("1", "1")
         assert "Not saved" in rows(screen)[-2]
-        assert screen.stage is QuizStage.CHOSEN
+        assert quiz(screen).stage is QuizStage.CHOSEN
 
     play(scene, progress)
 
 
 def test_a_small_window_scrolls(progress: ProgressJournal) -> None:
-    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
         assert "more lines below" in flat(screen)
         before = rows(screen)
         await pilot.press("down")
@@ -173,7 +179,7 @@ def test_a_small_window_scrolls(progress: ProgressJournal) -> None:
 
 @pytest.mark.long
 def test_help(progress: ProgressJournal) -> None:
-    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
         await pilot.press("question_mark")
         assert isinstance(screen.app.screen, MessageDialog)
         await pilot.press("x")
@@ -184,8 +190,8 @@ def test_help(progress: ProgressJournal) -> None:
 
 @pytest.mark.parametrize("size", [(80, 24), (200, 50)], ids=str)
 def test_question_and_options_stay_where_they_are(size: tuple[int, int], progress: ProgressJournal) -> None:
-    async def scene(screen: QuizScreen, pilot: Pilot[None]) -> None:
-        item = screen._item
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
+        item = quiz(screen).item
         assert item is not None
 
         def places() -> list[tuple[int, int]]:

@@ -10,11 +10,12 @@ from textual.pilot import Pilot
 from textual.screen import Screen
 
 from kit.controllers import prepare_workspace
+from kit.document.rows import Row
 from kit.school.progress import FILE, EventKind, ProgressJournal
 from kit.tui.screens.start import MENU, StartScreen
 from kit.tui.student_store import StudentStore
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import Row, TextRows
+from kit.tui.widgets.text_rows import TextRows
 from tests.kit_content import kit_bank, kit_lesson
 from tests.tui.lesson_folder import write_lessons
 from tests.tui.lesson_stage import ROBOT, Scene, rows, seen, stage, text, until

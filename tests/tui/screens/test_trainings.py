@@ -99,7 +99,8 @@ def test_the_tables_of_sweeps_are_shown(folder: Path) -> None:
         await seen(pilot, "go on")
         await pilot.press("enter")
         await seen(pilot, "Sweep of-turn")
-        await seen(pilot, "no result yet")
+        await seen(pilot, "0 of 2")
+        await seen(pilot, "missing")
 
     stage(lambda theme: TrainingsScreen(theme, folder), without)
     configs = [RunConfig(TaskSpec("turn"), "q-learning", seed=seed) for seed in (0, 1)]

@@ -5,7 +5,8 @@ from __future__ import annotations
 import itertools
 import random
 
-from kit.tui.widgets.text_rows import LONGEST_GAP, Row, changed_spans, row
+from kit.document.rows import Row, row
+from kit.tui.widgets.text_rows import LONGEST_GAP, changed_spans
 
 STYLES = ("", "dim", "bold")
 

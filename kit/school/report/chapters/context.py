@@ -10,9 +10,9 @@ from typing import Final
 import numpy as np
 
 from kit.arrays import FloatArray
+from kit.document.blocks import BarChart, Caution, Cell, CellStyle, Column, Table
 from kit.learning.policies.confidence_intervals import ConfidenceInterval
 from kit.school.report.class_data import ClassData
-from kit.school.report.document import BarChart, CellStyle, ReportTable, ReportWarning, TableCell, TableColumn
 from kit.school.report.expertise import MIN_GROUP_SIZE, ClassDivision
 from kit.school.report.inference import PermutationTestResult, difference_test, summary_statistics
 from kit.school.report.measures import StudentGroup, StudentMeasure
@@ -76,12 +76,12 @@ def means_table(
     context: ReportContext,
     bounds: tuple[float, float] = SCALE_BOUNDS,
     note: str = "",
-) -> ReportTable:
+) -> Table:
     """A table with n, mean, SD and the mean's interval for each measure and group, and p of the groups' difference.
 
     An interval is cut off at ``bounds``, beyond which no mean can lie.
     """
-    rows: list[tuple[TableCell, ...]] = []
+    rows: list[tuple[Cell, ...]] = []
     for measure in measures:
         test = context.group_difference_test(measure.values)
         for i, group in enumerate(context.groups):
@@ -91,18 +91,18 @@ def means_table(
             interval = clip_interval(stats.interval, bounds)
             rows.append((measure.label, group.name, stats.n, stats.mean, stats.sd, interval, p))
     columns = (
-        TableColumn("", CellStyle.TEXT),
-        TableColumn("group", CellStyle.TEXT),
-        TableColumn("n"),
-        TableColumn("M"),
-        TableColumn("SD"),
-        TableColumn("95% of M"),
-        TableColumn("p", CellStyle.P_VALUE, 3),
+        Column("", CellStyle.TEXT),
+        Column("group", CellStyle.TEXT),
+        Column("n"),
+        Column("M"),
+        Column("SD"),
+        Column("95% of M"),
+        Column("p", CellStyle.P_VALUE, 3),
     )
     divided = context.division is not None
     if any(isinstance(row[2], int) and row[2] < MIN_GROUP_SIZE for row in rows):
         note = f"{note} Groups with n below {MIN_GROUP_SIZE} are too small to speak for others.".strip()
-    return ReportTable(
+    return Table(
         identity,
         title,
         columns if divided else columns[:-1],
@@ -142,11 +142,11 @@ def clip_interval(interval: ConfidenceInterval, bounds: tuple[float, float]) -> 
     )
 
 
-def division_warnings(division: ClassDivision | None) -> tuple[ReportWarning, ...]:
+def division_warnings(division: ClassDivision | None) -> tuple[Caution, ...]:
     """The warnings of a division."""
     if division is None:
         return ()
-    return tuple(ReportWarning(f"Division {division.title}: {text}.") for text in division.warnings)
+    return tuple(Caution(f"Division {division.title}: {text}.") for text in division.warnings)
 
 
 def file_name_part(text: str) -> str:

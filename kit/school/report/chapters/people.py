@@ -7,6 +7,17 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from kit.document.blocks import (
+    Block,
+    Caution,
+    Cell,
+    CellStyle,
+    Chapter,
+    Column,
+    Histogram,
+    Table,
+    Text,
+)
 from kit.school.report.chapters.context import (
     SCALE_BOUNDS,
     ReportContext,
@@ -17,17 +28,6 @@ from kit.school.report.chapters.context import (
     means_table,
     topic_title,
 )
-from kit.school.report.document import (
-    CellStyle,
-    Histogram,
-    ReportBlock,
-    ReportChapter,
-    ReportTable,
-    ReportText,
-    ReportWarning,
-    TableCell,
-    TableColumn,
-)
 from kit.school.report.expertise import effective_weights
 from kit.school.report.inference import non_blank, paired_test, summary_statistics
 from kit.school.report.measures import StudentMeasure
@@ -36,7 +36,7 @@ from kit.school.survey import QuestionPurpose, SurveyPhase
 BINS = tuple(float(edge) for edge in np.linspace(*SCALE_BOUNDS, 7))
 
 
-def class_chapter(context: ReportContext, file_count: int) -> ReportChapter:
+def class_chapter(context: ReportContext, file_count: int) -> Chapter:
     """The chapter on the class: number of students, what they filled in, warnings about their files."""
     data = context.data
     quiz = [
@@ -44,8 +44,8 @@ def class_chapter(context: ReportContext, file_count: int) -> ReportChapter:
         for i, name in enumerate(data.names)
         if any(row[i] is not None for row in data.quiz.replies.values())
     ]
-    blocks: list[ReportBlock] = [ReportWarning(text) for text in data.warnings]
-    rows: tuple[tuple[TableCell, ...], ...] = (
+    blocks: list[Block] = [Caution(text) for text in data.warnings]
+    rows: tuple[tuple[Cell, ...], ...] = (
         ("files", file_count),
         ("students", len(data.names)),
         ("form before", _rated_count(context, SurveyPhase.BEFORE)),
@@ -54,31 +54,27 @@ def class_chapter(context: ReportContext, file_count: int) -> ReportChapter:
         ("quiz", len(quiz)),
         ("lessons", sum(bool(work) for work in data.work)),
     )
-    blocks.append(
-        ReportTable(
-            "class", "Who is in this report", (TableColumn("", CellStyle.TEXT), TableColumn("n")), rows
-        )
-    )
-    option_rows: tuple[tuple[TableCell, ...], ...] = tuple(
+    blocks.append(Table("class", "Who is in this report", (Column("", CellStyle.TEXT), Column("n")), rows))
+    option_rows: tuple[tuple[Cell, ...], ...] = tuple(
         (question.text, word, count)
         for question, _, counts in data.option_counts
         for word, count in counts.items()
         if count
     )
     if option_rows:
-        columns = (TableColumn("", CellStyle.TEXT), TableColumn("answer", CellStyle.TEXT), TableColumn("n"))
+        columns = (Column("", CellStyle.TEXT), Column("answer", CellStyle.TEXT), Column("n"))
         blocks.append(
-            ReportTable("facts", "What students said about themselves", columns, option_rows, grouped=True)
+            Table("facts", "What students said about themselves", columns, option_rows, grouped=True)
         )
     blocks.append(
-        ReportText(
+        Text(
             "How to read: n counts the answers; blanks are left out and never replaced. SD is of the sample "
             "(n - 1). Intervals hold the true value with 95% confidence (means by Student's t, shares by Wilson). "
             "p is the share of all divisions into groups of these sizes that differ at least as much (exact "
             "permutation test, two-sided; in a large class a sample of 20,000 of them). Of twenty such p, one is below 0.05 by chance alone."
         )
     )
-    return ReportChapter("class", "The class", tuple(blocks))
+    return Chapter("class", "The class", tuple(blocks))
 
 
 def _rated_count(context: ReportContext, phase: SurveyPhase) -> int:
@@ -87,14 +83,14 @@ def _rated_count(context: ReportContext, phase: SurveyPhase) -> int:
     return int((~np.isnan(np.stack(rows))).any(axis=0).sum()) if rows else 0
 
 
-def experience_chapter(context: ReportContext) -> ReportChapter | None:
+def experience_chapter(context: ReportContext) -> Chapter | None:
     """The chapter on experience before the lessons, Algorithm 4 and the three divisions."""
     prior = context.data.ratings.measures(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE)
     if not prior:
         return None
     overall = context.data.ratings.overall_means(QuestionPurpose.EXPERIENCE, SurveyPhase.BEFORE)
     assert overall is not None  # there are ratings
-    blocks: list[ReportBlock] = [
+    blocks: list[Block] = [
         means_table(
             "prior",
             "Experience before, 1 to 7",
@@ -113,34 +109,32 @@ def experience_chapter(context: ReportContext) -> ReportChapter | None:
         ),
         *_score_blocks(context),
     ]
-    return ReportChapter("experience", "Experience and expertise", tuple(blocks))
+    return Chapter("experience", "Experience and expertise", tuple(blocks))
 
 
-def _score_blocks(context: ReportContext) -> Iterator[ReportBlock]:
+def _score_blocks(context: ReportContext) -> Iterator[Block]:
     if context.score is None or not len(non_blank(context.score)):
-        yield ReportWarning(
-            "Nobody rated all six topics of Algorithm 4, so there are no scores and no groups."
-        )
+        yield Caution("Nobody rated all six topics of Algorithm 4, so there are no scores and no groups.")
         return
     missing = int(np.isnan(context.score).sum())
     if missing:
-        yield ReportWarning(
+        yield Caution(
             f"{missing} of {len(context.score)} left out a topic of Algorithm 4: no score, in no group."
         )
     names = {"ros": "the greater of ROS 1 and 2"}
-    weights: tuple[tuple[TableCell, ...], ...] = tuple(
+    weights: tuple[tuple[Cell, ...], ...] = tuple(
         (names.get(topic, topic_title(topic)), weight) for topic, weight in effective_weights()
     )
-    yield ReportTable(
+    yield Table(
         "weights",
         "What Algorithm 4 weighs in truth: its means of means come to this",
-        (TableColumn("rating", CellStyle.TEXT), TableColumn("weight", decimals=3)),
+        (Column("rating", CellStyle.TEXT), Column("weight", decimals=3)),
         weights,
     )
     order = np.argsort(-np.nan_to_num(context.score, nan=-np.inf), kind="stable")[
         : len(context.score) - missing
     ]
-    rows: tuple[tuple[TableCell, ...], ...] = tuple(
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
         (
             context.data.names[i],
             float(context.score[i]),
@@ -148,49 +142,49 @@ def _score_blocks(context: ReportContext) -> Iterator[ReportBlock]:
         )
         for i in order
     )
-    yield ReportTable(
+    yield Table(
         "scores",
         "Expertise scores and divisions",
         (
-            TableColumn("student", CellStyle.TEXT),
-            TableColumn("score"),
-            *(TableColumn(each.title, CellStyle.TEXT) for each in context.divisions),
+            Column("student", CellStyle.TEXT),
+            Column("score"),
+            *(Column(each.title, CellStyle.TEXT) for each in context.divisions),
         ),
         rows,
     )
     if not context.divisions:
-        yield ReportWarning("The scores cannot be divided into two groups.")
+        yield Caution("The scores cannot be divided into two groups.")
         return
     yield _division_table(context)
     for each in context.divisions:
         yield from division_warnings(each)
     if context.division is None:
-        yield ReportWarning(
+        yield Caution(
             "The division asked for leaves one group empty, so the tables below do not divide the class."
         )
     else:
-        yield ReportText(f"The tables below divide the class {context.division.title}.")
+        yield Text(f"The tables below divide the class {context.division.title}.")
 
 
-def _division_table(context: ReportContext) -> ReportTable:
-    rows: list[tuple[TableCell, ...]] = []
+def _division_table(context: ReportContext) -> Table:
+    rows: list[tuple[Cell, ...]] = []
     for each in context.divisions:
         assert context.score is not None  # a division comes from scores
-        parts: list[TableCell] = [each.title]
+        parts: list[Cell] = [each.title]
         for group in each.groups:
             stats = summary_statistics(context.score[group.members])
             parts += [stats.n, stats.mean, stats.sd]
         inside = context.score[each.experts.members].min() - context.score[each.beginners.members].max()
         rows.append((*parts, each.cut_score, float(inside)))
     heads = ("n", "M", "SD")
-    return ReportTable(
+    return Table(
         "divisions",
         "The groups by each division: beginners, then experts",
         (
-            TableColumn("", CellStyle.TEXT),
-            *(TableColumn(f"{who} {head}") for who in ("B", "E") for head in heads),
-            TableColumn("cut"),
-            TableColumn("gap"),
+            Column("", CellStyle.TEXT),
+            *(Column(f"{who} {head}") for who in ("B", "E") for head in heads),
+            Column("cut"),
+            Column("gap"),
         ),
         tuple(rows),
         "cut: students with a lower score are beginners; gap: from the best beginner to the least expert.",
@@ -221,10 +215,10 @@ _TOPIC_RATINGS: Final = {
 }
 
 
-def knowledge_chapter(context: ReportContext) -> ReportChapter | None:
+def knowledge_chapter(context: ReportContext) -> Chapter | None:
     """The chapter on knowledge gained, and on changes of students' ratings of themselves."""
     ratings = context.data.ratings
-    blocks: list[ReportBlock] = []
+    blocks: list[Block] = []
     gained = ratings.measures(QuestionPurpose.GAINED, SurveyPhase.AFTER)
     if gained:
         everything = ratings.overall_means(QuestionPurpose.GAINED, SurveyPhase.AFTER)
@@ -235,7 +229,7 @@ def knowledge_chapter(context: ReportContext) -> ReportChapter | None:
     blocks += _change_blocks(context, _EXPERIENCE)
     if gained:
         blocks += _change_blocks(context, _GAINED)
-    return ReportChapter("knowledge", "Knowledge gained", tuple(blocks)) if blocks else None
+    return Chapter("knowledge", "Knowledge gained", tuple(blocks)) if blocks else None
 
 
 class _RepeatedRating(NamedTuple):
@@ -280,7 +274,7 @@ _OUTCOME: Final = _RepeatedRating(
 )
 
 
-def _change_blocks(context: ReportContext, rating: _RepeatedRating) -> Iterator[ReportBlock]:
+def _change_blocks(context: ReportContext, rating: _RepeatedRating) -> Iterator[Block]:
     """The change between two times of the same rating, of students who gave both."""
     ratings = context.data.ratings
     after = {each.id: each for each in ratings.measures(rating.purpose, rating.second)}
@@ -289,7 +283,7 @@ def _change_blocks(context: ReportContext, rating: _RepeatedRating) -> Iterator[
         for each in ratings.measures(rating.purpose, rating.first)
         if each.id in after
     ]
-    rows: list[tuple[TableCell, ...]] = []
+    rows: list[tuple[Cell, ...]] = []
     for label, first, second in pairs:
         change = second - first
         stats = summary_statistics(change)
@@ -309,30 +303,30 @@ def _change_blocks(context: ReportContext, rating: _RepeatedRating) -> Iterator[
             )
         )
     if not rows and any((rating.second, each.id) in ratings.values for each in ratings.questions):
-        yield ReportWarning(rating.missing_text)  # the form does ask it twice
+        yield Caution(rating.missing_text)  # the form does ask it twice
     if not rows:
         return
-    yield ReportTable(
+    yield Table(
         rating.id,
         rating.title,
         (
-            TableColumn("", CellStyle.TEXT),
-            TableColumn("n"),
-            TableColumn(rating.heads[0]),
-            TableColumn(rating.heads[1]),
-            TableColumn("change"),
-            TableColumn("95% of change"),
-            TableColumn("p", CellStyle.P_VALUE, 3),
+            Column("", CellStyle.TEXT),
+            Column("n"),
+            Column(rating.heads[0]),
+            Column(rating.heads[1]),
+            Column("change"),
+            Column("95% of change"),
+            Column("p", CellStyle.P_VALUE, 3),
         ),
         tuple(rows),
         "Only students who rated it twice. p: by the signs of the differences, all 2^n of them.",
     )
 
 
-def outcomes_chapter(context: ReportContext) -> ReportChapter | None:
+def outcomes_chapter(context: ReportContext) -> Chapter | None:
     """The chapter on outcomes."""
     ratings = context.data.ratings
-    blocks: list[ReportBlock] = []
+    blocks: list[Block] = []
     for topic in ratings.topics(QuestionPurpose.OUTCOME, SurveyPhase.AFTER):
         measures = ratings.topic_measures(QuestionPurpose.OUTCOME, SurveyPhase.AFTER, topic)
         name = topic_title(topic)
@@ -349,20 +343,20 @@ def outcomes_chapter(context: ReportContext) -> ReportChapter | None:
         )
     if blocks:
         blocks += _change_blocks(context, _OUTCOME)
-    return ReportChapter("outcomes", "Outcomes", tuple(blocks)) if blocks else None
+    return Chapter("outcomes", "Outcomes", tuple(blocks)) if blocks else None
 
 
-def difficulty_chapter(context: ReportContext) -> ReportChapter | None:
+def difficulty_chapter(context: ReportContext) -> Chapter | None:
     """The chapter on the difficulty of topics."""
     return _topic_chapter(context, QuestionPurpose.DIFFICULTY, "Difficulty")
 
 
-def topic_clarity_chapter(context: ReportContext) -> ReportChapter | None:
+def topic_clarity_chapter(context: ReportContext) -> Chapter | None:
     """The chapter on how well topics were explained."""
     return _topic_chapter(context, QuestionPurpose.EXPLANATION, "Explanation")
 
 
-def _topic_chapter(context: ReportContext, purpose: QuestionPurpose, title: str) -> ReportChapter | None:
+def _topic_chapter(context: ReportContext, purpose: QuestionPurpose, title: str) -> Chapter | None:
     ratings, kind = context.data.ratings, _TOPIC_RATINGS[purpose]
     everything = ratings.overall_means(purpose, SurveyPhase.AFTER)
     if everything is None:
@@ -371,7 +365,7 @@ def _topic_chapter(context: ReportContext, purpose: QuestionPurpose, title: str)
         StudentMeasure(each.id, topic_title(each.id), each.values)
         for each in ratings.topic_means(purpose, SurveyPhase.AFTER)
     )
-    single: tuple[tuple[TableCell, ...], ...] = tuple(
+    single: tuple[tuple[Cell, ...], ...] = tuple(
         (
             topic_title(topic),
             each.label,
@@ -385,15 +379,15 @@ def _topic_chapter(context: ReportContext, purpose: QuestionPurpose, title: str)
         for stats in [summary_statistics(non_blank(each.values))]
     )
     heads = (
-        TableColumn("topic", CellStyle.TEXT),
-        TableColumn("", CellStyle.TEXT),
-        TableColumn("n"),
-        TableColumn("M"),
-        TableColumn("SD"),
-        TableColumn("95% of M"),
+        Column("topic", CellStyle.TEXT),
+        Column("", CellStyle.TEXT),
+        Column("n"),
+        Column("M"),
+        Column("SD"),
+        Column("95% of M"),
     )
     note = "All topics: each student's mean over the topics' means."
-    return ReportChapter(
+    return Chapter(
         kind.id,
         title,
         (
@@ -406,6 +400,6 @@ def _topic_chapter(context: ReportContext, purpose: QuestionPurpose, title: str)
                 note,
             ),
             means_bars(f"{kind.id}-bars", kind.title, topics, context),
-            ReportTable(f"{kind.id}-single", f"{title}, question by question", heads, single, grouped=True),
+            Table(f"{kind.id}-single", f"{title}, question by question", heads, single, grouped=True),
         ),
     )

@@ -8,6 +8,19 @@ from typing import Final
 
 import numpy as np
 
+from kit.document.blocks import (
+    Block,
+    Caution,
+    Cell,
+    CellStyle,
+    Chapter,
+    Column,
+    Histogram,
+    Quote,
+    Table,
+    Text,
+    p_value_text,
+)
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.school.quiz.schedule import AnswerOutcome
 from kit.school.report.chapters.context import (
@@ -19,19 +32,6 @@ from kit.school.report.chapters.context import (
     topic_title,
 )
 from kit.school.report.class_data import MAX_IDLE, ExerciseWork, LessonWork, started_lessons
-from kit.school.report.document import (
-    CellStyle,
-    Histogram,
-    Quote,
-    ReportBlock,
-    ReportChapter,
-    ReportTable,
-    ReportText,
-    ReportWarning,
-    TableCell,
-    TableColumn,
-    p_value_text,
-)
 from kit.school.report.inference import non_blank, paired_test, shapiro_wilk, summary_statistics
 from kit.school.report.measures import AnswerSheet, ItemAnalysis, StudentMeasure, analyse_item, kr20
 
@@ -39,7 +39,7 @@ MAX_NAMED_CRITERIA: Final = 2
 """Largest number of lost criteria named for an exercise."""
 
 
-def lessons_chapter(context: ReportContext) -> ReportChapter | None:
+def lessons_chapter(context: ReportContext) -> Chapter | None:
     """The chapter on attempts, points and time."""
     work = context.data.work
     names = started_lessons(work)
@@ -47,19 +47,19 @@ def lessons_chapter(context: ReportContext) -> ReportChapter | None:
         return None
     by_lesson = {name: [each[name] for each in work if name in each] for name in names}
     tables = (_lesson_table(by_lesson), _exercise_table(by_lesson), _student_table(context))
-    blocks: list[ReportBlock] = [table for table in tables if table.rows]
+    blocks: list[Block] = [table for table in tables if table.rows]
     minutes = int(MAX_IDLE.total_seconds() // 60)
     blocks.append(
-        ReportText(
+        Text(
             f"Time is measured between two entries of a lesson; more than {minutes} minutes without one count as a "
             "pause. Points are the best attempt's. Attempts whose check broke are not counted."
         )
     )
-    return ReportChapter("lessons", "Lessons", tuple(blocks))
+    return Chapter("lessons", "Lessons", tuple(blocks))
 
 
-def _lesson_table(by_lesson: dict[str, list[LessonWork]]) -> ReportTable:
-    rows: tuple[tuple[TableCell, ...], ...] = tuple(
+def _lesson_table(by_lesson: dict[str, list[LessonWork]]) -> Table:
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
         (
             name,
             len(some),
@@ -73,21 +73,21 @@ def _lesson_table(by_lesson: dict[str, list[LessonWork]]) -> ReportTable:
         for name, some in by_lesson.items()
     )
     heads = (
-        TableColumn("lesson", CellStyle.TEXT),
-        TableColumn("began"),
-        TableColumn("steps", decimals=1),
-        TableColumn("attempts"),
-        TableColumn("points"),
-        TableColumn("predicted"),
-        TableColumn("hints"),
-        TableColumn("minutes", decimals=1),
+        Column("lesson", CellStyle.TEXT),
+        Column("began"),
+        Column("steps", decimals=1),
+        Column("attempts"),
+        Column("points"),
+        Column("predicted"),
+        Column("hints"),
+        Column("minutes", decimals=1),
     )
     note = "steps, minutes: the median student's. points: of those that were tried for. predicted: rightly."
-    return ReportTable("lessons", "By lesson", heads, rows, note)
+    return Table("lessons", "By lesson", heads, rows, note)
 
 
-def _exercise_table(by_lesson: dict[str, list[LessonWork]]) -> ReportTable:
-    rows: list[tuple[TableCell, ...]] = []
+def _exercise_table(by_lesson: dict[str, list[LessonWork]]) -> Table:
+    rows: list[tuple[Cell, ...]] = []
     for lesson, some in by_lesson.items():
         for name in dict.fromkeys(key for each in some for key in each.exercises):
             done = [each.exercises[name] for each in some if name in each.exercises]
@@ -105,19 +105,19 @@ def _exercise_table(by_lesson: dict[str, list[LessonWork]]) -> ReportTable:
                 )
             )
     heads = (
-        TableColumn("exercise", CellStyle.TEXT),
-        TableColumn("tried"),
-        TableColumn("passed"),
-        TableColumn("at try", decimals=1),
-        TableColumn("points"),
-        TableColumn("solution"),
-        TableColumn("lost most", CellStyle.TEXT),
+        Column("exercise", CellStyle.TEXT),
+        Column("tried"),
+        Column("passed"),
+        Column("at try", decimals=1),
+        Column("points"),
+        Column("solution"),
+        Column("lost most", CellStyle.TEXT),
     )
     note = (
         "at try: the median of who passed. solution: opened. lost most: criteria, and by how many students "
         "they were lost at least once."
     )
-    return ReportTable("exercises", "By exercise", heads, tuple(rows), note)
+    return Table("exercises", "By exercise", heads, tuple(rows), note)
 
 
 def _most_lost(tried: list[ExerciseWork]) -> str:
@@ -129,12 +129,12 @@ def _most_lost(tried: list[ExerciseWork]) -> str:
     return ", ".join(f"{name} {count}" for name, count in most)
 
 
-def _student_table(context: ReportContext) -> ReportTable:
+def _student_table(context: ReportContext) -> Table:
     data = context.data
     counts = (
         {outcome: data.quiz.outcome_counts(outcome) for outcome in AnswerOutcome} if data.quiz.items else {}
     )
-    rows: list[tuple[TableCell, ...]] = []
+    rows: list[tuple[Cell, ...]] = []
     for i, name in enumerate(data.names):
         work = data.work[i].values()
         taken = bool(counts) and not np.isnan(counts[AnswerOutcome.RIGHT][i])
@@ -152,45 +152,45 @@ def _student_table(context: ReportContext) -> ReportTable:
             )
         )
     heads = (
-        TableColumn("student", CellStyle.TEXT),
-        TableColumn("lessons"),
-        TableColumn("passed"),
-        TableColumn("defended"),
-        TableColumn("attempts"),
-        TableColumn("points", decimals=1),
-        TableColumn("hints"),
-        TableColumn("minutes", decimals=0),
-        TableColumn("quiz"),
+        Column("student", CellStyle.TEXT),
+        Column("lessons"),
+        Column("passed"),
+        Column("defended"),
+        Column("attempts"),
+        Column("points", decimals=1),
+        Column("hints"),
+        Column("minutes", decimals=0),
+        Column("quiz"),
     )
     note = (
         "quiz: right/wrong/not sure/blank. passed: exercises. defended: of which every question about the own program "
         "was right at once, and how often it was asked."
     )
-    return ReportTable("students", "By student", heads, tuple(rows), note)
+    return Table("students", "By student", heads, tuple(rows), note)
 
 
 def _ratio(part: float, whole: float) -> float | None:
     return part / whole if whole else None
 
 
-def free_text_chapter(context: ReportContext) -> ReportChapter | None:
+def free_text_chapter(context: ReportContext) -> Chapter | None:
     """The chapter of free-text answers, question by question, unchanged."""
-    blocks: list[ReportBlock] = []
+    blocks: list[Block] = []
     question_id = ""
     for each in context.data.free_text_answers:
         if each.question.id != question_id:
             question_id = each.question.id
-            blocks.append(ReportText(each.question.text))
+            blocks.append(Text(each.question.text))
         blocks.append(Quote(each.student, each.text))
-    return ReportChapter("words", "In their own words", tuple(blocks)) if blocks else None
+    return Chapter("words", "In their own words", tuple(blocks)) if blocks else None
 
 
 BINS: Final = 6
 RIGHT_MARK: Final = "*"
-OUTCOME_COLUMNS: Final = tuple(map(TableColumn, ("n", "right", "95%", "wrong", "unsure", "blank")))
+OUTCOME_COLUMNS: Final = tuple(map(Column, ("n", "right", "95%", "wrong", "unsure", "blank")))
 
 
-def quiz_chapter(context: ReportContext) -> ReportChapter | None:
+def quiz_chapter(context: ReportContext) -> Chapter | None:
     """The chapter on the quiz: scores by topic and question, blanks apart from wrong answers, and gains."""
     answers = context.data.quiz
     if not answers.items:
@@ -201,7 +201,7 @@ def quiz_chapter(context: ReportContext) -> ReportChapter | None:
     )
     total = StudentMeasure("total", "Total", answers.scores)
     note = "Only a right answer counts; wrong, not sure and blank all count nothing here."
-    blocks: list[ReportBlock] = [
+    blocks: list[Block] = [
         means_table(
             "quiz-topics", "Quiz: share of right answers", (*topics, total), context, SHARE_BOUNDS, note
         ),
@@ -215,31 +215,31 @@ def quiz_chapter(context: ReportContext) -> ReportChapter | None:
         *_gain_blocks(context),
         *_bank_blocks(context),
     ]
-    return ReportChapter("quiz", "The quiz", tuple(blocks))
+    return Chapter("quiz", "The quiz", tuple(blocks))
 
 
-def _outcome_table(context: ReportContext) -> ReportTable:
+def _outcome_table(context: ReportContext) -> Table:
     """Number of answers by outcome."""
     answers = context.data.quiz
     counts = {outcome: answers.outcome_counts(outcome) for outcome in AnswerOutcome}
-    rows: list[tuple[TableCell, ...]] = []
+    rows: list[tuple[Cell, ...]] = []
     for group in context.groups:
         sums = [int(np.nansum(counts[outcome][group.members])) for outcome in AnswerOutcome]
         taken = int((~np.isnan(answers.scores[group.members])).sum())
         rows.append((group.name, taken, *sums, sum(sums)))
     heads = (
-        TableColumn("group", CellStyle.TEXT),
-        TableColumn("n"),
-        *(TableColumn(each.value) for each in AnswerOutcome),
-        TableColumn("in all"),
+        Column("group", CellStyle.TEXT),
+        Column("n"),
+        *(Column(each.value) for each in AnswerOutcome),
+        Column("in all"),
     )
     note = "What was not reached of a quiz that was begun counts as blank."
-    return ReportTable("quiz-outcomes", "Answers by what became of them", heads, tuple(rows), note)
+    return Table("quiz-outcomes", "Answers by what became of them", heads, tuple(rows), note)
 
 
-def _question_table(context: ReportContext, topic: str) -> ReportTable:
+def _question_table(context: ReportContext, topic: str) -> Table:
     answers = context.data.quiz
-    rows: list[tuple[TableCell, ...]] = []
+    rows: list[tuple[Cell, ...]] = []
     for item in answers.topic_items(topic):
         right = answers.correctness(item)
         test = context.group_difference_test(right)
@@ -264,13 +264,13 @@ def _question_table(context: ReportContext, topic: str) -> ReportTable:
                 )
             )
     heads = (
-        TableColumn("question", CellStyle.TEXT),
-        TableColumn("group", CellStyle.TEXT),
+        Column("question", CellStyle.TEXT),
+        Column("group", CellStyle.TEXT),
         *OUTCOME_COLUMNS,
-        TableColumn("p", CellStyle.P_VALUE, 3),
+        Column("p", CellStyle.P_VALUE, 3),
     )
     divided = context.division is not None
-    return ReportTable(
+    return Table(
         f"quiz-{file_name_part(topic)}",
         f"Questions on {topic_title(topic)}",
         heads if divided else heads[:-1],
@@ -290,26 +290,26 @@ def _score_histogram(answers: AnswerSheet) -> Histogram:
     )
 
 
-def _normality_blocks(answers: AnswerSheet) -> Iterator[ReportBlock]:
+def _normality_blocks(answers: AnswerSheet) -> Iterator[Block]:
     w, p = shapiro_wilk(answers.scores)
     if p == p:
         n = len(non_blank(answers.scores))
         verdict = (
             "is not what a normal distribution gives" if p < 0.05 else "does not speak against a normal one"
         )
-        yield ReportText(
+        yield Text(
             f"Shape of the scores: Shapiro and Wilk's W = {w:.3f}, {p_value_text(p)}, n = {n}. This {verdict}; with few "
             "students it can hardly tell either way."
         )
 
 
-def _gain_blocks(context: ReportContext) -> Iterator[ReportBlock]:
+def _gain_blocks(context: ReportContext) -> Iterator[Block]:
     """The gain from first to newest answers, of students who answered items again."""
     data = context.data
     if not any(each is not None for row in data.later_quiz.replies.values() for each in row):
-        yield ReportText("Nobody has answered a quiz question a second time yet, so the gain is unknown.")
+        yield Text("Nobody has answered a quiz question a second time yet, so the gain is unknown.")
         return
-    rows: list[tuple[TableCell, ...]] = []
+    rows: list[tuple[Cell, ...]] = []
     for topic in (*data.quiz.topics, ""):
         items = data.quiz.topic_items(topic) if topic else data.quiz.items
         first = np.stack([data.quiz.correctness(item) for item in items])
@@ -335,27 +335,27 @@ def _gain_blocks(context: ReportContext) -> Iterator[ReportBlock]:
                 test.p_value,
             )
         )
-    yield ReportTable(
+    yield Table(
         "quiz-gain",
         "Gain: first and newest answers to the same questions",
         (
-            TableColumn("", CellStyle.TEXT),
-            TableColumn("n"),
-            TableColumn("first"),
-            TableColumn("newest"),
-            TableColumn("gain"),
-            TableColumn("95% of gain"),
-            TableColumn("p", CellStyle.P_VALUE, 3),
+            Column("", CellStyle.TEXT),
+            Column("n"),
+            Column("first"),
+            Column("newest"),
+            Column("gain"),
+            Column("95% of gain"),
+            Column("p", CellStyle.P_VALUE, 3),
         ),
         tuple(rows),
         "Only questions that a student answered more than once.",
     )
 
 
-def _bank_blocks(context: ReportContext) -> Iterator[ReportBlock]:
+def _bank_blocks(context: ReportContext) -> Iterator[Block]:
     """The questions that lessons and practice ask."""
     bank = context.data.bank
-    rows: list[tuple[TableCell, ...]] = []
+    rows: list[tuple[Cell, ...]] = []
     for item in bank.items:
         replies = [each for each in bank.replies[item.id] if each is not None]
         counts = [sum(each.outcome is outcome for each in replies) for outcome in AnswerOutcome]
@@ -371,12 +371,12 @@ def _bank_blocks(context: ReportContext) -> Iterator[ReportBlock]:
             )
         )
     if rows:
-        yield ReportTable(
+        yield Table(
             "bank",
             "Questions of the lessons, first answers",
             (
-                TableColumn("topic", CellStyle.TEXT),
-                TableColumn("question", CellStyle.TEXT),
+                Column("topic", CellStyle.TEXT),
+                Column("question", CellStyle.TEXT),
                 *OUTCOME_COLUMNS,
             ),
             tuple(rows),
@@ -384,7 +384,7 @@ def _bank_blocks(context: ReportContext) -> Iterator[ReportBlock]:
         )
 
 
-def items_chapter(context: ReportContext) -> ReportChapter | None:
+def items_chapter(context: ReportContext) -> Chapter | None:
     """The chapter of item analysis: difficulty, item-rest correlation, distractors, KR-20."""
     answers = context.data.quiz
     if not answers.items:
@@ -392,24 +392,22 @@ def items_chapter(context: ReportContext) -> ReportChapter | None:
     analyses = [analyse_item(answers, item) for item in answers.items]
     reliability = kr20(answers)
     blanks = int(np.nansum(answers.outcome_counts(AnswerOutcome.BLANK)))
-    blocks: list[ReportBlock] = [_difficulty_table(analyses), _distractor_table(analyses)]
-    blocks += [
-        ReportWarning(f"{each.item.id}: {'; '.join(each.warnings)}.") for each in analyses if each.warnings
-    ]
+    blocks: list[Block] = [_difficulty_table(analyses), _distractor_table(analyses)]
+    blocks += [Caution(f"{each.item.id}: {'; '.join(each.warnings)}.") for each in analyses if each.warnings]
     if reliability == reliability:
         inflated = " Blanks go together and make it look better than it is." if blanks else ""
         blocks.append(
-            ReportText(
+            Text(
                 f"KR-20 = {reliability:.2f}: how consistently the {len(analyses)} questions measure one thing "
                 f"(0.7 and more is usual for comparing groups). {blanks} of the answers are blank.{inflated}"
             )
         )
     blocks += [block for each in analyses for block in _option_text_blocks(each)]
-    return ReportChapter("items", "The questions themselves", tuple(blocks))
+    return Chapter("items", "The questions themselves", tuple(blocks))
 
 
-def _difficulty_table(analyses: list[ItemAnalysis]) -> ReportTable:
-    rows: tuple[tuple[TableCell, ...], ...] = tuple(
+def _difficulty_table(analyses: list[ItemAnalysis]) -> Table:
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
         (
             topic_title(each.item.topic),
             each.item.id,
@@ -421,23 +419,23 @@ def _difficulty_table(analyses: list[ItemAnalysis]) -> ReportTable:
         for each in analyses
     )
     heads = (
-        TableColumn("topic", CellStyle.TEXT),
-        TableColumn("question", CellStyle.TEXT),
-        TableColumn("n"),
-        TableColumn("right"),
-        TableColumn("95%"),
-        TableColumn("with rest r"),
+        Column("topic", CellStyle.TEXT),
+        Column("question", CellStyle.TEXT),
+        Column("n"),
+        Column("right"),
+        Column("95%"),
+        Column("with rest r"),
     )
-    return ReportTable(
+    return Table(
         "items", "How hard each question is, and how it goes with the rest", heads, rows, grouped=True
     )
 
 
-def _distractor_table(analyses: list[ItemAnalysis]) -> ReportTable:
+def _distractor_table(analyses: list[ItemAnalysis]) -> Table:
     most = (
         max((max((*each.choice_counts, len(each.item.options) - 1, 0)) for each in analyses), default=0) + 1
     )
-    rows: tuple[tuple[TableCell, ...], ...] = tuple(
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
         (
             topic_title(each.item.topic),
             each.item.id,
@@ -451,21 +449,21 @@ def _distractor_table(analyses: list[ItemAnalysis]) -> ReportTable:
         for each in analyses
     )
     heads = (
-        TableColumn("topic", CellStyle.TEXT),
-        TableColumn("question", CellStyle.TEXT),
-        *(TableColumn(f"{option + 1}") for option in range(most)),
-        TableColumn("unsure"),
-        TableColumn("blank"),
+        Column("topic", CellStyle.TEXT),
+        Column("question", CellStyle.TEXT),
+        *(Column(f"{option + 1}") for option in range(most)),
+        Column("unsure"),
+        Column("blank"),
     )
     note = f"{RIGHT_MARK} counted as right. A wrong option that nobody takes can go; one that many take is a lesson."
-    return ReportTable("distractors", "Who chose which option", heads, rows, note, grouped=True)
+    return Table("distractors", "Who chose which option", heads, rows, note, grouped=True)
 
 
-def _option_text_blocks(each: ItemAnalysis) -> Iterator[ReportBlock]:
+def _option_text_blocks(each: ItemAnalysis) -> Iterator[Block]:
     """The texts of the options, for items with warnings."""
     if not each.warnings or not each.item.options:
         return
-    rows: tuple[tuple[TableCell, ...], ...] = tuple(
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
         (
             f"{number + 1}{RIGHT_MARK if number in each.right_options else ''}",
             text,
@@ -473,5 +471,5 @@ def _option_text_blocks(each: ItemAnalysis) -> Iterator[ReportBlock]:
         )
         for number, text in enumerate(each.item.options)
     )
-    heads = (TableColumn("", CellStyle.TEXT), TableColumn("option", CellStyle.TEXT), TableColumn("chose it"))
-    yield ReportTable(f"item-{file_name_part(each.item.id)}", f"{each.item.id}: the options", heads, rows)
+    heads = (Column("", CellStyle.TEXT), Column("option", CellStyle.TEXT), Column("chose it"))
+    yield Table(f"item-{file_name_part(each.item.id)}", f"{each.item.id}: the options", heads, rows)

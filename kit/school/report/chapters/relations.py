@@ -8,19 +8,19 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from kit.arrays import FloatArray
-from kit.school.report.chapters.context import SCALE_BOUNDS, SHARE_BOUNDS, ReportContext
-from kit.school.report.document import (
+from kit.document.blocks import (
+    Block,
+    Caution,
+    Cell,
     CellStyle,
-    ReportBlock,
-    ReportChapter,
-    ReportTable,
-    ReportText,
-    ReportWarning,
+    Chapter,
+    Column,
     ScatterPlot,
-    TableCell,
-    TableColumn,
+    Table,
+    Text,
     p_value_text,
 )
+from kit.school.report.chapters.context import SCALE_BOUNDS, SHARE_BOUNDS, ReportContext
 from kit.school.report.expertise import Sensitivity, correlation_sensitivity, difference_sensitivity
 from kit.school.report.inference import (
     MAX_PERMUTED,
@@ -94,7 +94,7 @@ def student_quantities(context: ReportContext) -> dict[str, StudentQuantity]:
     }
 
 
-def relations_chapter(context: ReportContext) -> ReportChapter | None:
+def relations_chapter(context: ReportContext) -> Chapter | None:
     """Correlations, with the plots they are of."""
     known = student_quantities(context)
     pairs = [
@@ -104,32 +104,32 @@ def relations_chapter(context: ReportContext) -> ReportChapter | None:
     ]
     if not pairs:
         return None
-    rows: tuple[tuple[TableCell, ...], ...] = tuple(_correlation_row(a, b, context.seed) for a, b in pairs)
+    rows: tuple[tuple[Cell, ...], ...] = tuple(_correlation_row(a, b, context.seed) for a, b in pairs)
     heads = (
-        TableColumn("", CellStyle.TEXT),
-        TableColumn("n"),
-        TableColumn("r"),
-        TableColumn("95% of r"),
-        TableColumn("p", CellStyle.P_VALUE, 3),
-        TableColumn("rho"),
+        Column("", CellStyle.TEXT),
+        Column("n"),
+        Column("r"),
+        Column("95% of r"),
+        Column("p", CellStyle.P_VALUE, 3),
+        Column("rho"),
     )
     note = (
         f"r: Pearson's, rho: Spearman's. p by every order of up to {MAX_PERMUTED} students, else by {SHUFFLE_COUNT:,} "
         "random ones. What goes together need not cause one another."
     )
-    blocks: list[ReportBlock] = [ReportTable("relations", "Correlations", heads, rows, note)]
+    blocks: list[Block] = [Table("relations", "Correlations", heads, rows, note)]
     for a, b in pairs:
         blocks.append(_scatter_plot(a, b))
         if (a.id, b.id) == ("prior", "gained"):
             blocks += _curvature_blocks(a, b)
-    return ReportChapter("relations", "What goes together", tuple(blocks))
+    return Chapter("relations", "What goes together", tuple(blocks))
 
 
 def _pair_count(x: FloatArray, y: FloatArray) -> int:
     return int((~(np.isnan(x) | np.isnan(y))).sum())
 
 
-def _correlation_row(a: StudentQuantity, b: StudentQuantity, seed: int) -> tuple[TableCell, ...]:
+def _correlation_row(a: StudentQuantity, b: StudentQuantity, seed: int) -> tuple[Cell, ...]:
     n, r = _pair_count(a.values, b.values), correlation(a.values, b.values)
     test = correlation_test(a.values, b.values, np.random.default_rng(seed))
     rho = rank_correlation(a.values, b.values)
@@ -151,7 +151,7 @@ def _scatter_plot(a: StudentQuantity, b: StudentQuantity) -> ScatterPlot:
     )
 
 
-def _curvature_blocks(a: StudentQuantity, b: StudentQuantity) -> list[ReportBlock]:
+def _curvature_blocks(a: StudentQuantity, b: StudentQuantity) -> list[Block]:
     """States where a fitted parabola has its maximum, if it lies within the data."""
     curve = fit_polynomial(a.values, b.values, 2)
     if curve is None or curve[0] >= 0:
@@ -160,14 +160,14 @@ def _curvature_blocks(a: StudentQuantity, b: StudentQuantity) -> list[ReportBloc
     if not non_blank(a.values).min() < top < non_blank(a.values).max():
         return []
     return [
-        ReportText(
+        Text(
             f"A parabola through these points is highest at {top:.1f} on '{a.title}'. With so few students that is "
             "an idea to test, not a finding."
         )
     ]
 
 
-def robustness_chapter(context: ReportContext) -> ReportChapter | None:
+def robustness_chapter(context: ReportContext) -> Chapter | None:
     """The results that a reader will quote, without each student in turn."""
     known = student_quantities(context)
     sensitivities: list[tuple[str, Sensitivity]] = []
@@ -185,7 +185,7 @@ def robustness_chapter(context: ReportContext) -> ReportChapter | None:
     if not sensitivities:
         return None
     names = context.data.names
-    rows: tuple[tuple[TableCell, ...], ...] = tuple(
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
         (
             title,
             each.value,
@@ -198,27 +198,27 @@ def robustness_chapter(context: ReportContext) -> ReportChapter | None:
         for title, each in sensitivities
     )
     heads = (
-        TableColumn("result", CellStyle.TEXT),
-        TableColumn("value"),
-        TableColumn("p", CellStyle.P_VALUE, 3),
-        TableColumn("least"),
-        TableColumn("without", CellStyle.TEXT),
-        TableColumn("most"),
-        TableColumn("without", CellStyle.TEXT),
+        Column("result", CellStyle.TEXT),
+        Column("value"),
+        Column("p", CellStyle.P_VALUE, 3),
+        Column("least"),
+        Column("without", CellStyle.TEXT),
+        Column("most"),
+        Column("without", CellStyle.TEXT),
     )
     warnings = [_sensitivity_warning(title, each, names) for title, each in sensitivities if each.decisive]
-    table = ReportTable(
+    table = Table(
         "robustness",
         "The same without each student in turn (groups as they are)",
         heads,
         rows,
         "least, most: the smallest and greatest value, and who was left out for it.",
     )
-    text = ReportText("No result changes its side of p = 0.05 without any one student.")
-    return ReportChapter("robustness", "How much rests on one student", (table, *(warnings or (text,))))
+    text = Text("No result changes its side of p = 0.05 without any one student.")
+    return Chapter("robustness", "How much rests on one student", (table, *(warnings or (text,))))
 
 
-def _sensitivity_warning(title: str, each: Sensitivity, names: Sequence[str]) -> ReportWarning:
+def _sensitivity_warning(title: str, each: Sensitivity, names: Sequence[str]) -> Caution:
     """A result that is on the other side of the line without this student or that."""
     most = sorted(each.decisive, key=lambda one: -abs(one.test.p_value - each.test.p_value))
     shown = "; ".join(
@@ -226,7 +226,7 @@ def _sensitivity_warning(title: str, each: Sensitivity, names: Sequence[str]) ->
         for one in most[:3]
     )
     more = f"; and so without {len(most) - 3} more" if len(most) > 3 else ""
-    return ReportWarning(
+    return Caution(
         f"{title}: {each.value:.2f}, {p_value_text(each.test.p_value)}; but {shown}{more}. One student decides on which side "
         "of 0.05 it lies."
     )

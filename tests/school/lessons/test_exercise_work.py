@@ -8,11 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from kit.school.lessons import exercise_work
+from kit.school.lessons.exercise_work import ExerciseWork, FolderWatch
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.progress import ProgressJournal
-from kit.tui import exercise_model
-from kit.tui.exercise_model import ExerciseModel, FolderWatch
-from kit.tui.screens.lesson_exercise import line_to_edit
 from kit.workspace import open_workspace
 from tests.kit_content import kit_lesson
 
@@ -71,7 +70,7 @@ def test_a_new_file_counts_from_its_next_save_on(folder: Path, noticed: Callable
 
 @pytest.mark.long
 def test_so_many_files_are_watched(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(exercise_model, "MOST_FILES", 3)  # world.yaml, the one in maps, and one more
+    monkeypatch.setattr(exercise_work, "MOST_FILES", 3)  # world.yaml, the one in maps, and one more
     for name in ("one", "two"):
         (folder / f"room_{name}.yaml").write_text("as it was")
     noticed = look_in(folder)
@@ -92,15 +91,15 @@ def test_an_editor_begins_at_the_first_todo_and_then_at_the_error(tmp_path: Path
     exercise = lesson.exercises[0]
     with ProgressJournal(tmp_path) as journal:
         session = LessonSession(lesson, journal, open_workspace(tmp_path))
-        model = ExerciseModel(session, exercise)
+        model = ExerciseWork(session, exercise)
         lines = model.file.read_text().splitlines()
-        assert "TODO" in lines[line_to_edit(model) - 1]
-        assert not any("TODO" in line for line in lines[: line_to_edit(model) - 1])
+        assert "TODO" in lines[model.line_to_edit - 1]
+        assert not any("TODO" in line for line in lines[: model.line_to_edit - 1])
         model.file.write_text("\n".join([*lines[:4], "oh no", *lines[4:]]))
         with session.start_check(exercise) as running:
             session.record(exercise, running.wait())
-        assert line_to_edit(model) == 5
+        assert model.line_to_edit == 5
         model.file.write_text("nothing is open here")
         session.reset(exercise)
         model.file.write_text("pass\n\npass")
-        assert line_to_edit(model) == 1
+        assert model.line_to_edit == 1

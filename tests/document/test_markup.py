@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.school.lessons.markup import MarkupError, TextStyle, parse_markup, plain_text, wrap_blocks
+from kit.document.markup import MarkupError, TextStyle, parse_markup, plain_text, wrap_blocks
 
 
 def shown(text: str, width: int = 40) -> list[str]:
@@ -56,3 +56,17 @@ def test_no_row_is_wider_than_asked_and_no_word_is_lost(words: list[str], width:
     made = wrap_blocks(parse_markup(text), width)
     assert all(len(plain_text(row)) <= width for row in made)
     assert "".join("".join(map(plain_text, made)).split()) == "".join(text.replace("`", "").split())
+
+
+def test_code_longer_than_a_row_is_broken_at_its_blanks() -> None:
+    text = "Type `kit train hallway --on doors --seed 4` and  wait for `runs/one/two/three/four/five`."
+    rows = wrap_blocks(parse_markup(text), 24)
+    assert [plain_text(row) for row in rows] == [
+        "Type kit train hallway",
+        "--on doors --seed 4 and",
+        "wait for",
+        "runs/one/two/three/four/",
+        "five.",
+    ]
+    code = [piece.text for row in rows for piece in row if piece.style is TextStyle.CODE]
+    assert code == ["kit train hallway", "--on doors --seed 4", "runs/one/two/three/four/", "five"]

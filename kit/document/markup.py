@@ -1,21 +1,18 @@
-"""The little markup of lessons' texts: paragraphs, lists, ``code``, **bold**, and code blocks indented by four blanks.
+"""The little markup of marked texts: paragraphs, lists, ``code``, **bold**, and code blocks indented by four blanks.
 
 Not a library, because the rows must wrap to a terminal's cells in the same way for the screen, the plain mode and
-the check that a text fits. Authors of other lessons write Markdown: it is put into this markup, links become their words and
-address, everything else its words. ``markdown_it`` comes with Textual.
+the check that a text fits.
 """
 
 from __future__ import annotations
 
 import re
-import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-from markdown_it import MarkdownIt
-from markdown_it.token import Token
+from kit.plain_text import wrap
 
 BLOCK_INDENT: Final = "    "
 BULLET: Final = "- "
@@ -101,7 +98,12 @@ def _wrap_block(block: MarkupBlock, width: int) -> list[StyledRow]:
     if block.kind == "code":
         return [(StyledText(BLOCK_INDENT + line, TextStyle.CODE),) for line in block.lines]
     first, rest = ("- ", "  ") if block.kind == "bullet" else ("", "")
-    return _wrap_styled(_split_styles(" ".join(block.lines)), width, first, rest)
+    return _wrap_styled(styled_pieces(block), width, first, rest)
+
+
+def styled_pieces(block: MarkupBlock) -> list[StyledText]:
+    """The words of a paragraph or an entry, in pieces of one style."""
+    return _split_styles(" ".join(block.lines))
 
 
 def _split_styles(text: str) -> list[StyledText]:
@@ -118,27 +120,28 @@ def _split_styles(text: str) -> list[StyledText]:
 
 
 def _wrap_styled(pieces: Sequence[StyledText], width: int, first: str, rest: str) -> list[StyledRow]:
-    """Wraps the characters, then gives them their styles back. Code is wrapped like words: a long one moves down whole."""
-    # A blank inside code must not be a place to break, nor be dropped at a line's end.
-    held = "".join(
-        piece.text.replace(" ", "\0") if piece.style is TextStyle.CODE else piece.text for piece in pieces
-    )
-    lines = textwrap.wrap(
-        held,
-        width,
-        initial_indent=first,
-        subsequent_indent=rest,
-        break_on_hyphens=False,
-        break_long_words=True,
-    )
+    """Wraps the characters, then gives them their styles back. Code is wrapped like a word: it moves down whole, and is broken
+    at its blanks only where it is longer than a row."""
+    longest = width - len(rest)
+    held, placed = "", []
+    for piece in pieces:
+        if piece.style is TextStyle.CODE and len(piece.text) <= longest:
+            held += piece.text.replace(" ", "\0")
+        else:  # as ``wrap`` leaves it, so that a row is as wide as its line
+            text = " ".join(f"|{piece.text}|".split())[1:-1]
+            piece = StyledText(text.lstrip() if held.endswith(" ") else text, piece.style)
+            held += piece.text
+        placed.append(piece)
     rows: list[StyledRow] = []
     at = 0
-    for index, line in enumerate(lines):
+    for index, line in enumerate(wrap(held, width, first, rest)):
         lead = first if index == 0 else rest
         row = [StyledText(lead, TextStyle.PLAIN)] if lead else []
-        at = held.index(line.removeprefix(lead), at)  # past the blanks that the break swallowed
-        end = at + len(line) - len(lead)
-        row += _cut(pieces, at, end)
+        end = at
+        for number, word in enumerate(line.removeprefix(lead).split()):
+            start = held.index(word, end)
+            at, end = (at if number else start), start + len(word)
+        row += _cut(placed, at, end)
         at = end
         rows.append(_join_equal_styles(row))
     return rows
@@ -162,52 +165,3 @@ def _join_equal_styles(pieces: Sequence[StyledText]) -> StyledRow:
         else:
             joined.append(piece)
     return tuple(joined)
-
-
-def markdown_to_markup(text: str) -> str:
-    """Returns the same text in the markup that ``parse_markup`` reads.
-
-    >>> markdown_to_markup("# Walls\\n\\nA *laser* sees **walls**:\\n\\n1. near\\n2. far")
-    '**Walls**\\n\\nA laser sees **walls**:\\n\\n- near\\n- far'
-    """
-    tokens = MarkdownIt("commonmark").parse(text)
-    blocks: list[str] = []
-    is_item, in_heading = False, False
-    for token in tokens:
-        if token.type == "list_item_open":
-            is_item = True
-        elif token.type in ("heading_open", "heading_close"):
-            in_heading = token.type == "heading_open"
-        elif token.type in ("fence", "code_block"):
-            lines = token.content.rstrip("\n").splitlines()
-            blocks.append("\n".join(BLOCK_INDENT + line for line in lines))
-            is_item = False
-        elif token.type == "inline":
-            words = " ".join("".join(_inline(token.children or ())).split())
-            if in_heading:
-                words = f"**{words.replace('**', '')}**"
-            if is_item and blocks and blocks[-1].rpartition("\n")[2].startswith(BULLET):
-                blocks[-1] += f"\n{BULLET}{words}"
-            else:
-                blocks.append(f"{BULLET if is_item else ''}{words}")
-            is_item = False
-    return "\n\n".join(blocks)
-
-
-def _inline(tokens: Sequence[Token]) -> Iterator[str]:
-    address = ""
-    for token in tokens:
-        if token.type == "text":
-            yield token.content.replace("`", "'")
-        elif token.type == "code_inline":
-            yield f"`{token.content}`"
-        elif token.type in ("strong_open", "strong_close"):
-            yield "**"
-        elif token.type in ("softbreak", "hardbreak"):
-            yield " "
-        elif token.type == "link_open":
-            address = str(token.attrGet("href") or "")
-        elif token.type == "link_close":
-            yield f" ({address})" if address else ""
-        elif token.type == "image":
-            yield token.content

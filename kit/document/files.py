@@ -1,4 +1,4 @@
-"""A report as files: CSV and JSON for machines, Markdown, one HTML page that needs nothing else, and plots as SVG."""
+"""A document as files: CSV and JSON for machines, Markdown, one HTML page that needs nothing else, and plots as SVG."""
 
 from __future__ import annotations
 
@@ -10,27 +10,29 @@ from collections.abc import Callable, Iterator, Sequence
 from html import escape
 from typing import Any, Final
 
-from kit.learning.policies.confidence_intervals import ConfidenceInterval
-from kit.plain_text import escape_controls
-from kit.render.animation_files import svg_picture
-from kit.school.report.as_text import printable_text
-from kit.school.report.document import (
+from kit.document.blocks import (
     BarChart,
+    Block,
+    Caution,
+    Cell,
     CellStyle,
-    ClassReport,
+    Column,
+    Document,
     Histogram,
+    Marked,
+    Plot,
     Quote,
-    ReportBlock,
-    ReportPlot,
-    ReportTable,
-    ReportText,
-    ReportWarning,
     ScatterPlot,
     ScenePlot,
-    TableCell,
-    TableColumn,
+    Table,
+    Text,
+    ToneText,
     format_cell,
 )
+from kit.document.layout import lines_of
+from kit.document.markup import StyledText, TextStyle, parse_markup, styled_pieces
+from kit.plain_text import escape_controls, printable_text
+from kit.render.animation_files import svg_picture
 
 WIDTH: Final = 640
 MARGIN: Final = 16
@@ -46,7 +48,7 @@ _FONT: Final = 'font-family="sans-serif" font-size="12" fill="#222222" stroke="n
 Scale = Callable[[float], float]
 
 
-def plot_to_svg(plot: ReportPlot) -> str:
+def plot_to_svg(plot: Plot) -> str:
     """The whole file; inside an HTML page it can stand as it is."""
     match plot:
         case BarChart():
@@ -240,11 +242,9 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r", "|", "%", "\uff1d", "\uff0b", "\uff0
 """First characters by which a spreadsheet takes a text for a formula, which a student's name must not become."""
 
 
-def table_to_csv(table: ReportTable) -> str:
+def table_to_csv(table: Table) -> str:
     """The table's numbers in full; an interval takes two columns."""
-    spans = [
-        any(isinstance(row[i], ConfidenceInterval) for row in table.rows) for i in range(len(table.columns))
-    ]
+    spans = [any(isinstance(row[i], tuple) for row in table.rows) for i in range(len(table.columns))]
     out = io.StringIO()
     # All in quotes: where a semicolon separates, "x;=1+1" would be two cells.
     writer = csv.writer(out, lineterminator="\n", quoting=csv.QUOTE_ALL)
@@ -260,11 +260,11 @@ def table_to_csv(table: ReportTable) -> str:
     return out.getvalue()
 
 
-def _csv_parts(cell: TableCell, *, span: bool) -> Iterator[str]:
-    if isinstance(cell, ConfidenceInterval):
-        yield from (_csv_text(cell.low), _csv_text(cell.high))
+def _csv_parts(cell: Cell, *, span: bool) -> Iterator[str]:
+    if isinstance(cell, tuple):
+        yield from map(_csv_text, cell)
     else:
-        yield _csv_text(cell)
+        yield _csv_text(str(cell) if isinstance(cell, ToneText) else cell)
         if span:
             yield ""
 
@@ -276,7 +276,7 @@ def _csv_text(cell: str | float | None) -> str:
     return "" if cell is None or not math.isfinite(cell) else repr(cell)
 
 
-def report_to_json(report: ClassReport) -> str:
+def document_to_json(report: Document) -> str:
     """The whole report as JSON, with null where there is no value."""
     content = {
         "title": report.title,
@@ -288,9 +288,9 @@ def report_to_json(report: ClassReport) -> str:
     return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def _block_data(block: ReportBlock) -> dict[str, Any]:
+def _block_data(block: Block) -> dict[str, Any]:
     match block:
-        case ReportTable():
+        case Table():
             return {
                 "table": block.id,
                 "title": block.title,
@@ -298,17 +298,21 @@ def _block_data(block: ReportBlock) -> dict[str, Any]:
                 "rows": [[_cell_data(cell) for cell in row] for row in block.rows],
                 "note": block.note,
             }
-        case ReportText():
+        case Text():
+            return {"text": _whole_text(block)}
+        case Marked():
             return {"text": block.text}
-        case ReportWarning():
+        case Caution():
             return {"warning": block.text}
         case Quote():
             return {"said": block.text, "by": block.student}
-        case _:
+        case BarChart() | Histogram() | ScatterPlot() | ScenePlot():
             return _plot_data(block)
+        case _:
+            return {"lines": lines_of([block])}
 
 
-def _plot_data(plot: ReportPlot) -> dict[str, Any]:
+def _plot_data(plot: Plot) -> dict[str, Any]:
     match plot:
         case BarChart():
             rows = [
@@ -333,9 +337,11 @@ def _plot_data(plot: ReportPlot) -> dict[str, Any]:
             return {"scene": plot.id, "title": plot.title, "targets": targets, "paths": paths}
 
 
-def _cell_data(cell: TableCell) -> Any:
-    if isinstance(cell, ConfidenceInterval):
-        return [_cell_data(cell.low), _cell_data(cell.high)]
+def _cell_data(cell: Cell) -> Any:
+    if isinstance(cell, tuple):
+        return list(map(_cell_data, cell))
+    if isinstance(cell, ToneText):
+        return cell.text
     return None if isinstance(cell, float) and not math.isfinite(cell) else cell
 
 
@@ -352,12 +358,12 @@ nav a { margin-right: 1rem; }
 """
 
 
-def report_to_html(report: ClassReport) -> str:
+def document_to_html(report: Document) -> str:
     """The whole page."""
     return "\n".join(_page_lines(report)) + "\n"
 
 
-def _page_lines(report: ClassReport) -> Iterator[str]:
+def _page_lines(report: Document) -> Iterator[str]:
     title = _html_text(report.title)
     yield "<!DOCTYPE html>"
     yield '<html lang="en"><head><meta charset="utf-8">'
@@ -375,21 +381,55 @@ def _page_lines(report: ClassReport) -> Iterator[str]:
     yield "</body></html>"
 
 
-def _html_lines(block: ReportBlock) -> Iterator[str]:
+def _html_lines(block: Block) -> Iterator[str]:
     match block:
-        case ReportTable():
+        case Table():
             yield from _table_lines(block)
-        case ReportText():
-            yield f"<p>{_html_text(block.text)}</p>"
-        case ReportWarning():
+        case Text():
+            yield f"<p>{_html_text(_whole_text(block))}</p>"
+        case Marked():
+            yield from _marked_html(block)
+        case Caution():
             yield f'<p class="caution">Note: {_html_text(block.text)}</p>'
         case Quote():
             yield f"<p>{_html_text(block.student)}:</p><blockquote>{_html_text(block.text)}</blockquote>"
-        case _:
+        case BarChart() | Histogram() | ScatterPlot() | ScenePlot():
             yield plot_to_svg(block).rstrip()
+        case _:
+            yield f"<pre>{escape(chr(10).join(lines_of([block])))}</pre>"
 
 
-def _table_lines(table: ReportTable) -> Iterator[str]:
+def _whole_text(block: Text) -> str:
+    return f"{block.lead} {block.text}".strip() + block.tail
+
+
+def _marked_html(block: Marked) -> Iterator[str]:
+    is_list = False
+    for part in parse_markup(block.text):
+        if is_list != (part.kind == "bullet"):
+            is_list = not is_list
+            yield "<ul>" if is_list else "</ul>"
+        if part.kind == "code":
+            yield f"<pre>{escape(chr(10).join(part.lines))}</pre>"
+        else:
+            words = "".join(_piece_html(piece) for piece in styled_pieces(part))
+            yield f"<li>{words}</li>" if is_list else f"<p>{words}</p>"
+    if is_list:
+        yield "</ul>"
+
+
+def _piece_html(piece: StyledText) -> str:
+    words = _html_text(piece.text)
+    match piece.style:
+        case TextStyle.CODE:
+            return f"<code>{words}</code>"
+        case TextStyle.BOLD:
+            return f"<strong>{words}</strong>"
+        case _:
+            return words
+
+
+def _table_lines(table: Table) -> Iterator[str]:
     kinds = ["" if column.style is CellStyle.TEXT else ' class="number"' for column in table.columns]
     yield f"<table><caption>{_html_text(table.title)}</caption><thead><tr>"
     yield "".join(
@@ -416,12 +456,12 @@ def _html_text(text: str) -> str:
 _ESCAPED = str.maketrans({"|": "\\|", "<": "&lt;", "*": "\\*", "_": "\\_"})
 
 
-def report_to_markdown(report: ClassReport) -> str:
+def document_to_markdown(report: Document) -> str:
     """The whole file."""
     return "\n".join([f"# {_markdown_text(report.title)}", "", *_chapter_lines(report)])
 
 
-def _chapter_lines(report: ClassReport) -> Iterator[str]:
+def _chapter_lines(report: Document) -> Iterator[str]:
     for chapter in report.chapters:
         yield f"## {_markdown_text(chapter.title)}"
         yield ""
@@ -429,29 +469,33 @@ def _chapter_lines(report: ClassReport) -> Iterator[str]:
             yield from _markdown_lines(block)
 
 
-def _markdown_lines(block: ReportBlock) -> Iterator[str]:
+def _markdown_lines(block: Block) -> Iterator[str]:
     match block:
-        case ReportTable():
+        case Table():
             yield from table_to_markdown(block)
-        case ReportText():
-            yield _markdown_text(block.text)
-        case ReportWarning():
+        case Text():
+            yield _markdown_text(_whole_text(block))
+        case Marked():
+            yield block.text  # its markup is Markdown's
+        case Caution():
             yield f"> {_markdown_text(block.text)}"
         case BarChart():
             yield from table_to_markdown(_bar_table(block))
         case Quote():
             yield f"> {_markdown_text(block.student)}: {_markdown_text(block.text)}"
-        case _:
+        case Histogram() | ScatterPlot() | ScenePlot():
             return
+        case _:
+            yield from ("```text", *lines_of([block]), "```")
     yield ""
 
 
-def _bar_table(bars: BarChart) -> ReportTable:
-    columns = (TableColumn("", CellStyle.TEXT), *(TableColumn(group) for group in bars.groups))
-    return ReportTable(bars.id, bars.title, columns, tuple((label, *values) for label, values in bars.rows))
+def _bar_table(bars: BarChart) -> Table:
+    columns = (Column("", CellStyle.TEXT), *(Column(group) for group in bars.groups))
+    return Table(bars.id, bars.title, columns, tuple((label, *values) for label, values in bars.rows))
 
 
-def table_to_markdown(table: ReportTable) -> Iterator[str]:
+def table_to_markdown(table: Table) -> Iterator[str]:
     """Title, head, rows and note."""
     if table.title:
         yield f"**{_markdown_text(table.title)}**"

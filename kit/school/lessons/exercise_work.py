@@ -1,7 +1,8 @@
-"""The state of one exercise: its watched file, the check that runs, and the latest result. No Textual."""
+"""The work on one exercise: its watched file, the check that runs, and the latest result."""
 
 from __future__ import annotations
 
+import re
 import threading
 import time
 from itertools import zip_longest
@@ -13,6 +14,7 @@ from kit.school.lessons.checking import CheckReport, ExerciseCheck, has_other_fi
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import Exercise
 from kit.school.lessons.training_curves import DriveLoop, TestDrive, TrainingCurves
+from kit.school.result import replay_lines
 
 RESCAN_S: Final = 1.0
 """Between two looks for files that are new."""
@@ -49,8 +51,8 @@ class FolderWatch:
             return
 
 
-class ExerciseModel:
-    """One exercise of a visit. ``poll`` it a few times a second; ``close`` it when done.
+class ExerciseWork:
+    """The student's work on one exercise. ``poll`` it a few times a second; ``close`` it when done.
 
     Raises ExerciseFilesError where the student's files cannot be laid out.
     """
@@ -95,6 +97,33 @@ class ExerciseModel:
         except OSError:
             return ()
         return tuple("".join(filter(str.isprintable, line.expandtabs(4))) for line in text.splitlines())
+
+    @property
+    def line_to_edit(self) -> int:
+        """The line of the edited file to begin at, counted from 1: the one that the last check's first error names; else that
+        of the first TODO that is left; else the first."""
+        return self.error_line or self.first_todo()
+
+    @property
+    def error_line(self) -> int:
+        """The line of the edited file that the last check's first error names; 0 if it names none."""
+        report = self.report
+        texts = [] if report is None else [report.problem, *(each.rationale for each in report.lost_criteria)]
+        name = re.escape(self.edited_file.name)
+        found = next((match for text in texts if (match := re.search(rf"\b{name}:(\d+)", text))), None)
+        return 0 if found is None else int(found[1])
+
+    @property
+    def printed_lines(self) -> list[str]:
+        """What the student's program printed in the last check."""
+        criteria = self.report.criteria if self.report is not None else ()
+        logs = dict.fromkeys(each.log for each in criteria if each.log.strip())
+        return [line for log in logs for line in log.expandtabs(4).splitlines()]
+
+    @property
+    def picture_lines(self) -> list[str]:
+        """What the last check drew of a criterion that was lost."""
+        return [] if self.report is None else replay_lines(self.report.criteria)
 
     @property
     def edited_file(self) -> Path:

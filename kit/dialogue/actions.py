@@ -35,6 +35,11 @@ class ScreenAction:
     """Whether it comes before the focused widget."""
 
     @property
+    def key_names(self) -> set[str]:
+        """Textual's names of its keys."""
+        return {key for keys, _ in self.bindings for key in keys.split(",")}
+
+    @property
     def footer_keys(self) -> str:
         return self.short or self.keys.split()[0]
 

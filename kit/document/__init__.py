@@ -1,0 +1,1 @@
+"""What is told: blocks, the layout that places them, and their renderers."""

@@ -1,0 +1,110 @@
+"""Rows of styled text, independent of what shows them: made, joined, cut and wrapped by terminal columns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import zip_longest
+from typing import Final
+
+from rich.cells import cell_len
+
+from kit.plain_text import wrap
+
+MARGIN: Final = 2
+"""Columns that are left free beside a text."""
+TEXT_WIDTH: Final = 76
+"""Columns of a text where nothing else is said: longer lines are hard to read, however wide the terminal."""
+PLAIN: Final = ""
+CUT: Final = "… "
+"""Where a row is cut; a terminal that has no such sign shows two dots in the same two columns."""
+
+StyledText = tuple[str, str]
+"""A text and its tone."""
+
+Row = tuple[StyledText, ...]
+
+
+def row(*parts: str | StyledText) -> Row:
+    """A row of texts; a bare string is plain."""
+    return tuple((part, PLAIN) if isinstance(part, str) else part for part in parts)
+
+
+def row_text(parts: Row) -> str:
+    """The characters of a row, without blanks at its end."""
+    return "".join(text for text, _ in parts).rstrip()
+
+
+def spread(left: Row, right: Row, width: int) -> Row:
+    """``left`` at the left edge and ``right`` at the right one; the left is cut where they meet, and says so.
+
+    >>> row_text(spread(row("Lesson 3: ", ("Sensors", "bold")), row("2 of 5"), 22))
+    'Lesson 3: Sen…  2 of 5'
+    """
+    room = width - row_width(right) - 1
+    if row_width(left) > room:
+        has_sign = room > 2 * len(CUT)
+        fitting = broken(left, room - len(CUT) if has_sign else room)[0] if room > 1 else ()
+        left = (*fitting, (CUT, PLAIN)) if has_sign else fitting
+    return (*left, (" " * (max(0, room - row_width(left)) + 1), PLAIN), *right)
+
+
+def row_width(parts: Row) -> int:
+    """The columns that a row takes."""
+    return sum(cell_len(text) for text, _ in parts)
+
+
+def side_by_side(left: Sequence[Row], right: Sequence[Row], column: int) -> list[Row]:
+    """Rows with others to their right, which begin at a column; a row of the left is cut there.
+
+    >>> side_by_side([row("one"), row("two")], [row("three")], 6)
+    [(('one', ''), ('   ', ''), ('three', '')), (('two', ''),)]
+    """
+    return [
+        (*spread(here, (), column), *there) if there else here
+        for here, there in zip_longest(left, right, fillvalue=())
+    ]
+
+
+def text_width(width: int, widest: int = TEXT_WIDTH) -> int:
+    """Columns of a text of at most ``widest`` between the margins of a screen of ``width``."""
+    return max(20, min(width - 2 * MARGIN, widest))
+
+
+def entry_rows(mark: str, key: str, text: str, style: str, columns: int) -> list[Row]:
+    """A text of ``columns`` with the key that chooses it, and its mark in the margin; later lines begin below its first word."""
+    first, *rest = wrap(text, columns - len(key) - 2)
+    indent = " " * (MARGIN + len(key) + 2)
+    return [
+        row((f"{mark:>{MARGIN - 1}} ", style), (key, "press"), "  ", (first, style)),
+        *(row((indent + line, style)) for line in rest),
+    ]
+
+
+def broken(parts: Row, width: int) -> list[Row]:
+    """Wraps a row to rows of at most ``width`` columns.
+
+    >>> broken(row("a long ", ("line", "bold")), 9)
+    [(('a long ', ''), ('li', 'bold')), (('ne', 'bold'),)]
+    """
+    made: list[list[StyledText]] = [[]]
+    room = width = max(2, width)  # some characters take two columns
+    for text, style in parts:
+        while cell_len(text) > room:
+            fitting = next(count for count in range(room, -1, -1) if cell_len(text[:count]) <= room)
+            made[-1] += [(text[:fitting], style)] if fitting else []
+            made.append([])
+            text, room = text[fitting:], width
+        made[-1].append((text, style))
+        room -= cell_len(text)
+    return [tuple(each) for each in made]
+
+
+def window(rows: Sequence[Row], top: int, room: int) -> tuple[list[Row], int]:
+    """As many rows as there is room for, from ``top`` on as far as there are so many, and that top; the last one
+    says if there are more."""
+    top = max(0, min(top, len(rows) - room))
+    shown = list(rows[top : top + room])
+    below = len(rows) - top - len(shown)
+    if below > 0 and shown:
+        shown[-1] = row((f"... {below + 1} more lines below: down", "dim"))
+    return shown, top

@@ -1,0 +1,149 @@
+"""A table in rows of a width: heads, a line below them, and the cells, whose words go on below where a column is narrow."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
+from typing import Final, NamedTuple
+
+from kit.document.blocks import Cell, CellStyle, Column, Table, Tone, ToneText, format_cell
+from kit.document.rows import Row, row, row_text
+from kit.plain_text import COLUMN_GAP, fit_widths, printable_text, wrap
+
+MIN_TEXT_WIDTH: Final = 8
+"""Columns that a column of words keeps when room is short."""
+MAX_CELL_LENGTH: Final = 600
+LIST_MARGIN: Final = 3
+"""Columns before the entries of a list: which one is chosen, and which are marked."""
+
+
+class TableRows(NamedTuple):
+    """A table without its title and note."""
+
+    heads: tuple[Row, ...]
+    entries: tuple[tuple[Row, ...], ...]
+    """The rows of each of the table's."""
+
+
+def table_rows(table: Table, width: int) -> TableRows:
+    """Places a table in rows of at most ``width`` columns, as far as its numbers allow; spare columns are left out first."""
+    table = without_spare_columns(table, width)
+    cells = [
+        [_cell_text(cell, column) for cell, column in zip(each, table.columns, strict=True)]
+        for each in table.rows
+    ]
+    heads = [column.title for column in table.columns]
+    texts = [number for number, column in enumerate(table.columns) if column.style is CellStyle.TEXT]
+    widths = fit_widths(_natural_widths([heads, *cells]), width, texts, MIN_TEXT_WIDTH)
+    head = list(_placed_rows(heads, widths, table.columns, (Tone.PLAIN,) * len(heads))) if any(heads) else []
+    if head and table.is_ruled:
+        head.append(row(COLUMN_GAP.join("-" * each for each in widths)))
+    if table.grouped and cells:
+        _share_first_cells(table, cells, widths[0])
+    entries = (
+        tuple(_placed_rows(texts, widths, table.columns, tuple(map(_tone, told))))
+        for texts, told in zip(cells, table.rows, strict=True)
+    )
+    return TableRows(tuple(head), tuple(entries))
+
+
+def list_rows(table: Table, width: int, height: int, chosen: int, marked: Collection[int] = ()) -> list[Row]:
+    """A table from which an entry is chosen: its heads, and as many entries as there is room for, the chosen one among them.
+
+    ``marked``: the numbers of entries with a mark of their own.
+    """
+    if table.rows:
+        first, *others = table.rows[chosen]
+        shown = ToneText(format_cell(first, table.columns[0]), Tone.CHOSEN)
+        table = replace(table, rows=(*table.rows[:chosen], (shown, *others), *table.rows[chosen + 1 :]))
+    placed = table_rows(replace(table, is_ruled=False), width - LIST_MARGIN)
+    heads = [row((" " * LIST_MARGIN + row_text(each), Tone.DIM)) for each in placed.heads]
+    made: list[Row] = []
+    at = (0, 0)
+    for number, entry in enumerate(placed.entries):
+        if number == chosen:
+            at = (len(made), len(entry))
+        signs = row(
+            (">" if number == chosen else " ", Tone.BOLD), ("*" if number in marked else " ", Tone.WARN), " "
+        )
+        made += [
+            (*(signs if not level else row(" " * LIST_MARGIN)), *each) for level, each in enumerate(entry)
+        ]
+    room = max(1, height - len(heads))
+    first_row = max(0, min(at[0] + at[1] // 2 - room // 2, len(made) - room))
+    return [*heads, *made[first_row : first_row + room]]
+
+
+def without_spare_columns(table: Table, width: int) -> Table:
+    """The table without as many spare columns as are too many for ``width``, the last of them first."""
+    while True:
+        texts = [
+            [_cell_text(cell, column) for cell, column in zip(each, table.columns, strict=True)]
+            for each in table.rows
+        ]
+        widths = _natural_widths([[column.title for column in table.columns], *texts])
+        spare = [number for number, column in enumerate(table.columns) if column.is_spare]
+        if not spare or sum(widths) + len(COLUMN_GAP) * (len(widths) - 1) <= width:
+            return table
+        kept = [number for number in range(len(table.columns)) if number != spare[-1]]
+        table = replace(
+            table,
+            columns=tuple(table.columns[number] for number in kept),
+            rows=tuple(tuple(each[number] for number in kept) for each in table.rows),
+        )
+
+
+def _natural_widths(rows: Sequence[Sequence[str]]) -> list[int]:
+    return [max(map(len, column)) for column in zip(*rows, strict=True)]
+
+
+def _cell_text(cell: Cell, column: Column) -> str:
+    """A cell's text, shortened so that it does not push other columns off the screen."""
+    text = printable_text(format_cell(cell, column))
+    return text if len(text) <= MAX_CELL_LENGTH else text[: MAX_CELL_LENGTH - 3] + "..."
+
+
+def _tone(cell: Cell) -> Tone:
+    return cell.tone if isinstance(cell, ToneText) else Tone.PLAIN
+
+
+def _share_first_cells(table: Table, cells: list[list[str]], width: int) -> None:
+    """Writes what a group shares down its rows, as far as it goes; what is left stays in the last."""
+    starts = [number for number in range(len(cells)) if table.shows_first_cell(number)]
+    for start, end in zip(starts, [*starts[1:], len(cells)], strict=True):
+        words = wrap(cells[start][0], width)
+        for number in range(start, end):
+            left = words[number - start :]
+            cells[number][0] = " ".join(left if number == end - 1 else left[:1])
+
+
+def _placed_rows(
+    cells: Sequence[str], widths: Sequence[int], columns: Sequence[Column], tones: Sequence[Tone]
+) -> Iterator[Row]:
+    parts = [wrap(cell, width) for cell, width in zip(cells, widths, strict=True)]
+    for level in range(max(map(len, parts))):
+        words = [part[level] if level < len(part) else "" for part in parts]
+        last = max((number for number, word in enumerate(words) if word), default=0)
+        pieces: list[tuple[str, str]] = []
+        for number, (word, width, column, tone) in enumerate(zip(words, widths, columns, tones, strict=True)):
+            if number > last:
+                break
+            is_text = column.style is CellStyle.TEXT
+            blanks = " " * (width - len(word))
+            gap = COLUMN_GAP if number else ""
+            before, after = (gap, "" if number == last else blanks) if is_text else (gap + blanks, "")
+            pieces += [(before, ""), (word, tone), (after, "")]
+        yield _joined(pieces)
+
+
+def _joined(pieces: Sequence[tuple[str, str]]) -> Row:
+    """The pieces without empty ones, neighbours of one tone as one."""
+    joined: list[tuple[str, str]] = []
+    for text, tone in pieces:
+        if not text:
+            continue
+        if joined and joined[-1][1] == tone:
+            joined[-1] = (joined[-1][0] + text, tone)
+        else:
+            joined.append((text, tone))
+    return tuple(joined)

@@ -1,0 +1,729 @@
+"""A lesson as a dialogue: one step at a time; predict, run, change a file, have it checked. Nothing moves on by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from kit.dialogue.actions import ACTIONS, ScreenAction, digits, letter
+from kit.dialogue.dialogue import Action, Dialogue, Refused, help_action, leave_action
+from kit.dialogue.effects import Choose, Effect, Leave, Open, Option, Remark, Show, Tell, Work
+from kit.document.blocks import Block, Marked, Picture, Text, Tone
+from kit.render.encode import AsciiEncoder
+from kit.run.scenario import find_scenario
+from kit.school.lessons.checking import CheckReport, ExerciseFilesError
+from kit.school.lessons.defence import Defence, DefenceError
+from kit.school.lessons.defence_dialogue import DefenceDialogue
+from kit.school.lessons.exercise_work import ExerciseWork
+from kit.school.lessons.glossary import glossary_action
+from kit.school.lessons.graph_playback import graph_rows
+from kit.school.lessons.lesson_session import LessonSession
+from kit.school.lessons.lesson_text import (
+    command_blocks,
+    ending_blocks,
+    feedback_blocks,
+    question_blocks,
+    status_text,
+    verdict_blocks,
+)
+from kit.school.lessons.reading import TEXT_WIDTH
+from kit.school.lessons.records import CommandKind, LessonCommand, LessonScene, LessonStep, PredictionOption
+from kit.school.lessons.shell_lines import TITLE as SECOND_TERMINAL
+from kit.school.lessons.shell_lines import fill_in_paths, second_terminal_here, shell_path
+from kit.school.lessons.stage import NoStage, Stage
+from kit.school.lessons.translation import missing_translation_text
+from kit.school.progress import ProgressError
+from kit.school.quiz.items import read_bank
+from kit.school.quiz.quiz_dialogue import QuizDialogue
+from kit.school.quiz.quiz_session import QuizSession, lesson_plan, student_seed
+from kit.world.problems import WorldError
+
+if TYPE_CHECKING:
+    from kit.run.recording import Recording
+    from kit.run.scenario import Scenario
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """A file to be opened in the student's editor. Comes to a sentence: why no editor opened; empty: one did."""
+
+    file: Path
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """A scene to be driven by hand, and the file to keep the drive in. Comes to None where nothing was driven, else to a
+    sentence: why it could not be kept; empty: it was."""
+
+    scene: LessonScene
+    file: Path
+
+
+@dataclass(frozen=True, slots=True)
+class Replay:
+    """A recorded run to be looked at. Comes to a sentence: why it cannot be shown; empty: it was."""
+
+    file: Path
+
+
+@dataclass(frozen=True, slots=True)
+class RunCommand:
+    """A command to be run in this terminal. Comes to what it printed, if that is to be read page by page; None: it cannot be
+    run here."""
+
+    line: str
+    folder: Path | None
+    waits: bool
+    """Whether what it printed is to be read before one goes back."""
+
+
+class LessonDialogue(Dialogue):
+    """Takes a student through one lesson, and on to the next."""
+
+    name = "lesson"
+    help_title = "This lesson"
+    failures = MappingProxyType(
+        {
+            ProgressError: "This could not be saved: {}",
+            ExerciseFilesError: "The exercise files cannot be created: {}",
+            DefenceError: "{}",
+            WorldError: "{}",
+            FileNotFoundError: "{}",
+        }
+    )
+
+    def __init__(self, session: LessonSession) -> None:
+        self.session = session
+        self.step: LessonStep = session.first_step
+        self.stage: Stage = NoStage()
+        self.work: ExerciseWork | None = None
+        """The work on the step's exercise; None where it has none."""
+        self.has_ended = False
+        """Whether the last step is behind one."""
+        self.is_answer_shown = True
+        """Whether what there is to say of a prediction may be said: the scene has been seen."""
+        self._problem = ""
+        """Why the exercise's files could not be laid out."""
+        self._opening_step = self.step
+        """Where it is said that the lesson is in another language than the one asked for."""
+        self._following: LessonSession | None = None
+        """The next lesson, once this one has ended."""
+        self._allowed_lines: set[str] = set()
+        """Commands of somebody else's lesson that the student has seen and let run."""
+        self._looks_at = ""
+        """What was just said: ``answer``, ``verdict`` or ``hint``."""
+
+    def begin(self, stage: Stage) -> None:
+        """Opens the first step, its scene on this stage."""
+        self.stage = stage
+        self.enter(self.step)
+
+    def enter(self, step: LessonStep) -> None:
+        """Comes to a step."""
+        if self.work is not None:
+            self.work.close()
+        self.step, self.work, self.has_ended, self._problem, self._looks_at = step, None, False, "", ""
+        self.is_answer_shown = not self.is_waiting
+        if step.exercise is not None:
+            try:
+                self.work = ExerciseWork(self.session, step.exercise)
+            except ExerciseFilesError as error:
+                self._problem = f"The exercise files cannot be created: {error}"
+        self.stage.open(step, still=self.begins_still)
+
+    # Where one is
+
+    @property
+    def chosen(self) -> PredictionOption | None:
+        """The prediction that was made in this step."""
+        return self.session.prediction(self.step)
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether the step waits for a prediction."""
+        return bool(self.step.options) and self.chosen is None
+
+    @property
+    def has_scene(self) -> bool:
+        """Whether something moves in this step: its own scene, or the student's run."""
+        return not self.has_ended and (self.step.moves or self.stage.is_recorded)
+
+    @property
+    def begins_still(self) -> bool:
+        """Whether the step's scene stands at its first instant: until a prediction, or until it is opened to be driven."""
+        return self.is_waiting or (self.work is not None and self.work.by_hand)
+
+    @property
+    def is_still(self) -> bool:
+        """The same of what is shown now."""
+        return self.begins_still and not self.stage.is_recorded
+
+    @property
+    def is_driving(self) -> bool:
+        """Whether the arrow keys drive in the scene."""
+        scene = self.step.scene
+        is_by_hand = scene is not None and scene.controller == "teleop" and not self.stage.is_recorded
+        return is_by_hand and self.has_scene and not self.is_still
+
+    @property
+    def is_playing_back(self) -> bool:
+        """Whether tables learn or messages move in the picture, or would if they were not held."""
+        return self.step.playback_scene is not None and not self.is_still and not self.has_ended
+
+    @property
+    def report(self) -> CheckReport | None:
+        """The newest check of the step's exercise."""
+        return None if self.work is None else self.work.report
+
+    def with_paths(self, text: str) -> str:
+        """Inserts the student's own paths."""
+        return fill_in_paths(text, None if self.work is None else self.work.file)
+
+    # What is shown
+
+    @property
+    def title(self) -> str:
+        return f"{self.session.lesson.number} {self.session.lesson.title}"
+
+    @property
+    def position(self) -> str:
+        if self.has_ended:
+            return ""
+        done = " (done)" if self.session.lesson_progress.is_step_completed(self.step) else ""
+        count = len(self.session.lesson.steps)
+        return f"step {self.step.number} of {count}, {self.step.kind}: {self.step.title}{done}"
+
+    @property
+    def place(self) -> object:
+        return self.session.lesson.name, 0 if self.has_ended else self.step.number
+
+    @property
+    def look(self) -> Block | None:
+        said = self.said()
+        match self._looks_at:
+            case "hint":
+                hints = [each for each in said if isinstance(each, Text) and each.lead.startswith("Hint ")]
+                return hints[-1] if hints else None
+            case "verdict":
+                lost = (
+                    each
+                    for each in said
+                    if isinstance(each, Text) and each.lead and each.lead_tone is Tone.BAD
+                )
+                return next(lost, said[0] if said else None)
+            case "answer":
+                return said[0] if said else None
+        return None
+
+    @property
+    def note(self) -> Text | None:
+        if self._problem:
+            return Text(self._problem, Tone.BAD)
+        if self.work is None or self.has_ended:
+            return None
+        return status_text(self.report, self.session.lesson_progress, self.work.exercise)
+
+    def opening(self) -> Sequence[Block]:
+        lesson, progress = self.session.lesson, self.session.lesson_progress
+        blocks = [
+            Text(f"Lesson {lesson.number}, {lesson.title}. {lesson.summary} About {lesson.minutes} minutes.")
+        ]
+        if progress.completed_count:
+            done = f"{progress.completed_count} of {len(lesson.steps)} steps are done"
+            blocks.append(Text(f"{done}; going on at step {self.step.number}.", is_tight=True))
+        return blocks
+
+    def farewell(self) -> Sequence[Block]:
+        return (Text("Your progress is saved."),)
+
+    def heard(self) -> Sequence[Block]:
+        if self.has_ended:
+            return ()
+        blocks: list[Block] = [Text(f"Goal: {self.step.goal}", is_tight=True)]
+        if self.step.picture:
+            blocks.append(Picture(tuple(self.step.picture.splitlines())))
+        if self.step.graph is not None:
+            blocks.append(Picture(tuple(graph_rows(self.step.graph, at_end=not self.step.options)), indent=0))
+        return blocks
+
+    def blocks(self) -> Sequence[Block]:
+        return [*self.told(), *self.asked(), *self.said()]
+
+    def told(self) -> list[Block]:
+        """The words of the step and its commands; after the last step those of the end."""
+        if self.has_ended:
+            following = self._following.lesson if self._following is not None else None
+            return ending_blocks(self.session.lesson_progress, following, self.session.opened_levels())
+        missing = self.session.lesson.missing_language if self.step is self._opening_step else ""
+        blocks: list[Block] = [Text(missing_translation_text(missing))] if missing else []
+        text = self.with_paths(self.step.text)
+        filled = [
+            (each, line) for each in self.step.commands if (line := self.with_paths(each.line)) not in text
+        ]
+        blocks += [Marked(text), *command_blocks(filled)]
+        if self.work is not None and self.stage.is_described:
+            others = ", and the files beside it" if self.work.has_others else ""
+            # On one line, however long, so that it can be copied.
+            blocks.append(Picture((f"Your file: {shell_path(self.work.edited_file)}{others}",), indent=0))
+        return blocks
+
+    def asked(self) -> list[Block]:
+        """The question of a prediction."""
+        if self.has_ended or not self.step.options:
+            return []
+        return question_blocks(self.step, self.chosen, is_told=self.is_answer_shown)
+
+    def said(self) -> list[Block]:
+        """What is said to what the student did."""
+        if self.has_ended:
+            return []
+        blocks: list[Block] = []
+        if self.chosen is not None and self.is_answer_shown:
+            blocks += feedback_blocks(self.step, self.chosen)
+        work, report = self.work, self.report
+        if work is not None and report is not None and work.seconds is None:
+            if self.stage.is_described and (curves := work.training_curves) is not None:
+                blocks.append(Picture(tuple(curves.picture(TEXT_WIDTH, AsciiEncoder())), indent=0))
+                blocks += [Text(line, is_tight=True) for line in curves.describe()]
+            verdict = verdict_blocks(report, self.session.opened_hints(work.exercise))
+            blocks += verdict
+            if self.stage.is_described and work.picture_lines:
+                blocks.append(Picture(tuple(work.picture_lines), indent=0))
+        return blocks
+
+    def possible_answers(self) -> list[list[Block]]:
+        """What may be said to each prediction."""
+        return [feedback_blocks(self.step, option) for option in self.step.options]
+
+    # Something that goes on
+
+    @property
+    def busy(self) -> str:
+        if self.work is None or self.work.seconds is None:
+            return ""
+        return self.work.progress or "Checking ..."
+
+    @property
+    def polls(self) -> bool:
+        return self.work is not None and not self.work.by_hand
+
+    def poll(self) -> Effect:
+        work = self.work
+        if work is None:
+            return None
+        was_busy = work.seconds is not None
+        try:
+            ended = work.poll()
+        finally:  # where the disk refuses to note it, the report is there all the same
+            if was_busy and work.seconds is None:
+                self._looks_at = "verdict"
+                if self.stage.is_recorded and not (work.report is not None and work.report.is_passed):
+                    self.stage.open(self.step, still=self.begins_still)
+        report = work.report
+        if (
+            not ended
+            or report is None
+            or not report.is_passed
+            or report.recording is None
+            or self.stage.is_described
+        ):
+            return None
+        file = report.recording
+        return Work("", lambda: _load_run(file), lambda run: self._play(work, run))
+
+    def _play(self, work: ExerciseWork, run: tuple[Recording, Scenario] | None) -> Effect:
+        if run is not None and self.work is work:
+            self.stage.play(*run)
+        return None
+
+    def stop(self) -> Effect:
+        if self.work is not None:
+            self.work.close()
+        return Remark("Stopped; this check does not count. c checks again, q quits.")
+
+    def close(self) -> None:
+        if self.work is not None:
+            self.work.close()
+        self.stage.close()
+
+    def rested(self) -> bool:
+        """The scene has come to its end: what there is to say of a prediction may be said. Returns whether it is now."""
+        if self.is_answer_shown or self.is_waiting:
+            return False
+        self._reveal()
+        return True
+
+    def _reveal(self) -> None:
+        self.is_answer_shown = True
+        self._looks_at = "answer"
+
+    # What is done
+
+    def predict(self, number: int) -> Effect:
+        if number > len(self.step.options):
+            raise Refused(f"Choose 1 to {len(self.step.options)}.")
+        self.session.predict(self.step, number - 1)
+        if self.step.moves and self.stage.is_open:
+            self.stage.go()
+            if self.stage.is_resting:
+                self._reveal()
+        else:
+            if self.step.moves:
+                self.stage.again()
+            self._reveal()
+        return None
+
+    def go_on(self) -> Effect:
+        if self.has_ended:
+            return self._begin_following()
+        if not self.is_answer_shown:
+            self._reveal()
+            return None
+        if self.step.exercise is None:
+            self.session.complete_step(self.step)
+        if self.step.number < len(self.session.lesson.steps):
+            is_open = not self.session.lesson_progress.is_step_completed(self.step)
+            self.enter(self.session.find_step(self.step.number + 1))
+            return (
+                Remark("The last exercise is not passed yet; b goes back to it.", Tone.DIM)
+                if is_open
+                else None
+            )
+        if self.work is not None:
+            self.work.close()
+        self.stage.close()
+        self.work, self.has_ended, self._looks_at = None, True, ""
+        self._following = self.session.following()
+        return None
+
+    def _begin_following(self) -> Effect:
+        if self._following is not None:
+            is_told = bool(self.session.lesson.missing_language)
+            self.session, self._following = self._following, None
+            self._opening_step = self._opening_step if is_told else self.session.first_step
+            self.enter(self.session.first_step)
+        return None
+
+    def go_back(self) -> Effect:
+        number = self.step.number if self.has_ended else self.step.number - 1
+        self.enter(self.session.find_step(number))
+        return None
+
+    def go_to(self, number: str = "") -> Effect:
+        steps, progress = self.session.lesson.steps, self.session.lesson_progress
+        if number:
+            if not number.isdecimal() or not 1 <= int(number) <= len(steps):
+                raise Refused(f"Give a step from 1 to {len(steps)}.")
+            return self._enter_chosen(int(number) - 1)
+        options = [
+            Option(f"{'[x]' if progress.is_step_completed(each) else '[ ]'} {each.number}", each.title)
+            for each in steps
+        ]
+        return Choose(self.session.lesson.title, options, self._enter_chosen, self.step.number - 1)
+
+    def _enter_chosen(self, index: int | None) -> Effect:
+        if index is not None:
+            self.enter(self.session.lesson.steps[index])
+        return None
+
+    def restart(self) -> Effect:
+        self.stage.again()
+        return None
+
+    def pause(self) -> Effect:
+        self.stage.hold(not self.stage.is_paused)
+        return None
+
+    def step_once(self) -> Effect:
+        self.stage.step_once()
+        return None
+
+    def run_command(self) -> Effect:
+        commands = self.step.runnable_commands
+        if len(commands) == 1:
+            return self._show_command(commands[0])
+        options = [Option(self.with_paths(each.line)) for each in commands]
+        return Choose(
+            "Run", options, lambda index: None if index is None else self._show_command(commands[index])
+        )
+
+    def _show_command(self, command: LessonCommand) -> Effect:
+        """Runs a command; one of somebody else's lesson is shown before it runs for the first time."""
+        line = self.with_paths(command.line)
+        if not self.session.lesson.is_foreign or line in self._allowed_lines:
+            return self._run(command)
+        options = [Option("do not run it"), Option("run", line)]
+        return Choose(
+            "The author's command", options, lambda index: self._allow(command) if index == 1 else None
+        )
+
+    def _allow(self, command: LessonCommand) -> Effect:
+        self._allowed_lines.add(self.with_paths(command.line))
+        return self._run(command)
+
+    def _run(self, command: LessonCommand) -> Effect:
+        line = self.with_paths(command.line)
+        folder = self.work.file.parent if self.work is not None else None
+
+        def ended(printed: str | None) -> Effect:
+            if printed is None:
+                raise Refused(f"This command cannot run here. Type it in a second terminal: {line}")
+            return Tell(line, [Picture(tuple(printed.splitlines()), indent=0)]) if printed else None
+
+        return Show(RunCommand(line, folder, command.kind is CommandKind.ALONE), ended)
+
+    def explain_second_terminal(self) -> Effect:
+        return Tell(SECOND_TERMINAL, [Marked(second_terminal_here(self.session.workspace))])
+
+    def ask_questions(self) -> Effect:
+        journal, lesson = self.session.journal, self.session.lesson.name
+
+        def start(bank: Any) -> Effect:
+            plan, seed = lesson_plan(bank, lesson), student_seed(journal)
+            session = QuizSession(journal, bank, plan, seed=seed)
+            if session.current_item is None:  # all were asked: once more, for practice
+                session = QuizSession(journal, bank, plan, seed=seed, restart=True)
+            return Open(QuizDialogue(session))
+
+        return Work("Reading the questions ...", read_bank, start)
+
+    # The exercise
+
+    def check(self) -> Effect:
+        self._work.start()
+        return None
+
+    def edit(self) -> Effect:
+        work = self._work
+
+        def edited(problem: str) -> Effect:
+            if problem:
+                raise Refused(problem)
+            return self.poll()
+
+        return Show(Edit(work.edited_file, work.line_to_edit), edited)
+
+    def hint(self) -> Effect:
+        self._looks_at = "hint"
+        exercise = self._work.exercise
+        if self.session.next_hint(exercise) is None:
+            return Remark("You have seen all hints for this criterion.")
+        return None
+
+    def drive(self) -> Effect:
+        work, scene = self._work, self.step.scene
+        assert scene is not None
+
+        def driven(problem: str | None) -> Effect:
+            if problem:
+                raise Refused(f"The drive could not be saved: {problem}")
+            if problem is not None and self.work is work:
+                work.start()
+            return None
+
+        return Show(Drive(scene, work.file), driven)
+
+    def replay(self) -> Effect:
+        work = self._work
+        picture = Tell("What went wrong", [Picture(tuple(work.picture_lines), indent=0)])
+        if work.recorded_run is None:
+            return picture
+
+        def replayed(problem: str) -> Effect:
+            if problem and not work.picture_lines:
+                raise Refused(f"The run cannot be replayed: {problem}")
+            return picture if problem else None
+
+        return Show(Replay(work.recorded_run), replayed)
+
+    def show_output(self) -> Effect:
+        return Tell("What your program printed", [Picture(tuple(self._work.printed_lines), indent=0)])
+
+    def show_solution(self) -> Effect:
+        files = self.session.open_solution(self._work.exercise)
+        if not files:
+            raise Refused("No solution came with this kit.")
+        blocks: list[Block] = []
+        for name, text in files.items():
+            blocks += [Text(f"--- {name}", Tone.BOLD)] if len(files) > 1 else []
+            blocks.append(Picture(tuple(text.expandtabs(4).splitlines()), indent=0))
+        return Tell(f"Reference solution: {next(iter(files))}", blocks)
+
+    def defend(self) -> Effect:
+        session, exercise = self.session, self._work.exercise
+
+        def ask(defence: Defence) -> Effect:
+            return Open(DefenceDialogue(session, exercise, defence))
+
+        note = "Running your program once, off screen, from a new start ..."
+        return Work(note, lambda: session.prepare_defence(exercise), ask)
+
+    def start_over(self) -> Effect:
+        kept = self._work.start_over()
+        self._looks_at = ""
+        return Remark(
+            f"Started over. Your files are kept in {kept.name}, beside it." if kept else "Started over."
+        )
+
+    @property
+    def _work(self) -> ExerciseWork:
+        assert self.work is not None  # the actions of an exercise are not possible elsewhere
+        return self.work
+
+    # When
+
+    def can_predict(self) -> bool:
+        return self.is_waiting and not self.has_ended
+
+    def can_go_on(self) -> bool | str:
+        if self.has_ended:
+            return self._following is not None
+        if self.is_waiting:
+            return f"Predict first: press 1 to {len(self.step.options)}. A wrong guess costs nothing."
+        return True
+
+    def can_go_back(self) -> bool | str:
+        return self.has_ended or self.step.number > 1 or "This is the first step."
+
+    def can_restart(self) -> bool | str:
+        if self.has_scene and not self.is_still:
+            return True
+        if self.is_waiting:
+            return f"Predict first: press 1 to {len(self.step.options)}. A wrong guess costs nothing."
+        if self.work is None:
+            return False
+        return (
+            "Press d to drive; r restarts the drive there."
+            if self.work.by_hand
+            else "c checks the exercise, x starts it over."
+        )
+
+    def can_pause(self) -> bool:
+        return self.is_playing_back and not self.stage.is_resting
+
+    def can_step(self) -> bool:
+        return self.is_playing_back and self.stage.is_paused
+
+    def has_commands(self) -> bool:
+        return not self.has_ended and bool(self.step.runnable_commands)
+
+    def has_beside(self) -> bool:
+        return not self.has_ended and any(each.kind is not CommandKind.SCREEN for each in self.step.commands)
+
+    def can_check(self) -> bool | str:
+        if self.work is None:
+            return False
+        return self.work.has_driven or "You have not driven yet: press d."
+
+    def can_edit(self) -> bool:
+        return self.work is not None and not self.work.by_hand
+
+    def can_hint(self) -> bool | str:
+        if self.work is None:
+            return False
+        report = self.report
+        if report is None:
+            return "Check first (c): hints are for criteria that you missed."
+        if any(each.hints for each in report.lost_criteria):
+            return True
+        return "Nothing was missed." if report.is_passed else "There is no hint for this."
+
+    def can_drive(self) -> bool:
+        return self.work is not None and self.work.by_hand and self.step.scene is not None
+
+    def can_replay(self) -> bool | str:
+        if self.work is None:
+            return False
+        has_run = self.work.recorded_run is not None or bool(self.work.picture_lines)
+        return has_run or "No run was recorded yet: c checks the exercise."
+
+    def can_show_output(self) -> bool | str:
+        if self.work is None or self.work.by_hand:
+            return False
+        if self.work.printed_lines:
+            return True
+        return (
+            "Your program printed nothing."
+            if self.report is not None
+            else "Your program has not run yet: c checks it."
+        )
+
+    def can_show_solution(self) -> bool | str:
+        if self.work is None:
+            return False
+        return self.session.can_see_solution(self.work.exercise) or "The solution is shown once yours passes."
+
+    def can_defend(self) -> bool | str:
+        if self.work is None or not self.work.exercise.is_program:
+            return False
+        return (
+            self.session.can_defend(self.work.exercise)
+            or "First pass the exercise with a program that drives."
+        )
+
+    def has_work(self) -> bool:
+        return self.work is not None
+
+    def next_word(self) -> str:
+        return "next lesson" if self.has_ended else "next"
+
+    def back_word(self) -> str:
+        return "back; each of these ends the check" if self.busy else "back"
+
+    def predict_keys(self) -> str:
+        return f"1-{len(self.step.options)}"
+
+    actions: ClassVar[Sequence[Action[Any]]] = (
+        Action(
+            ScreenAction("predict", "1 2 3 4", "predict", "predict; your first choice counts", digits("predict", 1, 4), "1-4"),
+            predict, can_predict, shown_keys=predict_keys,
+        ),
+        Action(
+            ScreenAction("drive_scene", "arrows", "drive", "drive the robot, in a scene that waits for you", (), "←↑↓→"),
+            lambda dialogue: None, lambda dialogue: dialogue.is_driving, is_for_lines=False,
+        ),
+        Action(ACTIONS["check"], check, can_check),
+        Action(ACTIONS["edit_file"], edit, can_edit),
+        Action(ACTIONS["hint"], hint, can_hint),
+        Action(ACTIONS["drive"], drive, can_drive),
+        Action(ACTIONS["replay"], replay, can_replay),
+        Action(ACTIONS["solution"], show_solution, can_show_solution),
+        Action(ACTIONS["next"], go_on, can_go_on, word=next_word, while_busy=True),
+        Action(ACTIONS["defend"], defend, can_defend),
+        Action(letter("run_command", "o", "run", "run a command of this step here"), run_command, has_commands),
+        Action(ACTIONS["second_terminal"], explain_second_terminal, has_beside),
+        Action(ACTIONS["output"], show_output, can_show_output),
+        Action(
+            letter("questions", "k", "questions", "answer the lesson's questions, after its last step"),
+            ask_questions, lambda dialogue: dialogue.has_ended,
+        ),
+        Action(ACTIONS["previous"], go_back, can_go_back, while_busy=True),
+        Action(ACTIONS["restart"], restart, can_restart),
+        Action(ACTIONS["pause"], pause, can_pause, is_for_lines=False),
+        Action(ACTIONS["step"], step_once, can_step, is_for_lines=False),
+        Action(
+            ACTIONS["start_over"], start_over, has_work,
+            confirm="x once more starts this exercise over; your files are kept beside it.",
+        ),
+        help_action(),
+        leave_action(lambda dialogue: Leave(), back_word),
+        Action(ACTIONS["steps"], go_to, takes_text=True, is_listed=False),
+        Action(ACTIONS["quit"], lambda dialogue: Leave(), is_listed=False, is_for_lines=False, while_busy=True),
+        glossary_action(),
+    )  # fmt: skip
+
+
+def _load_run(file: Path) -> tuple[Recording, Scenario] | None:
+    """A recorded run and where it was driven; None where either cannot be read: a pass is a pass, whatever the world or the
+    disk does to its picture. Slow: the physics takes a moment to import."""
+    from kit.run.recording import load_recording
+
+    try:
+        recording = load_recording(file)
+        return recording, find_scenario(recording.place, recording.case)
+    except Exception:  # noqa: BLE001 - as above
+        return None

@@ -1,0 +1,224 @@
+"""The quiz as a dialogue: a question, how sure the student is, and the feedback; nothing moves on by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import Enum
+from types import MappingProxyType
+from typing import Any, ClassVar, Final
+
+from kit.dialogue.actions import ACTIONS, ScreenAction, digits, letter
+from kit.dialogue.dialogue import Action, Dialogue, help_action, leave_action
+from kit.dialogue.effects import Effect
+from kit.document.blocks import Block, Choice, Choices, KeyLine, Picture, Text, Tone
+from kit.school.lessons.glossary import glossary_action
+from kit.school.progress import ProgressError
+from kit.school.quiz.items import OPTION_COUNT, QuizItem
+from kit.school.quiz.quiz_session import QuizSession
+from kit.school.quiz.quiz_text import (
+    CONFIDENCE_CHOICES,
+    CONFIDENCE_QUESTION,
+    closing_blocks,
+    feedback_text,
+    follow_up_blocks,
+    today_line,
+    verdict_text,
+)
+from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, AnswerOutcome
+
+
+class QuizStage(Enum):
+    """How far one is with a question."""
+
+    ASKED = "asked"
+    CHOSEN = "chosen"
+    TOLD = "told"
+    OVER = "over"
+
+
+MARKS: Final = (
+    (">", "your choice"),
+    ("+", "the right answer"),
+    ("x", "your choice, where it is wrong"),
+)
+KEPT: Final = (
+    ("what is kept", "every answer, once you have said how sure you are"),
+    ("what comes back", "topics, after 1, 3, 7 and 21 days: kit quiz --today"),
+)
+_TONES: Final = {
+    AnswerOutcome.RIGHT: Tone.GOOD,
+    AnswerOutcome.WRONG: Tone.BAD,
+    AnswerOutcome.NOT_SURE: Tone.BOLD,
+    AnswerOutcome.BLANK: Tone.BOLD,
+}
+
+
+class QuizDialogue(Dialogue):
+    """Asks what a session has ahead."""
+
+    name = "quiz"
+    help_title = "The quiz"
+    help_notes = (MARKS, KEPT)
+    failures = MappingProxyType({ProgressError: "Not saved: {}"})
+
+    def __init__(self, session: QuizSession) -> None:
+        self.session = session
+        self.item: QuizItem | None = session.current_item
+        self.number = session.question_number
+        self.choice: AnswerChoice | None = None
+        self.stage = QuizStage.ASKED if self.item is not None else QuizStage.OVER
+
+    # What is shown
+
+    @property
+    def title(self) -> str:
+        return self.session.plan.title
+
+    @property
+    def position(self) -> str:
+        if self.item is None or self.is_over:
+            return ""
+        count = max(self.number, self.session.question_count)
+        return f"{self.item.topic.label}, question {self.number} of {count}"
+
+    @property
+    def place(self) -> object:
+        return None if self.item is None or self.is_over else self.item.id
+
+    @property
+    def is_over(self) -> bool:
+        return self.stage is QuizStage.OVER
+
+    @property
+    def look(self) -> Block | None:
+        is_told = self.stage is QuizStage.TOLD and self.item is not None and self.choice is not None
+        return self._feedback(self.item, self.choice)[0] if is_told and self.item and self.choice else None
+
+    def opening(self) -> Sequence[Block]:
+        blocks = [Text(f"{self.title}: {self.session.question_count} questions.")]
+        if self.number > 1:
+            blocks.append(Text(f"You continue at question {self.number}.", is_tight=True))
+        return blocks
+
+    def farewell(self) -> Sequence[Block]:
+        if self.is_over:
+            return ()
+        done = f"{self.session.question_number - 1} of {self.session.question_count} answered."
+        again = f"`{self.session.plan.command}` continues here."
+        return (Text(f"{done} {again} {today_line(self.session.build_schedule())}"),)
+
+    def blocks(self) -> Sequence[Block]:
+        item = self.item
+        if item is None or self.is_over:
+            return closing_blocks(self.session)
+        shown: list[Block] = [Text(item.question)]
+        shown += [Picture(tuple(item.picture))] if item.picture else []
+        shown += self._options(item)
+        if self.stage is QuizStage.CHOSEN:
+            choices = tuple(Choice(str(number), text) for number, text in CONFIDENCE_CHOICES)
+            shown.append(KeyLine(CONFIDENCE_QUESTION, choices))
+        elif self.stage is QuizStage.TOLD and self.choice is not None:
+            shown += self._feedback(item, self.choice)
+        return shown
+
+    def _options(self, item: QuizItem) -> list[Block]:
+        """``>`` before the chosen one; once it is told, ``+`` before the right and ``x`` before a wrong one."""
+        told, entries = self.stage is QuizStage.TOLD, []
+        for index, option in enumerate(item.options):
+            is_chosen = self.choice is not None and self.choice.option == index
+            mark, tone = (">", Tone.BOLD) if is_chosen else (" ", Tone.PLAIN)
+            if told and option.is_right:
+                mark, tone = "+", Tone.GOOD
+            elif told:
+                mark, tone = ("x", Tone.BAD) if is_chosen else (" ", Tone.DIM)
+            entries.append(Choice(str(index + 1), option.text, tone, mark))
+        not_sure = Choices((Choice("0", "I am not sure", Tone.DIM),), is_tight=True)
+        return [Choices(tuple(entries)), *([] if told else [not_sure])]
+
+    def _feedback(self, item: QuizItem, choice: AnswerChoice) -> list[Block]:
+        return [
+            Text(verdict_text(item, choice), _TONES[choice.outcome_for(item)]),
+            Text(feedback_text(item, choice), is_tight=True),
+            *follow_up_blocks(item),
+        ]
+
+    # What is done
+
+    def choose(self, number: int) -> Effect:
+        self.choice = AnswerChoice(number - 1)
+        self.stage = QuizStage.CHOSEN
+        return None
+
+    def rate(self, confidence: int) -> Effect:
+        assert self.choice is not None
+        return self._save(self.choice, confidence)
+
+    def say_not_sure(self) -> Effect:
+        return self._save(NOT_SURE)
+
+    def leave_blank(self) -> Effect:
+        return self._save(BLANK)
+
+    def _save(self, choice: AnswerChoice, confidence: int | None = None) -> Effect:
+        """The answer goes to the disk; only then is anything said of it."""
+        self.session.answer(choice, confidence)
+        self.choice = choice
+        self.stage = QuizStage.TOLD
+        return None
+
+    def take_back(self) -> Effect:
+        self.choice = None
+        self.stage = QuizStage.ASKED
+        return None
+
+    def go_on(self) -> Effect:
+        self.item, self.number = self.session.current_item, self.session.question_number
+        self.choice = None
+        self.stage = QuizStage.OVER if self.item is None else QuizStage.ASKED
+        return None
+
+    # When
+
+    def is_asked(self) -> bool:
+        return self.stage is QuizStage.ASKED
+
+    def is_chosen(self) -> bool:
+        return self.stage is QuizStage.CHOSEN
+
+    def can_go_on(self) -> bool | str:
+        match self.stage:
+            case QuizStage.ASKED:
+                return (
+                    f"Choose 1 to {OPTION_COUNT}; 0 says that you are not sure, x leaves the question blank."
+                )
+            case QuizStage.CHOSEN:
+                return f"Say how sure you are: 1 to {len(CONFIDENCE_CHOICES)}; b changes the answer."
+            case _:
+                return self.stage is QuizStage.TOLD
+
+    def next_word(self) -> str:
+        return "results" if self.session.current_item is None else "next"
+
+    actions: ClassVar[Sequence[Action[Any]]] = (
+        Action(
+            ScreenAction("answer", "1 2 3", "answer", "choose an answer, then say how sure you are", digits("answer", 1, OPTION_COUNT), "1-3"),
+            choose, is_asked,
+        ),
+        Action(
+            ScreenAction("confidence", "1 2 3 4", "how sure", "say how sure you are of your answer", digits("confidence", 1, 4), "1-4"),
+            rate, is_chosen, then="next",
+        ),
+        Action(
+            ScreenAction("not_sure", "0", "not sure", "say that you do not know; not counted as wrong", (("0", "not_sure"),)),
+            say_not_sure, is_asked, then="next",
+        ),
+        Action(
+            letter("skip", "x", "leave blank", "leave the question blank; press it twice"),
+            leave_blank, is_asked, confirm="x once more leaves it blank; 0 says that you are not sure.", then="next",
+        ),
+        Action(ACTIONS["next"], go_on, can_go_on, word=next_word),
+        Action(ACTIONS["previous"], take_back, is_chosen),
+        help_action(),
+        leave_action(),
+        glossary_action(),
+    )  # fmt: skip

@@ -1,0 +1,340 @@
+"""A dialogue on the full screen: its blocks in the middle, below them what is said to the last key, and the keys that work now."""
+
+from __future__ import annotations
+
+from asyncio import to_thread
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from textual import events, work
+from textual.app import ComposeResult
+from textual.geometry import Size
+
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.dialogue import Dialogue, Turn
+from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show, Tell, Type, Work
+from kit.document.blocks import Tone
+from kit.document.layout import Page, place, rows_of
+from kit.document.rows import MARGIN, Row, row, spread, text_width, window
+from kit.tui.rows.key_rows import footer
+from kit.tui.screens.dialogs import HelpDialog, Picker, PickerItem, TextScreen
+from kit.tui.widgets.text_rows import RowsScreen, TextRows
+
+if TYPE_CHECKING:
+    from kit.tui.widgets.text_field import AnswerField
+
+WIDEST: Final = 92
+"""Columns of a question, however wide the terminal."""
+LEAST_ROWS_IN_MIDDLE: Final = 24
+"""A screen with no more rows shows the question at its top."""
+ROOMY_ROWS: Final = 36
+"""A screen with no fewer rows has room for empty ones between choices."""
+ROWS_AROUND: Final = 3
+"""Rows of the heading, the remark and the keys."""
+POLL_S: Final = 0.2
+"""Seconds between two looks whether something has happened by itself."""
+SCROLLS: Final = {
+    "up": -1,
+    "down": 1,
+    "pageup": -10,
+    "pagedown": 10,
+    "space": 10,
+    "home": -1000000,
+    "end": 1000000,
+}
+"""Lines by which a key scrolls, where the dialogue has no other use for it."""
+WHILE_TYPING: Final = {"enter", "escape"}
+"""Keys that are not for the text while one is typed."""
+
+
+def screen_actions_of(kind: type[Dialogue]) -> ScreenActions:
+    """The actions of a dialogue as those of its screen, which has each key call ``press``."""
+    declared = kind.screen_actions()
+    has_arrows = any("up" in keys.split(",") for each in declared.records for keys, _ in each.bindings)
+    more = (*declared.more, *(() if has_arrows else ("scroll",)))
+    return ScreenActions(declared.name, declared.footer, more, own=declared.own)
+
+
+class DialogueScreen(RowsScreen[None]):
+    """Shows one dialogue. Draws nothing but what a key has changed."""
+
+    AUTO_FOCUS = ""
+    DEFAULT_CSS = """
+    DialogueScreen { layout: vertical; }
+    DialogueScreen #heading, DialogueScreen #remark, DialogueScreen #keys { height: 1; }
+    DialogueScreen #body, DialogueScreen #below { height: 1fr; }
+    DialogueScreen #below, DialogueScreen AnswerField { display: none; }
+    """
+
+    def __init__(self, dialogue: Dialogue) -> None:
+        super().__init__()
+        self.take(dialogue)
+
+    def take(self, dialogue: Dialogue) -> None:
+        """Shows this dialogue from now on."""
+        self.dialogue = dialogue
+        self.turn = Turn(dialogue)
+        self.screen_actions = screen_actions_of(type(dialogue))
+        self._field: AnswerField | None = None
+        self._typed_place: object = self
+        """The place whose text is in the field."""
+        self._top = 0
+        self._body_height: int | str = "1fr"
+
+    def compose(self) -> ComposeResult:
+        yield TextRows(id="heading")
+        yield TextRows(id="body")
+        if self.dialogue.has_entry:
+            from kit.tui.widgets.text_field import AnswerField  # its library is slow to import
+
+            self._field = AnswerField()
+            yield self._field
+            yield TextRows(id="below")
+        yield TextRows(id="remark")
+        yield TextRows(id="keys")
+
+    def on_mount(self) -> None:
+        if type(self.dialogue).poll is not Dialogue.poll:
+            self.set_interval(POLL_S, self._poll)
+        self._show_field()  # before the first frame, which would else be painted twice
+        self.look()
+
+    def on_unmount(self) -> None:
+        self.dialogue.close()
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self.look_again)
+
+    def look_again(self) -> None:
+        """Shows everything in another size of the screen."""
+        self.look()
+
+    # What is shown
+
+    @property
+    def room(self) -> Size:
+        """The size of the screen; before it has one that of the app, so that its first frame is whole."""
+        return self.size if self.size.width else self.app.size
+
+    def show(self) -> None:
+        """Everything, as it stands now. Rows that are the same cost nothing."""
+        if not self.is_attached:
+            return
+        self._show_body()
+        self._rows("heading").show([self._heading()])
+        self._rows("remark").show([self._remark()])
+        self._rows("keys").show([self._keys()])
+
+    def _show_body(self) -> None:
+        width, room = self.room.width, max(1, self.room.height - ROWS_AROUND)
+        self._show_field()
+        body, self._top = window(self._body(), self._top, room)
+        body = centred(body, width, room)
+        height = len(body) if self._field is not None and self._field.display else "1fr"
+        if height != self._body_height:  # setting a style lays out and paints the whole screen
+            self._body_height = self._rows("body").styles.height = height
+        self._rows("body").show(body)
+
+    def _body(self) -> list[Row]:
+        return [row(), *rows_of(self.dialogue.blocks(), self._text_page)]
+
+    @property
+    def _text_page(self) -> Page:
+        is_roomy = self.room.height - ROWS_AROUND >= ROOMY_ROWS
+        return Page(text_width(self.room.width, WIDEST - 2 * MARGIN), MARGIN, is_roomy=is_roomy)
+
+    def _show_field(self) -> None:
+        """The field in which a text is typed, with the text of this place."""
+        field, entry = self._field, self.dialogue.entry
+        if field is None:
+            return
+        if field.display != (entry is not None):
+            field.display = self._rows("below").display = entry is not None
+        if entry is None:
+            self._typed_place = self
+            return
+        left = left_column(self.room.width) + MARGIN
+        right = max(0, self.room.width - left - text_width(self.room.width, WIDEST - 2 * MARGIN))
+        field.styles.margin = (0, right, 0, left)
+        if self._typed_place != self.dialogue.place:
+            self._typed_place = self.dialogue.place
+            field.load_text(entry)
+            field.move_cursor(field.document.end)
+            self.set_focus(None if entry else field)
+        elif field.answer != entry and not self._is_typing:
+            field.load_text(entry)
+
+    @property
+    def _is_typing(self) -> bool:
+        """Whether keys are for the text."""
+        return self._field is not None and self.focused is self._field
+
+    def _heading(self) -> Row:
+        title = row((self.dialogue.title, "bold"))
+        position = self.dialogue.position
+        return spread(title, row((position, "dim")), self.room.width) if position else title
+
+    def _remark(self) -> Row:
+        if self.turn.remark is not None:
+            return row((f"  {self.turn.remark.text}", self.turn.remark.tone))
+        note = self.dialogue.note
+        return row() if note is None else rows_of([note], Page(1000, MARGIN))[0]
+
+    def _keys(self) -> Row:
+        dialogue, possible = self.dialogue, {each.id: each for each in self.turn.possible()}
+        is_typing = self._is_typing
+        without = {
+            each
+            for each in self.screen_actions.footer
+            if each not in possible or (is_typing and not WHILE_TYPING & possible[each].keys.key_names)
+        }
+        labels = {each.id: each.word(dialogue) for each in possible.values() if each.word is not None}
+        if is_typing:
+            labels["back"] = "stop typing"
+        keys = {
+            each.id: each.shown_keys(dialogue) for each in possible.values() if each.shown_keys is not None
+        }
+        return footer(self.screen_actions, self.room.width, without=without, labels=labels, keys=keys)
+
+    def look(self) -> None:
+        """Shows everything, and brings what was just said into sight."""
+        look, self._top = self.dialogue.look, 0
+        if look is not None:
+            blocks = list(self.dialogue.blocks())
+            placed = place(blocks, self._text_page)
+            last_top = max(0, len(placed.rows) + 1 - max(1, self.room.height - ROWS_AROUND))
+            self._top = min(placed.starts[blocks.index(look)] + 1, last_top)  # an empty row begins the page
+        self.show()
+
+    # Keys
+
+    def on_key(self, event: events.Key) -> None:
+        if self._is_typing or not self.takes_key(event.key):
+            return
+        if self.turn.find(event.key) is not None:
+            event.stop()
+            event.prevent_default()
+            self.action_press(event.key)
+        elif event.key in SCROLLS:
+            event.stop()
+            self.action_scroll(SCROLLS[event.key])
+
+    def takes_key(self, key: str) -> bool:
+        """Whether a key is the dialogue's."""
+        return True
+
+    def action_press(self, key: str) -> None:
+        """Does what a key of the dialogue means."""
+        self._perform(self.turn.press(key))
+
+    def action_scroll(self, lines: int) -> None:
+        self._top += lines
+        self.show()
+
+    def _poll(self) -> None:
+        was_busy, remark = bool(self.dialogue.busy), self.turn.remark
+        effect = self.turn.attempt(self.dialogue.poll)
+        is_busy = bool(self.dialogue.busy)
+        if was_busy == is_busy:  # what was said to the last key still stands
+            self.turn.remark = self.turn.remark or remark
+        if effect is not None or (was_busy and not is_busy):
+            self._perform(effect)
+        elif is_busy:
+            self.show()
+
+    def _perform(self, effect: Effect) -> None:
+        """Carries out what an action has led to."""
+        match effect:
+            case None | Remark():
+                self.look()
+            case Leave():
+                self.action_back()
+            case Help():
+                self._show_help()
+            case Type():
+                if self._field is not None:
+                    self.set_focus(self._field)
+                self.show()
+            case _:
+                self.show()
+                self._carry_out(effect)
+
+    def _show_help(self) -> None:
+        # What does nothing yet is on the page all the same: it says what there is.
+        self.app.push_screen(
+            HelpDialog(self.dialogue.help_title, self.screen_actions, *self.dialogue.help_notes)
+        )
+
+    @work
+    async def _carry_out(self, effect: Effect) -> None:
+        """What takes a while, or another screen; then what follows from it."""
+        follows: Callable[[], Effect] = _nothing
+        match effect:
+            case Tell(title, blocks):
+                page = Page(text_width(self.room.width), MARGIN)
+                await self.app.push_screen_wait(TextScreen(title, [row(), *rows_of(blocks, page)]))
+            case Choose(title, options, then, selected):
+                items = [PickerItem(str(at), name, text) for at, (name, text) in enumerate(options)]
+                chosen = await self.app.push_screen_wait(Picker(title, items, str(selected)))
+                follows = partial(then, None if chosen is None else int(chosen))
+            case Open(dialogue, then):
+                await self.app.push_screen_wait(self.screen_for(dialogue))
+                follows = then
+            case Work(note, job, then):
+                if note:
+                    self.turn.say(Remark(note, Tone.DIM))
+                    self.show()
+                result: list[Any] = []
+                failed = await to_thread(self.turn.attempt, lambda: result.append(job()))
+                if failed is not None or not result:
+                    self._perform(failed)
+                    return
+                follows = partial(then, result[0])
+            case Show(request, then):
+                follows = partial(then, await self.show_request(request))
+        if self.is_mounted:
+            self._perform(self.turn.attempt(follows))
+
+    def screen_for(self, dialogue: Dialogue) -> DialogueScreen:
+        """The screen of a dialogue that is opened from this one."""
+        return DialogueScreen(dialogue)
+
+    async def show_request(self, request: object) -> Any:
+        """Shows what the dialogue asks its face to show; returns what came of it."""
+        raise NotImplementedError(type(request).__name__)
+
+    # The field
+
+    def on_answer_entered(self) -> None:
+        self.action_press("enter")
+
+    def on_editor_left(self) -> None:
+        self.set_focus(None)
+        self.show()
+
+    def on_text_area_changed(self) -> None:
+        if self._field is not None and self._typed_place == self.dialogue.place:
+            self.dialogue.draft(self._field.answer)
+            self.show()
+
+
+def _nothing() -> Effect:
+    return None
+
+
+def centred(rows: Sequence[Row], width: int, room: int) -> list[Row]:
+    """The rows as a column in the middle of a wide screen, lower on a high one. The place depends on the screen alone:
+    nothing moves as rows are added.
+
+    >>> centred([row("one")], 100, 20)
+    [(('    ', ''), ('one', ''))]
+    """
+    left = left_column(width)
+    above = max(0, min((room - LEAST_ROWS_IN_MIDDLE) // 3, room - len(rows)))
+    return [row()] * above + [(row(" " * left) + each if left and each else each) for each in rows]
+
+
+def left_column(width: int) -> int:
+    """The column at which ``centred`` begins."""
+    return max(0, (width - WIDEST) // 2)

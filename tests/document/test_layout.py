@@ -1,0 +1,38 @@
+"""Texts in rows of a width: what belongs together stays together, and nothing is wider than the page."""
+
+from __future__ import annotations
+
+import pytest
+
+from kit.document.blocks import Picture, Text, Tone, labelled_table
+from kit.document.layout import Page, lines_of, rows_of
+
+
+@pytest.mark.parametrize("width", [12, 20, 30])
+@pytest.mark.parametrize(
+    "text", ["short", "words of a title", "https://example.org/a/long/address/of/a/page"]
+)
+def test_the_tail_stays_with_the_last_word(text: str, width: int) -> None:
+    block = Text(text, lead="[no]", lead_tone=Tone.BAD, tail=": 2 of 4", hang=2)
+    lines = lines_of([block], Page(width=width))
+    assert all(len(line) <= width for line in lines)
+    assert "".join("".join(lines).split()) == "".join(f"[no] {text}: 2 of 4".split())
+    assert lines[-1].endswith(": 2 of 4")
+    assert rows_of([block], Page(width=width))[-1][-1] == (": 2 of 4", Tone.DIM)
+
+
+def test_a_text_cannot_command_the_terminal_nor_leave_its_indent() -> None:
+    lines = lines_of([Text("one\n::set-output\x1b[2J\r\nx\0y", indent=3)])
+    assert all(line.startswith("   ") for line in lines)
+    assert all(line.isprintable() for line in lines)
+
+
+def test_the_rows_of_a_table_stand_below_its_title() -> None:
+    table = labelled_table([("a", "what a is"), ("long", "x " * 60)], "Title", indent=2)
+    lines = lines_of([table], Page(width=40))
+    assert lines[:2] == ["Title", "  a     what a is"]
+    assert all(line.startswith("  ") and len(line) <= 40 for line in lines[1:])
+
+
+def test_a_picture_has_its_tone() -> None:
+    assert rows_of([Picture(("| x",), 5, Tone.DIM)], Page()) == [(("     | x", Tone.DIM),)]

@@ -1,0 +1,47 @@
+"""A list is a table with one chosen entry, which is in sight however many there are and however high they are."""
+
+from __future__ import annotations
+
+import pytest
+
+from kit.document.blocks import CellStyle, Column, Table, Tone
+from kit.document.rows import Row, row_text
+from kit.document.tables import list_rows
+
+NAMES = tuple(f"run-{number}/{'long-name/' * (number % 4)}end" for number in range(30))
+
+
+def table(names: tuple[str, ...] = NAMES) -> Table:
+    columns = (Column("run", CellStyle.TEXT), Column("steps"), Column("time", is_spare=True))
+    return Table(
+        "runs", "", columns, tuple((name, 1000 + place, "12.3 s") for place, name in enumerate(names))
+    )
+
+
+def chosen_text(rows: list[Row]) -> str:
+    return "".join(text for row in rows for text, tone in row if tone == Tone.CHOSEN)
+
+
+@pytest.mark.parametrize("height", [6, 9, 24])
+@pytest.mark.parametrize("width", [24, 80])
+@pytest.mark.parametrize("chosen", [0, 3, 15, 29])
+def test_the_chosen_entry_is_in_sight(chosen: int, width: int, height: int) -> None:
+    rows = list_rows(table(), width, height, chosen)
+    assert len(rows) <= height
+    assert all(len(row_text(each)) <= width for each in rows)
+    assert chosen_text(rows).replace(" ", "") == NAMES[chosen]
+    assert [row_text(each).split()[0] for each in rows if row_text(each).startswith(">")] == [">"]
+
+
+def test_marked_entries_have_a_mark_and_spare_columns_give_way() -> None:
+    wide = [row_text(each) for each in list_rows(table(), 80, 40, 1, marked=(0, 1))]
+    assert [each[:2] for each in wide[1:4]] == [" *", ">*", "  "]
+    assert wide[0].split() == ["run", "steps", "time"]
+    narrow = [row_text(each) for each in list_rows(table(("a", "b")), 16, 5, 0)]
+    assert narrow == ["   run  steps", ">  a     1000", "   b     1001"]
+
+
+def test_no_entry_is_chosen_where_there_is_none() -> None:
+    assert [row_text(each) for each in list_rows(table(()), 40, 5, 0)] == ["   run  steps  time"]
+    grouped = Table("none", "", (Column("", CellStyle.TEXT),), (), grouped=True)
+    assert list_rows(grouped, 40, 5, 0) == []

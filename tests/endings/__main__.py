@@ -1,0 +1,50 @@
+"""Ends ten recorders in every way, and prints what was kept: ``python -m tests.endings``.
+
+``--only "run --bag,quiz"`` and ``--endings SIGTERM,SIGKILL`` choose. Exit code 1 if anything was lost or ended in a
+traceback. "full disk" needs the right to mount.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import click
+
+from tests.endings.endings import ENDINGS, Ending, can_mount, try_ending
+from tests.endings.recorders import RECORDERS
+
+
+@click.command(help=__doc__)
+@click.option("--only", default=",".join(RECORDERS), help="Recorders, separated by commas.")
+@click.option("--endings", default=",".join(ENDINGS), help="Endings, separated by commas.")
+@click.option("-v", "--verbose", is_flag=True, help="Print exit codes and last lines.")
+def main(*, only: str, endings: str, verbose: bool) -> None:
+    names = [name for name in endings.split(",") if name != "full disk" or can_mount()]
+    click.echo(f"{'':<18}" + "".join(f"{name:>11}" for name in names))
+    lost: list[str] = []
+    with tempfile.TemporaryDirectory(prefix="kit-endings-") as folder:
+        for recorder in only.split(","):
+            click.echo(f"{recorder:<18}", nl=False)
+            told = []
+            for name in names:
+                try:
+                    ending = try_ending(recorder, name, Path(folder))
+                except (TimeoutError, AssertionError) as error:
+                    ending = Ending(0, 0, str(error))
+                mark = "T" if ending.has_traceback else ""
+                click.echo(f"{f'{ending.kept}{mark}':>11}", nl=False)
+                told.append(f"    {name}: exit {ending.exit_code}: {ending.text}")
+                if not ending.is_right:
+                    lost.append(f"{recorder}, {name}: exit {ending.exit_code}: {ending.text}")
+            click.echo()
+            if verbose:
+                click.echo("\n".join(told))
+    for each in lost:
+        click.echo(each)
+    click.echo(f"{len(lost)} not right")
+    raise SystemExit(bool(lost))
+
+
+if __name__ == "__main__":
+    main()

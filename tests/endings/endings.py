@@ -1,0 +1,190 @@
+"""Ways in which a program ends, and what is kept of what it recorded: each is tried on each recorder."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from types import MappingProxyType
+from typing import Final
+
+from tests.endings.recorders import RECORDERS, Recorder, Started, until
+from tests.kills.scenarios import Place
+
+END_S: Final = 60.0
+"""How long a program may take to end [s]."""
+DISK_KIB: Final = 4000
+"""Size of the file system that becomes full [KiB]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """What came of one ending of one recorder."""
+
+    kept: int
+    """How much of what was recorded is there; 0 means that it is lost."""
+    exit_code: int
+    text: str
+    """The last line that the program printed."""
+    has_traceback: bool = False
+    had_something: bool = True
+    """Whether there was anything to lose: a program that cannot print a word may end before."""
+
+    @property
+    def is_right(self) -> bool:
+        return not self.has_traceback and (self.kept > 0 or not self.had_something)
+
+
+def _by_signal(number: signal.Signals, recorder: Recorder, folder: Path) -> Ending:
+    started = Started(recorder)
+    until(recorder.has_something, "something to keep")
+    started.process.send_signal(number)
+    return _end(recorder, started, outlives=recorder.outlives_terminal and number == signal.SIGHUP)
+
+
+def _by_hang_up(recorder: Recorder, folder: Path) -> Ending:
+    started = Started(recorder)
+    until(recorder.has_something, "something to keep")
+    started.hang_up()
+    started.process.send_signal(signal.SIGHUP)
+    return _end(recorder, started, outlives=recorder.outlives_terminal)
+
+
+def _by_kill_of_group(recorder: Recorder, folder: Path) -> Ending:
+    started = Started(recorder)
+    until(recorder.has_something, "something to keep")
+    os.killpg(started.process.pid, signal.SIGKILL)
+    return _end(recorder, started)
+
+
+def _by_partner(recorder: Recorder, folder: Path) -> Ending:
+    """The world that is recorded is killed; elsewhere a process that the program has started, if there is one."""
+    started = Started(recorder)
+    until(recorder.has_something, "something to keep")
+    if recorder.partner is not None:
+        recorder.partner.kill()
+    else:
+        for child in _children(started.process.pid):
+            with suppress(ProcessLookupError):
+                os.kill(child, signal.SIGKILL)
+        with suppress(subprocess.TimeoutExpired):
+            started.process.wait(1)
+        started.process.send_signal(signal.SIGINT)
+    return _end(recorder, started)
+
+
+def _by_second_writer(recorder: Recorder, folder: Path) -> Ending:
+    """A second program of the same kind writes the same name: it is refused, and the first one loses nothing."""
+    started = Started(recorder)
+    until(recorder.has_something, "something to keep")
+    second = Started(recorder)
+    with suppress(subprocess.TimeoutExpired):
+        second.process.wait(6)
+    second.process.send_signal(signal.SIGTERM)
+    second.process.wait(END_S)
+    started.process.send_signal(signal.SIGTERM)
+    return _end(recorder, started)
+
+
+def _by_full_disk(recorder: Recorder, folder: Path) -> Ending:
+    """The folder in which it writes is a file system of its own that becomes full; where there is none, another's quota."""
+    started = Started(recorder)
+    until(recorder.has_something, "something to keep")
+    filler = recorder.folder / "filler"
+    with suppress(OSError), filler.open("wb", buffering=0) as file:
+        while True:
+            file.write(bytes(512))
+    with suppress(subprocess.TimeoutExpired):
+        started.process.wait(4)
+    started.process.send_signal(signal.SIGTERM)
+    started.process.wait(END_S)
+    filler.unlink(missing_ok=True)
+    return _end(recorder, started)
+
+
+def _by_full_output(recorder: Recorder, folder: Path) -> Ending:
+    """Standard output is a full device, and then the program is asked to end."""
+    started = Started(recorder, output=Path("/dev/full"))
+    with suppress(TimeoutError):
+        until(lambda: recorder.has_something() or started.process.poll() is not None, "something", 20)
+    has_ended = started.process.poll() is not None and not recorder.has_something()
+    started.process.send_signal(signal.SIGTERM)
+    return replace(_end(recorder, started), had_something=not has_ended)
+
+
+ENDINGS: Final[Mapping[str, Callable[[Recorder, Path], Ending]]] = MappingProxyType(
+    {
+        "SIGINT": partial(_by_signal, signal.SIGINT),
+        "SIGTERM": partial(_by_signal, signal.SIGTERM),
+        "SIGHUP": partial(_by_signal, signal.SIGHUP),
+        "SIGQUIT": partial(_by_signal, signal.SIGQUIT),
+        "hang up": _by_hang_up,
+        "SIGKILL": partial(_by_signal, signal.SIGKILL),
+        "group": _by_kill_of_group,
+        "partner": _by_partner,
+        "second": _by_second_writer,
+        "full disk": _by_full_disk,
+        "full out": _by_full_output,
+    }
+)
+
+
+def try_ending(recorder_name: str, ending_name: str, folder: Path) -> Ending:
+    """Runs a recorder in a new folder and ends it so."""
+    place = Place(folder / f"{recorder_name}-{ending_name}".replace(" ", "_").replace("-", "_"))
+    place.make()
+    is_mounted = ending_name == "full disk" and _mount(place.workspace)
+    recorder = RECORDERS[recorder_name](place)
+    try:
+        recorder.prepare()
+        return ENDINGS[ending_name](recorder, folder)
+    finally:
+        recorder.close()
+        if is_mounted:
+            subprocess.run(["umount", "-l", str(place.workspace)], check=False)
+        shutil.rmtree(place.folder, ignore_errors=True)
+
+
+def can_mount() -> bool:
+    """Whether a small file system can be made here: only the superuser may."""
+    return os.geteuid() == 0 and shutil.which("mount") is not None
+
+
+def _mount(folder: Path) -> bool:
+    words = ["mount", "-t", "tmpfs", "-o", f"size={DISK_KIB}k", "tmpfs", str(folder)]
+    return subprocess.run(words, check=False, capture_output=True).returncode == 0
+
+
+def _end(recorder: Recorder, started: Started, *, outlives: bool = False) -> Ending:
+    """Waits until the program has ended. ``outlives``: it may go on, and is killed then."""
+    try:
+        code = started.process.wait(3.0 if outlives else END_S)
+    except subprocess.TimeoutExpired:
+        started.process.kill()
+        code = started.process.wait()
+        return Ending(recorder.kept() if outlives else 0, code, "went on" if outlives else "did not end")
+    finally:
+        started.hang_up()
+    text = started.log.read_text(errors="replace")
+    lines = [line for line in text.replace("\r", "\n").split("\n") if line.strip()]
+    return Ending(
+        recorder.kept(),
+        code,
+        lines[-1][-160:] if lines else "",
+        has_traceback="Traceback (most recent" in text,
+    )
+
+
+def _children(parent: int) -> list[int]:
+    found = []
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            if int(status.read_bytes().rpartition(b")")[2].split()[1]) == parent:
+                found.append(int(status.parent.name))
+    return found

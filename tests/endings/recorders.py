@@ -1,0 +1,363 @@
+"""Programs that keep something: how each is started, when there is something to keep, and how much of it is found.
+
+All run in a ``Place``. What is kept is read back as a user would: by the next start of the kit.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import subprocess
+import sys
+import threading
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from types import MappingProxyType
+from typing import ClassVar, Final
+
+from kit.inspection.sockets import running_worlds, sockets_folder
+from kit.learning.environment.tasks import TaskSpec
+from kit.learning.training.runs import RunConfig, TrainingRun, create_run
+from kit.mapmaking.sketch_draft import SketchDraft
+from kit.part_file import part_path, parts_in
+from kit.ros.bag_storage import BagError, restore_bags
+from kit.ros.bags import read_bag
+from kit.run.recording import RecordingError, load_recording
+from kit.run.recording_file import restore_recordings
+from kit.school.progress import EventKind, ProgressJournal
+from kit.tui.widgets.program_editor import DRAFT_SUFFIX
+from tests.grader.conftest import FORWARD, write_assignment
+from tests.kills.scenarios import Place
+
+WAIT_S: Final = 90.0
+"""How long a program may take until there is something to keep [s]."""
+
+
+class Recorder(ABC):
+    """One program that keeps something, run once."""
+
+    needs_terminal: ClassVar[bool] = False
+    outlives_terminal: ClassVar[bool] = False
+    """Whether it goes on when its terminal is closed, as trainings do."""
+
+    def __init__(self, place: Place) -> None:
+        self.place = place
+        self.partner: subprocess.Popen[bytes] | None = None
+        """A process without which there is nothing to record."""
+
+    @property
+    def folder(self) -> Path:
+        """Where it writes."""
+        return self.place.workspace
+
+    @property
+    @abstractmethod
+    def words(self) -> Sequence[str]:
+        """The command, without the interpreter."""
+
+    @abstractmethod
+    def has_something(self) -> bool:
+        """Whether there is something on the disk that an end might lose."""
+
+    @abstractmethod
+    def kept(self) -> int:
+        """How much is found afterwards, as the next start finds it."""
+
+    def prepare(self) -> None:  # noqa: B027 - few need anything
+        """Makes what the program needs."""
+
+    def type_into(self, terminal: int) -> None:  # noqa: B027 - to few is anything typed
+        """What a user types, for a while."""
+
+    def close(self) -> None:
+        if self.partner is not None:
+            self.partner.kill()
+            self.partner.wait()
+
+
+class RunRecording(Recorder):
+    """``kit run --record``."""
+
+    file = "run.npz"
+
+    @property
+    def words(self) -> Sequence[str]:
+        return ("-m", "kit", "run", "maze", "--steps", "100000000", "--record", str(self.folder / self.file))
+
+    def has_something(self) -> bool:
+        part = part_path(self.folder / self.file)
+        return part.exists() and part.read_bytes().count(b"\n") > 2
+
+    def kept(self) -> int:
+        """Ticks."""
+        list(restore_recordings(self.folder))
+        with suppress(FileNotFoundError, RecordingError):
+            return load_recording(self.folder / self.file).ticks
+        return 0
+
+
+class PlayRecording(RunRecording):
+    """``kit play --plain --record``, driven line by line."""
+
+    @property
+    def words(self) -> Sequence[str]:
+        drive = str(self.folder / self.file)
+        return ("-m", "kit", "play", "simple", "--plain", "--controller", "teleop", "--record", drive)
+
+    def type_into(self, terminal: int) -> None:
+        for _ in range(400):
+            os.write(terminal, b"drive 0.3 0 2\n")
+            time.sleep(0.15)
+
+
+class RunBag(Recorder):
+    """``kit run --bag``."""
+
+    storage: ClassVar[str] = "mcap"
+
+    @property
+    def bag(self) -> Path:
+        return self.folder / "bag"
+
+    @property
+    def words(self) -> Sequence[str]:
+        bag = ("--bag", str(self.bag), "-s", self.storage)
+        return ("-m", "kit", "run", "maze", "--steps", "100000000", "--speed", "5", *bag)
+
+    def has_something(self) -> bool:
+        data = [path for path in part_path(self.bag).glob("bag/*") if path.suffix in (".mcap", ".db3")]
+        return bool(data) and data[0].stat().st_size > 60_000
+
+    def kept(self) -> int:
+        """Messages."""
+        list(restore_bags(self.folder))
+        with suppress(BagError):
+            return read_bag(self.bag).count
+        return 0
+
+
+class RunSqliteBag(RunBag):
+    """``kit run --bag -s sqlite3``."""
+
+    storage = "sqlite3"
+
+
+class RosBag(RunBag):
+    """``kit ros bag record``, of a world in another process."""
+
+    @property
+    def words(self) -> Sequence[str]:
+        return ("-m", "kit", "ros", "bag", "record", "-a", "-o", str(self.bag))
+
+    def prepare(self) -> None:
+        world = ("-m", "kit", "run", "maze", "--serve", "--steps", "100000000")
+        self.partner = self.place.start(*world, output=self.place.folder / "world.txt")
+        until(lambda: bool(list(running_worlds(sockets_folder(self.place.workspace)))), "the world")
+
+
+class Training(Recorder):
+    """The process that ``kit train`` starts: its events and its checkpoint."""
+
+    outlives_terminal = True
+
+    def prepare(self) -> None:
+        (self.folder / "runs").mkdir(exist_ok=True)
+        config = RunConfig(TaskSpec("turn"), "q-learning", steps=10**9, keep_training=True)
+        self._run: TrainingRun = create_run(self.folder / "runs", config, "kept")
+
+    @property
+    def words(self) -> Sequence[str]:
+        return ("-m", "kit.learning.training.worker", str(self._run.folder))
+
+    def has_something(self) -> bool:
+        return len(self._run.events()) > 3 and self._run.newest_policy.exists()
+
+    def kept(self) -> int:
+        """Events; none where a policy is damaged."""
+        self._run.policy(newest=True)
+        return len(self._run.events())
+
+
+class Quiz(Recorder):
+    """``kit quiz --plain``: the answers."""
+
+    @property
+    def words(self) -> Sequence[str]:
+        return ("-m", "kit", "quiz", "--plain", "--again")
+
+    def type_into(self, terminal: int) -> None:
+        for _ in range(12):
+            os.write(terminal, b"1\n3\n")
+            time.sleep(0.15)
+
+    def has_something(self) -> bool:
+        return self.kept() > 2
+
+    def kept(self) -> int:
+        """Answers."""
+        if not (self.folder / "progress.db").exists():
+            return 0
+        with ProgressJournal(self.folder) as journal:
+            return sum(event.kind is EventKind.ANSWER for event in journal.events())
+
+
+class Cohort(Recorder):
+    """``grader cohort``: the results of a class."""
+
+    def prepare(self) -> None:
+        self._in = self.place.folder / "in"
+        self._in.mkdir(exist_ok=True)
+        for number in range(40):
+            source = FORWARD.replace("SPEED = 0.3", f"SPEED = {0.05 + 0.01 * number:.2f}")
+            (self._in / f"s{number}.py").write_text(source)
+        self._assignment = write_assignment(self.place.folder / "assignment")
+
+    @property
+    def words(self) -> Sequence[str]:
+        folders = ("--assignment", str(self._assignment), "--queue", str(self.folder / "queue"))
+        return ("-m", "grader", "cohort", str(self._in), "--jobs", "1", "--level", "0", *folders)
+
+    def has_something(self) -> bool:
+        return len(list(self.folder.glob("queue/results/*.json"))) > 1
+
+    def kept(self) -> int:
+        """Results that can be read."""
+        files = self.folder.glob("queue/results/*.json")
+        return sum(bool(json.loads(file.read_text())) for file in files)
+
+
+class MapDrawing(Recorder):
+    """``kit maps new`` on the screen: the drawing."""
+
+    needs_terminal = True
+
+    @property
+    def _map(self) -> Path:
+        return self.folder / "worlds" / "hall"
+
+    @property
+    def words(self) -> Sequence[str]:
+        return ("-m", "kit", "maps", "new", "hall")
+
+    def type_into(self, terminal: int) -> None:
+        for _ in range(400):
+            os.write(terminal, b" \x1b[C")
+            time.sleep(0.1)
+
+    def has_something(self) -> bool:
+        part = part_path(self._map)
+        return part.exists() and part.read_bytes().count(b"\n") > 3
+
+    def kept(self) -> int:
+        """Squares of walls inside the sheet."""
+        draft = SketchDraft(self._map)
+        try:
+            rows = () if draft.found is None else draft.found.rows[1:-1]
+            return sum(row[1:-1].count("#") for row in rows)
+        finally:
+            draft.close(keeps=True)
+
+
+class Editing(Recorder):
+    """The editor of ``kit play``: what was typed and not saved."""
+
+    needs_terminal = True
+
+    def prepare(self) -> None:
+        (self.folder / "controllers").mkdir(exist_ok=True)
+        self._program = self.folder / "controllers" / "mine.py"
+        self._program.write_text(FORWARD)
+
+    @property
+    def words(self) -> Sequence[str]:
+        return ("-m", "kit", "play", "simple", "--controller", "mine")
+
+    def type_into(self, terminal: int) -> None:
+        for number in range(400):
+            os.write(
+                terminal,
+                b"\x05" if number == 40 else b"#" if number > 60 else b"\x1b[C" if number > 50 else b"",
+            )
+            time.sleep(0.1)
+
+    def has_something(self) -> bool:
+        return self.kept() > 0
+
+    def kept(self) -> int:
+        """Characters that were typed."""
+        draft = self._program.with_name(f".{self._program.name}{DRAFT_SUFFIX}")
+        return len(draft.read_text()) - len(FORWARD) if draft.exists() else 0
+
+
+RECORDERS: Final[Mapping[str, Callable[[Place], Recorder]]] = MappingProxyType(
+    {
+        "run --record": RunRecording,
+        "play --record": PlayRecording,
+        "run --bag": RunBag,
+        "run --bag sqlite3": RunSqliteBag,
+        "ros bag record": RosBag,
+        "train": Training,
+        "quiz": Quiz,
+        "grader cohort": Cohort,
+        "maps new": MapDrawing,
+        "edit": Editing,
+    }
+)
+
+
+class Started:
+    """A recorder's program at a terminal, or with its output in a file."""
+
+    def __init__(self, recorder: Recorder, *, output: Path | None = None) -> None:
+        self.own, theirs = pty.openpty()
+        environment = {**recorder.place.environment, "TERM": "xterm-256color"}
+        self.log = recorder.place.folder / "output.txt"
+        with (output or self.log).open("wb") as out:
+            streams = theirs if recorder.needs_terminal and output is None else out
+            self.process = subprocess.Popen(
+                [sys.executable, "-P", *recorder.words],
+                stdin=theirs,
+                stdout=streams,
+                stderr=theirs if streams == theirs else self.log.open("ab"),
+                env=environment,
+                cwd=recorder.place.folder,
+                start_new_session=True,
+            )
+        os.close(theirs)
+        self._typing = threading.Thread(target=self._type, args=(recorder,), daemon=True)
+        self._reading = threading.Thread(target=self._read, daemon=True)
+        self._typing.start()
+        self._reading.start()
+
+    def _type(self, recorder: Recorder) -> None:
+        with suppress(OSError):
+            recorder.type_into(self.own)
+
+    def _read(self) -> None:
+        with suppress(OSError), self.log.open("ab") as log:
+            while data := os.read(self.own, 65536):
+                log.write(data)
+                log.flush()
+
+    def hang_up(self) -> None:
+        """Closes the terminal, as a dropped line does."""
+        with suppress(OSError):
+            os.close(self.own)
+
+
+def until(condition: Callable[[], bool], what: str, seconds: float = WAIT_S) -> None:
+    """Waits for a state."""
+    end = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > end:
+            raise TimeoutError(f"waited in vain for {what}")
+        time.sleep(0.02)
+
+
+def left_parts(folder: Path) -> list[str]:
+    """Names of parts that nobody has restored."""
+    return [part.name for part in parts_in(folder)]
