@@ -93,7 +93,8 @@ class BagPart:
         self, topic: str, type_name: str, definition: str, type_hash: str, profiles: list[Any]
     ) -> Connection:
         """Begins a topic. Raises one of WRITE_ERRORS."""
-        print(json.dumps([topic, type_hash]), file=self._topics, flush=True)
+        self._topics.write(json.dumps([topic, type_hash]) + "\n")
+        self._topics.flush()
         return self._writer.add_connection(
             topic, type_name, msgdef=definition, rihs01=type_hash, offered_qos_profiles=profiles
         )

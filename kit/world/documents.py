@@ -100,6 +100,14 @@ def read_bytes(path: Path, limit: int) -> bytes:
         raise UnusableFile(_error_text(error)) from error
 
 
+def _exists(file: Path) -> bool:
+    """Whether there is such a file; a name that is too long has none."""
+    try:
+        return file.exists()
+    except OSError:
+        return False
+
+
 def near_file(name: str, folder: Path) -> str:
     """The name of a file that is there, relative to ``folder``, for one that is not: written with the separators of
     Windows, in the other case, or as the address or the path that it has on another machine. Empty if there is none."""
@@ -215,7 +223,7 @@ class WorldDocuments:
             near = near_file(name, folder)
             section.error(f"{error}{f'. Did you mean {quoted(near)}?' if near else ''}", key)
             return None
-        if not Path(file).exists() and (near := near_file(name, folder)):
+        if not _exists(file) and (near := near_file(name, folder)):
             section.error(f"{quoted(name)}: there is no such file. Did you mean {quoted(near)}?", key)
             return None
         return file

@@ -27,6 +27,7 @@ from kit.learning.policies.policies import PolicyError
 from kit.learning.training.events import TrainingEvent, TrainingStarted
 from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run
 from kit.run.recording import RecordingError, load_recording
+from kit.run.recording_file import restore_recordings
 from kit.school.progress import EventKind, ProgressJournal
 from tests.grader.conftest import FORWARD, write_assignment
 
@@ -143,6 +144,7 @@ class DriveScenario:
         yield from _run_to_end(self._place, "-m", "kit", "run", "maze", "--serve", "--steps", "1")
 
     def problems(self) -> Iterator[str]:
+        list(restore_recordings(self._place.folder))  # as the next program does that records there
         with suppress(FileNotFoundError):
             try:
                 load_recording(self._file)

@@ -62,7 +62,7 @@ def told_of_the_photo(*options: str) -> str:
 
 
 def _passage(told: str) -> float:
-    found = re.search(r"narrowest passage, (\d+\.\d+) m wide", told)
+    found = re.search(r"narrowest passage, (\d+\.\d+) m\s+wide", told)
     assert found is not None, told
     return float(found[1])
 
