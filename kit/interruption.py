@@ -9,6 +9,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from types import FrameType
@@ -18,6 +19,8 @@ ENDING: Final = (signal.SIGTERM, signal.SIGHUP)
 """The signals that end a process that does nothing about them, and that are sent for that."""
 
 
+SAME_END_S: Final = 1.0
+"""Signals that come so soon after one that ends a program are the same end, as of a shell that sends several [s]."""
 REPEAT_S: Final = 0.01
 """A signal that was lost is sent again after so long [s]."""
 
@@ -42,6 +45,7 @@ def ended_by_signals() -> Iterator[None]:
     SystemExit: 143
     """
     received: list[int] = []
+    ends_at: list[float] = []
     owner = os.getpid()
 
     def interrupt(number: int, frame: FrameType | None) -> None:
@@ -49,7 +53,13 @@ def ended_by_signals() -> Iterator[None]:
             signal.signal(number, signal.SIG_DFL)
             signal.raise_signal(number)
             return
-        received.append(number)
+        if ends_at and time.monotonic() < ends_at[0] + SAME_END_S:
+            return
+        if number in ENDING:
+            received.append(number)
+            if not ends_at and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+                signal.signal(signal.SIGINT, interrupt)
+        ends_at[:] = [time.monotonic()]
         raise KeyboardInterrupt
 
     replaced = []
@@ -62,6 +72,7 @@ def ended_by_signals() -> Iterator[None]:
     def repeat(problem: sys.UnraisableHookArgs) -> None:
         """Ctrl-C or a signal that came while a library's C code called Python, as pymunk's steps do, is lost there."""
         if os.getpid() == owner and issubclass(problem.exc_type, KeyboardInterrupt):
+            ends_at.clear()  # it has ended nothing
             again = threading.Timer(REPEAT_S, os.kill, (owner, received[0] if received else signal.SIGINT))
             again.daemon = True
             again.start()
@@ -83,6 +94,8 @@ def ended_by_signals() -> Iterator[None]:
         sys.unraisablehook = hook
         for number in replaced:
             signal.signal(number, signal.SIG_DFL)
+        if signal.getsignal(signal.SIGINT) is interrupt:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
     if received:
         write_out()
         raise SystemExit(128 + received[0])
