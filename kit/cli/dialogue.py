@@ -14,13 +14,12 @@ from kit.cli import options
 from kit.cli.plain import InputBuffer, InputLines
 from kit.dialogue.dialogue import Action, Dialogue, Turn
 from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show, Tell, Type, Work
-from kit.document.blocks import Block, Text
+from kit.document.blocks import Block, Text, labelled_table
 from kit.document.layout import HEARD, lines_of
 from kit.plain_text import wrap
 
 POLL_S: Final = 0.2
 """Seconds between two looks whether something has happened by itself."""
-KEY_WIDTH: Final = 7
 NOT_TYPED: Final = ("Esc", "Enter")
 """Keys that are no sign in a line; another key of the same action is named there, if it has one."""
 
@@ -114,10 +113,12 @@ class _Conversation:
             _echo(["", *(line.replace("\0", " ").strip() for line in wrap(held, HEARD.width))])
 
     def _say_help(self) -> None:
-        for each in self._turn.possible():
-            if each.is_for_lines:
-                _echo([f"{_keys(each, self._dialogue):<{KEY_WIDTH}} {each.keys.label:<12} {each.keys.help}"])
-        _echo([f"{AGAIN[0]:<{KEY_WIDTH}} {AGAIN[1]:<12} say everything here again"])
+        rows = [
+            (_keys(each, self._dialogue), _word(each, self._dialogue), each.keys.help)
+            for each in self._turn.possible()
+            if each.is_for_lines
+        ]
+        _say([labelled_table([*rows, (*AGAIN, "say everything here again")])])
         click.echo("Type a key or its word, and Enter.")
 
     # What is done
