@@ -16,8 +16,8 @@ from kit.ros.packages import (
     find_packages,
     interface_packages,
     search_folders,
-    share_folder,
 )
+from kit.ros.share_folders import share_folder
 
 _KINDS = ("packages", "rosidl_interfaces")
 

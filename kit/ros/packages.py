@@ -8,13 +8,10 @@ from __future__ import annotations
 
 import ast
 import configparser
-import hashlib
 import os
 import re
-import tempfile
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -250,18 +247,6 @@ def search_folders() -> list[Path]:
     return [Path(entry) for entry in os.environ.get(SEARCH_VARIABLE, "").split(os.pathsep) if entry]
 
 
-def share_folder(name: str) -> Path:
-    """The share folder of a package: its own folder, or one that is made of it where ``setup.py`` installs files elsewhere.
-
-    Raises PackageError.
-    """
-    folders = search_folders()
-    found = find_packages(folders)
-    if name not in found:
-        raise missing_package(name, folders)
-    return installed_share(name, found[name])
-
-
 def _package_folders(folder: Path, deep: int) -> Iterator[Path]:
     try:
         with os.scandir(folder) as listed:  # once: a folder may have hundreds of others below it
@@ -421,16 +406,14 @@ def _file_list(node: ast.expr, names: Mapping[str, Any], folder: Path) -> list[A
     return list(_value(node, names))
 
 
-def installed_share(name: str, folder: Path) -> Path:
-    """The share folder of a package: its own, or a copy made of links where ``setup.py`` installs files at other places.
-
-    The copy holds all that the package's folder holds too, so that nothing is missing that lies where it is expected.
-    """
+def installed_files(name: str, folder: Path) -> dict[str, Path]:
+    """The files that a package's ``setup.py`` installs into its share folder at another place than in its own folder: the
+    place in the share folder -> the file."""
     setup = folder / "setup.py"
     try:
         entries = _setup_arguments(setup).get("data_files", []) if setup.is_file() else []
     except PackageError:
-        return folder
+        return {}
     moved: dict[str, Path] = {}
     prefix = f"share/{name}"
     for target, files in entries:
@@ -442,39 +425,7 @@ def installed_share(name: str, folder: Path) -> Path:
             place = str(Path(inside[len(prefix) + 1 :], source.name))
             if source.is_file() and not (folder / place).exists():
                 moved[place] = source
-    if not moved:
-        return folder
-    mark = hashlib.sha256(repr((str(folder), sorted(moved))).encode()).hexdigest()[:16]
-    share = Path(tempfile.gettempdir()) / f"kit-share-{os.getuid()}" / mark / name
-    if not share.is_dir():
-        share.parent.mkdir(0o700, parents=True, exist_ok=True)
-        made = Path(tempfile.mkdtemp(dir=share.parent))
-        _link_tree(folder, made, moved)
-        with suppress(OSError):  # another process has been quicker
-            made.rename(share)
-    return share
-
-
-def _link_tree(folder: Path, target: Path, moved: Mapping[str, Path]) -> None:
-    """Fills a folder with links to what another one holds, and to some files by their places in it."""
-    folders = {place.partition("/")[0] for place in moved if "/" in place}
-    for entry in folder.iterdir():
-        if entry.name in folders and entry.is_dir():
-            inner = target / entry.name
-            inner.mkdir()
-            rest = {
-                place.partition("/")[2]: source
-                for place, source in moved.items()
-                if place.startswith(f"{entry.name}/")
-            }
-            _link_tree(entry, inner, rest)
-        else:
-            (target / entry.name).symlink_to(entry)
-    for place, source in moved.items():
-        link = target / place
-        if not os.path.lexists(link):
-            link.parent.mkdir(parents=True, exist_ok=True)
-            link.symlink_to(source)
+    return moved
 
 
 def _called_name(call: ast.Call) -> str:

@@ -11,7 +11,8 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.launch.processes import suggest_fix
-from kit.ros.packages import PackageError, installed_share, missing_package
+from kit.ros.packages import PackageError, missing_package
+from kit.ros.share_folders import installed_share, with_original_paths
 from tests.launch.conftest import Launched
 
 PACKAGE = "<package><name>{name}</name><export><build_type>ament_python</build_type></export></package>"
@@ -112,6 +113,15 @@ def test_files_are_where_setup_py_installs_them(source: Path) -> None:
     assert installed_share("my_pkg", package) == share
     (package / "launch" / "later.launch.py").touch()
     assert (installed_share("my_pkg", package) / "later.launch.py").is_file()
+    (package / "extra.yaml").touch()
+    assert (installed_share("my_pkg", package) / "extra.yaml").is_file()
+    speed, folder = share / "params" / "speed.yaml", share / "config"
+    sent = {"arguments": ["-p", f"world_path:='{folder}/x.yaml'"], "cwd": str(share), "file": str(speed)}
+    assert with_original_paths(sent) == {
+        "arguments": ["-p", f"world_path:='{package}/config/x.yaml'"],
+        "cwd": str(package),
+        "file": str(speed.resolve()),
+    }
     shutil.rmtree(share.parent)
 
 

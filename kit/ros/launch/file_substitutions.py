@@ -22,7 +22,8 @@ from kit.ros.launch.unavailable import (
     require_available,
     require_available_path,
 )
-from kit.ros.packages import PackageError, read_package, share_folder
+from kit.ros.packages import PackageError, read_package
+from kit.ros.share_folders import share_folder
 
 OnStderr = Literal["fail", "ignore", "warn", "capture"]
 COMMAND_S: Final = 8.0

@@ -35,6 +35,7 @@ from kit.ros.launch.events import (
 from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.processes import ExecuteProcess, LifecycleNode
 from kit.ros.launch.unavailable import SoftwareUnavailable
+from kit.ros.share_folders import with_original_paths
 
 Request = list[Any]
 """The kind of the request, then its content."""
@@ -145,7 +146,7 @@ class LaunchService:
                 "cwd": specification["cwd"],
                 "env": specification["environment"],
             }
-            content = (number, specification)
+            content = (number, with_original_paths(specification))
         self._requests.append([kind, *content])
 
     def _emit(self, event: Event) -> None:
