@@ -95,7 +95,7 @@ def test_packages_and_programs_are_listed(kit: Callable[..., tuple[str, str, int
     assert (listed, "", 0) == kit("ros", "pkg", "list")
     assert {"my_robot", "std_msgs", "turtlesim"} <= set(listed.split())  # as ros2: all that can be imported
     assert kit("pkg", "prefix", "my_robot") == (f"{folder}\n", "", 0)
-    assert kit("pkg", "executables", "tf2_ros")[0] == "tf2_ros tf2_echo\n"
+    assert "tf2_ros tf2_echo" in kit("pkg", "executables", "tf2_ros")[0].splitlines()
     assert kit("pkg", "xml", "my_robot")[0] == (folder / "package.xml").read_text()
     out, err, code = kit("pkg", "executables", "yours")
     assert code == 2
