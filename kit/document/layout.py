@@ -110,6 +110,8 @@ def block_rows(block: Block, page: Page) -> list[Row]:
             return _key_line_rows(block, page)
         case Code():
             return _code_rows(block, page)
+        case Marked():
+            return _marked_rows(block, page)
         case _:
             return [(row(margin) + each if margin and each else each) for each in _rows(block, page)]
 
@@ -123,8 +125,6 @@ def _rows(block: Block, page: Page) -> list[Row]:
                 for part in block.text.splitlines() or [""]
                 for each in _text_rows(replace(block, text=part), page)
             ]
-        case Marked():
-            return _marked_rows(block, page)
         case Picture():
             indent = " " * block.indent
             return [row((f"{indent}{line}".rstrip(), block.tone)) for line in block.lines]
@@ -165,23 +165,27 @@ def _parts(*parts: StyledText) -> Row:
 
 
 def _marked_rows(block: Marked, page: Page) -> list[Row]:
+    margin = row(" " * page.margin) if page.margin else ()
     made: list[Row] = []
     for each in wrap_blocks(parse_markup(block.text), page.width):
         if len(each) == 1 and len(each[0].text) > page.width:
-            made += [row((line, Tone.CODE)) for line in broken_code(each[0].text, page.width)]
+            made += _code_line_rows(each[0].text, page)
         else:
-            made.append(tuple((piece.text, _STYLES[piece.style]) for piece in each))
+            made.append((*margin, *((piece.text, _STYLES[piece.style]) for piece in each)) if each else ())
     return made
 
 
 def _code_rows(block: Code, page: Page) -> list[Row]:
-    """Commands and code, each line on as many rows as it needs. What goes on in the middle of a word has no margin."""
+    """Commands and code, each line on as many rows as it needs."""
+    return [each for line in block.lines for each in _code_line_rows(" " * block.indent + line, page)]
+
+
+def _code_line_rows(line: str, page: Page) -> list[Row]:
+    """What goes on in the middle of a word has no margin: a shell joins it with what stands before the backslash."""
     made: list[Row] = []
-    for line in block.lines:
-        parts = broken_code(" " * block.indent + line, page.width)
-        for before, part in pairwise(["", *parts]):
-            in_a_word = before.endswith("\\") and not before.endswith(" \\")
-            made.append(_parts(("" if in_a_word else " " * page.margin, ""), (part, Tone.CODE)))
+    for before, part in pairwise(["", *broken_code(line, page.width)]):
+        in_a_word = before.endswith("\\") and not before.endswith(" \\")
+        made.append(_parts(("" if in_a_word else " " * page.margin, ""), (part, Tone.CODE)))
     return made
 
 
