@@ -28,7 +28,8 @@ from kit.run.view import View
 from kit.school.game.drive_records import DriveRecord, card_rows, record_drive, save_card
 from kit.school.game.ghosts import Ghost, GhostComparison, Split, compare_tracks, reference_seconds
 from kit.school.game.levels import GameLevel
-from kit.school.game.player_progress import BY_HAND, DriverFacts, Medal, medal_of
+from kit.school.game.medal import Medal, medal_of
+from kit.school.game.player_progress import BY_HAND, DriverFacts
 from kit.school.game.race import SEED, DriverKind, RaceFinish, RaceReferee, open_race, sensors_in_use
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.progress import ProgressError, ProgressJournal
