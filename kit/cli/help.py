@@ -18,7 +18,11 @@ from kit.help.site import overview, write_pages
 from kit.help.topic import find_topic, topic_names
 from kit.plain_text import quoted, suggestion
 
-_STYLES: Final[Mapping[str, Mapping[str, bool]]] = {Tone.CODE: {"bold": True}, Tone.BOLD: {"bold": True}, Tone.DIM: {"dim": True}}
+_STYLES: Final[Mapping[str, Mapping[str, bool]]] = {
+    Tone.CODE: {"bold": True},
+    Tone.BOLD: {"bold": True},
+    Tone.DIM: {"dim": True},
+}
 """How a terminal shows tones; nothing is said by them alone."""
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.document.blocks import Chapter, Document, Marked
-from kit.document.files import document_to_html
+from kit.document.html import document_to_html
 from kit.help.topic import Shelf, find_topic, topic_names
 from kit.workspace import write_atomically
 

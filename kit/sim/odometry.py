@@ -16,18 +16,14 @@ from kit.msg import geometry_msgs, nav_msgs
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
 from kit.sim.bodies import BodyTwist, PhysicalBody
-from kit.sim.plugin import (
+from kit.sim.plugin import OutgoingMessage, PluginContext, PluginPublisher
+from kit.sim.plugin_clock import RandomStream, UpdateTimer, stream_key
+from kit.sim.plugin_messages import (
     TF_TOPIC,
-    OutgoingMessage,
-    PluginContext,
-    PluginPublisher,
-    RandomStream,
-    UpdateTimer,
     pose_message,
     read_rate,
     read_topic,
     read_variances,
-    stream_key,
     tf_message,
     transform_message,
     twist_message,

@@ -343,18 +343,3 @@ def key_meanings(documentation: str) -> dict[str, str]:
         elif meaning:
             rows[-1][1].append(meaning)
     return {key: " ".join(parts) for names, parts in rows for key in names.split(", ")}
-
-
-def prose(documentation: str) -> str:
-    """A docstring without its table, as marked text: paragraphs that are not indented, `code` in single signs.
-
-    >>> prose('''A box.
-    ...
-    ...     It has ``sides``.
-    ... ''')
-    'A box.\\n\\nIt has `sides`.'
-    """
-    text = _RULE.split(documentation)
-    kept = documentation if len(text) < 5 else text[0] + text[4]
-    paragraphs = re.split(r"\n\s*\n", kept.strip())
-    return "\n\n".join(" ".join(each.split()) for each in paragraphs if each.strip()).replace("``", "`")

@@ -21,7 +21,7 @@ from grader.kinds.policy import load_submitted_policy
 from grader.reading import read_assignment
 from grader.reports import FORMATS
 from kit.bridge.channels import WireCodec
-from kit.document.files import document_to_markdown
+from kit.document.markdown import document_to_markdown
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox.confinement import Level
 from kit.learning.environment.batch import BatchEnv

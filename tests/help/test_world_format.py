@@ -25,7 +25,8 @@ from kit.sim.simulation import Simulation
 from kit.world.documents import open_document
 from kit.world.key_table import FormatKey, key_meanings
 from kit.world.layer_reader import LayerReader
-from kit.world.loading import load_world, read_model, read_world
+from kit.world.loading import load_world, read_world
+from kit.world.model_loading import read_model
 from kit.world.plugin_reader import FLATLAND_PREFIX, ModelScope, WorldScope
 from kit.world.problems import WorldError
 

@@ -8,14 +8,16 @@ from typing import Final
 
 from kit.document.blocks import Chapter, Code
 from kit.geometry import Pose
+from kit.help.docstrings import docstring_blocks
 from kit.help.key_tables import key_tables
 from kit.help.topic import Shelf, Topic, chapter
 from kit.sim.plugin import PluginType, WorldPluginType
 from kit.sim.plugins import plugin_types, world_plugin_types
 from kit.world.documents import AllowedRoot, WorldDocuments
-from kit.world.key_table import FormatKey, format_keys, prose
+from kit.world.key_table import FormatKey, format_keys
 from kit.world.layer_reader import LayerReader
-from kit.world.loading import ModelPlacement, read_model, read_world
+from kit.world.loading import read_world
+from kit.world.model_loading import ModelPlacement, read_model
 from kit.world.plugin_reader import ModelScope, WorldScope
 from kit.world.problems import ProblemCollector
 from kit.world.records import Model, SourceLocation
@@ -137,9 +139,8 @@ def _chapters() -> tuple[Chapter, ...]:
 def _device_chapters() -> Iterator[Chapter]:
     devices: list[PluginType | WorldPluginType] = [*plugin_types.values(), *world_plugin_types.values()]
     for device in devices:
-        own = prose(device.plugin.__doc__ or "")
         tables = key_tables(device.type.lower(), device_keys(device), *device_documentation(device))
-        yield chapter(f"Device {device.type}", own, *tables)
+        yield chapter(f"Device {device.type}", *docstring_blocks(device.plugin.__doc__ or ""), *tables)
 
 
 TOPIC: Final = Topic(

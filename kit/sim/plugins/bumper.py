@@ -8,15 +8,9 @@ from dataclasses import dataclass
 
 from kit.msg.flatland_msgs import Collision, Collisions, Vector2
 from kit.msg.std_msgs import Header
-from kit.sim.plugin import (
-    OutgoingMessage,
-    Plugin,
-    PluginContext,
-    PluginType,
-    UpdateTimer,
-    read_rate,
-    read_topic,
-)
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_clock import UpdateTimer
+from kit.sim.plugin_messages import read_rate, read_topic
 from kit.sim.state import Contact
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section

@@ -10,7 +10,8 @@ from typing import Any
 from kit.msg.geometry_msgs import Twist
 from kit.sim.motors import SpeedLimits, read_speed_limits
 from kit.sim.odometry import Odometry, OdometryParams, read_odometry_params
-from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType, read_topic
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_messages import read_topic
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
 

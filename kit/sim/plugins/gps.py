@@ -10,18 +10,9 @@ from kit.geometry import Pose
 from kit.msg.sensor_msgs import NavSatFix
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
-from kit.sim.plugin import (
-    TF_TOPIC,
-    OutgoingMessage,
-    Plugin,
-    PluginContext,
-    PluginType,
-    UpdateTimer,
-    read_rate,
-    read_topic,
-    tf_message,
-    transform_message,
-)
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_clock import UpdateTimer
+from kit.sim.plugin_messages import TF_TOPIC, read_rate, read_topic, tf_message, transform_message
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
 

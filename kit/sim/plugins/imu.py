@@ -13,14 +13,10 @@ from kit.msg import sensor_msgs
 from kit.msg.geometry_msgs import Vector3
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
-from kit.sim.plugin import (
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_clock import RandomStream, UpdateTimer
+from kit.sim.plugin_messages import (
     TF_TOPIC,
-    OutgoingMessage,
-    Plugin,
-    PluginContext,
-    PluginType,
-    RandomStream,
-    UpdateTimer,
     read_rate,
     read_topic,
     read_variances,

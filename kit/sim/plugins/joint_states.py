@@ -9,15 +9,9 @@ from dataclasses import dataclass
 
 from kit.msg import sensor_msgs
 from kit.msg.std_msgs import Header
-from kit.sim.plugin import (
-    OutgoingMessage,
-    Plugin,
-    PluginContext,
-    PluginType,
-    UpdateTimer,
-    read_rate,
-    read_topic,
-)
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_clock import UpdateTimer
+from kit.sim.plugin_messages import read_rate, read_topic
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
 

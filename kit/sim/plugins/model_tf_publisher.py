@@ -6,17 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from kit.msg.tf2_msgs import TFMessage
-from kit.sim.plugin import (
-    TF_TOPIC,
-    OutgoingMessage,
-    Plugin,
-    PluginContext,
-    PluginType,
-    UpdateTimer,
-    read_rate,
-    tf_message,
-    transform_message,
-)
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_clock import UpdateTimer
+from kit.sim.plugin_messages import TF_TOPIC, read_rate, tf_message, transform_message
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
 

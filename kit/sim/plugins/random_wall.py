@@ -9,7 +9,8 @@ import numpy as np
 from kit.arrays import FloatArray
 from kit.plain_text import quoted
 from kit.sim.physics import WallBody
-from kit.sim.plugin import Plugin, RandomStream, WorldPluginContext, WorldPluginType
+from kit.sim.plugin import Plugin, WorldPluginContext, WorldPluginType
+from kit.sim.plugin_clock import RandomStream
 from kit.world.plugin_reader import WorldScope
 from kit.world.yaml_section import Section
 

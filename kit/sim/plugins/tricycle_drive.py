@@ -14,7 +14,8 @@ from kit.sim import motors
 from kit.sim.bodies import clamp
 from kit.sim.motors import SpeedLimits, read_speed_limits
 from kit.sim.odometry import Odometry, OdometryParams, read_odometry_params
-from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType, read_topic
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_messages import read_topic
 from kit.world.plugin_reader import ModelScope
 from kit.world.records import Joint, JointAnchor
 from kit.world.yaml_section import Section

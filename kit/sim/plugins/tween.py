@@ -10,7 +10,8 @@ from typing import Any
 
 from kit.geometry import Pose
 from kit.msg.std_msgs import Bool
-from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType, read_topic
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_messages import read_topic
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
 

@@ -10,7 +10,8 @@ from kit.document.rows import PLAIN, Row, row, spread
 from kit.msg.message import Message
 from kit.plain_text import counted, wrap
 from kit.render.graph import GraphElement, rate_text
-from kit.render.graph_layout import GraphData, message_field_rows
+from kit.render.graph_data import GraphData
+from kit.render.message_rows import message_field_rows
 from kit.ros.graph.snapshot import (
     EndpointState,
     FieldSample,

@@ -24,9 +24,11 @@ from kit.document.blocks import (
     ScatterPlot,
     Table,
 )
-from kit.document.files import document_to_html, document_to_json, plot_to_svg, table_to_csv
+from kit.document.data_files import document_to_json, table_to_csv
 from kit.document.glyphs import ASCII_GLYPHS, BLOCK_GLYPHS
+from kit.document.html import document_to_html
 from kit.document.layout import document_lines, lines_of
+from kit.document.svg import plot_to_svg
 from kit.document.tables import MAX_CELL_LENGTH
 from kit.school.progress import EventKind
 from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
