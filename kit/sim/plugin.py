@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple, Protocol, TypeAlias
 
 from kit.sim.bodies import PhysicalBody
 from kit.sim.laser_scene import LaserScene
@@ -125,16 +125,24 @@ class WorldPluginParams(Protocol):
     def build(self, context: WorldPluginContext) -> Plugin: ...
 
 
+PluginClass: TypeAlias = type[Plugin]
+AnyClass: TypeAlias = type[object]
+
+
 @dataclass(frozen=True, slots=True)
 class PluginType:
     """A type of model plugin."""
 
     type: str
     """Type name in model files."""
+    plugin: PluginClass
+    """What the parameters build. Its docstring is its page; a table in it says what each key means."""
     read_params: Callable[[Section, ModelScope], PluginParams]
     """Reads the parameters from the plugin's section."""
     example: str
     """The least that a model file must say about it, for a model whose bodies and joints have plain names."""
+    parts: tuple[AnyClass, ...] = ()
+    """What it is made of that has keys of its own, which a table in its docstring explains."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,5 +150,7 @@ class WorldPluginType:
     """A type of world plugin."""
 
     type: str
+    plugin: PluginClass
     read_params: Callable[[Section, WorldScope], WorldPluginParams]
     example: str
+    parts: tuple[AnyClass, ...] = ()

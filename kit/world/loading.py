@@ -42,7 +42,7 @@ def load_world(
     """
     documents, file = _open_documents(path, root, environment)
     with documents.open(file) as section:
-        return _read_world(section, file, documents, plugin_readers, world_plugin_readers)
+        return read_world(section, file, documents, plugin_readers, world_plugin_readers)
 
 
 def load_model(
@@ -77,13 +77,35 @@ def _open_documents(
     return WorldDocuments(allowed_root, environment or {}, ProblemCollector()), file
 
 
-def _read_world(
+def read_world(
     section: Section,
     file: Path,
     documents: WorldDocuments,
     plugin_readers: Mapping[str, PluginReader] | None,
     world_plugin_readers: Mapping[str, WorldPluginReader] | None,
 ) -> World:
+    """The world that a world file's mapping describes. What is wrong is noted.
+
+    ============================== ====================================================================
+    properties                     how exactly contacts are solved, at every step
+    properties.velocity_iterations passes over all contacts for their velocities
+    properties.position_iterations Flatland's; read and checked, and of no effect here
+    layers                         what is drawn on the floor, in order: each name is one of at most 16
+    layers[].name                  its name, or several, which its walls then have all
+    layers[].map                   file of its walls, relative to this file; without it there are none
+    layers[].color                 its colour
+    layers[].properties            what others say of it; the kit looks at none of them
+    models                         what stands on the floor
+    models[].name                  its name, which no other has
+    models[].model                 its model file, relative to this file
+    models[].pose                  where it stands first [m, m, rad]
+    models[].namespace             goes before its topics and frames
+    plugins                        devices of the world itself
+    plugins[].name                 its name, which no other has
+    plugins[].type                 its type; the other keys are those of the type
+    plugins[].enabled              false: the entry is not read
+    ============================== ====================================================================
+    """
     solver = section.section("properties")
     velocity_iterations = solver.integer("velocity_iterations", 10, minimum=1)
     position_iterations = solver.integer("position_iterations", 10, minimum=1)

@@ -58,7 +58,48 @@ def read_model(
     layer_bits: Mapping[str, int],
     plugin_readers: Mapping[str, PluginReader] | None,
 ) -> Model:
-    """The model that a model file's mapping describes. What is wrong is noted."""
+    """The model that a model file's mapping describes. What is wrong is noted.
+
+    ================================= ============================================================================
+    bodies                            what it is made of
+    bodies[].name                     its name, which no other body of the model has
+    bodies[].enabled                  false: the entry is not read
+    bodies[].pose                     where it stands in the model [m, m, rad]
+    bodies[].type                     ``dynamic`` moves and is pushed, ``kinematic`` moves and is not pushed,
+                                      ``static`` stands
+    bodies[].color                    its colour
+    bodies[].linear_damping           how fast it slows down by itself [1/s]
+    bodies[].angular_damping          how fast its turning slows down by itself [1/s]
+    bodies[].footprints               its shapes
+    bodies[].footprints[].type        its shape
+    bodies[].footprints[].center      the circle's middle in the body's frame [m]
+    bodies[].footprints[].radius      the circle's radius [m]
+    bodies[].footprints[].points      corners in the body's frame [m]; their convex hull is taken
+    bodies[].footprints[].density     mass per area [kg/m^2]
+    bodies[].footprints[].friction    coefficient of friction
+    bodies[].footprints[].restitution how much of its speed it keeps when it bounces
+    bodies[].footprints[].sensor      true: it feels what overlaps it, and nothing bounces off it
+    bodies[].footprints[].collision   false: nothing collides with it, lasers still see it
+    bodies[].footprints[].layers      it touches, and is seen by, what shares one of these layers; all: everything
+    joints                            what holds two bodies together
+    joints[].name                     its name, which no other joint of the model has
+    joints[].enabled                  false: the entry is not read
+    joints[].type                     ``revolute`` turns, ``weld`` does not
+    joints[].bodies                   its two ends
+    joints[].bodies[].name            the body at this end
+    joints[].bodies[].anchor          the point of that body that is held [m]
+    joints[].color                    its colour
+    joints[].collide_connected        whether the two bodies collide with each other
+    joints[].limits                   lowest and highest angle [rad]; without it none
+    joints[].angle                    angle of the second body to the first [rad]
+    joints[].frequency                how fast it swings back [Hz]; 0: it is rigid
+    joints[].damping                  damping ratio of that swing
+    plugins                           its devices
+    plugins[].name                    its name, which no other plugin of the model has
+    plugins[].type                    its type; the other keys are those of the type
+    plugins[].enabled                 false: the entry is not read
+    ================================= ============================================================================
+    """
     sections = section.sections("bodies", at_least=1)
     bodies = read_named(sections, "body", partial(_read_body, layer_bits=layer_bits))
     if sections and not bodies:

@@ -35,11 +35,11 @@ def read_params(section: Section, scope: ModelScope) -> BoolSensorParams:
 class BoolSensor(Plugin):
     """Publishes std_msgs/Bool: whether anything touches the body now, or did since the last message.
 
-    ============ ===========================================================
-    body         the body that feels (the first)
-    topic        bool_sensor
-    update_rate  messages per second; at every step by default
-    ============ ===========================================================
+    =========== ======================================================
+    body        the body that feels; by default the first of the model
+    topic       what it publishes
+    update_rate messages per second [Hz]; .inf: at every step
+    =========== ======================================================
 
     Footprints with ``sensor: true`` feel what overlaps them. In Flatland the topic gets the namespace
     twice; here once, like every other.
@@ -63,4 +63,4 @@ class BoolSensor(Plugin):
         return self._publisher.publish(lambda: Bool(data=touched))
 
 
-PLUGIN_TYPE = PluginType("BoolSensor", read_params, example="")
+PLUGIN_TYPE = PluginType("BoolSensor", BoolSensor, read_params, example="")

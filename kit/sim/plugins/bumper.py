@@ -41,13 +41,13 @@ def read_params(section: Section, scope: ModelScope) -> BumperParams:
 class Bumper(Plugin):
     """Publishes flatland_msgs/Collisions: what the model's bodies touch, after each step.
 
-    ======================== ==================================================================
-    topic                    collisions
-    world_frame_id           the frame named in the header (map)
-    update_rate              reports per second; at every step by default
-    publish_all_collisions   report at every step while anything touches, whatever the rate (true)
-    exclude                  names of bodies whose contacts are not reported
-    ======================== ==================================================================
+    ====================== ==============================================================
+    topic                  what it publishes
+    world_frame_id         the frame named in the header
+    update_rate            reports per second [Hz]; .inf: at every step
+    publish_all_collisions report at every step while anything touches, whatever the rate
+    exclude                names of bodies whose contacts are not reported
+    ====================== ==============================================================
 
     Entity and body a are the model's own, and normals point from a to b. A wall is named by its layer's first
     name, as entity and as body. Sensor footprints are reported with no points. Forces are rough: the impulse of
@@ -96,4 +96,4 @@ def _collision(contact: Contact) -> Collision:
     )
 
 
-PLUGIN_TYPE = PluginType("Bumper", read_params, example="")
+PLUGIN_TYPE = PluginType("Bumper", Bumper, read_params, example="")

@@ -53,13 +53,15 @@ def read_params(section: Section, scope: ModelScope) -> GpsParams:
 class Gps(Plugin):
     """Publishes sensor_msgs/NavSatFix: latitude and longitude [degrees], before the step; altitude 0.
 
-    ================= =======================================================================
-    body              the body that carries the antenna, ``origin`` where on it
-    topic, frame      gps/fix, and the plugin's name
-    update_rate       fixes per second (10)
-    ref_lat, ref_lon  where the world's origin lies on earth [degrees]; x points east, y north
-    broadcast_tf      whether to publish where its frame is on /tf (true)
-    ================= =======================================================================
+    ================ ========================================================================
+    body             the body that carries the antenna
+    origin           where on the body it is [m, m, rad]
+    topic            what it publishes
+    frame            frame of the messages; by default the plugin's name
+    update_rate      fixes per second [Hz]
+    ref_lat, ref_lon where the world's origin lies on earth [degrees]; x points east, y north
+    broadcast_tf     whether to publish where its frame is on /tf
+    ================ ========================================================================
     """
 
     def __init__(self, params: GpsParams, context: PluginContext) -> None:
@@ -123,4 +125,4 @@ def geodetic_position(
     )
 
 
-PLUGIN_TYPE = PluginType("Gps", read_params, example="body: base")
+PLUGIN_TYPE = PluginType("Gps", Gps, read_params, example="body: base")
