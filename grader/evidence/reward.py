@@ -46,18 +46,18 @@ from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import printable
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.transition import Transition
 from kit.learning.policies.evaluation import Evaluator, PathRecorder, derive_seed, worst_drive
-from kit.learning.training.algorithms import find_algorithm, require_learn_extra
-from kit.learning.training.learner import Learner
-from kit.learning.training.presets import find_preset
-from kit.learning.training.student_reward import (
+from kit.learning.tasks.rewards import RewardFunction
+from kit.learning.tasks.student_reward import (
     REWARD_FUNCTION,
     RewardFileError,
     call_reward,
     reward_parameters,
 )
+from kit.learning.tasks.transition import Transition
+from kit.learning.training.algorithms import find_algorithm, require_learn_extra
+from kit.learning.training.learner import Learner
+from kit.learning.training.presets import find_preset
 from kit.learning.training.training import make_learner
 from kit.plain_text import suggestion
 from kit.ros.graph.graph import Graph

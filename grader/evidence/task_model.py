@@ -15,9 +15,9 @@ import numpy as np
 
 from grader.assignment import GridTask
 from kit.arrays import BoolArray, FloatArray, IntArray
-from kit.learning.environment.actions import Move
-from kit.learning.environment.observations import RAY_COUNT
-from kit.learning.environment.transition import FAR, Transition
+from kit.learning.maps.ray_directions import RAY_COUNT
+from kit.learning.tasks.actions import Move
+from kit.learning.tasks.transition import FAR, Transition
 
 CELL: Final = 0.25
 """m"""

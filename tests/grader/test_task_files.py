@@ -13,7 +13,8 @@ from grader.evidence.submission_clock import SubmissionClock
 from grader.evidence.training import TrainingBudget
 from grader.reading import read_assignment
 from grader.task_files import assignment_task, task_scenario
-from kit.learning.environment.tasks import UnknownTask, find_task
+from kit.learning.tasks.catalogue import find_task
+from kit.learning.tasks.learning_task import UnknownTask
 from kit.mapmaking.new_map import read_drawing, write_map
 from kit.world.problems import WorldError
 

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kit.learning.environment.batch_map import (
+from kit.learning.maps.batch_map import (
     BatchMap,
     UnsupportedWorld,
     batch_geometry,
     batch_map_of_world,
     hulls_in_lidar_frame,
 )
-from kit.learning.environment.obstacles import SEEN, TOUCHED, make_obstacle_parts
+from kit.learning.maps.obstacles import SEEN, TOUCHED, make_obstacle_parts
 from tests.sim.workshop import Workshop
 
 Mapped = Mapping[str, Any]
