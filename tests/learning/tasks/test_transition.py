@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from kit.fields.adjacency import wrap_angles
-from kit.learning.environment.actions import Move
-from kit.learning.environment.transition import (
+from kit.learning.tasks.actions import Move
+from kit.learning.tasks.transition import (
     COMMON_FIELDS,
     TRANSITION_FIELDS,
     Transition,

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kit.learning.environment.actions import ContinuousActions, DiscreteActions, Move
+from kit.learning.tasks.actions import ContinuousActions, DiscreteActions, Move
 from tests.learning.worlds import FOUR_MOVES, SEVEN_MOVES, THREE_MOVES
 
 every_one = pytest.mark.parametrize("actions", [THREE_MOVES, FOUR_MOVES, SEVEN_MOVES])

@@ -9,10 +9,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.learning.environment.actions import Move
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.observations import ray_direction
-from kit.learning.environment.rewards import (
+from kit.learning.maps.ray_directions import ray_direction
+from kit.learning.tasks.actions import Move
+from kit.learning.tasks.catalogue import (
+    HALLWAY,
+    HALLWAY_SEED,
+    TASKS,
+    TURN_SEED,
+    WHEELCHAIRS_SEED,
+    WHEELCHAIRS_SEED_49,
+    find_task,
+)
+from kit.learning.tasks.learning_task import LearningTask, UnknownTask
+from kit.learning.tasks.rewards import (
     ALGORITHM_1,
     ALGORITHM_2,
     ALGORITHM_3,
@@ -20,19 +30,8 @@ from kit.learning.environment.rewards import (
     REWARDS,
     turn_completed_reward,
 )
-from kit.learning.environment.tasks import (
-    HALLWAY,
-    HALLWAY_SEED,
-    TASKS,
-    TURN_SEED,
-    WHEELCHAIRS_SEED,
-    WHEELCHAIRS_SEED_49,
-    LearningTask,
-    TaskSpec,
-    UnknownTask,
-    find_task,
-)
 from kit.learning.tasks.task_reader import read_task
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.world.problems import WorldError
 from tests.cases import every_case
 

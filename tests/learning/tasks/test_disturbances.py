@@ -11,17 +11,14 @@ import numpy as np
 import pytest
 
 from kit.geometry import Pose
-from kit.learning.environment.actions import Move
+from kit.learning.authoring.new_task import new_task_file
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.disturbances import (
-    DISTURBANCE_KINDS,
-    DisturbanceError,
-    Disturbances,
-    UniformRange,
-)
-from kit.learning.environment.tasks import HALLWAY, WHEELCHAIRS, LearningTask, StartVariation, TaskSpec
+from kit.learning.tasks.actions import Move
+from kit.learning.tasks.catalogue import HALLWAY, WHEELCHAIRS
+from kit.learning.tasks.disturbances import DISTURBANCE_KINDS, DisturbanceError, Disturbances, UniformRange
+from kit.learning.tasks.learning_task import LearningTask, StartVariation
 from kit.learning.tasks.task_reader import read_task
-from kit.learning.tasks.task_template import new_task_file
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.simulation import Simulation, load_world
 from kit.world.catalogue import find_map

@@ -7,7 +7,8 @@ import numpy as np
 from kit.arrays import BoolArray, FloatArray
 from kit.geometry import Pose
 from kit.kernels import world_kernels
-from kit.learning.environment.batch_map import (
+from kit.learning.environment.case_arrays import CaseArrays
+from kit.learning.maps.batch_map import (
     BatchMap,
     batch_geometry,
     hull_radius,
@@ -15,11 +16,10 @@ from kit.learning.environment.batch_map import (
     load_batch_map,
     measure_floor,
 )
-from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.tasks.case_reader import START_KEYS, TARGET_KEYS, PlacedCase
 from kit.learning.tasks.learning_task import FollowGoal, LearningTask, PatrolGoal, TargetGoal
+from kit.learning.tasks.student_reward import reward_parameters
 from kit.learning.tasks.task_reader import ReadTask
-from kit.learning.training.student_reward import reward_parameters
 
 
 def check_task(read: ReadTask) -> None:

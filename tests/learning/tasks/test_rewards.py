@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kit.learning.environment.actions import Move
-from kit.learning.environment.rewards import (
+from kit.learning.tasks.actions import Move
+from kit.learning.tasks.rewards import (
     ALGORITHM_1,
     ALGORITHM_1_AS_RUN,
     ALGORITHM_2,
@@ -20,7 +20,7 @@ from kit.learning.environment.rewards import (
     TermWeight,
     UnknownRewardTerm,
 )
-from kit.learning.environment.transition import Transition
+from kit.learning.tasks.transition import Transition
 from tests.cases import every_case
 from tests.learning.worlds import TASKS, sampled
 

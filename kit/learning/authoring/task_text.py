@@ -7,18 +7,15 @@ import inspect
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from importlib.resources import files
 
 import numpy as np
 
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, Tone, ToneText, labelled_table
 from kit.geometry import Pose
-from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import hull_radius, load_batch_map, measure_floor
-from kit.learning.environment.observations import PART_NAMES, ObservationSpec
-from kit.learning.environment.rewards import TERMS, TermWeight, term_settings
-from kit.learning.environment.transition import TRANSITION_FIELDS, Transition
+from kit.learning.maps.batch_map import hull_radius, load_batch_map, measure_floor
+from kit.learning.tasks.actions import DiscreteActions
+from kit.learning.tasks.catalogue import tasks_folder
 from kit.learning.tasks.learning_task import (
     EpisodePlaces,
     FollowGoal,
@@ -28,6 +25,9 @@ from kit.learning.tasks.learning_task import (
     TaskCase,
     practices,
 )
+from kit.learning.tasks.observations import PART_NAMES, ObservationSpec
+from kit.learning.tasks.rewards import TERMS, TermWeight, term_settings
+from kit.learning.tasks.transition import TRANSITION_FIELDS, Transition
 from kit.plain_text import counted, join_names
 from kit.render.scene import Disc, Scene, SceneMark
 from kit.world.catalogue import MapCard
@@ -71,7 +71,7 @@ def task_blocks(task: LearningTask) -> list[Block]:
 
 def key_tables() -> list[Table]:
     """What ``kit task keys`` prints: what a task file, the terms of its reward and a reward of one's own may name."""
-    written = (files(__package__) / "README.md").read_text(encoding="utf-8").replace("`", "")
+    written = (tasks_folder() / "README.md").read_text(encoding="utf-8").replace("`", "")
     keys = [
         (key, text)
         for key, text in re.findall(r"^\| (\S+) \| (.+) \|$", written, re.MULTILINE)

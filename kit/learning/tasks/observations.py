@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
@@ -12,12 +11,10 @@ import numpy as np
 from gymnasium import spaces
 
 from kit.arrays import Float32Array, IntArray
-from kit.fields.adjacency import SIDE_RAYS as SIDE_RAYS
-from kit.learning.environment.actions import MAX_SPEED, MAX_TURN_RATE
+from kit.fields.adjacency import SIDE_RAYS
+from kit.learning.maps.ray_directions import RAY_COUNT
+from kit.learning.tasks.actions import MAX_SPEED, MAX_TURN_RATE
 
-RAY_COUNT = 91
-"""The robot's lidar: every 4 degrees from straight back round to straight back; ray 45 points ahead."""
-AHEAD_RAY = 45
 MAX_TARGET_DISTANCE = 4.0
 """A target's distance is given up to here [m]."""
 MAX_COORDINATE = 100.0
@@ -187,14 +184,3 @@ PART_NAMES = MappingProxyType(
     }
 )
 """What each part tells, by the key that a task file has for it."""
-
-
-def ray_direction(ray: int) -> float:
-    """The direction of a ray from straight ahead, to the left positive [rad]."""
-    return math.radians((ray - AHEAD_RAY) * 360.0 / (RAY_COUNT - 1))
-
-
-BESIDE = (math.radians(60.0), math.radians(120.0))
-"""What lies between these directions is beside a robot, to the left or to the right."""
-LEFT_RAYS = tuple(ray for ray in range(RAY_COUNT) if BESIDE[0] <= ray_direction(ray) <= BESIDE[1])
-RIGHT_RAYS = tuple(RAY_COUNT - 1 - ray for ray in LEFT_RAYS)

@@ -16,8 +16,8 @@ from typing import TypeAlias
 import numpy as np
 
 from kit.fields.adjacency import wrap_angles
-from kit.learning.environment.actions import Move
-from kit.learning.environment.transition import Array, Transition
+from kit.learning.tasks.actions import Move
+from kit.learning.tasks.transition import Array, Transition
 from kit.plain_text import quoted, suggestion
 
 RewardTerm: TypeAlias = Callable[..., Array]

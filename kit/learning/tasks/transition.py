@@ -8,8 +8,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from kit.fields.adjacency import adjacency_score, is_adjacent_by_rays, wrap_angles
-from kit.learning.environment.observations import AHEAD_RAY, LEFT_RAYS, RIGHT_RAYS, SIDE_RAYS
+from kit.fields.adjacency import SIDE_RAYS, adjacency_score, is_adjacent_by_rays, wrap_angles
+from kit.learning.maps.ray_directions import AHEAD_RAY, LEFT_RAYS, RIGHT_RAYS
 
 Array: TypeAlias = Any
 """A numpy array; for one world, where nothing is left of its shape, numpy's number."""

@@ -15,13 +15,8 @@ from kit.fields.occupancy_grid import ClearanceGrid, wall_distances
 from kit.geometry import Pose
 from kit.kernels import kernels
 from kit.kernels.lidar_index import make_beams, make_visibility_cells, make_wall_blocks
-from kit.learning.environment.observations import RAY_COUNT, ray_direction
-from kit.learning.environment.obstacles import (
-    SEEN,
-    TOUCHED,
-    Obstacle,
-    ObstaclePart,
-)
+from kit.learning.maps.obstacles import SEEN, TOUCHED, Obstacle, ObstaclePart
+from kit.learning.maps.ray_directions import RAY_COUNT, ray_direction
 from kit.plain_text import quoted, suggestion
 from kit.sim.plugins.bumper import BumperParams
 from kit.sim.plugins.diff_drive import DiffDriveParams

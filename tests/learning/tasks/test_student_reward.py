@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.learning.training.student_reward import (
+from kit.learning.tasks.student_reward import (
     MAX_SOURCE_BYTES,
     RewardFileError,
     metric_parameters,

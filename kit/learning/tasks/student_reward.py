@@ -22,7 +22,7 @@ import numpy as np
 
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.student_functions import StudentFunctions
-from kit.learning.environment.transition import TRANSITION_FIELDS, Array, Transition
+from kit.learning.tasks.transition import TRANSITION_FIELDS, Array, Transition
 from kit.plain_text import nearest_name, quoted
 
 REWARD_FUNCTION = "reward"

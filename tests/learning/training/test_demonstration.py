@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.episode_stats import EpisodeOutcome
-from kit.learning.environment.tasks import TaskSpec
-from kit.learning.policies.demonstration import Demonstration
 from kit.learning.policies.policies import (
     ActionSampling,
     LinearLayer,
@@ -19,6 +17,8 @@ from kit.learning.policies.policies import (
     save_policy,
     task_interface,
 )
+from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.demonstration import Demonstration
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run
 
 FORWARD, LEFT = 0, 1

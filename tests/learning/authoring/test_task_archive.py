@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from kit.learning.authoring.task_archive import TaskArchiveError, pack_task, unpack_task
+from kit.learning.authoring.task_check import check_task
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.tasks import tasks_folder
-from kit.learning.tasks.task_check import check_task
+from kit.learning.tasks.catalogue import tasks_folder
 from kit.learning.tasks.task_reader import read_task
-from kit.learning.tasks.task_template import TaskArchiveError, pack_task, unpack_task
 from kit.mapmaking.map_drawing import read_drawing
 from kit.mapmaking.new_map import write_map
 
@@ -126,7 +126,7 @@ def test_an_archive_that_is_none_of_ours_writes_nothing(tmp_path: Path, names: t
 
 
 def test_a_bomb_and_a_damaged_file_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("kit.learning.tasks.task_template.MAX_BYTES", 2**20)
+    monkeypatch.setattr("kit.learning.authoring.task_archive.MAX_BYTES", 2**20)
     with zipfile.ZipFile(tmp_path / "bomb.zip", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("mine/task.yaml", bytes(2 * 2**20))
     with pytest.raises(TaskArchiveError, match="more than 1 MiB"):

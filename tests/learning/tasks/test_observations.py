@@ -7,12 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kit.learning.environment.observations import (
-    AHEAD_RAY,
-    RAY_COUNT,
-    SIDE_RAYS,
-    ObservationSpec,
-)
+from kit.fields.adjacency import SIDE_RAYS
+from kit.learning.maps.ray_directions import AHEAD_RAY, RAY_COUNT
+from kit.learning.tasks.observations import ObservationSpec
 from tests.cases import every_case
 from tests.learning.worlds import NINE_NUMBERS, NINETEEN_NUMBERS, SEVENTEEN_NUMBERS
 
