@@ -183,17 +183,21 @@ def confine(config: SandboxConfig) -> None:
         _restrict(config)
 
 
-def confine_reader(readable: Sequence[str], listed: Sequence[str], writable: Sequence[str]) -> None:
+def confine_reader(
+    readable: Sequence[str], listed: Sequence[str], writable: Sequence[str], *, starts_programs: bool = True
+) -> None:
     """Confines this process of the kit's own, for good, before it reads what somebody else has written.
 
-    As at level 1, but that it may start programs, which are then confined likewise. Raises ConfinementError.
+    As at level 1, but that with ``starts_programs`` it may start programs, which are then confined likewise. Raises
+    ConfinementError.
     """
     _require_filters()
     _prctl(_PR_SET_NO_NEW_PRIVS, 1)
+    _prctl(_PR_SET_PDEATHSIG, _KILL)
     try:
         _drop_capabilities()
         landlock.restrict(readable, listed, (*writable, *WRITABLE))
-        seccomp.install(starts_programs=True)
+        seccomp.install(starts_programs=starts_programs)
     except OSError as problem:
         raise ConfinementError(
             f"{problem.strerror}. A container may forbid it: see its seccomp profile."
