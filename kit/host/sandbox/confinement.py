@@ -57,6 +57,8 @@ class SandboxConfig:
     """Absolute paths without links in ``listed`` folders, of which the program may see nothing."""
     in_bubblewrap: bool = False
     """Whether bubblewrap has made the namespaces and the file tree already. At level 2."""
+    groups: Sequence[str] = ()
+    """Files of control groups: who writes 0 to them joins."""
 
     @property
     def scratch(self) -> str:
@@ -80,6 +82,7 @@ class SandboxConfig:
             content["listed"],
             content["hidden"],
             content["in_bubblewrap"],
+            content["groups"],
         )
 
     @property
@@ -157,6 +160,12 @@ def prepare(config: SandboxConfig) -> bool:
 def confine(config: SandboxConfig) -> None:
     """Confines this process, for good, before it receives the student's code. Raises ConfinementError."""
     os.umask(0o022)
+    for group in config.groups:
+        try:
+            with open(group, "w") as file:
+                file.write("0")
+        except OSError as problem:
+            raise ConfinementError(f"a control group cannot be joined ({problem.strerror}).") from None
     # The folder exists as long as the run, so no other run has its inode.
     user = _FIRST_USER + os.stat(config.scratch).st_ino % _USERS
     if config.level >= Level.ANOTHER_USER:

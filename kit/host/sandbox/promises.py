@@ -74,7 +74,7 @@ PROMISES: Final = (
     ),
     Promise(
         "threads",
-        "start more threads than its limit (from level 1 on, if the kit does not run as root)",
+        "start more threads than its limit (from level 1 on, if the kit is not root, or may make control groups)",
         Level.ANOTHER_USER,
     ),
     Promise("user", "run as the same user as the kit or another run", Level.ANOTHER_USER),
