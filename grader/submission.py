@@ -226,7 +226,7 @@ def _is_anothers_file(file: BinaryIO, folder: Path | int) -> bool:
     status = os.fstat(file.fileno())
     if status.st_nlink < 2:
         return False
-    place = os.stat(folder)
+    place = folder.stat() if isinstance(folder, Path) else os.fstat(folder)
     return place.st_uid != status.st_uid or bool(place.st_mode & (stat.S_IWGRP | stat.S_IWOTH))
 
 
@@ -240,7 +240,9 @@ def _open_plain_file(path: Path | str, max_bytes: int, folder: int | None = None
         raise SubmissionRefused(f"{shown} cannot be read: {reason}.") from None
     if _is_anothers_file(file, Path(path).parent if folder is None else folder):
         file.close()
-        raise SubmissionRefused(f"{shown} is another name of a file that lies elsewhere: hand in a copy of it.")
+        raise SubmissionRefused(
+            f"{shown} is another name of a file that lies elsewhere: hand in a copy of it."
+        )
     if os.fstat(file.fileno()).st_size > max_bytes:
         file.close()
         raise SubmissionRefused(f"{shown} is larger than {max_bytes >> 20} MiB: hand in only your program.")

@@ -79,7 +79,11 @@ PROMISES: Final = (
     ),
     Promise("user", "run as the same user as the kit or another run", Level.ANOTHER_USER),
     Promise("locks", "hold locks, of whichever kind, on files that other programs may read too", None),
-    Promise("cache", "leave a message for a later program in what of common files and names, found or not, lies in memory", None),
+    Promise(
+        "cache",
+        "leave a message for a later program in what of common files and names, found or not, lies in memory",
+        None,
+    ),
     Promise(
         "load", "learn how many processes run, how busy the machine is and how much of its disk is free", None
     ),

@@ -101,7 +101,7 @@ def test_a_group_serves_one_run_after_the_other_and_is_removed() -> None:
     for each in (one, other):
         return_group(each)
     remove_free_groups()
-    assert not any(os.path.exists(folder) for folder in (*one.folders, *other.folders))
+    assert not any(Path(folder).exists() for folder in (*one.folders, *other.folders))
 
 
 def test_what_is_left_in_a_group_is_ended() -> None:
