@@ -123,6 +123,8 @@ class TeacherTest:
     feedback: str = ""
     visibility: Visibility = Visibility.VISIBLE
     hints: tuple[str, ...] = ()
+    after: str | None = None
+    """Id of a criterion, or of an earlier test, that must earn everything first."""
 
     @property
     def title(self) -> str:
@@ -188,6 +190,9 @@ class Assignment:
     def trial(self, name: str) -> Trial:
         return next(trial for trial in self.trials if trial.name == name)
 
+
+TEACHERS_STEMS: Final = ("secret", "solution", "solutions", "wrong", "reference")
+"""Files and folders of an assignment, without their endings, that stay with the teacher."""
 
 MAX_HINTS = 3
 """The most hints a criterion may have, from the vaguest to the most specific."""

@@ -56,6 +56,8 @@ COARSE_RATIONALES: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
 """The whole note on a failure with a secret seed: an error's own text could hold what the program saw."""
 
 
+NOT_ITS_TURN: Final = "Not graded: pass “{}” first."
+
 LEVEL_NOT_REACHED: Final = "This machine does not reach confinement level {}; `kit doctor` says why."
 
 
@@ -147,14 +149,15 @@ class Grading:
     def result(self) -> GradingResult:
         """Grades all criteria and teacher tests, and returns the complete result."""
         tests = tuple(self.judge(criterion) for criterion in self.assignment.criteria)
-        tests += run_teacher_tests(
+        for own in run_teacher_tests(
             self,
             self.assignment.folder,
             self.assignment.teacher_tests,
             self.assignment.teacher_test_files,
             self.first_failure,
             self._clock,
-        )
+        ):
+            tests += (self._after_its_turn(own, tests),)
         collected = self._collector.collected()
         if any(each.failure is not None and each.failure.kind in OUTSIDE_SIGNALS for each in collected):
             time.sleep(SHUTDOWN_WAIT_S)
@@ -172,6 +175,20 @@ class Grading:
             steps=sum(each.steps for each in collected),
             secret_steps=sum(each.steps for each in collected if each.secret),
             timing=GradingTiming(self._started, round(time.perf_counter() - self._began, 3)),
+        )
+
+    def _after_its_turn(self, test: CriterionResult, earlier: Sequence[CriterionResult]) -> CriterionResult:
+        """Returns a teacher test's result, or that it was not graded where what comes before it did not earn everything."""
+        after = next(each.after for each in self.assignment.teacher_tests if each.id == test.id)
+        before = next((each for each in earlier if each.id == after), None)
+        if before is None or before.is_passed or test.status is CriterionStatus.GRADER_ERROR:
+            return test
+        return replace(
+            CriterionResult(
+                test.id, test.title, CriterionStatus.SKIPPED, 0.0, test.max_points, test.visibility
+            ),
+            rationale=NOT_ITS_TURN.format(before.title),
+            depends_on=before.id,
         )
 
     def evidence(self, criterion_id: str) -> Sequence[Evidence]:
@@ -226,7 +243,7 @@ class Grading:
             each.share == 1.0 for each in self._score(self._criterion(criterion.after))
         ):
             title = self._criterion(criterion.after).title
-            return replace(blank, rationale=f"Not graded: pass “{title}” first.", depends_on=criterion.after)
+            return replace(blank, rationale=NOT_ITS_TURN.format(title), depends_on=criterion.after)
         share = _share(criterion, scored)
         full = share == 1.0
         shown = self._public_evidence(criterion, scored, full=full)

@@ -132,9 +132,7 @@ def read_assignment(folder: Path) -> Assignment:
     secret_file = folder / SECRET_FILE
     secrets = documents.section(secret_file, SourceLocation(secret_file)) if secret_file.is_file() else None
     with documents.open(folder / ASSIGNMENT_FILE) as section:
-        kind = section.text("kind", "controller", choices=kind_names())
-        documents.problems.raise_if_any()  # the meaning of the other keys depends on the kind
-        return _assignment(kind, section, secrets, folder)
+        return read_sheet(section, secrets, folder, documents.problems)
 
 
 def folder_digest(folder: Path, *, ignored: str = "") -> str:
@@ -160,13 +158,20 @@ TRANSLATION: Final = re.compile(r"assignment\.[a-z]{2}\.yaml")
 """Words in another language, which change nothing of what is graded either."""
 
 
-def _assignment(kind: str, section: Section, secrets: Section | None, folder: Path) -> Assignment:
+def read_sheet(
+    section: Section, secrets: Section | None, folder: Path, problems: ProblemCollector
+) -> Assignment:
+    """Reads the sheet of the assignment in ``folder``, and its secret file; notes its mistakes. Raises WorldError at once
+    where there is no such kind: the meaning of the other keys depends on it."""
+    kind = section.text("kind", "controller", choices=kind_names())
+    problems.raise_if_any()
     kind_record = find_kind(kind)
     teacher_test_files = tuple(_teacher_test_files(section, folder))
     task = kind_record.read_settings(AssignmentFiles(folder, section, secrets))
     limits, submission_limit_s = read_budget(section.section("budget", None), task.trials)
     if secrets is not None:
         secrets.finish()
+    criteria = tuple(_criteria(section, kind_record.checks, task.trials))
     return Assignment(
         folder=folder,
         id=section.name("id", folder.resolve().name),
@@ -177,13 +182,13 @@ def _assignment(kind: str, section: Section, secrets: Section | None, folder: Pa
         limits=limits,
         submission_limit_s=submission_limit_s,
         trials=task.trials,
-        criteria=tuple(_criteria(section, kind_record.checks, task.trials)),
+        criteria=criteria,
         task=task.task,
         version=folder_digest(folder),
         public_version=folder_digest(folder, ignored=SECRET_FILE),
         has_secrets=secrets is not None,
         secret_seeds=(*(seed for trial in task.trials for seed in trial.secret_seeds), *task.secret_seeds),
-        teacher_tests=tuple(_teacher_tests(section, teacher_test_files)),
+        teacher_tests=tuple(_teacher_tests(section, teacher_test_files, criteria)),
         teacher_test_files=teacher_test_files,
     )
 
@@ -197,8 +202,10 @@ def _teacher_test_files(section: Section, folder: Path) -> Iterator[Path]:
             yield folder / name
 
 
-def _teacher_tests(section: Section, files: tuple[Path, ...]) -> Iterator[TeacherTest]:
-    known: set[str] = set()
+def _teacher_tests(
+    section: Section, files: tuple[Path, ...], criteria: Sequence[Criterion]
+) -> Iterator[TeacherTest]:
+    known = {each.id: each.visibility for each in criteria}
     for file in files:
         try:
             found = tuple(read_teacher_tests(file))
@@ -207,9 +214,18 @@ def _teacher_tests(section: Section, files: tuple[Path, ...]) -> Iterator[Teache
             continue
         for each in found:
             if each.id in known:
-                section.error(f"two tests are called {quoted(each.id)}", "tests")
-            known.add(each.id)
-            yield each
+                section.error(f"two tests, or a test and a check, are called {quoted(each.id)}", "tests")
+            visibility = each.visibility
+            if each.after is not None and each.after not in known:
+                section.error(
+                    f"{file.name}: {each.id} comes after {quoted(each.after)}, which does not stand before it: "
+                    f"{suggestion(each.after, known)}",
+                    "tests",
+                )
+            elif each.after is not None and visibility is Visibility.VISIBLE:
+                visibility = known[each.after]  # that it was not judged would say how the one before it went
+            known[each.id] = visibility
+            yield replace(each, visibility=visibility)
 
 
 def _file_name(section: Section, endings: tuple[str, ...]) -> str:

@@ -2,13 +2,13 @@
 
 They run under pytest, get the fixture ``grading``, and examine recordings that the grader made::
 
-    @pytest.mark.points(3, hints=["Drive on the right."])
+    @pytest.mark.points(3, after="reached", hints=["Drive on the right."])
     def test_keeps_to_the_right(grading):
         \"\"\"The robot left its side of the corridor.\"\"\"
         assert all((drive.track[:, 0] > 0.4).all() for drive in grading.evidence("runs"))
 
-The docstring is the feedback, unless the assertion has a message of its own; a test's source is never shown. Only the
-files named are imported, since a student may work in the assignment's folder.
+The docstring is the feedback, unless the assertion has a message of its own; a test's source is never shown. ``after`` names
+the criterion or earlier test that must earn everything first. Only the files named are imported, since a student may work in the assignment's folder.
 """
 
 from __future__ import annotations
@@ -36,7 +36,9 @@ if TYPE_CHECKING:
     import pytest
 
 MARK: Final = "points"
-MARK_HELP: Final = f"{MARK}(number, visibility='visible', hints=()): what a teacher's test is worth"
+MARK_HELP: Final = (
+    f"{MARK}(number, after=None, visibility='visible', hints=()): what a teacher's test is worth"
+)
 
 
 def read_teacher_tests(file: Path) -> Iterator[TeacherTest]:
@@ -64,12 +66,13 @@ def _read_test(node: ast.FunctionDef, mark: ast.Call | None, file: Path) -> Teac
             text,
             Visibility(keywords.pop("visibility", Visibility.VISIBLE.value)),
             tuple(map(str, keywords.pop("hints", ()))),
+            None if (after := keywords.pop("after", None)) is None else str(after),
         )
     except (ValueError, TypeError):
         keywords = {"?": None}
     if keywords or not 0.0 <= test.points <= 1e6:
         raise ValueError(
-            f"{file.name}:{mark.lineno}: {MARK} takes a number from 0 on, a visibility and hints"
+            f"{file.name}:{mark.lineno}: {MARK} takes a number from 0 on, and after, visibility and hints"
         )
     return test
 
