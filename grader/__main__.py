@@ -41,8 +41,8 @@ VERBS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
         "work": ("grader.cli.cohort:work", "Grade a share of a cohort's queue on another machine."),
         "worker": ("grader.cli.cohort:worker", ""),
         "gradebook": (
-            "grader.cli.cohort:gradebook",
-            "Print a cohort's gradebook with late rules applied, or what has changed.",
+            "grader.cli.gradebook:gradebook",
+            "The grades of a class: roster, late rules, own marks; for Moodle or Canvas; pages.",
         ),
         "ladder": ("grader.cli.cohort:ladder", "Race all programs in a folder, and rank them."),
     }

@@ -11,7 +11,6 @@ import hashlib
 import json
 import shutil
 import sys
-import unicodedata
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cache, partial
@@ -20,6 +19,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.assignment import Assignment
+from grader.cohort.roster import look
 from grader.grading import GradingOptions, grade, level_for_untrusted
 from grader.reading import read_assignment
 from grader.submission import Submission, read_submission, submission_name
@@ -239,7 +239,7 @@ def _entries(
         if path.name.startswith(".") or path.name.lower() in IGNORED_NAMES:
             continue
         name = _unlike(names, submission_name(path), path.name)
-        names.add(_look(name))
+        names.add(look(name))
         try:
             submission = read_submission(path, assignment.submit)
         except SubmissionUnreadable as unreadable:
@@ -259,17 +259,9 @@ def _entries(
 def _unlike(looks: set[str], name: str, file_name: str) -> str:
     """Returns a submission's name, or its file's, if that looks like no other; else one with a number."""
     for candidate in (name, file_name):
-        if _look(candidate) not in looks:
+        if look(candidate) not in looks:
             return candidate
-    return next(each for number in count(2) if _look(each := f"{file_name} ({number})") not in looks)
-
-
-def _look(name: str) -> str:
-    """Returns what a reader takes a name for: without double blanks, letters of other widths, and what cannot be seen."""
-    shown = "".join(
-        sign for sign in unicodedata.normalize("NFKC", name) if sign.isprintable() or sign.isspace()
-    )
-    return " ".join(shown.split()).casefold()
+    return next(each for number in count(2) if look(each := f"{file_name} ({number})") not in looks)
 
 
 def _copy_assignment(queue: Queue, assignment: Assignment) -> None:
