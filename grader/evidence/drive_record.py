@@ -122,9 +122,7 @@ class GradedDrive:
     @cached_property
     def walls(self) -> FloatArray:
         """(n, 4) every wall of the world."""
-        layers = self.scenario.world.layers
-        unique = {layer.walls.file: layer.walls for layer in layers if layer.walls is not None}
-        return np.concatenate([np.empty((0, 4)), *(walls.segments for walls in unique.values())])
+        return self.scenario.world.wall_segments
 
     @cached_property
     def commands(self) -> FloatArray:

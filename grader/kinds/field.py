@@ -37,7 +37,8 @@ from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.controller import read_settings as read_trials
 from grader.submitted_files import reading_submission
 from kit.fields import adjacency
-from kit.fields.charges import LineCharge, derive_charges, iter_members
+from kit.fields.charge_derivation import derive_charges
+from kit.fields.charges import LineCharge, iter_members
 from kit.fields.controller_setup import ControllerSetup
 from kit.fields.layout import ChargeLayout, read_layout
 from kit.fields.minima import ForceFlow

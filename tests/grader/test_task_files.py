@@ -14,7 +14,8 @@ from grader.evidence.training import TrainingBudget
 from grader.reading import read_assignment
 from grader.task_files import assignment_task, task_scenario
 from kit.learning.environment.tasks import UnknownTask, find_task
-from kit.mapmaking.new_map import read_drawing, write_map
+from kit.mapmaking.map_drawing import read_drawing
+from kit.mapmaking.new_map import write_map
 from kit.world.problems import WorldError
 
 DRAWING = "########\n#S    T#\n#      #\n########"

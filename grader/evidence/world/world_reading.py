@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
-
-import numpy as np
 
 from grader.evidence.world.facts import (
     BodyFacts,
@@ -26,6 +24,7 @@ from kit.geometry import Pose
 from kit.msg.message import type_name
 from kit.render.scene import Disc, Scene, SceneBody
 from kit.render.world_text import scene_rows
+from kit.run.scene_bodies import scene_bodies
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.simulation import Simulation, SimulationError, load_world
 from kit.world import records
@@ -152,12 +151,6 @@ def _plugin_facts(plugin: records.PluginSpec, layer_bits: Mapping[str, int]) -> 
     return PluginFacts(plugin.name, plugin.type, str(getattr(params, "body", "")), 0, 0.0, 0.0, 0.0)
 
 
-def all_wall_segments(world: World) -> FloatArray:
-    """Returns (n, 4) every wall segment of the world, each once."""
-    unique = {layer.walls.file: layer.walls for layer in world.layers if layer.walls is not None}
-    return np.concatenate([np.empty((0, 4)), *(walls.segments for walls in unique.values())])
-
-
 def draw_world(
     world: World,
     simulation: Simulation,
@@ -167,26 +160,22 @@ def draw_world(
 ) -> str:
     """Draws the present state of the world in plain characters."""
     scene = Scene(
-        walls=all_wall_segments(world),
-        bodies=tuple(_scene_bodies(simulation)),
+        walls=world.wall_segments,
+        bodies=_scene_bodies(simulation),
         targets=() if target is None else (target,),
         trails=() if trail is None else (trail,),
     )
     return "\n".join(row.rstrip() for row in scene_rows(scene, COLUMNS, ROWS))
 
 
-def _scene_bodies(simulation: Simulation) -> Iterator[SceneBody]:
-    """Yields one body per model: its footprints at the pose of its first body."""
-    outlines = simulation.outlines()
-    for name in simulation.model_names:
-        model_outlines = [each for each in outlines if each.model == name]
-        yield SceneBody(
-            name,
-            simulation.pose(name),
-            tuple(np.array(each.points) for each in model_outlines if not each.radius),
-            tuple(Disc(*each.points[0], each.radius) for each in model_outlines if each.radius),
-            is_robot=any(end.direction == "subscribe" for end in simulation.model_endpoints(name)),
-        )
+def _scene_bodies(simulation: Simulation) -> tuple[SceneBody, ...]:
+    names = simulation.model_names
+    driven = [
+        name
+        for name in names
+        if any(end.direction == "subscribe" for end in simulation.model_endpoints(name))
+    ]
+    return scene_bodies(simulation.outlines(), {name: simulation.pose(name) for name in names}, driven)
 
 
 def _pose_triple(pose: Pose) -> PoseTriple:

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from grader.evidence.world.facts import RunFacts, TopicStatistics, WorldRunSpec
-from grader.evidence.world.world_reading import all_wall_segments, draw_world
+from grader.evidence.world.world_reading import draw_world
 from kit.arrays import FloatArray
 from kit.fields.occupancy_grid import ClearanceGrid, flood_fill, wall_distances
 from kit.geometry import convex_hull
@@ -160,7 +160,7 @@ def run_world(world: World, spec: WorldRunSpec) -> RunFacts:
     score, radius = metrics.metrics, 0.0 if model is None else model_width(model) / 2
     is_reachable = is_enclosed = False
     if model is not None:
-        is_reachable, is_enclosed = search_path(all_wall_segments(world), model.pose[:2], spec.target, radius)
+        is_reachable, is_enclosed = search_path(world.wall_segments, model.pose[:2], spec.target, radius)
     disc = None if spec.target is None else Disc(*spec.target, spec.radius)
     return RunFacts(
         problem=problem,
