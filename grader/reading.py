@@ -132,7 +132,9 @@ def read_assignment(folder: Path) -> Assignment:
     secret_file = folder / SECRET_FILE
     secrets = documents.section(secret_file, SourceLocation(secret_file)) if secret_file.is_file() else None
     with documents.open(folder / ASSIGNMENT_FILE) as section:
-        return read_sheet(section, secrets, folder, documents.problems)
+        kind = section.text("kind", "controller", choices=kind_names())
+        documents.problems.raise_if_any()  # the meaning of the other keys depends on the kind
+        return read_sheet(kind, section, secrets, folder)
 
 
 def folder_digest(folder: Path, *, ignored: str = "") -> str:
@@ -158,13 +160,8 @@ TRANSLATION: Final = re.compile(r"assignment\.[a-z]{2}\.yaml")
 """Words in another language, which change nothing of what is graded either."""
 
 
-def read_sheet(
-    section: Section, secrets: Section | None, folder: Path, problems: ProblemCollector
-) -> Assignment:
-    """Reads the sheet of the assignment in ``folder``, and its secret file; notes its mistakes. Raises WorldError at once
-    where there is no such kind: the meaning of the other keys depends on it."""
-    kind = section.text("kind", "controller", choices=kind_names())
-    problems.raise_if_any()
+def read_sheet(kind: str, section: Section, secrets: Section | None, folder: Path) -> Assignment:
+    """Reads the sheet of an assignment of this kind in ``folder``, and its secret file; notes their mistakes."""
     kind_record = find_kind(kind)
     teacher_test_files = tuple(_teacher_test_files(section, folder))
     task = kind_record.read_settings(AssignmentFiles(folder, section, secrets))

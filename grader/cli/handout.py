@@ -18,8 +18,8 @@ from grader.ci import WORKFLOWS, GitSource, workflow
 from grader.cli import options
 from grader.kinds.contract import kind_names
 from grader.new_assignment import CARD
-from grader.reading import ASSIGNMENT_FILE
-from grader.sheet_reference import SheetKey, budget_keys, documented_attributes, sheet_keys
+from grader.reading import ASSIGNMENT_FILE, budget_lines
+from grader.sheet_reference import SheetKey, documented_attributes, sheet_keys
 from grader.student_version import ReleaseRefused, StudentVersion, missing_for_practice, student_version
 from kit.document.blocks import Block, Code, Table, Text, labelled_table
 from kit.document.layout import lines_of
@@ -219,7 +219,7 @@ def sheet_blocks(kind: str) -> list[Block]:
         ),
         _key_table("", public),
         *([_key_table("secret.yaml, for the teacher's machine alone:", secret)] if secret else []),
-        _key_table("Under budget:", budget_keys()),
+        labelled_table(budget_lines(), "Under budget:"),
         Text(f"Other kinds: {others}."),
     ]
 
@@ -230,11 +230,12 @@ def _key_table(title: str, keys: Iterable[SheetKey]) -> Table:
 
 def _told(key: SheetKey) -> str:
     """What a key means, what it holds, and what it is without being given."""
+    default = key.key.default
     if "by default" in key.meaning:
-        default = ""
-    elif key.default:
-        default = "; optional" if key.default == "none" else f"; by default {key.default}"
+        told = ""
+    elif default is None:
+        told = "; must be given"
     else:
-        default = "; must be given"
-    example = f"; such as {key.example}" if key.example and key.example != key.default else ""
-    return f"{key.meaning.removeprefix('In secret.yaml: ')}. ({key.type}{default}{example})"
+        told = "; optional" if default in ("none", '""', "{}", "[]") else f"; by default {default}"
+    example = f"; such as {key.example}" if key.example and key.example != default else ""
+    return f"{key.meaning.removeprefix('In secret.yaml: ')}. ({key.key.type}{told}{example})"

@@ -19,7 +19,8 @@ from grader.cohort.statistics import class_document
 from grader.reports.cleaning import clean_line
 from grader.reports.formats import write_json
 from kit.document.blocks import Block, Chapter, Document, Picture, Text, Tone
-from kit.document.files import document_to_html, document_to_markdown
+from kit.document.html import document_to_html
+from kit.document.markdown import document_to_markdown
 from kit.school.result import VERDICT_TEXTS, GradingResult, criterion_blocks, points_text, replay_lines
 from kit.workspace import make_private_folder, write_atomically
 
