@@ -168,6 +168,9 @@ class Assignment:
     version: str
     """Digest of the folder's files that decide a grade."""
     has_secrets: bool
+    evidence_version: str = ""
+    """Digest of what decides what is found about a submission: the same files without words, points and what else only
+    decides what that is worth."""
     secret_seeds: tuple[int, ...] = ()
     """All of its secret seeds."""
     public_version: str = ""

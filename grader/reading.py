@@ -10,9 +10,12 @@ import hashlib
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Final
+
+import yaml
 
 from grader.assignment import (
     DEFAULT_SUBMISSION_LIMIT_S,
@@ -122,6 +125,8 @@ def budget_lines() -> Iterator[tuple[str, str]]:
     yield SUBMISSION_KEY, meaning
 
 
+YAML_LOADER: Final = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+"""The one that the kit reads with, which takes some texts that the other does not."""
 ASSIGNMENT_FILE: Final = "assignment.yaml"
 SECRET_FILE: Final = "secret.yaml"
 
@@ -137,13 +142,41 @@ def read_assignment(folder: Path) -> Assignment:
         return read_sheet(kind, section, secrets, folder)
 
 
-def folder_digest(folder: Path, *, ignored: str = "") -> str:
-    """Returns a digest of all files in the folder that grading depends on, but for one of this name."""
+JUDGEMENT_KEYS: Final = ("title", "id", "checks", "tests")
+"""Keys of the sheet that decide what evidence is worth and what is said of it, not what is found. What a criterion asks for
+is part of what is found about it: see ``grader.evidence.findings``."""
+
+
+def evidence_digest(folder: Path, test_files: Sequence[str]) -> str:
+    """Returns a digest of what decides what is found about a submission: of the sheet only the keys and values that count,
+    however they are written, and of the other files all but the teacher's own tests."""
+    parsed = hashlib.sha256(folder_digest(folder, ignored=(ASSIGNMENT_FILE, *test_files)).encode())
+    with suppress(
+        OSError, UnicodeDecodeError, yaml.YAMLError
+    ):  # the sheet's own reader reports what is wrong with it
+        root = yaml.compose((folder / ASSIGNMENT_FILE).read_text(encoding="utf-8-sig"), Loader=YAML_LOADER)
+        if isinstance(root, yaml.MappingNode):
+            kept = [pair for pair in root.value if pair[0].value not in JUDGEMENT_KEYS]
+            parsed.update(repr(_content(yaml.MappingNode(root.tag, kept))).encode())
+    return parsed.hexdigest()[:16]
+
+
+def _content(node: yaml.Node) -> object:
+    """What a YAML node says, without how it is written."""
+    if isinstance(node, yaml.MappingNode):
+        return {_content(key): _content(value) for key, value in node.value}
+    if isinstance(node, yaml.SequenceNode):
+        return [_content(each) for each in node.value]
+    return str(node.value)
+
+
+def folder_digest(folder: Path, *, ignored: Sequence[str] = ()) -> str:
+    """Returns a digest of all files in the folder that grading depends on, but for those of these names."""
     parsed = hashlib.sha256()
     for file in sorted(path for path in folder.rglob("*") if path.is_file()):
         name = file.relative_to(folder)
         if (
-            str(name) == ignored
+            str(name) in ignored
             or Path(name.parts[0]).name.partition(".")[0] in IGNORED_STEMS
             or TRANSLATION.fullmatch(name.as_posix())
             or any(part.startswith((".", "__")) for part in name.parts)
@@ -182,8 +215,9 @@ def read_sheet(kind: str, section: Section, secrets: Section | None, folder: Pat
         criteria=criteria,
         task=task.task,
         version=folder_digest(folder),
-        public_version=folder_digest(folder, ignored=SECRET_FILE),
+        public_version=folder_digest(folder, ignored=(SECRET_FILE,)),
         has_secrets=secrets is not None,
+        evidence_version=evidence_digest(folder, [file.name for file in teacher_test_files]),
         secret_seeds=(*(seed for trial in task.trials for seed in trial.secret_seeds), *task.secret_seeds),
         teacher_tests=tuple(_teacher_tests(section, teacher_test_files, criteria)),
         teacher_test_files=teacher_test_files,

@@ -19,8 +19,7 @@ from typing import Final
 import yaml
 
 from grader.new_assignment import example_of_kind
-from grader.reading import ASSIGNMENT_FILE, SECRET_FILE, read_sheet
-from grader.student_version import YAML_LOADER
+from grader.reading import ASSIGNMENT_FILE, SECRET_FILE, YAML_LOADER, read_sheet
 from kit.world.documents import open_document
 from kit.world.key_table import OWN_NAME, FormatKey, format_keys
 from kit.world.yaml_section import Section

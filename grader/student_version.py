@@ -20,15 +20,13 @@ from typing import Final
 import yaml
 
 from grader.assignment import TEACHERS_STEMS, Assignment
-from grader.reading import ASSIGNMENT_FILE, SECRET_FILE
+from grader.reading import ASSIGNMENT_FILE, SECRET_FILE, YAML_LOADER
 from grader.submitted_files import IGNORED_NAMES
 from grader.teacher_tests import read_teacher_tests
 from kit.plain_text import join_names
 from kit.school.result import Visibility
 
 REFERENCE: Final = "reference"
-YAML_LOADER: Final = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-"""The one that the kit reads with, which takes some texts that the other does not."""
 MAX_FILE: Final = 32 << 20
 """Bytes of one file that goes out."""
 SHORTEST_SEED: Final = 10_000

@@ -14,12 +14,13 @@ the criterion or earlier test that must earn everything first. Only the files na
 from __future__ import annotations
 
 import ast
+import hashlib
 import os
 import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -77,6 +78,25 @@ def _read_test(node: ast.FunctionDef, mark: ast.Call | None, file: Path) -> Teac
     return test
 
 
+def tests_digest(files: Sequence[Path]) -> str:
+    """Returns a digest of what decides the outcomes of tests: their code, without what they are worth and what they say to
+    whom. Empty without files. Raises OSError, SyntaxError."""
+    digest = hashlib.sha256()
+    for file in files:
+        tree = ast.parse(file.read_text(encoding="utf-8"), file.name)
+        for node in tree.body:
+            if isinstance(node, ast.FunctionDef) and node.name.startswith("test_"):
+                node.decorator_list = [
+                    each
+                    for each in node.decorator_list
+                    if not (isinstance(each, ast.Call) and _is_mark(each))
+                ]
+                if ast.get_docstring(node) is not None:
+                    node.body = [*node.body[1:], ast.Pass()]
+        digest.update(ast.unparse(tree).encode())
+    return digest.hexdigest()[:32] if files else ""
+
+
 MIN_TIME_S: Final = 30.0
 """Wall clock that all tests together get at least [s], also where the program has used up the submission's."""
 
@@ -123,8 +143,10 @@ def _raise_time_used_up(*_: object) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class _Outcome:
+class TestOutcome:
     """The outcome of one run of a test function."""
+
+    __test__ = False  # no class of tests
 
     status: CriterionStatus
     message: str
@@ -139,12 +161,12 @@ class _Session:
     first_failure: Callable[[], Failure | None]
     """How the program failed; None if it did not."""
     deadline: TestDeadline
-    outcomes: dict[str, list[_Outcome]] = field(default_factory=dict)
+    outcomes: dict[str, list[TestOutcome]] = field(default_factory=dict)
 
     def note(self, item: Any, status: CriterionStatus, text: str) -> None:
         name = getattr(item, "originalname", None) or item.name
         # Secret evidence that an earlier test was given may be kept in a fixture.
-        outcome = _Outcome(status, text, uses_secrets=self.grading.has_given_secrets)
+        outcome = TestOutcome(status, text, uses_secrets=self.grading.has_given_secrets)
         self.outcomes.setdefault(name, []).append(outcome)
 
 
@@ -155,14 +177,14 @@ def run_teacher_tests(
     files: Sequence[Path],
     first_failure: Callable[[], Failure | None],
     clock: SubmissionClock,
-) -> tuple[CriterionResult, ...]:
-    """Runs the tests in this process. An error in a test is the teacher's and costs no student a point.
+) -> Mapping[str, Sequence[TestOutcome]]:
+    """Runs the tests in this process, and returns the outcomes of each. An error in a test is the teacher's and costs no student a point.
 
     ``first_failure`` returns how the program failed: an error in a test that examines a failed program is the student's.
     The tests together may take what is left of the submission's time by ``clock``, and ``MIN_TIME_S`` in any case.
     """
     if not tests:
-        return ()
+        return {}
     session = _Session(grading, first_failure, TestDeadline(max(MIN_TIME_S, clock.left_s)))
     with _isolated_environment():
         import pytest
@@ -172,7 +194,7 @@ def run_teacher_tests(
         options += ["--noconftest"]  # one above the assignment's folder may be a student's
         pytest.main([*options, *map(str, files)], plugins=[_plugin(session)])
     _forget_modules(files)
-    return tuple(_test(test, session.outcomes.get(test.id, [])) for test in tests)
+    return session.outcomes
 
 
 def _forget_modules(files: Sequence[Path]) -> None:
@@ -252,7 +274,7 @@ def _assertion_message(message: str) -> str:
     return message.partition("\nassert ")[0] if not message.startswith("assert ") else ""
 
 
-def _test(test: TeacherTest, outcomes: Sequence[_Outcome]) -> CriterionResult:
+def teacher_test_result(test: TeacherTest, outcomes: Sequence[TestOutcome]) -> CriterionResult:
     """Makes the result of one test; each outcome of a parametrized test is worth its share.
 
     A test that may have seen secret evidence pays in steps, and its own message is the teacher's alone.

@@ -28,6 +28,7 @@ from grader.cohort.queue import (
     Queue,
     QueueError,
     grade_job,
+    judge_anew,
     prepare_queue,
     run_locally,
     run_on_dask,
@@ -105,8 +106,10 @@ def cohort(
     options.warn_of_unused_secrets(assignment, secret=secret)
     try:
         entries = prepare_queue(queue, submissions, assignment, grading_options)
+        judged = judge_anew(queue)
         waiting = queue.waiting()
-        click.echo(f"{len(entries)} submissions, {len(waiting)} to grade", err=True)
+        anew = f", {judged} judged anew by what was found before" if judged else ""
+        click.echo(f"{len(entries)} submissions{anew}, {len(waiting)} to grade", err=True)
         with click.progressbar(length=len(waiting), label="graded", file=sys.stderr) as bar:
             if executor == "slurm":
                 run_on_slurm(queue, jobs)
