@@ -209,6 +209,17 @@ def printed_table(number: str) -> PrintedTable:
     raise LookupError(f"There is no Table {number} among the printed ones.")
 
 
+def parts_of(number: str) -> tuple[PrintedTable, ...]:
+    """The tables whose agents are some of those of another one.
+
+    >>> [table.id for table in parts_of("4.6")]
+    ['4.4', '4.5']
+    """
+    return tuple(
+        table for chapter in study_chapters() for table in chapter.tables if table.results_of == number
+    )
+
+
 def path_figures(table: str) -> tuple[PrintedFigure, ...]:
     """The pictures of ways that agents or controllers of a table drove.
 

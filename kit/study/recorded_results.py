@@ -23,9 +23,9 @@ from kit.study.printed_tables import (
 )
 from kit.workspace import Workspace
 
-StudyVariant = Literal["seed", "kit"]
-"""Whose settings agents are trained by: the dissertation's, or the kit's own presets."""
-VARIANTS: Final[tuple[StudyVariant, ...]] = ("seed", "kit")
+StudyVariant = Literal["seed", "no-limit", "kit"]
+"""Whose settings agents are trained by: the dissertation's, the same without the limit of values, or the kit's own presets."""
+VARIANTS: Final[tuple[StudyVariant, ...]] = ("seed", "no-limit", "kit")
 CONTROLLERS: Final[Mapping[StudyVariant, str]] = {"seed": "fields", "kit": "abreast"}
 """Who drives where the dissertation has potential fields: its own controller, or the kit's planner."""
 SHIPPED_FOLDER: Final = Path(__file__).with_name("results")
@@ -54,6 +54,8 @@ class RecordedSettings:
     """That made the log."""
     commit: str = ""
     """Commit of the kit; empty if it was installed from a package."""
+    changed: str = ""
+    """Settings of the algorithm that differ from the preset's, as ``--set`` takes them."""
 
 
 class TrainingSession(NamedTuple):
@@ -67,6 +69,8 @@ class TrainingSession(NamedTuple):
     """Mean sum over an episode."""
     adjacency: float | None
     """Mean share of steps side by side; None for one robot."""
+    value_max: float | None = None
+    """The largest value of the observations before the test; None where the learner has none."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -47,10 +47,15 @@ RecordedCells = Mapping[tuple[str, str], RecordedCell]
 """Cells by row and column of a printed table."""
 Results = Mapping[StudyVariant, RecordedResult]
 """Those that there are."""
-VARIANT_NAMES: Final[Mapping[StudyVariant, str]] = {"seed": "ours", "kit": "kit"}
+VARIANT_NAMES: Final[Mapping[StudyVariant, str]] = {
+    "seed": "ours",
+    "no-limit": "no limit",
+    "kit": "kit",
+}
 """The words of a table's rows: agents trained by the dissertation's settings, and by the kit's."""
 VARIANT_TITLES: Final[Mapping[StudyVariant, str]] = {
     "seed": "ours, by the dissertation's settings",
+    "no-limit": "no limit, by the dissertation's settings without its limit of values",
     "kit": "kit, by the kit's own preset",
 }
 Durations = Mapping[StudyVariant, tuple[float, float]]

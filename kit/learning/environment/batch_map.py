@@ -191,7 +191,9 @@ def batch_geometry(batch_maps: Sequence[BatchMap], noise: float | None = None) -
     )
 
 
-def geometry_for_scans(geometry: kernels.BatchGeometry, robot: BatchRobot, robots: int) -> kernels.BatchGeometry:
+def geometry_for_scans(
+    geometry: kernels.BatchGeometry, robot: BatchRobot, robots: int
+) -> kernels.BatchGeometry:
     """The same for scans, where a robot's pose is that of its lidar: the hulls are given in the lidar's frame, and what is
     seen without being touched is one of them."""
     lidar = robot.lidar

@@ -227,9 +227,7 @@ class DisturbanceState:
         twists, lasts, after = [], [], []
         for check in range(checks):
             parts = [
-                (driven, seconds)
-                for driven, seconds in self._parts(check * length, length)
-                if seconds.any()
+                (driven, seconds) for driven, seconds in self._parts(check * length, length) if seconds.any()
             ]
             twists += [driven for driven, _ in parts]
             lasts += [seconds for _, seconds in parts]

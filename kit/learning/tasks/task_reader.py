@@ -338,7 +338,8 @@ def _read_observation(section: Section, robots: int) -> ObservationSpec:
     )
     if found.other_rays and (robots == 1 or len(found.other_rays) != len(found.rays)):
         section.error(
-            f"other_rays are those of every robot but the first, {len(found.rays)} as for that one", "other_rays"
+            f"other_rays are those of every robot but the first, {len(found.rays)} as for that one",
+            "other_rays",
         )
         found = replace(found, other_rays=())
     section.finish()

@@ -10,6 +10,7 @@ from __future__ import annotations
 import fcntl
 import io
 import json
+import math
 import re
 import time
 import zipfile
@@ -57,9 +58,18 @@ def _try_lock(lock: IO[bytes]) -> bool:
             return True
 
 
+NO_LIMIT = "none"
+"""Stands for an infinite limit."""
+
+
 def format_settings(settings: Iterable[tuple[str, float]]) -> str:
     """Changed settings, as ``--set`` takes them: ``gamma=0.98 n_steps=64``."""
-    return " ".join(f"{name}={number:.12g}" for name, number in settings)
+    return " ".join(f"{name}={format_setting(number)}" for name, number in settings)
+
+
+def format_setting(number: float) -> str:
+    """A setting's number, as ``--set`` takes it: infinity, of a limit, is ``none``."""
+    return NO_LIMIT if math.isinf(number) else f"{number:.12g}"
 
 
 class RunError(Exception):
