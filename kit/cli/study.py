@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Final
 
 import click
 
@@ -15,10 +16,10 @@ from kit.learning.training.algorithms import require_learn_extra
 from kit.learning.training.runs import RunError
 from kit.study import study_document
 from kit.study.printed_tables import study_chapters
-from kit.study.recorded_results import RecordedResultError, StudyVariant
+from kit.study.recorded_results import VARIANT_OPTIONS, RecordedResultError, StudyVariant
 from kit.study.study_document import DOCUMENT, check_document
 from kit.study.study_report import duration_text
-from kit.study.study_runs import VARIANT_OPTIONS, StudyRun
+from kit.study.study_runs import StudyRun
 from kit.workspace import Workspace
 
 
@@ -75,6 +76,9 @@ def command(
     kit study 5                   a chapter's list; --whole prints all of it
     kit study 3.5 --again         train its agents again; prints the time first
     kit study 3.5 --again --kit   the same with the kit's own preset
+    kit study 4.1 --again --no-limit   without his library's limit of values
+    kit study clip                values with and without that limit; --again
+                                  makes both again, in about five minutes
     kit study --html FOLDER       everything on one page; --csv for tables
     kit study --check             check that the document follows from the logs
 
@@ -100,16 +104,17 @@ def command(
                 if by_kit and no_limit:
                     options.fail("--kit and --no-limit are two ways to train: give one of them.")
                 variant: StudyVariant = "kit" if by_kit else "no-limit" if no_limit else "seed"
-                _run_again(
-                    f"figure-{wanted}" if kind == "figure" else wanted,
-                    opened,
-                    variant,
-                    seeds,
-                    steps,
-                    jobs,
-                    executor,
-                    cluster,
-                )
+                for each in _variants(wanted, variant):
+                    _run_again(
+                        f"figure-{wanted}" if kind == "figure" or wanted in FIGURES_ALONE else wanted,
+                        opened,
+                        each,
+                        seeds,
+                        steps,
+                        jobs,
+                        executor,
+                        cluster,
+                    )
             to_files = outputs.has_files
             listed, everything = study_document.chapters(
                 kind, wanted, opened, to_files=to_files or whole, with_class=whole
@@ -121,6 +126,17 @@ def command(
             outputs,
             printed=Document(study_document.TITLE, listed) if listed and not whole else None,
         )
+
+
+FIGURES_ALONE: Final = tuple(
+    figure.id for chapter in study_chapters() for figure in chapter.figures if figure.sessions == "values"
+)
+"""Figures that are none of the dissertation's: their names need no word before them."""
+
+
+def _variants(wanted: str, variant: StudyVariant) -> tuple[StudyVariant, ...]:
+    """How a number is trained again: a figure that compares is trained both ways."""
+    return ("seed", "no-limit") if wanted in FIGURES_ALONE else (variant,)
 
 
 def _read_number(words: tuple[str, ...]) -> tuple[str, str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
 from itertools import zip_longest
 from pathlib import Path
@@ -47,7 +47,6 @@ from kit.study.recorded_results import (
     cells_below,
     find_recorded_result,
     seed_means,
-    source_number,
 )
 from kit.study.study_report import (
     VARIANT_NAMES,
@@ -59,6 +58,7 @@ from kit.study.study_report import (
     session_plot,
     table_chapter,
     table_status,
+    value_blocks,
 )
 from kit.workspace import Workspace
 
@@ -284,7 +284,8 @@ def _overview(chapter: StudyChapter, workspace: Workspace | None) -> Chapter:
         if figure.results_of:
             is_recorded = _is_recorded(figure, workspace)
             status = "recorded" if is_recorded else f"none; {figure.results_of.replace('-', ' ')} --again"
-        items.append((f"Figure {figure.id}", figure.title, status))
+        name = figure.id if figure.sessions == "values" else f"Figure {figure.id}"
+        items.append((name, figure.title, status))
     names = "; ".join(f"{VARIANT_NAMES[each]}: {_VARIANT_WORDS[each]}" for each in VARIANTS)
     notes = [f"Recorded agents, {names}. `kit study NUMBER` shows one."]
     if chapter.number == 5:
@@ -317,7 +318,11 @@ def _is_recorded(figure: PrintedFigure, workspace: Workspace | None) -> bool:
     return recorded is not None and any(recorded.paths_of(figure.group, case) for _, case in figure.paths)
 
 
-_VARIANT_WORDS: Final = {"seed": "by the dissertation's settings", "kit": "by the kit's own preset"}
+_VARIANT_WORDS: Final[Mapping[StudyVariant, str]] = {
+    "seed": "by the dissertation's settings",
+    "no-limit": "by the same without their limit of values",
+    "kit": "by the kit's own preset",
+}
 
 
 def _table(number: str, workspace: Workspace | None) -> Chapter:
@@ -338,8 +343,9 @@ def _durations(table: PrintedTable, workspace: Workspace | None, results: Result
 
     found: dict[StudyVariant, tuple[float, float]] = {}
     for variant in VARIANTS:
-        source = printed_table(source_number(table))
-        run = StudyRun.of(source, workspace or Workspace(Path()), variant)
+        run = StudyRun.of(table, workspace or Workspace(Path()), variant)
+        if variant == "no-limit" and not table.prints_best_test:
+            continue
         if variant not in results and (run.groups or run.has_fields):
             cores = 1 if workspace is None else os.cpu_count() or 1
             found[variant] = run.expected_seconds(1, cores)
@@ -381,10 +387,13 @@ FIRST_RUN: Final = (
 
 def _figure_plots(
     figure: PrintedFigure, workspace: Workspace | None
-) -> tuple[list[Plot], RecordedResult | None]:
+) -> tuple[list[Block], RecordedResult | None]:
     """Makes the plots of a figure from the raw answers, or from the first agent of its group that was recorded."""
     if not figure.results_of:
         return [_evaluation_plots()[name] for name in figure.plots], None
+    if figure.sessions == "values":
+        results = _results(printed_table(figure.results_of), workspace)
+        return value_blocks(figure, results), results.get("seed")
     recorded = find_recorded_result(workspace, printed_table(figure.results_of))
     tests = recorded.tests_of(figure.group) if recorded else ()
     plots = [session_plot(figure, test) for test in tests[:1]]

@@ -19,8 +19,10 @@ from kit.document.blocks import (
     Table,
     Text,
 )
+from kit.learning.training.measures import format_measure
 from kit.learning.training.run_upkeep import format_seconds
 from kit.study.printed_tables import (
+    ADJACENCY,
     ADJACENCY_BY_POSES,
     POTENTIAL_FIELDS,
     STEPS,
@@ -30,16 +32,17 @@ from kit.study.printed_tables import (
     StudyChapter,
 )
 from kit.study.recorded_results import (
-    ADJACENCY_MIN_SUCCESS,
     CONTROLLERS,
+    VARIANT_OPTIONS,
     RecordedCell,
     RecordedPath,
     RecordedResult,
     RecordedTest,
     StudyVariant,
+    TrainedSeeds,
     TrainingSession,
     cells_below,
-    source_number,
+    pooled_cell,
     spread_table,
 )
 
@@ -89,6 +92,8 @@ def table_chapter(
     cells = {variant: result.cells(table) for variant, result in results.items()}
     blocks: list[Block] = [Text(text) for text in (f"Section {table.section}.", *table.settings)]
     blocks.append(_comparison_table(table, cells))
+    if table.prints_best_test:
+        blocks.append(_seeds_table(table, results))
     for variant, result in results.items():
         blocks += _recorded_blocks(table, variant, result, cells[variant])
     if any(cells.values()):
@@ -109,7 +114,8 @@ def figure_chapter(
         blocks.append(Text(f"No recorded result; run it with `{figure.run}`."))
     if figure.missing:
         blocks.append(Text(f"Missing: {figure.missing}"))
-    return Chapter(f"figure-{figure.id}", f"Figure {figure.id}. {figure.title}", tuple(blocks))
+    title = figure.title if figure.sessions == "values" else f"Figure {figure.id}. {figure.title}"
+    return Chapter(f"figure-{figure.id}", title, tuple(blocks))
 
 
 def paths_title(figure: PrintedFigure, case: str, ways: Sequence[RecordedPath]) -> str:
@@ -139,6 +145,45 @@ def session_plot(figure: PrintedFigure, test: RecordedTest) -> Plot | None:
     low, high = min(0.0, *(value for _, value in values)), max(1.0, *(value for _, value in values))
     rows = tuple((f"{steps:,} steps", (value,)) for steps, value in values)
     return BarChart(name, title, (figure.sessions,), rows, low, high)
+
+
+def value_blocks(figure: PrintedFigure, results: Results) -> list[Block]:
+    """The largest value and the success of each test, with and without the limit of values; none where there are none."""
+    tests = {name: result.tests_of(figure.group)[:1] for name, result in results.items()}
+    sessions = {
+        name: {each.steps: each for each in found[0].sessions} for name, found in tests.items() if found
+    }
+    steps = sorted({number for found in sessions.values() for number in found})
+    if not steps:
+        return []
+    columns = [Column("steps")]
+    for name in sessions:
+        columns += [Column(f"{VALUE_TITLES[name]}: value"), Column("success", decimals=2)]
+    rows, bars = [], []
+    for number in steps:
+        here = [found.get(number) for found in sessions.values()]
+        cells: list[Cell] = [f"{number:,}"]
+        for each in here:
+            known = each is not None and each.value_max is not None
+            cells += [format_measure(each.value_max) if known else None, each.share if each else None]  # type: ignore[union-attr, arg-type]  # known
+        rows.append(tuple(cells))
+        heights = tuple(
+            math.log10(max(1.0, each.value_max))
+            if each is not None and each.value_max is not None
+            else math.nan
+            for each in here
+        )
+        bars.append((f"{number:,} steps", heights))
+    high = max(height for _, heights in bars for height in heights if not math.isnan(height))
+    names = tuple(VALUE_TITLES[name] for name in sessions)
+    title = f"{figure.title}: the largest value of the last 1,000 observations, seed 0"
+    return [
+        Table(f"figure-{figure.id}-values", title, tuple(columns), tuple(rows)),
+        BarChart(f"figure-{figure.id}", "Its decimal logarithm", names, tuple(bars), 0.0, math.ceil(high)),
+    ]
+
+
+VALUE_TITLES: Final[Mapping[StudyVariant, str]] = {"seed": "limit 500", "no-limit": "no limit", "kit": "kit"}
 
 
 def _outcome_shares(session: TrainingSession) -> tuple[float, ...]:
@@ -181,8 +226,73 @@ def _comparison_table(table: PrintedTable, cells: Mapping[StudyVariant, Recorded
         "As printed, and ours",
         (label, label, *columns),
         tuple(lines),
-        note="at least, at most: the 95 % interval of the line above. differs: from the printed number.",
+        note="at least, at most: the 95 % interval of the line above. episodes: over which an adjacency is taken, all of which "
+        "reached the target. differs: from the printed number.",
         grouped=True,
+    )
+
+
+def _seeds_table(table: PrintedTable, results: Results) -> Table:
+    """One row for each seed: the best of its tests, as the print is one, and its best agent on fresh episodes."""
+    rows: list[tuple[Cell, ...]] = []
+    for variant, result in results.items():
+        if variant == "kit":  # trained for another end: for every case, or longer
+            continue
+        for group in table.row_groups:
+            seeds = TrainedSeeds.of(table, result, group)
+            rows += [_seed_cells(variant, result, group, test) for test in seeds.tests]
+            missing = seeds.planned - len(seeds.tests)
+            if missing:
+                name = f"{missing} of {seeds.planned} not trained yet"
+                rows.append((VARIANT_NAMES[variant], group, name, *[None] * 9))
+    columns = (
+        Column("settings", CellStyle.TEXT),
+        Column("trained on", CellStyle.TEXT),
+        Column("seed", CellStyle.TEXT),
+        Column("at most"),
+        Column("steps"),
+        Column("best test", decimals=2),
+        Column("largest value"),
+        Column("fresh", decimals=2),
+        Column("adj rays", decimals=2),
+        Column("adj poses", decimals=2),
+        Column("of episodes"),
+        Column("preset", CellStyle.TEXT),
+    )
+    return Table(
+        f"table-{table.id.replace('.', '-')}-seeds",
+        "Trained again: the best test of each seed, as the print is the best of up to 100 tests of one",
+        columns,
+        tuple(rows),
+        note=SEEDS_NOTE,
+    )
+
+
+SEEDS_NOTE: Final = (
+    "at most, steps: of training, which ends with a test of 0.8 or more. best test: 100 episodes of the cases trained on. fresh: "
+    "success of that agent on fresh episodes of these cases. adj: the share of steps side by side by rays (equations 4.7 to 4.9) "
+    "and by poses (4.2 to 4.6), over the fresh episodes that reached the target, of which there are so many."
+)
+
+
+def _seed_cells(
+    variant: StudyVariant, result: RecordedResult, group: str, test: RecordedTest
+) -> tuple[Cell, ...]:
+    episodes = test.episodes * len(test.own_cases)
+    sides = [pooled_cell((test,), measure) for measure in (ADJACENCY, ADJACENCY_BY_POSES)]
+    settings, best = result.settings, test.best_session
+    return (
+        VARIANT_NAMES[variant],
+        group,
+        f"{test.seed}",
+        f"{settings.most_steps:,}",
+        f"{test.steps:,}",
+        None if best is None else best.share,
+        None if test.largest_value is None else format_measure(test.largest_value),
+        sum(test.reached[case] for case in test.own_cases) / max(1, episodes),
+        *(None if side is None else side.value for side in sides),
+        None if sides[0] is None else f"{sides[0].episodes}",
+        f"{settings.preset} {settings.changed}".strip(),
     )
 
 
@@ -196,6 +306,9 @@ def _recorded_lines(table: PrintedTable, row: str, name: str, cells: RecordedCel
     if any(intervals):
         lines.append((row, "at least", *(each.low if each else None for each in intervals)))
         lines.append((row, "at most", *(each.high if each else None for each in intervals)))
+    counts = [each.episodes if each else None for each in ours]
+    if any(counts):
+        lines.append((row, "episodes", *counts))
     differences = [
         _cell_number(each, printed) if each and not math.isnan(printed) else None
         for each, printed in zip(ours, table.rows[row], strict=True)
@@ -282,8 +395,8 @@ def _recorded_blocks(
 
 
 ADJACENCY_NOTE: Final = (
-    f"Adjacency of agents is by rays, equations 4.7 to 4.9, and shown where they reached the target in {ADJACENCY_MIN_SUCCESS} "
-    "of the episodes or more; that of controllers is by poses, 4.2 to 4.6, repaired."
+    "Adjacency of agents is by rays, equations 4.7 to 4.9, over the episodes that reached the target; that of controllers is by "
+    "poses, 4.2 to 4.6, repaired."
 )
 INTERVALS_NOTE: Final = (
     "Intervals hold 95 % over the episodes of all seeds together (Wilson's of shares of success, Student's of adjacency): how "
@@ -331,6 +444,8 @@ def _origin(recorded: RecordedResult) -> str:
     how = (
         f"{settings.task}, {settings.algorithm}, preset {settings.preset}" if settings.task else "no training"
     )
+    if settings.changed:
+        how += f", {settings.changed}"
     if settings.steps is not None:
         how += f", at most {settings.steps:,} steps"
     how += (
@@ -358,8 +473,7 @@ def _how_to_run(table: PrintedTable, missing: Durations) -> list[str]:
     """Names the command that makes a result where none is recorded."""
     found = []
     for variant, seconds in missing.items():
-        option = " --kit" if variant == "kit" else ""
-        command = f"kit study {source_number(table)} --again{option}"
+        command = f"kit study {table.id} --again{VARIANT_OPTIONS[variant]}"
         found.append(
             f"No recorded result for {VARIANT_TITLES[variant]}. `{command}` makes one: for one seed {duration_text(seconds)}."
         )

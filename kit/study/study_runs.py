@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import subprocess
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -48,6 +48,7 @@ from kit.study.printed_tables import (
 from kit.study.recorded_results import (
     CONTROLLERS,
     SHIPPED_FOLDER,
+    VARIANT_OPTIONS,
     RecordedPath,
     RecordedResult,
     RecordedSettings,
@@ -162,8 +163,6 @@ def missing_paths(
     )
 
 
-VARIANT_OPTIONS: Final[Mapping[StudyVariant, str]] = {"seed": "", "no-limit": " --no-limit", "kit": " --kit"}
-"""What follows ``kit study NUMBER --again``."""
 MEASURED_RATES: Final = {("boltzmann-dqn", "seed"): 800.0, ("ppo", "seed"): 700.0, ("ppo", "kit"): 25_000.0}
 """Steps per second of one training by algorithm and preset, on a busy core of a virtual machine. Used until this workspace has
 timed one of its own."""
@@ -509,7 +508,15 @@ def _test_agent(group: str, sweep: TrainingSweep, entry: SweepEntry, episodes: i
         tuple(case.name for _, case in config.choice.resolve().map_cases()),
         _sessions(run),
         {case.case: round(case.adjacency_sd, 4) for case in found.cases if not np.isnan(case.adjacency_sd)},
+        reached_by_rays=_known({case.case: case.reached_by_rays.mean for case in found.cases}),
+        reached_by_rays_sd=_known({case.case: case.reached_by_rays.sd for case in found.cases}),
+        reached_by_poses=_known({case.case: case.reached_by_poses.mean for case in found.cases}),
     )
+
+
+def _known(shares: dict[str, float]) -> dict[str, float]:
+    """Those that are numbers, rounded."""
+    return {case: round(share, 4) for case, share in shares.items() if not np.isnan(share)}
 
 
 def _sessions(run: TrainingRun) -> tuple[TrainingSession, ...]:

@@ -17,7 +17,7 @@ import zipfile
 import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import IO, Any, Literal, get_args
 
@@ -151,6 +151,8 @@ class TrainingSummary:
     best_evaluation: Evaluated | None = None
     """That of the best policy."""
     reason: str = ""
+    measures: dict[str, float] = field(default_factory=dict)
+    """What the learner last measured of its own learning; see ``kit.learning.training.measures``."""
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able."""
@@ -323,6 +325,7 @@ def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: R
     steps, seconds, rate, reason = 0, 0.0, 0.0, ""
     tested: Evaluated | None = None
     best: Evaluated | None = None
+    measures: dict[str, float] = {}
     state: RunState = "interrupted" if events else "new"
     for event in events:
         match event:
@@ -330,8 +333,9 @@ def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: R
                 state, steps = "interrupted", event.steps
             case TrainingProgress():
                 steps, seconds, rate = event.steps, event.seconds, event.rate
+                measures = event.measures or measures
             case Evaluated():
-                tested = event
+                tested, measures = event, event.measures or measures
                 best = event if event.kept else best
             case TrainingEnded():
                 state, steps, seconds, reason = event.how, event.steps, event.seconds, event.reason
@@ -339,7 +343,7 @@ def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: R
                 pass
     if alive:
         state = "paused" if order == "pause" else "running"
-    return TrainingSummary(state, steps, seconds, rate, tested, best, reason)
+    return TrainingSummary(state, steps, seconds, rate, tested, best, reason, measures)
 
 
 def create_run(folder: Path, config: RunConfig, name: str | None = None) -> TrainingRun:
