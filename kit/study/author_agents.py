@@ -53,19 +53,23 @@ def read_author_agents(file: Path = AGENTS_FILE) -> tuple[AuthorAgentResult, ...
             raise AuthorAgentsError(f"{file}, line 1: the columns must be {', '.join(FIELDS)}.")
         for each in reader:
             try:
-                numbers = {name: float(each[name]) if each[name] else None for name in FIELDS[2:7]}
-                found.append(AuthorAgentResult(each["agent"], each["table"], **numbers, **_texts(each)))
+                found.append(_read_result(each))
             except (TypeError, ValueError) as error:
                 raise AuthorAgentsError(f"{file}, line {reader.line_num}: {error}.") from None
     return tuple(found)
 
 
-def _texts(row: dict[str, str]) -> dict[str, str]:
-    """ValueError if one is missing."""
-    found = {name: row[name] for name in ("episodes", "where")}
-    if not all(found.values()):
-        raise ValueError("episodes and where must be told")
-    return found
+def _read_result(row: dict[str, str]) -> AuthorAgentResult:
+    """TypeError or ValueError if something is missing or no number."""
+    agent, table, episodes, where = (row[name] for name in ("agent", "table", "episodes", "where"))
+    if not all((agent, table, episodes, where)):
+        raise ValueError("agent, table, episodes and where must be told")
+    printed_success, printed_adjacency, jitter_s, success, adjacency = (
+        float(row[name]) if row[name] else None for name in FIELDS[2:7]
+    )
+    return AuthorAgentResult(
+        agent, table, printed_success, printed_adjacency, jitter_s, success, adjacency, episodes, where
+    )
 
 
 def author_agents_table() -> Table:

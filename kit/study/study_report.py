@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from statistics import fmean
 from typing import Final
 
@@ -98,6 +98,7 @@ def table_chapter(
         blocks += _recorded_blocks(table, variant, result, cells[variant])
     if any(cells.values()):
         blocks.append(_picture(table, cells))
+    blocks += [Text(note) for note in _notes(table, cells)]
     blocks += [Text(f"Slip: {each.why}{_right_values(each)}") for each in misprints]
     blocks += [Text(text) for text in _how_to_run(table, missing)]
     return Chapter(f"table-{table.id}", f"Table {table.id}. {table.title}", tuple(blocks))
@@ -238,26 +239,24 @@ def _seeds_table(table: PrintedTable, results: Results) -> Table:
     for variant, result in results.items():
         if variant == "kit":  # trained for another end: for every case, or longer
             continue
-        for group in table.row_groups:
+        settings = table.settings_of + (", no limit" if variant == "no-limit" else "")
+        for row, group in zip(table.rows, table.row_groups, strict=False):
             seeds = TrainedSeeds.of(table, result, group)
-            rows += [_seed_cells(variant, result, group, test) for test in seeds.tests]
+            rows += [(row, settings, *_seed_cells(result, test)) for test in seeds.tests]
             missing = seeds.planned - len(seeds.tests)
             if missing:
-                name = f"{missing} of {seeds.planned} not trained yet"
-                rows.append((VARIANT_NAMES[variant], group, name, *[None] * 9))
+                rows.append((row, settings, f"{missing} of {seeds.planned}: not trained yet", *[None] * 8))
     columns = (
+        Column("", CellStyle.TEXT),
         Column("settings", CellStyle.TEXT),
-        Column("trained on", CellStyle.TEXT),
         Column("seed", CellStyle.TEXT),
-        Column("at most"),
-        Column("steps"),
+        *(Column(title) for title in ("at most", "steps")),
         Column("best test", decimals=2),
-        Column("largest value"),
+        Column("value"),
         Column("fresh", decimals=2),
-        Column("adj rays", decimals=2),
-        Column("adj poses", decimals=2),
-        Column("of episodes"),
-        Column("preset", CellStyle.TEXT),
+        Column("rays", decimals=2),
+        Column("poses", decimals=2),
+        Column("of"),
     )
     return Table(
         f"table-{table.id.replace('.', '-')}-seeds",
@@ -269,30 +268,25 @@ def _seeds_table(table: PrintedTable, results: Results) -> Table:
 
 
 SEEDS_NOTE: Final = (
-    "at most, steps: of training, which ends with a test of 0.8 or more. best test: 100 episodes of the cases trained on. fresh: "
-    "success of that agent on fresh episodes of these cases. adj: the share of steps side by side by rays (equations 4.7 to 4.9) "
-    "and by poses (4.2 to 4.6), over the fresh episodes that reached the target, of which there are so many."
+    "at most, steps: of training, which ends with a test of 0.8 or more. best test: 100 episodes. value: the largest in any test. "
+    "fresh: success of that agent on fresh episodes. rays, poses: its adjacency, the share of steps side by side by rays "
+    "(equations 4.7 to 4.9) and by poses (4.2 to 4.6), over the fresh episodes that reached the target; of: how many these are."
 )
 
 
-def _seed_cells(
-    variant: StudyVariant, result: RecordedResult, group: str, test: RecordedTest
-) -> tuple[Cell, ...]:
+def _seed_cells(result: RecordedResult, test: RecordedTest) -> tuple[Cell, ...]:
     episodes = test.episodes * len(test.own_cases)
     sides = [pooled_cell((test,), measure) for measure in (ADJACENCY, ADJACENCY_BY_POSES)]
-    settings, best = result.settings, test.best_session
+    best = test.best_session
     return (
-        VARIANT_NAMES[variant],
-        group,
         f"{test.seed}",
-        f"{settings.most_steps:,}",
+        f"{result.settings.most_steps:,}",
         f"{test.steps:,}",
         None if best is None else best.share,
         None if test.largest_value is None else format_measure(test.largest_value),
         sum(test.reached[case] for case in test.own_cases) / max(1, episodes),
         *(None if side is None else side.value for side in sides),
         None if sides[0] is None else f"{sides[0].episodes}",
-        f"{settings.preset} {settings.changed}".strip(),
     )
 
 
@@ -367,11 +361,8 @@ def _recorded_blocks(
     """How ours were made, and every cell whose interval lies below the printed number."""
     name = VARIANT_NAMES[variant]
     blocks: list[Block] = [Text(f"{VARIANT_TITLES[variant]}: {_origin(recorded)}")]
-    if any(cell.interval is not None for cell in cells.values()):
-        blocks.append(Text(INTERVALS_NOTE))
-    for group in dict.fromkeys(
-        table.groups if table.has_fields else (*table.trained_groups, *table.row_groups)
-    ):
+    groups = table.groups if table.has_fields else (*table.trained_groups, *table.row_groups)
+    for group in () if table.prints_best_test and variant != "kit" else dict.fromkeys(groups):
         told = [_test_text(each) for each in recorded.tests_of(group)]
         blocks.append(Text(f"{name}, {group}: {'; '.join(told) or 'no agent yet'}."))
     if table.has_fields:
@@ -392,6 +383,14 @@ def _recorded_blocks(
             )
         )
     return blocks
+
+
+def _notes(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> Iterator[str]:
+    """What the recorded numbers of a table mean, once for all of them."""
+    if any(cell.interval is not None for found in cells.values() for cell in found.values()):
+        yield INTERVALS_NOTE
+    if any(cells.values()) and {ADJACENCY, ADJACENCY_BY_POSES} & set(table.measures):
+        yield ADJACENCY_NOTE
 
 
 ADJACENCY_NOTE: Final = (
@@ -437,9 +436,8 @@ def _test_text(test: RecordedTest) -> str:
 
 
 def _origin(recorded: RecordedResult) -> str:
-    """How a result was made: command, commit, settings, versions."""
+    """How a result was made: command, commit, settings; the log has the versions of packages."""
     settings = recorded.settings
-    versions = ", ".join(f"{name} {number}" for name, number in settings.versions.items())
     commit = f" at commit {settings.commit}" if settings.commit else ""
     how = (
         f"{settings.task}, {settings.algorithm}, preset {settings.preset}" if settings.task else "no training"
@@ -453,7 +451,7 @@ def _origin(recorded: RecordedResult) -> str:
         if settings.task
         else ", runs of each case as named with their time"
     )
-    return f"`{settings.command}`{commit}: {how}. {ADJACENCY_NOTE} {versions}. Log: {recorded.file.name}."
+    return f"`{settings.command}`{commit}: {how}. Log, with the versions of packages: {recorded.file.name}."
 
 
 def _right_values(misprint: Misprint) -> str:
