@@ -32,6 +32,12 @@ StudyVariant = Literal["seed", "no-limit", "kit"]
 VARIANTS: Final[tuple[StudyVariant, ...]] = ("seed", "no-limit", "kit")
 CONTROLLERS: Final[Mapping[StudyVariant, str]] = {"seed": "fields", "kit": "abreast"}
 """Who drives where the dissertation has potential fields: its own controller, or the kit's planner."""
+VARIANT_NAMES: Final[Mapping[StudyVariant, str]] = {
+    "seed": "ours",
+    "no-limit": "no limit",
+    "kit": "kit",
+}
+"""The words of a table's rows: agents trained by the dissertation's settings, and by the kit's."""
 VARIANT_OPTIONS: Final[Mapping[StudyVariant, str]] = {"seed": "", "no-limit": " --no-limit", "kit": " --kit"}
 """What follows ``kit study NUMBER --again``."""
 SHIPPED_FOLDER: Final = Path(__file__).with_name("results")
@@ -317,8 +323,9 @@ class TrainedSeeds:
     """How many there are to be; at least as many as there are."""
 
     @classmethod
-    def of(cls, table: PrintedTable, result: RecordedResult, group: str) -> TrainedSeeds:
-        tests = result.tests_of(group)
+    def of(cls, table: PrintedTable, result: RecordedResult | None, group: str) -> TrainedSeeds:
+        """``result``: None where nothing has been recorded yet."""
+        tests = () if result is None else result.tests_of(group)
         return cls(tests, max(len(tests), table.seeds))
 
     @property
@@ -532,8 +539,8 @@ def spread_table(table: PrintedTable, result: RecordedResult, variant: StudyVari
         Column("in SD", CellStyle.TEXT),
         Column("between", CellStyle.TEXT),
     )
-    identity = f"table-{table.id.replace('.', '-')}-seeds" + ("-kit" if variant == "kit" else "")
-    title = f"Means over the cases, printed and by seed: {'kit' if variant == 'kit' else 'ours'}"
+    identity = f"table-{log_name(table.id, variant).replace('.', '-')}-means"
+    title = f"Means over the cases, printed and by seed: {VARIANT_NAMES[variant]}"
     return Table(identity, title, columns, tuple(rows), note=SPREAD_NOTE)
 
 

@@ -47,6 +47,7 @@ from kit.study.printed_tables import (
 )
 from kit.study.recorded_results import (
     SHIPPED_FOLDER,
+    VARIANT_NAMES,
     VARIANTS,
     RecordedResult,
     StudyVariant,
@@ -56,7 +57,6 @@ from kit.study.recorded_results import (
     seed_means,
 )
 from kit.study.study_report import (
-    VARIANT_NAMES,
     Durations,
     RecordedCells,
     Results,
@@ -182,12 +182,9 @@ def summary_chapter() -> Chapter:
 
 
 FINDING: Final = (
-    "Why tables 4.1 and 4.2 rarely come out: the author's library takes all values above 500 for equal. Being side by side pays "
-    "10 in each step, so good actions are soon worth more than that; from then on it explores by chance, the values feed on each "
-    "other, and they grow without end. Without that limit most seeds learn in 10,000 to 90,000 steps: 49 actions were not too "
-    "many. Those that do not stand still side by side, which the reward pays better than arriving. The printed accuracies of "
-    "4.1 and 4.2 are the best of up to 100 tests of one training, and the printed adjacency largely measures how late ROS "
-    "delivered commands."
+    "Why 4.1 and 4.2 rarely come out: the author's library takes values above 500 for equal. Side by side pays 10 a step, so good "
+    "actions soon pass 500; then it explores by chance, and the values feed on each other without end. The prints are the best "
+    "of up to 100 tests; printed adjacency largely measures how late ROS delivered commands."
 )
 
 
@@ -240,12 +237,12 @@ def incomparable_rows(table: PrintedTable, results: Results) -> list[str]:
 
 
 def summary_lines() -> list[str]:
-    """README's tables and the finding, as Markdown."""
-    lines = [
-        line.replace(" | ", "|").replace("| ", "|").replace(" |", "|")
-        for table, _ in summary_tables()
-        for line in table_to_markdown(replace(table, note=""))
-    ]
+    """What README tells of the study, as Markdown: tables, a sentence below each, and the finding."""
+    lines: list[str] = []
+    for table, sentence in summary_tables():
+        rows = table_to_markdown(replace(table, note=""))
+        lines += [line.replace(" | ", "|").replace("| ", "|").replace(" |", "|") for line in rows]
+        lines += ["", sentence, ""]
     return [*lines, FINDING]
 
 
@@ -255,23 +252,22 @@ def summary_tables() -> tuple[tuple[Table, str], ...]:
         (
             _author_summary(),
             (
-                "Adjacency: share of steps side by side by rays. Recorded outside the kit, from his published networks; all rows: "
+                "Recorded outside the kit, from his published networks; adjacency: share of steps side by side by rays. All: "
                 "`kit study author`."
             ),
         ),
         (
             trained_again_table(),
             (
-                "One training for each of the seeds 0, 1, ...; it ends with a test of 0.8. One table: `kit study 4.1`; made again: "
-                "`kit study 4.1 --again --seeds 5`, with `--no-limit` for the last column; `kit study clip` shows the values."
+                "Seeds 0, 1, ...; each ends with a test of 0.8. Again: `kit study 4.1 --again --seeds 5`, or with `--no-limit`; values: "
+                "`kit study clip`."
             ),
         ),
         (
             compared_means_table(),
             (
-                "Means over cases of fresh episodes (lowest-highest seed); adjacency over the episodes that reached the target, where all "
-                "have any. APF: potential fields; the kit's is its planner `abreast`. "
-                "One table: `kit study 4.6`; made again: `kit study 4.6 --again --kit`; all numbers checked: `kit study --check`."
+                "Means over cases (lowest-highest seed); adjacency of successful episodes. Again: `kit study 4.6 --again --kit`; all "
+                "numbers checked: `kit study --check`."
             ),
         ),
     )
@@ -279,17 +275,15 @@ def summary_tables() -> tuple[tuple[Table, str], ...]:
 
 def _author_summary() -> Table:
     """What the published agents reach in the kit's own simulator."""
+    titles = ("jitter [s]", "printed", "here", "adjacency", "here")
     columns = (
         Column("The author's agents", CellStyle.TEXT),
-        *(
-            Column(title, decimals=2)
-            for title in ("printed", "here", "adjacency", "here", "late by up to [s]")
-        ),
+        *(Column(title, decimals=2) for title in titles),
     )
     rows: list[tuple[Cell, ...]] = [
         (
-            f"{each.table}, {each.agent}",
-            *(each.printed_success, each.success, each.printed_adjacency, each.adjacency, each.jitter_s),
+            f"{each.table}, {each.agent.partition(' (')[0].replace('_', ' ')}",
+            *(each.jitter_s, each.printed_success, each.success, each.printed_adjacency, each.adjacency),
         )
         for each in read_author_agents()
         if each.where.startswith("full simulator")
@@ -313,10 +307,9 @@ def trained_again_table() -> Table:
         results = _results(table, None)
         for label, group, printed in _trainings(table):
             ours, other = (
-                TrainedSeeds.of(table, results[variant], group) if variant in results else None
-                for variant in ("seed", "no-limit")
+                TrainedSeeds.of(table, results.get(variant), group) for variant in ("seed", "no-limit")
             )
-            if ours is None or not ours.planned:
+            if not ours.planned:
                 continue
             bests = [session.share for session in ours.best_sessions]
             rows.append(
@@ -327,15 +320,15 @@ def trained_again_table() -> Table:
                     _seeds_text(ours),
                     _range_text(bests, "{:.2f}"),
                     _range_text(ours.steps_to_goal, "{:,}"),
-                    f"{results['seed'].settings.most_steps:,}",
-                    _seeds_text(other) if other is not None and other.tests else None,
+                    f"{results['seed'].settings.most_steps:,}" if ours.tests else None,
+                    _seeds_text(other, with_steps=True) if other.tests else None,
                 )
             )
     return Table("trained-again", "", columns, tuple(rows))
 
 
-TRAINED_AGAIN: Final = ("3.3", "3.4", "4.1", "4.2", "4.5", "5.2")
-"""The tables that print accuracies of trainings; 4.5 repeats 4.4."""
+TRAINED_AGAIN: Final = ("3.3", "4.1", "4.2", "4.5", "5.2")
+"""Tables that print accuracies of trainings; 4.5 repeats 4.4."""
 
 
 def _trainings(table: PrintedTable) -> Iterator[tuple[str, str, float]]:
@@ -352,10 +345,12 @@ def _trainings(table: PrintedTable) -> Iterator[tuple[str, str, float]]:
             yield (f", {name}" if name else ""), table.groups[place], sum(rows) / len(rows)
 
 
-def _seeds_text(seeds: TrainedSeeds) -> str:
-    """``2 of 5``; and how many are still to be trained."""
+def _seeds_text(seeds: TrainedSeeds, *, with_steps: bool = False) -> str:
+    """``2 of 5``, with the steps that these took; and how many are still to be trained."""
     missing = seeds.planned - len(seeds.tests)
     told = f"{seeds.reached} of {len(seeds.tests)}"
+    if with_steps and seeds.steps_to_goal:
+        told += f" ({_range_text(seeds.steps_to_goal, '{:,}')})"
     return f"{told}, {missing} unfinished" if missing else told
 
 

@@ -33,6 +33,7 @@ from kit.study.printed_tables import (
 )
 from kit.study.recorded_results import (
     CONTROLLERS,
+    VARIANT_NAMES,
     VARIANT_OPTIONS,
     RecordedCell,
     RecordedPath,
@@ -42,6 +43,7 @@ from kit.study.recorded_results import (
     TrainedSeeds,
     TrainingSession,
     cells_below,
+    log_name,
     pooled_cell,
     spread_table,
 )
@@ -50,12 +52,6 @@ RecordedCells = Mapping[tuple[str, str], RecordedCell]
 """Cells by row and column of a printed table."""
 Results = Mapping[StudyVariant, RecordedResult]
 """Those that there are."""
-VARIANT_NAMES: Final[Mapping[StudyVariant, str]] = {
-    "seed": "ours",
-    "no-limit": "no limit",
-    "kit": "kit",
-}
-"""The words of a table's rows: agents trained by the dissertation's settings, and by the kit's."""
 VARIANT_TITLES: Final[Mapping[StudyVariant, str]] = {
     "seed": "ours, by the dissertation's settings",
     "no-limit": "no limit, by the dissertation's settings without its limit of values",
@@ -236,13 +232,13 @@ def _comparison_table(table: PrintedTable, cells: Mapping[StudyVariant, Recorded
 def _seeds_table(table: PrintedTable, results: Results) -> Table:
     """One row for each seed: the best of its tests, as the print is one, and its best agent on fresh episodes."""
     rows: list[tuple[Cell, ...]] = []
-    for variant, result in results.items():
-        if variant == "kit":  # trained for another end: for every case, or longer
-            continue
+    for variant in ("seed", "no-limit"):  # the kit's are trained for another end: for every case, or longer
+        result = results.get(variant)
         settings = table.settings_of + (", no limit" if variant == "no-limit" else "")
         for row, group in zip(table.rows, table.row_groups, strict=False):
             seeds = TrainedSeeds.of(table, result, group)
-            rows += [(row, settings, *_seed_cells(result, test)) for test in seeds.tests]
+            if result is not None:
+                rows += [(row, settings, *_seed_cells(result, test)) for test in seeds.tests]
             missing = seeds.planned - len(seeds.tests)
             if missing:
                 rows.append((row, settings, f"{missing} of {seeds.planned}: not trained yet", *[None] * 8))
@@ -365,7 +361,7 @@ def _recorded_blocks(
     for group in () if table.prints_best_test and variant != "kit" else dict.fromkeys(groups):
         told = [_test_text(each) for each in recorded.tests_of(group)]
         blocks.append(Text(f"{name}, {group}: {'; '.join(told) or 'no agent yet'}."))
-    if table.has_fields:
+    if table.has_fields and variant in CONTROLLERS:
         blocks.append(Text(f"{name}: where the print has potential fields, `{CONTROLLERS[variant]}` drives."))
         if (sides := _sides_table(table, recorded, variant)) is not None:
             blocks.append(sides)
@@ -420,7 +416,7 @@ def _sides_table(table: PrintedTable, recorded: RecordedResult, variant: StudyVa
         Column("", CellStyle.TEXT),
         *(Column(title) for title in ("printed", "by rays", "by poses")),
     )
-    identity = f"table-{table.id.replace('.', '-')}-sides" + ("-kit" if variant == "kit" else "")
+    identity = f"table-{log_name(table.id, variant).replace('.', '-')}-sides"
     note = (
         "By rays: equations 4.7 to 4.9, the dissertation's own four rays. By poses: 4.2 to 4.6, repaired. Of potential "
         "fields it does not say which it prints."
