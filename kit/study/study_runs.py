@@ -18,6 +18,7 @@ from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.environment.tasks import find_task
 from kit.learning.policies.evaluation import (
     EpisodePath,
+    EpisodeShare,
     Evaluator,
     build_paths_scene,
     derive_seed,
@@ -375,6 +376,9 @@ class StudyRun:
                 on_run(case, number)
             reached = {case: sum(each.end == "reached" for each in outcomes)}
             shares = [each.by_rays for each in outcomes]
+            arrived = [each for each in outcomes if each.end == "reached"]
+            by_rays = EpisodeShare.of([each.by_rays for each in arrived])
+            by_poses = EpisodeShare.of([each.by_geometry for each in arrived])
             spread = {case: round(float(np.std(shares, ddof=1)), 4)} if runs > 1 else {}
             test = RecordedTest(
                 POTENTIAL_FIELDS,
@@ -386,6 +390,9 @@ class StudyRun:
                 {case: round(float(np.mean(shares)), 4)},
                 adjacency_sd=spread,
                 by_poses={case: round(float(np.mean([each.by_geometry for each in outcomes])), 4)},
+                reached_by_rays=_known({case: by_rays.mean}),
+                reached_by_rays_sd=_known({case: by_rays.sd}),
+                reached_by_poses=_known({case: by_poses.mean}),
             )
             append_event(self.log, test)
 

@@ -62,14 +62,14 @@ def test_logs_that_come_with_the_kit_are_small_and_say_how_they_were_made() -> N
 
 
 def test_agents_of_another_task_stand_beside_no_printed_table(tmp_path: Path) -> None:
-    for number, task in (
-        ("4.6", "wheelchairs-seed-49-as-run"),
-        ("4.1", "wheelchairs-seed-49"),
-        ("3.5", "turn"),
+    for number, task, group, case in (
+        ("4.6", "wheelchairs-seed-49-as-run", "90_turns", "pair_straight"),
+        ("4.1", "wheelchairs-seed-49", "pair_straight", "pair_straight"),
+        ("3.5", "turn", "all", "straight"),
     ):
         table = printed_table(number)
         made = RecordedSettings(number, table.repeat_task, "boltzmann-dqn", "seed", 100, None, {})
-        test = RecordedTest("all", 0, 10, 1.0, 100, {"straight": 9}, {})
+        test = RecordedTest(group, 0, 10, 1.0, 100, {case: 9}, {})
         good = RecordedResult(tmp_path / "good.jsonl", made, (test,))
         bad = RecordedResult(tmp_path / "bad.jsonl", replace(made, task=task), (test,))
         assert incomparable_rows(table, {"seed": good}) == []
