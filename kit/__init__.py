@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from kit.sim.simulation import load_world
     from kit.world.catalogue import all_maps, find_map
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "Recording",

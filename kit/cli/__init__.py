@@ -15,6 +15,7 @@ from typing import Any, Final, NoReturn
 import click
 
 import kit
+from kit.installation import foreign_distributions, overwritten_text
 from kit.interruption import ended_by_signals, write_out
 
 VERBS: Final[dict[str, tuple[str, str]]] = {
@@ -110,6 +111,10 @@ def describe_no_room(error: OSError) -> str:
     return (
         f"{where} cannot be written: {error.strerror}. Free some space, or write elsewhere, and run it again."
     )
+
+
+VERSION: Final[str] = getattr(kit, "__version__", "unknown")
+"""Unknown where another package has written over the kit's files, which ``run_as_process`` says."""
 
 
 BAD_INPUT: Final = 2
@@ -220,7 +225,7 @@ class LazyGroup(click.Group):
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="`kit COMMAND --help` explains a command, `kit help` lists pages to read. Ctrl-C leaves any screen.",
 )
-@click.version_option(kit.__version__, prog_name="kit")
+@click.version_option(VERSION, prog_name="kit")
 @click.pass_context
 def main(ctx: click.Context) -> None:
     """The terminal robot-learning kit: drive a robot, program it, train it.
@@ -249,6 +254,9 @@ def run_as_process(command: click.Command, name: str) -> NoReturn:
     process ends once its output is written. The screen has given the terminal back and removed what it made; the exit
     handlers of libraries do not run, which would take compiled code away from threads that are still in it.
     """
+    for foreign in foreign_distributions(only_named=True):
+        click.echo(f"{name}: {overwritten_text(*foreign)}", err=True)
+        raise SystemExit(BAD_INPUT)
     try:
         with ended_by_signals():
             try:

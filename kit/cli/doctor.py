@@ -5,12 +5,10 @@ from __future__ import annotations
 import json
 import os
 import platform
-import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from importlib.metadata import PackageNotFoundError, requires, version
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import click
 
@@ -22,6 +20,14 @@ from kit.document.layout import lines_of
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe_levels
 from kit.host.sandbox.promises import promises_since
+from kit.installation import (
+    DISTRIBUTION,
+    foreign_distributions,
+    install_command,
+    installed_version,
+    overwritten_text,
+    requirements,
+)
 from kit.tui.input.protocol import ask_keyboard
 from kit.tui.terminal import TerminalDecision, TerminalFacts, decide_terminal
 from kit.workspace import open_workspace
@@ -29,10 +35,6 @@ from kit.workspace import open_workspace
 if TYPE_CHECKING:
     from kit.tui.app import KitApp
     from kit.tui.screens.key_test import KeyTestScreen
-
-
-_DISTRIBUTION: Final = "robot-learning-kit"
-_REQUIREMENT: Final = re.compile(r"""(?P<name>[\w.-]+)[^;]*(;.*extra == ['"](?P<extra>\w+)['"])?""")
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,20 +117,18 @@ def _keyboard(decision: TerminalDecision) -> Finding:
 
 def _packages() -> Iterator[Finding]:
     """Finds which of the declared packages are installed. Imports none of them: torch alone takes seconds."""
-    try:
-        declared = [match for line in requires(_DISTRIBUTION) or () if (match := _REQUIREMENT.match(line))]
-    except PackageNotFoundError:
+    for name, its_version in foreign_distributions():
+        yield Finding("Packages", name, its_version, overwritten_text(name, its_version))
+    declared = requirements()
+    if not declared:
         yield Finding(
-            "Packages", _DISTRIBUTION, "not installed", "The kit runs from a folder: pip install -e FOLDER."
+            "Packages", DISTRIBUTION, "not installed", "The kit runs from a folder: pip install -e FOLDER."
         )
         return
-    for match in declared:
-        if match["extra"] is None:
-            found = _version(match["name"])
-            yield Finding(
-                "Packages", match["name"], found or "missing", "" if found else "Install the kit again."
-            )
-    learning = {match["name"]: _version(match["name"]) for match in declared if match["extra"] == "learn"}
+    for name in declared:
+        found = installed_version(name)
+        yield Finding("Packages", name, found or "missing", "" if found else "Install the kit again.")
+    learning = {name: installed_version(name) for name in requirements("learn")}
     for name, found in learning.items():
         yield Finding("Learning", name, found or "missing")
     if None in learning.values():
@@ -137,16 +137,8 @@ def _packages() -> Iterator[Finding]:
             "in all",
             "incomplete",
             "Driving, controllers, worlds, layers and grading work; training does not. "
-            "To have it, in the kit's folder: pip install -c constraints.txt -e '.[learn]' --extra-index-url "
-            "https://download.pytorch.org/whl/cpu",
+            f"To have it, type: {install_command('learn')}",
         )
-
-
-def _version(package: str) -> str | None:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return None
 
 
 def _confinement() -> Iterator[Finding]:
