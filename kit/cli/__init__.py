@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import Any, Final, NoReturn
 
 import click
+from click.shell_completion import CompletionItem
 
 import kit
 from kit.installation import foreign_distributions, overwritten_text
@@ -87,6 +88,7 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     ),
     "progress": ("kit.cli.progress", "Show your progress; export or import it."),
     "help": ("kit.cli.help", "Show a page: how-to, formats, environments, Python, reasons."),
+    "completion": ("kit.cli.completion", "Print a script that lets your shell complete commands."),
     "keys": ("kit.cli.doctor:keys_command", "Press keys and see what this terminal sends."),
     "doctor": (
         "kit.cli.doctor",
@@ -213,6 +215,15 @@ class LazyGroup(click.Group):
             raise click.UsageError(
                 f"There is no `{path} {args[0]}`.{hint} `{path} --help` lists the commands.", ctx
             ) from None
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """The verbs that begin so, without importing any, and the options."""
+        verbs = (
+            CompletionItem(name, help=text)
+            for name, (_, text) in self._verbs.items()
+            if text and name.startswith(incomplete)
+        )
+        return [*verbs, *click.Command.shell_complete(self, ctx, incomplete)]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):
