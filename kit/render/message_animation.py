@@ -8,7 +8,7 @@ from typing import Final
 
 from kit.render.graph import GraphCell, GraphDrawing, GraphLink
 from kit.render.graph_data import GraphData, GraphItem
-from kit.ros.graph.snapshot import FlowStats, MessageFlow
+from kit.ros.graph.topic_statistics import FlowStats, MessageFlow
 
 FRAMES_PER_LEG: Final = 6
 """Frames that a dot takes from a node to a topic, and from there to the next node."""

@@ -35,9 +35,9 @@ from kit.msg.std_msgs import String
 from kit.ros.bags import BagError, BagRecorder, Storage, read_bag, read_messages
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
+from kit.school.form_reading import read_form
 from kit.school.report.class_data import build_class_data, read_roster
 from kit.school.report.class_report import build_report, prepare_report
-from kit.school.survey import read_form
 from kit.world.problems import WorldError
 from tests.fuzz.damage import Files, damage_bytes, damage_files, damage_json, nudge_json
 from tests.fuzz.files import ROOT, clear, damaged_archive, members_of

@@ -23,7 +23,7 @@ from kit.render.graph_data import GraphData
 from kit.render.graph_glyphs import ASCII_LINES
 from kit.render.graph_layout import arrange_graph
 from kit.render.message_animation import FRAMES_PER_LEG, MAX_DOTS, MessageAnimation
-from kit.ros.graph.snapshot import FlowStats, MessageFlow
+from kit.ros.graph.topic_statistics import FlowStats, MessageFlow
 from tests.cases import every_case
 from tests.render.conversations import DOZEN, MAZE, WORLD, item, talk
 

@@ -13,7 +13,7 @@ from kit.render.graph_data import GraphData, GraphItem
 from kit.render.graph_glyphs import ASCII_LINES, UNICODE_LINES
 from kit.render.graph_layout import arrange_graph
 from kit.render.message_animation import MessageAnimation
-from kit.ros.graph.snapshot import FlowStats, MessageFlow
+from kit.ros.graph.topic_statistics import FlowStats, MessageFlow
 from kit.school.lessons.records import GraphChannel, GraphScene
 
 FRAME_S: Final = 0.125

@@ -24,11 +24,8 @@ from kit.render.graph_layout import GraphLayout, arrange_graph
 from kit.render.graph_selection import kept_selection, move_horizontally, move_vertically
 from kit.render.message_animation import MessageAnimation
 from kit.render.message_rows import message_field_rows
-from kit.ros.graph.snapshot import (
-    GraphState,
-    TopicStats,
-    snapshot,
-)
+from kit.ros.graph.snapshot import GraphState, snapshot
+from kit.ros.graph.topic_statistics import TopicStats
 from kit.tui.rows.graph_rows import MARKED, GraphUpdate, about, heading, rates, ruled
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog

@@ -16,7 +16,8 @@ from kit.run.recording import load_recording
 from kit.school.game.drive_records import record_drive
 from kit.school.game.ghosts import load_ghosts
 from kit.school.game.levels import UnknownLevel, find_level
-from kit.school.game.player_progress import DriverFacts, Medal, find_playable_level
+from kit.school.game.medal import Medal
+from kit.school.game.player_progress import DriverFacts, find_playable_level
 from kit.school.game.race import DriverKind, judge_recording, race_controller
 from kit.school.game.task_levels import MAX_ROBOTS, TaskLevel, task_level
 from kit.school.progress import ProgressJournal

@@ -41,7 +41,7 @@ from kit.run.session import Session
 from kit.school.lessons.reading import lessons_folder, solutions_folder
 from kit.school.lessons.records import LessonStep
 from kit.sim.simulation import Simulation, load_world
-from kit.tui.input.modes import named
+from kit.tui.input.drive_keys import named
 from kit.world.catalogue import find_map
 from kit.world.problems import WorldError
 from kit.world.records import Polygon

@@ -31,7 +31,7 @@ from kit.document.layout import document_lines, lines_of
 from kit.document.svg import plot_to_svg
 from kit.document.tables import MAX_CELL_LENGTH
 from kit.school.progress import EventKind
-from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
+from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
 from kit.school.report.class_data import ClassData, build_class_data, read_roster
 from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
 from kit.school.report.measures import ReportItem
