@@ -1,4 +1,4 @@
-"""The terminal robot-learning kit. The loop is in ``kit/run/runner.py``; ``README.md`` shows the code layout.
+"""The terminal robot-learning kit. The loop is in ``kit/run/runner.py``; `kit help design` shows the code layout.
 
 Scripts and notebooks may use the names below. Each is imported when it is first used, so that ``import kit``
 is fast. Importing the kit also registers its environments with Gymnasium.

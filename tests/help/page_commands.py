@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -11,12 +12,17 @@ from enum import Enum
 from pathlib import Path
 from typing import Final
 
+import click
+
+from grader.__main__ import main as grader_main
+from kit.cli import main as kit_main
 from kit.document.blocks import Block, Code, Marked
 from kit.document.code_lines import is_command
 from kit.document.markup import TextStyle, parse_markup, styled_pieces
 from kit.help.topic import find_topic, topic_names
 
 ROOT: Final = Path(__file__).parents[2]
+MAINS: Final = {"kit": kit_main, "grader": grader_main}
 
 
 class Way(Enum):
@@ -100,6 +106,22 @@ def commands_in_sentences(name: str) -> list[str]:
         if piece.style is TextStyle.CODE and is_command(piece.text)
     )
     return list(dict.fromkeys(found))
+
+
+def unknown_options(text: str) -> set[str]:
+    """The options of a command that it does not have; its verbs that do not exist, too."""
+    program, *words = shlex.split(text)
+    if "COMMAND" in words:
+        return set()
+    command: click.Command = MAINS[program]
+    context = click.Context(command, info_name=program)
+    while words and isinstance(command, click.Group):
+        found = command.get_command(context, words[0])
+        if found is None:
+            return {words[0]} if not command.invoke_without_command and words[0].islower() else set()
+        command, words = found, words[1:]
+    known = {option for each in command.get_params(context) for option in each.opts} | {"--help"}
+    return {word.partition("=")[0] for word in words if re.match(r"--?[a-z]", word)} - known
 
 
 def has_placeholder(command: str) -> bool:

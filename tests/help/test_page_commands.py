@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import shlex
 import subprocess
 from collections.abc import Iterator
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 
-import click
 import pytest
 
-from grader.__main__ import main as grader_main
-from kit.cli import main as kit_main
 from kit.help.topic import topic_names
 from kit.learning.training.runs import find_run, list_runs
 from tests.help.page_commands import (
@@ -25,11 +21,11 @@ from tests.help.page_commands import (
     commands_in_blocks,
     commands_in_sentences,
     every_command,
+    unknown_options,
 )
 from tests.pasted_commands import LIMIT_S, Home
 from tests.waiting import wait_until
 
-PROGRAMS = {"kit": kit_main, "grader": grader_main}
 PATIENCE_S = 1500
 
 
@@ -57,22 +53,7 @@ def test_the_ways_are_those_of_commands_on_pages() -> None:
 @pytest.mark.parametrize("name", topic_names())
 def test_every_command_and_option_of_a_page_exists(name: str) -> None:
     for text in (*commands_in_blocks(name), *commands_in_sentences(name)):
-        program, *words = shlex.split(text)
-        if "COMMAND" in words:
-            continue
-        command: click.Command = PROGRAMS[program]
-        context = click.Context(command, info_name=program)
-        while (
-            words and isinstance(command, click.Group) and (found := command.get_command(context, words[0]))
-        ):
-            command, words = found, words[1:]
-        known = {option for each in command.get_params(context) for option in each.opts} | {"--help"}
-        used = {
-            word.partition("=")[0]
-            for word in words
-            if word.startswith("-") and not word.lstrip("-")[:1].isdigit()
-        }
-        assert used <= known, text
+        assert unknown_options(text) == set(), text
 
 
 @pytest.mark.pty
