@@ -28,6 +28,7 @@ from grader.checks.contract import Check
 from grader.kinds.contract import AssignmentFiles, find_kind, kind_names
 from grader.scoring import MAX_SHARE_STEPS, Anchors
 from grader.teacher_tests import read_teacher_tests
+from kit.extensions import ExtensionError, admitting, installed_extensions
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS, MIB, Limits
 from kit.plain_files import is_file_there
@@ -132,14 +133,37 @@ def read_assignment(folder: Path) -> Assignment:
     secret_file = folder / SECRET_FILE
     secrets = documents.section(secret_file, SourceLocation(secret_file)) if secret_file.is_file() else None
     with documents.open(folder / ASSIGNMENT_FILE) as section:
-        kind = section.text("kind", "controller", choices=kind_names())
-        documents.problems.raise_if_any()  # the meaning of the other keys depends on the kind
-        return _assignment(kind, section, secrets, folder)
+        packages = section.texts("packages", ())
+        with admitting(packages):
+            _check_packages(section, packages)
+            kind = section.text("kind", "controller", choices=kind_names())
+            documents.problems.raise_if_any()  # the meaning of the other keys depends on the kind
+            try:
+                return _assignment(kind, section, secrets, folder, packages)
+            except ExtensionError as error:
+                section.error(str(error), "packages")
+                raise documents.problems.error() from error
 
 
-def folder_digest(folder: Path, *, ignored: str = "") -> str:
-    """Returns a digest of all files in the folder that grading depends on, but for one of this name."""
+def _check_packages(section: Section, packages: tuple[str, ...]) -> None:
+    """Notes each package that brings no parts, or is not installed on this machine."""
+    known = sorted({each.package for each in installed_extensions()} if packages else ())
+    for name in packages:
+        if name not in known:
+            section.error(
+                f"no installed package {quoted(name)} brings parts of the kit: {suggestion(name, known)}. Every machine "
+                "that grades needs it",
+                "packages",
+            )
+
+
+def folder_digest(folder: Path, *, ignored: str = "", packages: tuple[str, ...] = ()) -> str:
+    """Returns a digest of all files in the folder that grading depends on, but for one of this name, and of the versions of
+    the packages that it needs."""
     parsed = hashlib.sha256()
+    sources = {each.source for each in installed_extensions() if each.package in packages} if packages else ()
+    for source in sorted(sources):
+        parsed.update(source.encode())
     for file in sorted(path for path in folder.rglob("*") if path.is_file()):
         name = file.relative_to(folder)
         if (
@@ -160,7 +184,9 @@ TRANSLATION: Final = re.compile(r"assignment\.[a-z]{2}\.yaml")
 """Words in another language, which change nothing of what is graded either."""
 
 
-def _assignment(kind: str, section: Section, secrets: Section | None, folder: Path) -> Assignment:
+def _assignment(
+    kind: str, section: Section, secrets: Section | None, folder: Path, packages: tuple[str, ...]
+) -> Assignment:
     kind_record = find_kind(kind)
     teacher_test_files = tuple(_teacher_test_files(section, folder))
     task = kind_record.read_settings(AssignmentFiles(folder, section, secrets))
@@ -172,6 +198,7 @@ def _assignment(kind: str, section: Section, secrets: Section | None, folder: Pa
         id=section.name("id", folder.resolve().name),
         title=section.name("title"),
         kind=kind,
+        packages=packages,
         submit=_file_name(section, kind_record.endings),
         level=Level(section.integer("level", int(Level.FILTERED), minimum=0, maximum=max(Level))),
         limits=limits,
@@ -179,8 +206,8 @@ def _assignment(kind: str, section: Section, secrets: Section | None, folder: Pa
         trials=task.trials,
         criteria=tuple(_criteria(section, kind_record.checks, task.trials)),
         task=task.task,
-        version=folder_digest(folder),
-        public_version=folder_digest(folder, ignored=SECRET_FILE),
+        version=folder_digest(folder, packages=packages),
+        public_version=folder_digest(folder, ignored=SECRET_FILE, packages=packages),
         has_secrets=secrets is not None,
         secret_seeds=(*(seed for trial in task.trials for seed in trial.secret_seeds), *task.secret_seeds),
         teacher_tests=tuple(_teacher_tests(section, teacher_test_files)),

@@ -17,6 +17,7 @@ from kit.cli import options
 from kit.cli.full_screen import show_screen
 from kit.document.blocks import labelled_table
 from kit.document.layout import lines_of
+from kit.extensions import GROUPS, checked, installed_extensions, name_conflicts
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe_levels
 from kit.host.sandbox.promises import promises_since
@@ -141,6 +142,26 @@ def _packages() -> Iterator[Finding]:
         )
 
 
+def _extensions() -> Iterator[Finding]:
+    """Finds the parts that other packages bring, and tries each."""
+    own = own_names()
+    left_out = {each: why for group in GROUPS for each, why in name_conflicts(group, own[group])}
+    for each in installed_extensions():
+        name = f"{each.group.removesuffix('s')} {each.name}"
+        problem = f"Left out: {left_out[each]}." if each in left_out else checked(each)
+        yield Finding("Parts of other packages", name, each.source, problem or "Works.")
+
+
+def own_names() -> dict[str, tuple[str, ...]]:
+    """The names in each group that the kit itself uses, which no other part may have."""
+    from kit.cli import VERBS
+    from kit.sim.plugins import plugin_types, world_plugin_types
+
+    verbs = tuple(VERBS)
+    devices = (*plugin_types, *world_plugin_types)
+    return {**dict.fromkeys(GROUPS, ()), "verbs": verbs, "dialogues": verbs, "devices": devices}
+
+
 def _confinement() -> Iterator[Finding]:
     """Finds which confinement levels this machine has, and what each keeps a program from. One's own runs at 0."""
     for support in probe_levels():
@@ -175,7 +196,7 @@ def findings() -> list[Finding]:
     facts = TerminalFacts.here()
     # `kit doctor > file` asks about the terminal as `kit` would find it, not about the file.
     decision = decide_terminal(os.environ, replace(facts, stdout_tty=facts.stderr_tty))
-    return [*_machine(), *_terminal(decision), *_packages(), *_confinement(), _workspace()]
+    return [*_machine(), *_terminal(decision), *_packages(), *_extensions(), *_confinement(), _workspace()]
 
 
 def as_text(report: list[Finding]) -> str:

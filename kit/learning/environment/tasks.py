@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final, Literal
 
+from kit.extensions import folders
 from kit.field_types import check_field_types
 from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.disturbances import Disturbances
@@ -61,6 +62,9 @@ def find_task_file(name: str) -> Path | None:
         raise UnknownTask(f"there is no file {quoted(name, 200)}")
     if own := workspace_task_file(name):
         return own
+    for _, folder in folders("tasks"):
+        if is_file_there(folder / f"{name}.yaml"):
+            return folder / f"{name}.yaml"
     raise UnknownTask(f"there is no task {quoted(name)}: {suggestion(name, names)}")
 
 
