@@ -175,6 +175,8 @@ class Assignment:
     """All of its secret seeds."""
     public_version: str = ""
     """Digest of the same files without the secret one, for students: a digest of short secrets gives them away."""
+    packages: tuple[str, ...] = ()
+    """Packages whose devices, checks and kinds are loaded while its submissions are graded."""
     teacher_tests: tuple[TeacherTest, ...] = ()
     """Tests in the order of their files."""
     teacher_test_files: tuple[Path, ...] = ()

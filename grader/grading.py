@@ -31,6 +31,7 @@ from grader.submission import Submission
 from grader.submitted_files import YAML_ENDINGS, SubmissionRefused, reading_submission
 from grader.teacher_tests import TestOutcome, run_teacher_tests, teacher_test_result, tests_digest
 from grader.version import grader_version
+from kit.extensions import admitting
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level, shield_this_process
 from kit.host.sandbox.probe import highest_level_up_to
@@ -135,7 +136,8 @@ class Grading:
         self._examples = examples
         self._has_run_public = not secret
         """Whether everything public was run. Nothing secret is run before: what a program says after that is not shown."""
-        self._checks = find_kind(assignment.kind).checks
+        with admitting(assignment.packages):
+            self._checks = find_kind(assignment.kind).checks
         self._scored: dict[str, tuple[_ScoredEvidence, ...]] = {}
         self._tests: dict[str, CriterionResult] = {}
         self._counterexamples: dict[str, _ScoredEvidence | None] = {}
@@ -548,6 +550,7 @@ def open_grading(
         clock = SubmissionClock(assignment.submission_limit_s, options.show_progress)
         evidence_options = EvidenceOptions(available, options.secret, clock)
         with ExitStack() as stack:
+            stack.enter_context(admitting(assignment.packages))
             with reading_submission(submission.name):
                 collector = stack.enter_context(
                     find_kind(assignment.kind).collect(assignment, file, evidence_options)

@@ -20,12 +20,13 @@ from grader.cli.progress import shown_progress
 from grader.grading import GradingOptions, LevelTooLow
 from grader.kinds.contract import KINDS_PACKAGE, find_kind, kind_names
 from grader.new_assignment import example_of_exercise, example_of_kind, make_assignment
-from grader.reading import ASSIGNMENT_FILE, SECRET_FILE, budget_lines
+from grader.reading import SECRET_FILE, budget_lines
 from grader.reports.cleaning import plain
 from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds, works_of
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.plain_text import counted, quoted, suggestion
+from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.workspace import write_atomically
 
 
