@@ -34,17 +34,19 @@ from kit.school.game.player_progress import (
     streak,
     today,
 )
-from kit.school.game.race import DriverKind, RaceFinish
+from kit.school.game.race import DriverKind, RaceFinish, middle_drive
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace, write_atomically
 
 
 @dataclass(frozen=True, slots=True)
 class DriveRecord:
-    """The result of recording one drive."""
+    """The result of recording one drive, or a program's drives from all starts."""
 
+    counts: int
+    """The number of the drive that counts: a program's middle one."""
     medal: Medal
-    """Medal of this drive."""
+    """Medal of that drive."""
     rules: tuple[ExtraRule, ...]
     """Extra rules that this drive kept."""
     new_rules: tuple[ExtraRule, ...]
@@ -70,11 +72,15 @@ def record_drive(
     workspace: Workspace,
     level: GameLevel,
     driver: DriverKind,
-    finish: RaceFinish,
-    recording: Recording,
+    drives: Sequence[tuple[RaceFinish, Recording]],
     facts: DriverFacts = BY_HAND,
 ) -> DriveRecord:
-    """Records a drive. Medals and stars count even where the recording cannot be written. Raises ProgressError."""
+    """Records a drive. Medals and stars count even where the recording cannot be written. Raises ProgressError.
+
+    ``drives``: one by hand; of a program or an agent those from all starts, of which the middle one counts.
+    """
+    counts = middle_drive([finish for finish, _ in drives])
+    finish = drives[counts][0]
     levels, events = all_levels(), journal.events()
     lessons = completed_lessons(levels, events)
     before = level_progress(levels, events, lessons)
@@ -83,11 +89,13 @@ def record_drive(
     recording_file = None
     if is_best:
         try:
-            recording_file = save_ghost(workspace, level, driver, recording)
+            recording_file = save_ghost(
+                workspace, level, driver, [recording for _, recording in drives], counts
+            )
         except OSError:
             recording_file = None
     earns = level.has_medals and not facts.is_shipped
-    medal = medal_of(finish, reference_seconds(level)) if earns else Medal.NONE
+    medal = medal_of(finish, reference_seconds(level), driver) if earns else Medal.NONE
     rules = kept_rules(level, finish, facts) if earns else ()
     content = {
         **finish.as_event(driver, None if recording_file is None else recording_file.name),
@@ -104,6 +112,7 @@ def record_drive(
     )
     _update_leaderboard(journal, workspace, level)
     return DriveRecord(
+        counts,
         medal,
         rules,
         tuple(rule for rule in rules if rule not in of_level.rules),

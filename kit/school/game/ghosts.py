@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -89,12 +89,12 @@ def drive_reference(
     return run_race(
         level,
         level.find_scenario(),
-        lambda session: session.runner.participants.append(_CommandPlayer(session, chosen)),
+        lambda session: session.runner.participants.append(CommandPlayer(session, chosen)),
         on_second,
     )
 
 
-class _CommandPlayer:
+class CommandPlayer:
     """Gives the robots of a session the commands of a drive; the last one is held."""
 
     def __init__(self, session: Session, drive: ReferenceDrive) -> None:
@@ -159,11 +159,22 @@ def ghosts_folder(workspace: Workspace) -> Path:
     return workspace.recordings / FOLDER
 
 
-def save_ghost(workspace: Workspace, level: GameLevel, driver: DriverKind, recording: Recording) -> Path:
-    """Saves a drive as the best one of its driver. Raises OSError."""
+def save_ghost(
+    workspace: Workspace,
+    level: GameLevel,
+    driver: DriverKind,
+    recordings: Sequence[Recording],
+    counts: int = 0,
+) -> Path:
+    """Saves the best drive of a driver, and beside it a program's drives from the other starts. ``counts``: the number of
+    the one that counts. Returns its file. Raises OSError."""
     file = ghost_file(workspace, level, driver)
     file.parent.mkdir(parents=True, exist_ok=True)
-    save_recording(recording, file)
+    for stale in other_start_files(workspace, level, driver):
+        stale.unlink(missing_ok=True)
+    for number, recording in enumerate(recordings):
+        name = file if number == counts else file.with_suffix(f".{recording.seed}.npz")
+        save_recording(recording, name)
     return file
 
 
@@ -243,6 +254,11 @@ def level_ghosts(
 def ghost_file(workspace: Workspace, level: GameLevel, driver: DriverKind) -> Path:
     """The file of a driver's best drive."""
     return ghosts_folder(workspace) / f"{level.id}.{driver.value}.npz"
+
+
+def other_start_files(workspace: Workspace, level: GameLevel, driver: DriverKind) -> list[Path]:
+    """The files of a program's drives from the starts whose drive does not count, in no order."""
+    return list(ghosts_folder(workspace).glob(f"{level.id}.{driver.value}.*.npz"))
 
 
 def _ghost_of(name: str, recording: Recording, scenario: Scenario) -> Ghost:

@@ -18,7 +18,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
-from kit.school.game.medal import Medal
+from kit.school.game.medal import RUNGS, Medal
 from kit.school.game.player_progress import DAILY_PREFIX, LevelProgress
 from kit.school.game.race import DriverKind
 from kit.workspace import open_common_folder, write_atomically
@@ -72,7 +72,7 @@ class PlayerStanding:
 
 
 def standings(entries: Sequence[LeaderboardEntry]) -> list[PlayerStanding]:
-    """Ranks all users who have joined: by gold medals, then silver ones, bronze ones and stars; the level of the day counts
+    """Ranks all users who have joined: by records, then master, gold, silver and bronze medals, and stars; the level of the day counts
     for none. ``entries``: in the order of ``read_entries``."""
     entries = [each for each in entries if not each.level.startswith(DAILY_PREFIX)]
     first: dict[str, int] = {}
@@ -90,7 +90,7 @@ def standings(entries: Sequence[LeaderboardEntry]) -> list[PlayerStanding]:
                 own[0].is_mine,
             )
         )
-    best_first = (Medal.GOLD, Medal.SILVER, Medal.BRONZE)
+    best_first = tuple(reversed(RUNGS))
     return sorted(
         found, key=lambda each: ([-each.medals[medal] for medal in best_first], -each.stars, each.name)
     )

@@ -65,7 +65,7 @@ ABOUT_ROWS: Final = 6
 MAP_WIDTH: Final = 84
 """Columns of the list where the chosen level is shown beside it."""
 NOTES: Final = (
-    ("G S B", "gold, silver, bronze: by hand, by your program, by your agent"),
+    ("B S G M R", "bronze, silver, gold, master, record: each driver has a ladder"),
     ("*", "a star for an extra rule that a drive has kept:"),
     ("", "touched nothing, never stood still, one sensor, few lines,"),
     ("", "few training steps"),

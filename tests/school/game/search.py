@@ -35,7 +35,8 @@ from kit.school.game.ghosts import (
     load_drives,
 )
 from kit.school.game.levels import SPEED, TURN_RATE, GameLevel, all_levels
-from kit.school.game.race import DOCK_TIME, SEED, RaceReferee
+from kit.school.game.race import DOCK_TIME, RaceReferee
+from kit.school.game.starts import OWN_SEED
 from kit.sim.simulation import Simulation
 
 TICKS = 10
@@ -270,7 +271,7 @@ def track_front_wheel(level: GameLevel, scenario, points: list[tuple[np.ndarray,
 
     ``points``: the pose planned after each primitive, and the speed on the way there.
     """
-    simulation = Simulation(scenario.world, seed=SEED, has_subscribers=lambda topic: False)
+    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
     commands: list[DriveCommand] = []
     for number, (_, speed) in enumerate(points):
         ahead = number
@@ -528,7 +529,7 @@ def drive_time(
 def polish(level: GameLevel, drive: ReferenceDrive, seconds: float) -> ReferenceDrive:
     """Shortens a drive by moving the ends of its commands by single ticks, for ``seconds`` of wall clock."""
     scenario = level.find_scenario()
-    simulation = Simulation(scenario.world, seed=SEED, has_subscribers=lambda topic: False)
+    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
     best = drive_time(level, scenario, simulation, drive, math.inf)
     random, end = np.random.default_rng(1), time.perf_counter() + seconds
     while time.perf_counter() < end:
@@ -552,7 +553,7 @@ def polish(level: GameLevel, drive: ReferenceDrive, seconds: float) -> Reference
 def search_pursuit(level: GameLevel, seconds: float) -> ReferenceDrive | None:
     """Searches the gains of a driver that follows a way, or a leader, where no lattice can be measured."""
     scenario = level.find_scenario()
-    simulation = Simulation(scenario.world, seed=SEED, has_subscribers=lambda topic: False)
+    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
     random, end = np.random.default_rng(1), time.perf_counter() + seconds
     fields: dict[float, object] = {}
     walls = np.concatenate(

@@ -215,24 +215,26 @@ def test_a_drive_is_recorded_with_its_medal_stars_and_ghost(
     monkeypatch.setenv(leaderboard.FOLDER_VARIABLE, str(tmp_path / "board"))
     workspace = open_workspace(tmp_path / "desk")
     finish, recording = drive_reference(FIRST)
-    slow = replace(finish, seconds=99.0)
+    slow = replace(finish, seconds=1.9 * finish.seconds)
     shipped = DriverFacts(is_shipped=True)
     of_today = daily_level(today())
     with ProgressJournal(workspace.folder) as progress:
-        nothing = record_drive(progress, workspace, FIRST, DriverKind.CONTROLLER, finish, recording, shipped)
-        first = record_drive(progress, workspace, FIRST, DriverKind.KEYS, finish, recording, BY_HAND)
-        slower = record_drive(progress, workspace, FIRST, DriverKind.KEYS, slow, recording, BY_HAND)
+        nothing = record_drive(
+            progress, workspace, FIRST, DriverKind.CONTROLLER, [(finish, recording)], shipped
+        )
+        first = record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(finish, recording)], BY_HAND)
+        slower = record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(slow, recording)], BY_HAND)
         (of_level,) = level_progress([FIRST], progress.events())
-        daily = record_drive(progress, workspace, of_today, DriverKind.KEYS, finish, recording)
+        daily = record_drive(progress, workspace, of_today, DriverKind.KEYS, [(finish, recording)])
     assert (daily.streak, first.streak) == (1, 0)
     assert (nothing.medal, nothing.rules, nothing.is_best, nothing.unlocked) == (Medal.NONE, (), False, ())
-    assert (first.medal, slower.medal) == (Medal.GOLD, Medal.BRONZE)
+    assert (first.medal, slower.medal) == (Medal.MASTER, Medal.BRONZE)
     assert {each.id for each in first.unlocked} == {"left-turn", "right-turn"}
     assert (first.belt, slower.belt, slower.unlocked) == ("white", "", ())
     assert (first.is_best, slower.is_best, slower.previous_best) == (True, False, finish.seconds)
     assert ExtraRule.CLEAN in first.new_rules
     assert ExtraRule.CLEAN not in slower.new_rules
-    assert of_level.medals == {DriverKind.KEYS: Medal.GOLD}
+    assert of_level.medals == {DriverKind.KEYS: Medal.MASTER}
     assert first.recording is not None
     (own,) = load_ghosts(workspace, FIRST)
     known = load_reference_ghost(FIRST)
@@ -261,15 +263,15 @@ def test_classmates_who_joined_leave_ghosts(tmp_path: Path, monkeypatch: pytest.
     workspace = open_workspace(tmp_path / "desk")
     finish, recording = drive_reference(FIRST)
     with ProgressJournal(workspace.folder) as progress:
-        record_drive(progress, workspace, FIRST, DriverKind.KEYS, finish, recording)
+        record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(finish, recording)])
         join_leaderboard(progress, workspace, "Ada")
         of_today = daily_level(today())
-        record_drive(progress, workspace, of_today, DriverKind.KEYS, finish, recording)
+        record_drive(progress, workspace, of_today, DriverKind.KEYS, [(finish, recording)])
         assert {each.level for each in leaderboard.read_entries(board)} == {FIRST.id, of_today.id}
         (standing,) = leaderboard.standings(leaderboard.read_entries(board))
-        assert (standing.fastest, standing.medals[Medal.GOLD]) == (1, 1)  # today's level counts for neither
+        assert (standing.fastest, standing.medals[Medal.MASTER]) == (1, 1)  # today's level counts for neither
     (entry,) = (each for each in leaderboard.read_entries(board) if each.level == FIRST.id)
-    assert entry.medal is Medal.GOLD
+    assert entry.medal is Medal.MASTER
     assert len(entry.track) == pytest.approx(finish.seconds / leaderboard.TRACK_STEP, abs=2)
     assert classmate_ghosts(FIRST) == ()  # one's own is none
     monkeypatch.setattr(leaderboard, "read_entries", lambda folder: [replace(entry, is_mine=False)])

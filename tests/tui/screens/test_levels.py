@@ -347,6 +347,7 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
     assert reference is not None
     others = [replace(reference, name=name) for name in ("keys", "controller", "agent", "Ada", "Ben", "Cleo")]
     record = DriveRecord(
+        2,
         Medal.SILVER,
         tuple(ExtraRule)[:4],
         (),
@@ -361,7 +362,15 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
     )
     splits = (ghosts.Split(2.0, 2.0, 0.1),) * 3
     result = DriveResult(
-        level, DriverKind.CONTROLLER, finish, record, recording, [reference, *others], 6.0, splits
+        level,
+        DriverKind.CONTROLLER,
+        finish,
+        record,
+        recording,
+        [reference, *others],
+        6.0,
+        splits,
+        [finish] * 5,
     )
 
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:

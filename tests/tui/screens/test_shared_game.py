@@ -47,7 +47,7 @@ def workspace(tmp_path: Path) -> Workspace:
     home = prepare_workspace(tmp_path / "home")
     recording = reference_recording(LEVEL)
     assert recording is not None
-    save_ghost(home, LEVEL, DriverKind.KEYS, recording)
+    save_ghost(home, LEVEL, DriverKind.KEYS, [recording])
     return home
 
 
