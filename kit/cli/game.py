@@ -260,9 +260,10 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
 def replay(workspace: Path | None, level: str, driver: str | None) -> None:
     """Replay your best drive of LEVEL, or the reference drive."""
     from kit.run.recording import RecordingError, load_recording
-    from kit.school.game.ghosts import ghost_file, load_ghosts, reference_recording
+    from kit.school.game.ghosts import ghost_file, load_ghosts
     from kit.school.game.player_progress import find_playable_level
     from kit.school.game.race import DriverKind
+    from kit.school.game.references import reference_recording
 
     with _open_journal(workspace) as (_journal, opened_workspace):
         chosen = find_playable_level(level)
@@ -298,7 +299,7 @@ def replay(workspace: Path | None, level: str, driver: str | None) -> None:
 @command.command("leaderboard")
 @click.pass_obj
 def leaderboard(workspace: Path | None) -> None:
-    """Show the leaderboard of this machine: medals, then best times. Each player's own kit records the times."""
+    """Show the leaderboard of this machine: medals, then best times. Every drive on it is run again and judged here."""
     from kit.school.game.leaderboard import has_joined, leaderboard_folder, read_entries, standings
     from kit.tui.rows.level_rows import leaderboard_standings, leaderboard_times
 
@@ -307,7 +308,7 @@ def leaderboard(workspace: Path | None) -> None:
         click.echo("\n".join(lines_of([*leaderboard_standings(standings(found)), leaderboard_times(found)])))
         if not has_joined(leaderboard_folder()):
             options.say(
-                "You are not on it. `kit game join` adds your name and times; `kit game leave` removes them."
+                "You are not on it. `kit game join` adds your name and drives; `kit game leave` removes them."
             )
 
 
@@ -315,7 +316,7 @@ def leaderboard(workspace: Path | None) -> None:
 @click.option("--name", help="Your name on it (default: the one set with `kit progress name`).")
 @click.pass_obj
 def join(workspace: Path | None, name: str | None) -> None:
-    """Join the leaderboard. All users of this machine can then see your name, best times and ghosts."""
+    """Join the leaderboard. All users of this machine can then see your name and your best drives."""
     from kit.school.game.drive_records import join_leaderboard
     from kit.school.game.leaderboard import leaderboard_folder
 
@@ -332,7 +333,7 @@ def join(workspace: Path | None, name: str | None) -> None:
 @command.command("leave")
 @click.pass_obj
 def leave_(workspace: Path | None) -> None:
-    """Remove your name and times from the leaderboard."""
+    """Remove your name and drives from the leaderboard."""
     from kit.school.game.leaderboard import leaderboard_folder, remove_own_entry
 
     with _open_journal(workspace):
@@ -439,8 +440,8 @@ def _record_drive(
 ) -> None:
     """Records a drive, or a program's drives from all starts, and prints what it earned."""
     from kit.school.game.drive_records import record_drive
-    from kit.school.game.ghosts import reference_seconds
     from kit.school.game.player_progress import BY_HAND
+    from kit.school.game.references import reference_seconds
     from kit.tui.rows.level_rows import ladder_rows, starts_rows
 
     record = record_drive(journal, opened_workspace, level, driver, drives, facts or BY_HAND)

@@ -6,6 +6,7 @@ The card of a drive: its path in dots, its time and its medal, as text to share.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.render.world_text import scene_rows
 from kit.run.recording import Recording
 from kit.school.game import leaderboard
-from kit.school.game.ghosts import load_ghosts, reference_seconds, save_ghost
+from kit.school.game.ghosts import best_recordings, save_ghost
 from kit.school.game.levels import GameLevel, all_levels
 from kit.school.game.medal import Medal, medal_of
 from kit.school.game.player_progress import (
@@ -24,7 +25,6 @@ from kit.school.game.player_progress import (
     DAILY_PREFIX,
     DriverFacts,
     ExtraRule,
-    LevelProgress,
     belt_of,
     completed_lessons,
     daily_level,
@@ -35,6 +35,7 @@ from kit.school.game.player_progress import (
     today,
 )
 from kit.school.game.race import DriverKind, RaceFinish, middle_drive
+from kit.school.game.references import reference_seconds
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace, write_atomically
 
@@ -110,7 +111,8 @@ def record_drive(
         belt_of([each.best_medal for each in progress if each.level.world == level.world])
         for progress in (before, after)
     )
-    _update_leaderboard(journal, workspace, level)
+    if is_best:
+        _update_leaderboard(journal, workspace, level, driver)
     return DriveRecord(
         counts,
         medal,
@@ -132,38 +134,27 @@ def record_drive(
 
 
 def join_leaderboard(journal: ProgressJournal, workspace: Workspace, name: str) -> None:
-    """Puts the player's name, times, medals and ghosts on the leaderboard. Raises LeaderboardError and ProgressError."""
-    progress = _published(journal)
-    tracks = {
-        (each.level.id, ghost.name): ghost.sampled_track()
-        for each in progress
-        if each.best_times
-        for ghost in load_ghosts(workspace, each.level)
+    """Puts the player's name and best drives on the leaderboard. Raises LeaderboardError and ProgressError."""
+    drives = {
+        (level.id, driver): recordings
+        for level in (*all_levels(), daily_level(today()))
+        for driver in DriverKind
+        if (recordings := best_recordings(workspace, level, driver))
     }
-    leaderboard.publish_entry(leaderboard.leaderboard_folder(), name, progress, tracks)
+    leaderboard.publish_drives(leaderboard.leaderboard_folder(), name, drives)
 
 
-def _published(journal: ProgressJournal) -> tuple[LevelProgress, ...]:
-    """The progress that others may see: in all levels, and in that of the day."""
-    return level_progress((*all_levels(), daily_level(today())), journal.events(EventKind.FINISH))
-
-
-def _update_leaderboard(journal: ProgressJournal, workspace: Workspace, driven: GameLevel) -> None:
-    """Updates the player's entry on the leaderboard after a drive, if the player has joined it."""
+def _update_leaderboard(
+    journal: ProgressJournal, workspace: Workspace, level: GameLevel, driver: DriverKind
+) -> None:
+    """Puts the player's best drive on the leaderboard, if the player has joined it."""
     folder = leaderboard.leaderboard_folder()
-    if not leaderboard.has_joined(folder):
+    recordings = best_recordings(workspace, level, driver)
+    if not recordings or not leaderboard.has_joined(folder):
         return
-    mine = [each for each in leaderboard.read_entries(folder) if each.is_mine]
-    tracks: dict[tuple[str, str], Sequence[Sequence[float]]] = {
-        (each.level, each.driver.value): each.track for each in mine
-    }
-    for ghost in load_ghosts(workspace, driven):  # those of other levels are there
-        tracks[driven.id, ghost.name] = ghost.sampled_track()
-    name = next((each.name for each in mine), journal.student_name or "somebody")
-    try:
-        leaderboard.publish_entry(folder, name, _published(journal), tracks)
-    except leaderboard.LeaderboardError:
-        return  # the drive counts without it
+    name = leaderboard.own_name(folder) or journal.student_name or "somebody"
+    with suppress(leaderboard.LeaderboardError):  # the drive counts without it
+        leaderboard.publish_drives(folder, name, {(level.id, driver): recordings})
 
 
 COLUMNS, ROWS = 48, 14

@@ -455,18 +455,24 @@ def agent_controller(policy: Policy) -> Iterator[ControllerFile]:
         yield find_controller(str(file))
 
 
-def judge_recording(level: GameLevel, recording: Recording) -> RaceFinish:
+def run_again(level: GameLevel, recording: Recording) -> tuple[RaceFinish, Recording]:
     """Runs a recorded drive again, bit for bit, and judges it. Raises ValueError if it is of another level or from a start
-    that it has not."""
+    that it has not, and RecordingError where an input is not possible in its world."""
     scenario = scenario_from(level, recording.seed)
     if (recording.place, recording.case) != (scenario.name, level.case):
         raise ValueError(f"this is a drive of {recording.place} {recording.case or ''}, not of {level.title}")
     with Session(scenario, seed=recording.seed, step_size=recording.step_size) as session:
         referee = RaceReferee(level, scenario)
-        session.runner.observers.append(referee)
+        recorder = Recorder.for_scenario(scenario, session.runner.simulation)
+        session.runner.observers += [referee, recorder]
         session.play_back(recording)
-        run_until(session.runner, ticks=recording.ticks, ends=(referee.when_finished,))
-        return referee.finish
+        run_until(session.runner, ticks=recording.ticks)
+        return referee.finish, recorder.recording()
+
+
+def judge_recording(level: GameLevel, recording: Recording) -> RaceFinish:
+    """The finish of a recorded drive. Raises as ``run_again``."""
+    return run_again(level, recording)[0]
 
 
 def run_race(

@@ -113,11 +113,16 @@ def _player(name: str, is_mine: bool) -> ToneText:
     return ToneText(name, Tone.BOLD if is_mine else Tone.PLAIN)
 
 
+def _driven(entry: LeaderboardEntry) -> str:
+    """Who drove, and whether it was on another kind of machine than this one, where a drive is the same but not to the bit."""
+    return entry.driver.phrase if entry.is_same_platform else f"{entry.driver.phrase}, another machine"
+
+
 def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
     """The quickest drives of today's level and of each other. ``entries``: in the order of ``read_entries``."""
     titles = {daily_level(today()).id: "Today's level", **{each.id: each.title for each in all_levels()}}
     rows = tuple(
-        (title, _player(each.name, each.is_mine), f"{each.seconds:.2f} s", each.driver.phrase)
+        (title, _player(each.name, each.is_mine), f"{each.seconds:.2f} s", _driven(each))
         for level, title in titles.items()
         for each in [each for each in entries if each.level == level][:BEST]
     )

@@ -26,7 +26,7 @@ from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.run.view import View
 from kit.school.game.drive_records import DriveRecord, card_rows, record_drive, save_card
-from kit.school.game.ghosts import Ghost, GhostComparison, Split, compare_tracks, reference_seconds
+from kit.school.game.ghosts import Ghost, GhostComparison, Split, compare_tracks
 from kit.school.game.levels import GameLevel
 from kit.school.game.medal import Medal, medal_of
 from kit.school.game.player_progress import BY_HAND, DriverFacts
@@ -38,6 +38,7 @@ from kit.school.game.race import (
     race_from_all_starts,
     sensors_in_use,
 )
+from kit.school.game.references import reference_seconds
 from kit.school.game.starts import OWN_SEED
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.progress import ProgressError, ProgressJournal

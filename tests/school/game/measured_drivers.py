@@ -19,7 +19,6 @@ from kit.geometry import Pose
 from kit.learning.tasks.learning_task import PatrolGoal
 from kit.run.recording import Recording
 from kit.run.session import Session
-from kit.school.game.ghosts import CommandPlayer, load_drives, reference_seconds
 from kit.school.game.levels import GameLevel, all_levels
 from kit.school.game.medal import Medal, medal_of
 from kit.school.game.race import (
@@ -30,6 +29,7 @@ from kit.school.game.race import (
     race_from_all_starts,
     run_race,
 )
+from kit.school.game.references import CommandPlayer, load_drives, reference_seconds
 from kit.school.game.starts import OWN_SEED, scenario_from, seeds_of
 from tests.school.game.tidy import TidyDriver
 

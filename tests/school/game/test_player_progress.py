@@ -15,7 +15,6 @@ from kit.learning.tasks.learning_task import CoverGoal, FollowGoal
 from kit.msg.nav_msgs import Odometry
 from kit.ros.node.node import create_graph_node
 from kit.run.session import Session
-from kit.school.game.ghosts import drive_reference, load_drives, reference_seconds
 from kit.school.game.levels import GameLevel, UnknownLevel, all_worlds, find_level
 from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time
 from kit.school.game.player_progress import (
@@ -27,6 +26,7 @@ from kit.school.game.player_progress import (
     streak,
 )
 from kit.school.game.race import DriverKind, RaceFinish, judge_recording, run_race
+from kit.school.game.references import drive_reference, load_drives, reference_seconds
 from kit.school.lessons.reading import lesson_names
 from kit.school.progress import EventKind, ProgressEvent
 from tests.kit_content import kit_levels
