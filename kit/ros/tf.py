@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import threading
 from bisect import bisect_right
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from kit.msg.geometry_msgs import Quaternion, Transform, TransformStamped, Vector3
 from kit.msg.tf2_msgs import TFMessage
 from kit.ros.execution.callback_groups import ReentrantCallbackGroup
+from kit.ros.execution.context import get_default_context
+from kit.ros.execution.executors import ExternalShutdownException, SingleThreadedExecutor
 from kit.ros.execution.task import Future
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile
 from kit.ros.node.time import S_TO_NS, ClockType, Duration, Time
@@ -280,9 +284,7 @@ class Buffer(BufferInterface):
             future.set_result(True)
 
     def _wait_for(self, target: str, source: str, time: Time, timeout: Duration) -> None:
-        if self._node is None:
-            return
-        graph = self._node.handle.graph
+        graph = get_default_context().graph if self._node is None else self._node.handle.graph
         work = graph.thread_state.work
         if work is not None and work[0].is_exclusive:
             return
@@ -367,9 +369,22 @@ class TransformListener:
             static if static_qos is None else static_qos,
             callback_group=self.group,
         )
+        if spin_thread:
+            self.executor = SingleThreadedExecutor(context=node.context)
+            self.dedicated_listener_thread = threading.Thread(target=self._spin, name="tf-listener")
+            self.dedicated_listener_thread.start()
+
+    def _spin(self) -> None:
+        """Spins the node, so that another thread may wait for transforms, until the context is shut down."""
+        with suppress(ExternalShutdownException):
+            self.executor.add_node(self.node)
+            self.executor.spin()
+            self.executor.remove_node(self.node)
 
     def unregister(self) -> None:
-        """Destroys the subscriptions."""
+        """Stops spinning and destroys the subscriptions."""
+        if hasattr(self, "executor"):
+            self.executor.shutdown()
         self.node.destroy_subscription(self.tf_sub)
         self.node.destroy_subscription(self.tf_static_sub)
 
