@@ -158,7 +158,7 @@ class SimulatedWaits:
         def make_rlock() -> Any:
             return threading._PyRLock() if waits.is_program() else make_real_rlock()  # type: ignore[attr-defined]
 
-        threading.Lock = threading._allocate_lock = Lock
+        threading.Lock = threading._allocate_lock = Lock  # type: ignore[attr-defined]
         threading.RLock = make_rlock  # type: ignore[assignment]
 
     def _replace_join(self) -> None:
