@@ -61,8 +61,13 @@ class RecordingFile:
         self.close()
 
     def begin(self, first: Recording) -> None:
-        """Starts anew: what was recorded before is given up."""
+        """Starts anew: what was recorded before is given up, unless it is complete."""
         self._written, self._failure = NOTHING, None
+        if self._part is None and not is_special(self.file):
+            try:
+                self._part = lock_part(part_path(self.file), self.file)
+            except OSError as error:  # the run goes on, and is written at its end
+                self._failure = error
         if self._part is not None:
             self._part.truncate(0)
             self._write(recording_header(first))
