@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 from dataclasses import fields
 from pathlib import Path
 from typing import Final
@@ -18,6 +17,7 @@ from grader.kinds.contract import find_kind, kind_names
 from grader.reading import budget_lines
 from grader.reports.cleaning import plain
 from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds
+from kit.cli.options import describe_os_error
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.plain_text import quoted, suggestion
@@ -45,14 +45,13 @@ def new(folder: Path, kind: str) -> None:
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         options.fail(f"{folder} already exists and is not empty; choose another folder.")
     try:
-        shutil.copytree(
-            TEMPLATES / kind,
-            folder,
-            dirs_exist_ok=True,
-            ignore=shutil.ignore_patterns("__pycache__", "*.pyc"),
-        )
+        for file in sorted((TEMPLATES / kind).rglob("*")):
+            if file.is_file() and "__pycache__" not in file.parts:
+                target = folder / file.relative_to(TEMPLATES / kind)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                write_atomically(target, file.read_bytes())
     except OSError as error:
-        options.fail(f"Cannot create {folder}: {error.strerror or error}.")
+        options.fail(f"Cannot create {folder}: {describe_os_error(error)}")
     click.echo(f"{folder}: {kind}, ready. Try it: grader self-test {folder}")
     click.echo(f"Then edit {folder}/assignment.yaml. To list the checks: grader checks {kind}")
 

@@ -107,7 +107,8 @@ class RecordingFile:
             with suppress(OSError):
                 if not self._written.ticks:
                     part_path(self.file).unlink()
-            self._part.close()
+            with suppress(OSError):  # of what could not be written, and was said
+                self._part.close()
             self._part = None
 
     def _write(self, line: dict[str, Any]) -> None:

@@ -32,7 +32,7 @@ from kit.plain_text import is_printable, quoted
 from kit.run.scenario import own_map_folder
 from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.simulation import load_world
-from kit.workspace import write_atomically
+from kit.workspace import errors_name_file, write_atomically
 from kit.world.catalogue import (
     WORLD_FILE,
     MapCard,
@@ -276,8 +276,9 @@ def unpack_task(archive: Path, folder: Path) -> Path:
     try:
         for path, data in contents.items():
             target = folder / Path(*path.parts)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(data)
+            with errors_name_file(target):
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.write_bytes(data)
         check_task(read_task(file))
     except BaseException:  # Ctrl-C too leaves nothing half made
         shutil.rmtree(made, ignore_errors=True)
