@@ -35,7 +35,7 @@ WRITERS = {
     "kit quiz": "kit quiz --workspace {out}",
     "kit lesson": "kit lesson 1 --plain --workspace {out}",
     "grader new": "grader new {out}",
-    "grader check --output": "grader check {made}/work {made}/work/solution.py --output {out}",
+    "grader check --output": "grader check {made}/work/solution.py --assignment {made}/work --output {out}",
     "grader report --output": "grader report {made}/result.json --output {out}",
 }
 """By what names the output: a command that writes to ``{out}``. ``{made}``: a folder with what the commands read."""
@@ -124,7 +124,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "kit task new mine",
         "kit task pack {made}/mine --to {made}/packed",
         "grader new {made}/work",
-        "grader check {made}/work {made}/work/solution.py --format json --output {made}/result.json",
+        "grader check {made}/work/solution.py --assignment {made}/work --json --output {made}/result.json",
     ):
         done = run(words, folder, folder)
         assert done.returncode == 0, done.stderr
