@@ -17,7 +17,7 @@ from kit.cli import main as kit_main
 from kit.document.blocks import Block, Code, Marked, Text
 from kit.document.code_lines import is_command
 from kit.document.layout import Page, lines_of
-from kit.learning.environment.tasks import TASKS
+from kit.learning.tasks.catalogue import TASKS
 from kit.school.lessons.glossary import read_glossary
 from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.records import Lesson

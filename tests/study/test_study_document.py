@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.learning.environment.tasks import find_task
+from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.learning_task import LearningTask
 from kit.study import recorded_results, study_document
 from kit.study.printed_tables import ADJACENCY, FIGURE, SUCCESS, printed_table, study_chapters

@@ -10,7 +10,7 @@ import numpy as np
 from kit.arrays import FloatArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
-from kit.learning.environment.transition import Transition
+from kit.learning.tasks.transition import Transition
 
 
 class EpisodeOutcome(Enum):

@@ -21,8 +21,8 @@ from pathlib import Path
 from typing import IO, Any, Literal, get_args
 
 from kit.field_types import check_field_types
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import Policy, load_policy
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.events import (
     Evaluated,
     EventReader,

@@ -21,7 +21,6 @@ from kit.arrays import FloatArray, IntArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.episode_stats import EpisodeStatsRecorder
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import (
     ActionSampling,
     ActionValueTable,
@@ -29,6 +28,7 @@ from kit.learning.policies.policies import (
     action_counts,
     task_interface,
 )
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.presets import Preset, TabularParams
