@@ -20,6 +20,7 @@ from kit.ros.rotations import quaternion_inverse, quaternion_multiply, quaternio
 from kit.ros.tf_conversion import BufferInterface
 
 if TYPE_CHECKING:
+    from kit.ros.graph.graph import Graph
     from kit.ros.node.node import Node
 
 _DYNAMIC = QoSProfile(depth=100)
@@ -151,6 +152,10 @@ class Buffer(BufferInterface):
         self._keep_ns = (cache_time or Duration(seconds=10)).nanoseconds
         self._node = node
         self._frames: dict[str, _Frame] = {}
+        self._lock = threading.Lock()
+        """Held while frames are changed or looked up: the thread of a listener may add some meanwhile."""
+        self._waited_in: Graph | None = None
+        """The graph in which other threads may wait for transforms."""
         self._awaited: list[tuple[Future[bool], Callable[[], bool]]] = []
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
@@ -268,11 +273,16 @@ class Buffer(BufferInterface):
             raise InvalidArgumentException(
                 f"a transform from '{parent}' to '{child}': two different names are needed"
             )
-        frame = self._frames.get(child)
-        if frame is None or frame.parent != parent or frame.is_static != is_static:
-            frame = self._frames[child] = _Frame(parent, is_static=is_static)
         stamp = Time.from_msg(transform.header.stamp).nanoseconds
-        frame.add(stamp, Rigid.from_msg(transform.transform), self._keep_ns)
+        with self._lock:
+            frame = self._frames.get(child)
+            if frame is None or frame.parent != parent or frame.is_static != is_static:
+                frame = self._frames[child] = _Frame(parent, is_static=is_static)
+            frame.add(stamp, Rigid.from_msg(transform.transform), self._keep_ns)
+        if (
+            self._waited_in is not None
+        ):  # without the lock: who waits looks for the transform with the graph's
+            self._waited_in.notify()
         if self._awaited:
             self._finish_awaited()
 
@@ -289,9 +299,14 @@ class Buffer(BufferInterface):
         if work is not None and work[0].is_exclusive:
             return
         until = graph.now_ns + timeout.nanoseconds
+        self._waited_in = graph
         graph.wait(lambda: self.can_transform(target, source, time) is True, until, what="lookup_transform()")
 
     def _lookup(self, target: str, source: str, time: Time) -> TransformStamped:
+        with self._lock:
+            return self._combined(target, source, time)
+
+    def _combined(self, target: str, source: str, time: Time) -> TransformStamped:
         up, down = self._paths(target, source)
         wanted = time.nanoseconds
         if wanted == 0:

@@ -175,9 +175,10 @@ class SimulatedWaits:
             real_join(thread, timeout)
 
         def forget_and_tell(thread: threading.Thread) -> None:
-            forget(thread)
-            waits._ended.add(thread)
-            graph.notify()
+            with graph.lock:  # a waiter sees both or none
+                forget(thread)
+                waits._ended.add(thread)
+                graph.notify()
 
         threading.Thread.join = join  # type: ignore[assignment, method-assign]
         threading.Thread._delete = forget_and_tell  # type: ignore[attr-defined]
