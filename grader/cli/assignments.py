@@ -23,6 +23,7 @@ from grader.new_assignment import example_of_exercise, example_of_kind, make_ass
 from grader.reading import SECRET_FILE, budget_lines
 from grader.reports.cleaning import plain
 from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds, works_of
+from kit.cli.options import describe_os_error
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.plain_text import counted, quoted, suggestion
@@ -59,7 +60,7 @@ def new(folder: Path, kind: str | None, exercise: str | None) -> None:
     except LookupError as error:
         options.fail(str(error))
     except OSError as error:
-        options.fail(f"Cannot create {folder}: {error.strerror or error}.")
+        options.fail(f"Cannot create {folder}: {describe_os_error(error)}")
     shown = shlex.quote(str(folder))
     click.echo(f"{folder}: {assignment.kind}, ready. Try it: grader self-test {shown}")
     if assignment.has_secrets:
