@@ -496,6 +496,8 @@ def _read_learners(scene: Section) -> Iterator[tuple[GridLearnerSettings, str]]:
             each.integer("worlds", known.worlds, minimum=1, maximum=64),
             each.number("clip", known.clip, minimum=0, maximum=1),
             each.number("entropy", known.entropy, minimum=0, maximum=1),
+            each.number("temperature", known.temperature, minimum=0, maximum=1e6),
+            each.number("value_limit", known.value_limit, minimum=0, maximum=1e9),
         )
         yield settings, each.text("title", settings.algorithm)
         each.finish()

@@ -332,6 +332,8 @@ def wrapped_degrees(words: str, step: LessonStep, folder: Path) -> str:
 def values_above_the_limit(words: str, step: LessonStep, folder: Path) -> str:
     from kit.learning.training.boltzmann_dqn import MAX_EXPONENT  # brings torch along
 
+    if words.startswith("Its"):
+        return f"Its library had the limit of {MAX_EXPONENT:g}"
     return f"The library took all values above {MAX_EXPONENT:g} for equal"
 
 
@@ -344,6 +346,8 @@ def pairs_of_actions(words: str, step: LessonStep, folder: Path) -> str:
         f"{count(7, 2)}, one for each pair of actions.",
         f"These are 7 x 7. With 4 actions each it would be {count(4, 2)}, and {with_three}.",
         f"With 4 actions each, {count(4, 2)} pairs",
+        f"the largest of {count(7, 2)} guesses",
+        f"{count(7, 2)} actions",
     )
     return next((each for each in texts if each == words), texts[0])
 
