@@ -218,3 +218,11 @@ class World:
     position_iterations: int = 10
     layer_bits: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     """Every layer name and its bit."""
+
+    @property
+    def wall_segments(self) -> FloatArray:
+        """(n, 4) float64 ``x1 y1 x2 y2`` [m] of all its maps in world coordinates, those of a map once."""
+        import numpy as np  # as above
+
+        maps = {layer.walls.file: layer.walls for layer in self.layers if layer.walls is not None}
+        return np.concatenate([np.empty((0, 4)), *(walls.segments for walls in maps.values())])

@@ -9,8 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from kit.render.encode import BrailleEncoder
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.render.world_text import scene_rows
@@ -18,20 +16,19 @@ from kit.run.recording import Recording
 from kit.school.game import leaderboard
 from kit.school.game.ghosts import load_ghosts, reference_seconds, save_ghost
 from kit.school.game.levels import GameLevel, all_levels
+from kit.school.game.medal import Medal, medal_of
 from kit.school.game.player_progress import (
     BY_HAND,
     DAILY_PREFIX,
     DriverFacts,
     ExtraRule,
     LevelProgress,
-    Medal,
     belt_of,
     completed_lessons,
     daily_level,
     is_best_drive,
     kept_rules,
     level_progress,
-    medal_of,
     streak,
     today,
 )
@@ -166,11 +163,10 @@ def card_rows(
 ) -> list[str]:
     """The rows of the card, at most ``COLUMNS`` wide."""
     scenario = level.find_scenario()
-    walls = [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
     case = scenario.case
     tracks = [recording.track(name)[::5, :2] for name in scenario.partners]
     scene = Scene(
-        walls=np.concatenate(walls),
+        walls=scenario.world.wall_segments,
         paths=tuple(ScenePath(track) for track in tracks if len(track) > 1),
         targets=() if case is None else (Disc(*case.target, case.target_radius),),
         marks=tuple(SceneMark(start.x, start.y, "S") for start in scenario.starts[:1]),
