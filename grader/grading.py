@@ -137,7 +137,8 @@ class Grading:
         self._has_run_public = not secret
         """Whether everything public was run. Nothing secret is run before: what a program says after that is not shown."""
         with admitting(assignment.packages):
-            self._checks = find_kind(assignment.kind).checks
+            kind = find_kind(assignment.kind)
+        self._checks, self._tells_secret_runs = kind.checks, kind.tells_secret_runs
         self._scored: dict[str, tuple[_ScoredEvidence, ...]] = {}
         self._tests: dict[str, CriterionResult] = {}
         self._counterexamples: dict[str, _ScoredEvidence | None] = {}
@@ -321,13 +322,16 @@ class Grading:
         self, criterion: Criterion, scored: Sequence[_ScoredEvidence], *, full: bool
     ) -> Sequence[_ScoredEvidence]:
         """Returns the evidence that a student is told of: the public, or where only secret evidence lost points, a
-        counterpart that loses points too. Empty if none of these was found."""
+        counterpart that loses points too; else the secret itself, where the kind tells of it. Empty if none of these was
+        found."""
         public = [each for each in scored if not each.evidence.secret]
         if full or any(each.share < 1.0 for each in public):
             return public
         if self._looks_afterwards and criterion.id not in self._counterexamples:
             self._counterexamples[criterion.id] = self._find_counterexample(criterion)
         found = self._counterexamples.get(criterion.id)
+        if found is None and self._looks_afterwards and self._tells_secret_runs:
+            return scored
         return [] if found is None else [found]
 
     @property
