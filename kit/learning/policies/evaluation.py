@@ -19,8 +19,9 @@ from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats,
 from kit.learning.maps.batch_map import load_batch_map
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
 from kit.learning.policies.policies import Policy, load_policy
-from kit.learning.tasks.learning_task import Area, LearningTask, PatrolGoal, TargetGoal, TaskCase
+from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.rewards import RewardFunction
+from kit.learning.tasks.task_case import Area, TaskCase
 from kit.render.drive_playback import DrivenPlace, DrivePlayback
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.world.catalogue import MapCard
@@ -385,7 +386,7 @@ def build_paths_scene(
     mine = [way for way in ways if way.case == case.name]
     is_fixed = len(case.targets.poses) == 1 and case.targets.model is None
     targets = [case.target] if is_fixed else sorted({way.target for way in mine})
-    targets = targets if isinstance(task.goal, TargetGoal | PatrolGoal) else []
+    targets = targets if task.goal.has_standing_targets else []
     starts = [(case.start.x, case.start.y)]
     if case.starts[0].is_area or len(case.starts[0].poses) > 1:
         starts = [(x, y) for x, y in (way.poses[0, 0, :2].tolist() for way in mine)]
@@ -444,7 +445,7 @@ def playback_of(path: EpisodePath, task: LearningTask) -> DrivePlayback:
     still = [each for each in batch_map.obstacles if each.motion is None]
     outlines = [outline for each in still for outline in obstacle_outlines(each, each.pose)]
     edges = [np.concatenate((corners, np.roll(corners, -1, axis=0)), axis=1) for corners in outlines]
-    has_target = isinstance(task.goal, TargetGoal | PatrolGoal)
+    has_target = task.goal.has_standing_targets
     place = DrivenPlace(
         np.concatenate((batch_map.walls, *edges)),
         tuple(np.array(polygon) for polygon in batch_map.robot.hull),

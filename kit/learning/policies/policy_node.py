@@ -45,6 +45,11 @@ def format_policy_node(policy: Policy) -> str:
             f"this policy sees what a node does not know: {', '.join(unknown)}. A node knows rays, sectors and "
             f"{join_names(NODE_PARTS)}: leave the rest out of the task's observation, and train again."
         )
+    if seen.target and task.goal.node_refusal:
+        raise PolicyError(
+            f"this policy sees its target, which a node cannot tell it: {task.goal.node_refusal}. Leave the target out of "
+            "the task's observation, and train again."
+        )
     if task.robots not in TOPIC_PREFIXES or not seen.sectors:
         raise PolicyError("a node can be written for one robot or two that see sectors of a scan.")
     template = files("kit.learning.policies").joinpath("policy_node_template.py").read_text()

@@ -23,13 +23,14 @@ from kit.learning.policies.policies import (
 )
 from kit.learning.policies.policy_node import format_policy_node
 from kit.learning.tasks.catalogue import find_task
-from kit.learning.tasks.learning_task import EpisodePlaces, StartVariation
+from kit.learning.tasks.learning_task import StartVariation
 from kit.learning.tasks.student_reward import (
     RewardFileError,
     StudentReward,
     metric_parameters,
     reward_parameters,
 )
+from kit.learning.tasks.task_case import EpisodePlaces
 from kit.learning.tasks.task_spec import TaskSpec
 
 STRAIGHT = TaskSpec("hallway", ("straight", "center_door"))
