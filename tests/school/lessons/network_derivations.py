@@ -7,8 +7,9 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Final
 
-from kit.learning.environment.grid_world import GridWorld
-from kit.learning.training.grid_learner import BATCH, HIDDEN, GridLearnerSettings, NetworkLearner
+from kit.learning.grid.dqn import BATCH, HIDDEN, DqnLearner
+from kit.learning.grid.grid_learner import GridLearnerSettings
+from kit.learning.grid.grid_world import GridWorld
 from kit.learning.training.presets import TabularParams
 from kit.school.lessons.records import LearningScene, LessonStep
 from tests.school.lessons.table_derivations import SEEN, scene_of
@@ -22,7 +23,7 @@ def solved_after_each(
     world: GridWorld, settings: GridLearnerSettings, updates: int
 ) -> tuple[tuple[bool, ...], int]:
     """After each episode: whether the best moves lead to the target. And how many updates there were."""
-    learner, found = NetworkLearner(world, settings), []
+    learner, found = DqnLearner(world, settings), []
     while learner.updates < updates:
         if learner.step().ended:
             found.append(learner.is_solved)
@@ -42,7 +43,7 @@ def network_rewards(words: str, step: LessonStep, folder: Path) -> str:
 
 def one_network_update(words: str, step: LessonStep, folder: Path) -> str:
     scene = scene_of(step)
-    learner = NetworkLearner(scene.world, scene.learners[0])
+    learner = DqnLearner(scene.world, scene.learners[0])
     before = learner.values.copy()
     learner.step()
     assert (learner.values != before).all()
@@ -57,7 +58,7 @@ def state_count(words: str, step: LessonStep, folder: Path) -> str:
 
 
 def weight_count(words: str, step: LessonStep, folder: Path) -> str:
-    learner = NetworkLearner(GridWorld(("SG",)), GridLearnerSettings("dqn"))
+    learner = DqnLearner(GridWorld(("SG",)), GridLearnerSettings("dqn"))
     count = sum(each.size for each in learner.network.parameters)
     return f"A network with two layers of {HIDDEN} neurons has {count:,} weights here"
 
