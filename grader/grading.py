@@ -14,6 +14,7 @@ from types import MappingProxyType
 from typing import Final
 
 from grader.assignment import MAX_HINTS, Assignment, Criterion, KnownMistake, SeedSet
+from grader.author_code import AuthorCodeError
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
 from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.contract import find_kind
@@ -154,6 +155,7 @@ class Grading:
             self.assignment.teacher_test_files,
             self.first_failure,
             self._clock,
+            self._collector.level,
         )
         collected = self._collector.collected()
         if any(each.failure is not None and each.failure.kind in OUTSIDE_SIGNALS for each in collected):
@@ -279,7 +281,7 @@ class Grading:
         if self._has_run_public:
             return
         self._has_run_public = True
-        with reading_submission(self.submission.name):
+        with reading_submission(self.submission.name, AuthorCodeError):
             for criterion in self.assignment.criteria:
                 self._collector.public_evidence(criterion)
         if not self._examples or self._looks_afterwards:
@@ -321,7 +323,7 @@ class Grading:
         self._run_public()
         ready = self._ready(criterion)
         # An error in here was brought to light by this work: it must look like no fault of the grader's.
-        with reading_submission(self.submission.name):
+        with reading_submission(self.submission.name, AuthorCodeError):
             collected = self._collector.evidence(criterion)
         self._scored[criterion.id] = tuple(
             self._score_evidence(criterion, each, is_ready=ready(each)) for each in collected

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import inspect
+import json
 import re
 import shutil
+import sys
 from dataclasses import fields
 from pathlib import Path
 from typing import Final
 
 import click
 
+from grader.check import Check
 from grader.ci import WORKFLOWS, GitSource, warnings, workflow
 from grader.cli import options
 from grader.cli.progress import shown_progress
 from grader.grading import GradingOptions, LevelTooLow
-from grader.kinds.contract import find_kind, kind_names
+from grader.kinds.contract import KINDS_PACKAGE, find_kind, kind_names
 from grader.reading import budget_lines
 from grader.reports.cleaning import plain
 from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds
@@ -69,15 +73,49 @@ MISTAKES_HELP: Final = (
 )
 
 
+def _feedback(check: Check) -> str:
+    """What a check tells a student, with dots where it names what it has measured."""
+    full = check.format(check.anchors.full)
+    return check.feedback.format(actual="...", full=full, where="...", passed="...", count="...")
+
+
+def _kinds_as_json() -> str:
+    """Every kind with its checks, and the limits of programs, for pages about them."""
+    kinds = [
+        {
+            "kind": name,
+            "about": inspect.getdoc(sys.modules[f"{KINDS_PACKAGE}.{name}.kind"]),
+            "endings": find_kind(name).endings,
+            "checks": [
+                {
+                    "check": check_name,
+                    "feedback": _feedback(each),
+                    "none": each.format(each.anchors.none),
+                    "full": each.format(each.anchors.full),
+                    "with": {field.name: repr(field.default) for field in fields(each.params)},
+                }
+                for check_name, each in find_kind(name).checks.items()
+            ],
+        }
+        for name in kind_names()
+        if find_kind(name)
+    ]
+    return json.dumps({"kinds": kinds, "budget": dict(budget_lines())}, indent=1)
+
+
 @click.command()
 @click.argument("kind", required=False, default="controller")
-def checks(kind: str) -> None:
+@click.option("--json", "machine_readable", is_flag=True, help="Print all kinds and their checks as JSON.")
+def checks(kind: str, machine_readable: bool) -> None:
     """List the checks that an assignment of this KIND can use: what each measures, which values earn no points and all
     points (unless `share` sets others), and the parameters for `with`.
 
     \b
     grader checks reward
     """
+    if machine_readable:
+        click.echo(_kinds_as_json())
+        return
     if kind not in kind_names():
         options.fail(f"There is no kind {quoted(kind)}: {suggestion(kind, kind_names())}")
     rows: list[tuple[str, str]] = []
@@ -88,8 +126,7 @@ def checks(kind: str) -> None:
             f"“{none}” earns nothing, “{full}” everything" if full else "",
             f"with: {params}" if params else "",
         ]
-        text = check.feedback.format(actual="...", full=full, where="...", passed="...", count="...")
-        rows += [(name, text), ("", "; ".join(filter(None, parts)))]
+        rows += [(name, _feedback(check)), ("", "; ".join(filter(None, parts)))]
     others = ", ".join(each for each in kind_names() if each != kind)
     budget = "budget: {KEY: NUMBER, ...} sets limits for every program that runs:"
     blocks: list[Block] = [

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from grader.assignment import Assignment, Trial
-from grader.checks.contract import Check
+from grader.check import Check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, SingleEvidence
 from grader.submitted_files import reading_submission
 from kit.host.failure import Failure, FailureKind
@@ -23,7 +23,6 @@ from kit.world.yaml_section import Section
 Parsed = TypeVar("Parsed")
 
 KINDS_PACKAGE: Final = "grader.kinds"
-NON_KIND_MODULES: Final = ("contract",)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,16 +65,12 @@ class Kind:
 def kind_names() -> tuple[str, ...]:
     """Returns the names of all kinds."""
     package = import_module(KINDS_PACKAGE)
-    return tuple(
-        sorted(
-            each.name for each in pkgutil.iter_modules(package.__path__) if each.name not in NON_KIND_MODULES
-        )
-    )
+    return tuple(sorted(each.name for each in pkgutil.iter_modules(package.__path__) if each.ispkg))
 
 
 def find_kind(kind: str) -> Kind:
-    """Returns a kind's record; imports its module on first use."""
-    kind_record: Kind = import_module(f"{KINDS_PACKAGE}.{kind}").KIND
+    """Returns a kind's record: ``KIND`` of the module ``kind`` in its folder, which is imported on first use."""
+    kind_record: Kind = import_module(f"{KINDS_PACKAGE}.{kind}.kind").KIND
     return kind_record
 
 

@@ -85,6 +85,7 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
         "Explain a term used in the lessons.",
     ),
     "progress": ("kit.cli.progress", "Show your progress; export or import it."),
+    "help": ("kit.cli.help", "Show a page: how-to, formats, environments, Python, reasons."),
     "keys": ("kit.cli.doctor:keys_command", "Press keys and see what this terminal sends."),
     "doctor": (
         "kit.cli.doctor",
@@ -217,7 +218,7 @@ class LazyGroup(click.Group):
     cls=LazyGroup,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="`kit COMMAND --help` explains a command. Ctrl-C leaves any screen.",
+    epilog="`kit COMMAND --help` explains a command, `kit help` lists pages to read. Ctrl-C leaves any screen.",
 )
 @click.version_option(kit.__version__, prog_name="kit")
 @click.pass_context

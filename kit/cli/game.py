@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
     from kit.run.recording import Recording
     from kit.school.game.levels import GameLevel
-    from kit.school.game.player_progress import DriverFacts, GameSummary, Medal
+    from kit.school.game.medal import Medal
+    from kit.school.game.player_progress import DriverFacts, GameSummary
     from kit.school.game.race import DriverKind, RaceFinish
     from kit.school.progress import ProgressJournal
     from kit.tui.app import KitApp
@@ -199,18 +200,16 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
     Without NAME, list them; with NAME, show one. ANSWER depends on the challenge: moves, a file, or the name of a
     training run. A better answer earns a better medal.
     """
-    from kit.learning.training.runs import RunError
-    from kit.school.game.challenge_answers import answers_folder, begin_repair, task_lines
+    from kit.school.game.challenge import ChallengeError, HandedIn
     from kit.school.game.challenges import (
-        ChallengeError,
-        RepairTask,
         all_challenges,
+        answers_folder,
         challenge_medals,
         find_challenge,
-        judge,
+        prepare_answer,
         record_judgement,
     )
-    from kit.school.game.player_progress import Medal
+    from kit.school.game.medal import Medal
     from kit.school.lessons.reading import lesson_number
 
     with _open_journal(workspace) as (journal, opened_workspace):
@@ -224,25 +223,23 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
             return
         try:
             chosen = find_challenge(name)
+            clock, seconds = chosen.task.clock, math.inf
+            if clock is not None:
+                file, seconds = prepare_answer(journal, chosen, answers_folder(opened_workspace))
             if answer is None:
                 click.echo(
                     f"{chosen.title}. {chosen.story}\n{chosen.task_text}\nLesson {lesson_number(chosen.lesson)} prepares you for it."
                 )
-                for line in task_lines(chosen):
+                for line in chosen.task.lines():
                     click.echo(line)
-                if isinstance(chosen.task, RepairTask):
-                    file, seconds = begin_repair(journal, chosen, answers_folder(opened_workspace))
+                if clock is not None:
                     click.echo(
-                        f"Your file: {file}\nGold until {chosen.task.gold_s:.0f} s, silver until "
-                        f"{chosen.task.silver_s:.0f} s; the clock is at {seconds:.0f} s."
+                        f"Your file: {file}\nGold until {clock[0]:.0f} s, silver until {clock[1]:.0f} s; the clock is at {seconds:.0f} s."
                     )
                 click.echo(f"To hand in: kit game challenge {chosen.id} ANSWER")
                 return
-            seconds = math.inf
-            if isinstance(chosen.task, RepairTask):
-                _, seconds = begin_repair(journal, chosen, answers_folder(opened_workspace))
-            judgement = judge(chosen, answer, opened_workspace.runs, seconds)
-        except (LookupError, ChallengeError, RunError, OSError) as error:
+            judgement = chosen.task.judge(HandedIn(answer, opened_workspace.runs, seconds))
+        except (LookupError, ChallengeError, OSError) as error:
             options.fail(options.describe_error(error))
         record_judgement(journal, chosen, judgement)
         click.echo(f"{judgement.text}\n  {judgement.medal.title}")
@@ -386,7 +383,8 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
 
 def _print_levels(summary: GameSummary) -> None:
     from kit.school.game.levels import all_worlds
-    from kit.school.game.player_progress import ExtraRule, Medal
+    from kit.school.game.medal import Medal
+    from kit.school.game.player_progress import ExtraRule
     from kit.school.game.race import DriverKind
     from kit.tui.rows.level_rows import medal_counts
 
@@ -421,7 +419,7 @@ def _print_levels(summary: GameSummary) -> None:
 
 def _sign(medal: Medal) -> str:
     """The first letter of a medal."""
-    from kit.school.game.player_progress import Medal
+    from kit.school.game.medal import Medal
 
     return NO_STAR if medal is Medal.NONE else medal.title[0].upper()
 
@@ -438,7 +436,8 @@ def _record_drive(
     """Records a drive and prints what it earned."""
     from kit.school.game.drive_records import record_drive
     from kit.school.game.ghosts import reference_seconds
-    from kit.school.game.player_progress import BY_HAND, Medal, medal_time
+    from kit.school.game.medal import Medal, medal_time
+    from kit.school.game.player_progress import BY_HAND
 
     if finish.failure is not None:
         click.echo(f"The program stopped: {finish.failure}")

@@ -179,7 +179,8 @@ def new(
 
     Without S or T, the kit chooses two places far apart. The robot must be able to drive from S to T.
     """
-    from kit.mapmaking.new_map import DrawingError, MapExists, check_name, read_drawing, write_map
+    from kit.mapmaking.map_drawing import DrawingError, read_drawing
+    from kit.mapmaking.new_map import MapExists, check_name, write_map
     from kit.mapmaking.route import NoRoute
 
     try:
@@ -205,7 +206,9 @@ def _title(name: str) -> str:
 
 def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str | None) -> None:
     """Opens the sheet, and tells what was made of it. The drawing is kept beside the map, to be changed later."""
-    from kit.mapmaking.new_map import MapSketch, read_drawing, write_map
+    from kit.mapmaking.map_drawing import read_drawing
+    from kit.mapmaking.map_sketch import MapSketch
+    from kit.mapmaking.new_map import write_map
     from kit.mapmaking.sketch_draft import SketchDraft
 
     terminal = options.full_screen(

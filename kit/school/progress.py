@@ -20,14 +20,15 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, Final, Self
 
-from kit.plain_files import read_plain_file
 from kit.workspace import write_atomically
 
 FILE: Final = "progress.db"
 FORMAT: Final = "robot-learning-kit progress"
 VERSION: Final = 1
+
 LOCK_TIMEOUT_S: Final = 10.0
 """Seconds to wait for another process of the same student that is writing."""
+
 MAX_CONTENT_LENGTH: Final = 64 * 1024
 """Characters of one event's content: a student's answer fits, a file that was read by mistake does not."""
 
@@ -41,8 +42,6 @@ CREATE TABLE IF NOT EXISTS events (
     content TEXT NOT NULL
 )
 """
-
-
 _ALL: Final = "SELECT uid, at, kind, subject, content FROM events"
 _Row = tuple[str, str, str, str, str]
 
@@ -318,57 +317,6 @@ def _keep_as(file: Path, backup: Path) -> None:
     for ending in ("-journal", "-wal", "-shm"):
         with suppress(FileNotFoundError):
             os.replace(f"{file}{ending}", f"{backup}{ending}")  # noqa: PTH105 - the names are text with an ending
-
-
-MAX_EXPORT_BYTES: Final = 5_000_000
-"""Bytes of an exported file: many times what a student does in a year; reading takes ten times as much memory."""
-
-
-def read_export(file: Path) -> list[ProgressEvent]:
-    """Reads the events of an exported file. Raises ProgressError if it is malformed."""
-    try:
-        content = json.loads(read_plain_file(file, MAX_EXPORT_BYTES).decode())
-    except OSError as error:
-        raise ProgressError(f"{file}: cannot be read ({error.strerror}).") from None
-    except (ValueError, RecursionError) as error:
-        raise ProgressError(f"{file}: is not an export of progress, or is cut off ({error}).") from None
-    if (
-        not isinstance(content, dict)
-        or content.get("format") != FORMAT
-        or not isinstance(content.get("events"), list)
-    ):
-        raise ProgressError(f"{file}: is not an export of progress; `kit progress export FILE` makes one.")
-    if content.get("version") != VERSION:
-        raise ProgressError(
-            f"{file}: is of version {content.get('version')}; this kit reads version {VERSION}."
-        )
-    return [_event_from_export(each, index, file) for index, each in enumerate(content["events"], 1)]
-
-
-def _event_from_export(content: Any, index: int, file: Path) -> ProgressEvent:
-    try:
-        event = ProgressEvent(
-            str(content["uid"]),
-            _to_utc_text(str(content["at"])),
-            EventKind(content["kind"]),
-            str(content["subject"]),
-            dict(content["content"]),
-        )
-    except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise ProgressError(f"{file}: entry {index} cannot be understood ({error!r}).") from None
-    return event
-
-
-def _to_utc_text(at: str) -> str:
-    """Converts a time to the journal's format, in which texts sort like times."""
-    time = datetime.fromisoformat(at)
-    if time.tzinfo is None:
-        raise ValueError("a time without its zone")
-    if (
-        time.year not in YEARS
-    ):  # what is computed from it, such as when a question is due again, must be a time too
-        raise ValueError("a time of another century")
-    return time.astimezone(UTC).isoformat(timespec="microseconds")
 
 
 def _row_from_event(event: ProgressEvent) -> _Row:

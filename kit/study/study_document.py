@@ -20,7 +20,7 @@ from kit.document.blocks import (
     Table,
     Text,
 )
-from kit.document.files import document_to_markdown, table_to_markdown
+from kit.document.markdown import document_to_markdown, table_to_markdown
 from kit.plain_text import suggestion
 from kit.study.evaluation import (
     EvaluationData,

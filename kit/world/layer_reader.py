@@ -259,7 +259,7 @@ class LayerReader:
             return None  # there are too many layers, which is reported; further images would only cost time
         if file not in self._maps:
             found = self._documents.section(file, section.location_of("map"))
-            self._maps[file] = None if found is None else self._read_map(found, file)
+            self._maps[file] = None if found is None else self.read_map(found, file)
         return self._maps[file]
 
     def _read_threshold(self, section: Section) -> float:
@@ -270,7 +270,22 @@ class LayerReader:
             )
         return threshold
 
-    def _read_map(self, section: Section, file: Path) -> Walls | None:
+    def read_map(self, section: Section, file: Path) -> Walls | None:
+        """The walls that a layer's map file describes. What is wrong is noted.
+
+        =============== ===============================================================================
+        origin          where the drawing's lower left corner lies in the world [m, m, rad]
+        type            ``line_segments`` for a file of lines; anything else, or nothing, for a picture
+        image           the picture, relative to this file
+        resolution      size of a pixel [m]
+        occupied_thresh how dark a wall is at least, 0 white to 1 black
+        free_thresh     how dark the floor is at most; read for others, of no effect here
+        negate          1: walls are bright
+        mode            how grey becomes darkness, as map_server has it
+        data            file of lines ``x1 y1 x2 y2``, relative to this file
+        scale           length of the file's unit [m]
+        =============== ===============================================================================
+        """
         origin = section.pose("origin")
         if section.text("type", "") == "line_segments":
             key = "data"

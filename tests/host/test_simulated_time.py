@@ -16,7 +16,8 @@ from tests.host.conftest import QUICK, Student
 TICK_NS = 10_000_000
 
 PROGRAM = """
-import asyncio, datetime, queue, threading, time
+import asyncio, datetime, queue, sched, threading, time
+from concurrent import futures
 import rclpy
 from rclpy.node import Node
 from rclpy.time import Duration
@@ -63,6 +64,23 @@ WAITS = {
     "datetime and sleep": "end = datetime.datetime.now() + datetime.timedelta(seconds=1)\nwhile datetime.datetime.now() < end:\n    time.sleep(0.1)",
     "asyncio": "asyncio.run(asyncio.sleep(1))",
     "event": "threading.Event().wait(1)",
+    "event without a limit": "done = threading.Event()\nthreading.Timer(1, done.set).start()\ndone.wait()",
+    "queue": "try:\n    queue.Queue().get(timeout=1)\nexcept queue.Empty:\n    pass",
+    "simple queue": "try:\n    queue.SimpleQueue().get(timeout=1)\nexcept queue.Empty:\n    pass",
+    "filled queue": "q = queue.Queue(maxsize=1)\nthreading.Timer(1, q.put, (1,)).start()\nq.get()",
+    "condition": "condition = threading.Condition()\nwith condition:\n    condition.wait(1)",
+    "condition for": "condition = threading.Condition()\nwith condition:\n    condition.wait_for(lambda: False, timeout=1)",
+    "lock": "lock = threading.Lock()\nlock.acquire()\nlock.acquire(timeout=1)",
+    "semaphore": "threading.Semaphore(0).acquire(timeout=1)",
+    "barrier": "try:\n    threading.Barrier(2).wait(1)\nexcept threading.BrokenBarrierError:\n    pass",
+    "join": "thread = threading.Thread(target=time.sleep, args=(5,), daemon=True)\nthread.start()\nthread.join(timeout=1)",
+    "join to the end": "thread = threading.Thread(target=time.sleep, args=(1,))\nthread.start()\nthread.join()",
+    "held lock": "lock = threading.Lock()\ndef hold():\n    with lock:\n        time.sleep(1)\nthreading.Thread(target=hold).start()\ntime.sleep(0.01)\nwith lock:\n    pass",
+    "held reentrant lock": "lock = threading.RLock()\ndef hold():\n    with lock, lock:\n        time.sleep(1)\nthreading.Thread(target=hold).start()\ntime.sleep(0.01)\nwith lock:\n    pass",
+    "pool": "with futures.ThreadPoolExecutor(2) as pool:\n    pool.submit(time.sleep, 1).result()",
+    "pool's result in time": "pool = futures.ThreadPoolExecutor(2)\ntry:\n    pool.submit(time.sleep, 1.5).result(timeout=1)\nexcept futures.TimeoutError:\n    pass",
+    "sched": "s = sched.scheduler(time.monotonic, time.sleep)\ns.enter(0.3, 1, lambda: s.enter(0.7, 1, print))\ns.run()",
+    "asyncio's thread": "async def main():\n    await asyncio.wait_for(asyncio.to_thread(time.sleep, 1), 2)\nasyncio.run(main())",
     "timer": "done = threading.Event()\nthreading.Timer(1, done.set).start()\nwhile not done.wait(0.05):\n    pass",
 }
 CASES = [(wait, use) for wait in WAITS for use in USES]

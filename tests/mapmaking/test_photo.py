@@ -10,7 +10,8 @@ from click.testing import CliRunner
 from PIL import Image, ImageDraw
 
 from kit.cli import main
-from kit.mapmaking.photo import PhotoError, Scale, find_sheet, open_photo, plan_from_photo
+from kit.mapmaking.photo import PhotoError, Scale, open_photo, plan_from_photo
+from kit.mapmaking.sheet import find_sheet
 from kit.run.scenario import find_scenario
 from tests.mapmaking.judging import judge
 from tests.mapmaking.photos import SHEET, draw_photo

@@ -264,7 +264,7 @@ class BatchEnv:
             return old.disturbed, StepMoves(
                 twists[None], self._check_times, self._same_command, self._checks, turn
             )
-        number = (old.episode << EPISODE_BITS) + JITTER_DRAWS + old.step
+        number = (old.episode << EPISODE_BITS) + JITTER_DRAWS + old.step * task.robots
         disturbed = old.disturbed.after_command(twists, self._random_keys, number)
         return disturbed, disturbed.moves(task.collision_checks)
 

@@ -12,7 +12,7 @@ from kit.kernels import batch_step, compilation, grids, world_kernels
 from kit.kernels.arrays import RobotStates, ScanDraws, StepInputs, StepRules
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.environment.distance_field import CELL
-from kit.learning.maps.batch_map import hulls_in_lidar_frame
+from kit.learning.maps.batch_map import geometry_for_scans
 from kit.learning.maps.ray_directions import RAY_COUNT
 from kit.learning.tasks.learning_task import LearningTask
 
@@ -35,13 +35,12 @@ class BatchLoops:
     def __init__(self, task: LearningTask, case_arrays: CaseArrays, n: int, *, has_ways: bool) -> None:
         """``n``: how many worlds a step is of. ``has_ways``: whether targets stand, so that tables have the ways to them."""
         self._robots, self._frame_size = task.robots, task.observation.frame_size
-        lidar = case_arrays.lidar
+        robot = case_arrays.robot
+        lidar = robot.lidar
         single_rays, sectors = task.observation.ray_tables(task.robots)
         self.rules = StepRules(
             fleet=case_arrays.fleet,
-            seen_fleet=case_arrays.fleet
-            if lidar == Pose()
-            else hulls_in_lidar_frame(case_arrays.fleet, lidar),
+            seen_fleet=geometry_for_scans(case_arrays.fleet, robot, task.robots),
             obstacles=case_arrays.obstacles,
             ways=case_arrays.ways,
             ways_corners=case_arrays.ways_corners,

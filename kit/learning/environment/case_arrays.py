@@ -76,8 +76,8 @@ class CaseArrays:
         self.task = task
         self._draw = compilation.TypedKernel(world_kernels.draw_starts)
         self.fleet = batch_geometry(batch_maps, task.lidar_noise)
-        self.lidar = batch_maps[0].robot.lidar
-        """Pose of the lidar on each robot; all are identical."""
+        self.robot = batch_maps[0].robot
+        """What all robots are: they are identical."""
         self.obstacles = make_obstacle_parts([each.obstacles for each in batch_maps])
         self.motions = ObstacleMotions([each.obstacles for each in batch_maps])
         self.map_of: IntArray = np.array([cards.index(card) for card, _ in courses], dtype=np.int64)

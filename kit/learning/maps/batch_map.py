@@ -65,6 +65,8 @@ class BatchRobot:
     """The motors' limit [m/s]."""
     max_turn_rate: float = math.inf
     """The motors' limit [rad/s]."""
+    untouched: tuple[CornerPoints, ...] = ()
+    """Convex polygons like the hull's that the other robot's lidar sees and that touch nothing."""
     own_ranges: tuple[float, ...] = ()
     """How far each of these rays reaches before it meets the robot itself [m]; empty where none does."""
 
@@ -119,12 +121,15 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
     obstacles = [
         obstacle for model in world.models if model not in driving for obstacle in _obstacles(model, driving)
     ]
-    made = [_robot(model, driving[number - 1], world) for number, model in enumerate(driving)]
+    observers = [driving[number - 1] for number in range(len(driving))]
+    made = [_robot(model, other, world) for model, other in zip(driving, observers, strict=True)]
     for number, other in enumerate(made[1:], start=1):
         if other != made[0]:
             raise UnsupportedWorld(f"{driving[number].location}: the batch engine needs identical robots")
     touched = [
-        _walls(world, footprint.mask) for model in driving for footprint in _hull_footprints(model, world)
+        _walls(world, footprint.mask)
+        for model, other in zip(driving, observers, strict=True)
+        for footprint in _hull_footprints(model, other, world)
     ]
     seen = [_walls(world, _laser(model).mount.bits) for model in driving]
     for each in (*touched, *seen):
@@ -133,7 +138,7 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
                 f"{world.file}: the batch engine needs walls that every robot touches and sees"
             )
     for one, other_model in permutations(driving, 2):
-        _check_pair(one, other_model)
+        _check_pair(one, other_model, world)
     ends = [layer.walls.segments for layer in touched[0] if layer.walls is not None]
     starts = tuple(model.pose for model in driving)
     walls = cull_walls(np.concatenate([np.zeros((0, 4)), *ends]), (starts[0].x, starts[0].y))
@@ -156,7 +161,7 @@ def batch_geometry(batch_maps: Sequence[BatchMap], noise: float | None = None) -
     ]
     offsets = np.cumsum([0, *(len(part.ends) for part in parts)])
     starts = [part.starts[:-1] + offset for part, offset in zip(parts, offsets[:-1], strict=True)]
-    hulls, robot_of = _hulls(first.robot, len(first.starts))
+    hulls, robot_of = _hulls(first.robot.hull, len(first.starts))
     boxes = [_wall_boxes(part.ends) for part in parts]
     return kernels.BatchGeometry(
         walls=kernels.WallBlocks(
@@ -181,12 +186,24 @@ def batch_geometry(batch_maps: Sequence[BatchMap], noise: float | None = None) -
     )
 
 
-def hulls_in_lidar_frame(geometry: kernels.BatchGeometry, lidar: Pose) -> kernels.BatchGeometry:
-    """The same for scans, where a robot's pose is that of its ``lidar``: the hulls are given in the lidar's frame."""
+def geometry_for_scans(
+    geometry: kernels.BatchGeometry, robot: BatchRobot, robots: int
+) -> kernels.BatchGeometry:
+    """The same for scans, where a robot's pose is that of its lidar: the hulls are given in the lidar's frame, and what is
+    seen without being touched is one of them."""
+    lidar = robot.lidar
+    if lidar == Pose() and not robot.untouched:
+        return geometry
+    parts = robot.hull + robot.untouched
+    hulls, robot_of = _hulls(parts, robots)
+    is_seen = (robot.visible_parts + (True,) * len(robot.untouched)) * robots
     cos, sin = math.cos(lidar.theta), math.sin(lidar.theta)
-    corners = (geometry.hulls.corners - (lidar.x, lidar.y)) @ np.array([[cos, -sin], [sin, cos]])
+    corners = (hulls.corners - (lidar.x, lidar.y)) @ np.array([[cos, -sin], [sin, cos]])
     return geometry._replace(
-        hulls=geometry.hulls._replace(corners=corners), hull_radius=float(np.hypot(*corners.T).max())
+        hulls=hulls._replace(corners=corners),
+        lidar_bits=np.where(is_seen, hulls.polygon_bits, 0),
+        corner_robot=robot_of,
+        hull_radius=float(np.hypot(*corners.T).max()),
     )
 
 
@@ -198,10 +215,10 @@ def _wall_boxes(walls: FloatArray) -> FloatArray:
     return boxes
 
 
-def _hulls(robot: BatchRobot, robots: int) -> tuple[kernels.Shapes, IntArray]:
-    """Every robot's polygons in its own frame, and whose each corner is."""
-    sizes = [len(polygon) for polygon in robot.hull]
-    corners = np.array([corner for polygon in robot.hull for corner in polygon])
+def _hulls(polygons: tuple[CornerPoints, ...], robots: int) -> tuple[kernels.Shapes, IntArray]:
+    """Every robot's ``polygons`` in its own frame, and whose each corner is."""
+    sizes = [len(polygon) for polygon in polygons]
+    corners = np.array([corner for polygon in polygons for corner in polygon])
     nothing = np.zeros(0, dtype=np.int64)
     shapes = kernels.Shapes(
         circles=np.zeros((0, 3)),
@@ -278,9 +295,10 @@ def _drive(model: Model) -> tuple[PluginSpec, DiffDriveParams]:
     return drives[0]
 
 
-def _hull_footprints(model: Model, world: World) -> tuple[Footprint, ...]:
-    """Those that walls stop: without parts that the robot's own lidar looks at and that pass through every wall."""
-    footprints, sight = _body(model).footprints, _laser(model).mount.bits
+def _hull_footprints(model: Model, observer: Model, world: World) -> tuple[Footprint, ...]:
+    """Those that walls stop: without parts that a lidar looks at, the robot's own or its ``observer``'s, and that pass through
+    every wall."""
+    footprints, sight = _body(model).footprints, _laser(model).mount.bits | _laser(observer).mount.bits
     return tuple(each for each in footprints if _walls(world, each.mask) or not each.category & sight)
 
 
@@ -291,7 +309,7 @@ def _robot(model: Model, observer: Model, world: World) -> BatchRobot:
         raise UnsupportedWorld(
             f"{body.location}: the batch engine needs a dynamic body at the origin of its model"
         )
-    hull = _hull_footprints(model, world)
+    hull = _hull_footprints(model, observer, world)
     # A lidar does not see a part in which it stands.
     blocking = [
         footprint
@@ -305,9 +323,11 @@ def _robot(model: Model, observer: Model, world: World) -> BatchRobot:
                 f"{plugin.location}: the batch engine's motors have no acceleration limits"
             )
     sight = _laser(observer).mount.bits
+    untouched = [each for each in body.footprints if each not in hull and each.category & sight]
     return BatchRobot(
         hull=tuple(_polygons(hull)),
         visible_parts=tuple(bool(footprint.category & sight) for footprint in hull),
+        untouched=tuple(_polygons(untouched)) if observer is not model else (),
         ray_angles=_agent_rays(laser),
         reach=laser.max_range,
         noise=laser.noise,
@@ -386,11 +406,13 @@ def _walls(world: World, bits: int) -> tuple[Layer, ...]:
     return tuple(layer for layer in world.layers if layer.walls is not None and layer.bits & bits)
 
 
-def _check_pair(one: Model, other: Model) -> None:
-    """Every part of one touches every part of the other, and it sees some of it."""
-    mine, theirs, sees = _body(one).footprints, _body(other).footprints, _laser(one).mount.bits
+def _check_pair(one: Model, other: Model, world: World) -> None:
+    """Every part of one's hull touches every part of the other's, and no part beside them; and it sees some of the other."""
+    mine, theirs = _hull_footprints(one, other, world), _hull_footprints(other, one, world)
     touch = all(each.mask & part.mask for each in mine for part in theirs)
-    if not touch or not any(sees & part.category for part in theirs):
+    beside = [part for part in _body(other).footprints if part not in theirs]
+    touch = touch and not any(each.mask & part.mask for each in _body(one).footprints for part in beside)
+    if not touch or not any(_laser(one).mount.bits & part.category for part in _body(other).footprints):
         raise UnsupportedWorld(f"{one.location}: the batch engine needs robots that touch and see each other")
 
 

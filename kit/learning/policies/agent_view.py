@@ -232,7 +232,7 @@ class AgentObserver(Observer):
         self._policy, self._task, self._models, self._on_view = policy, task, tuple(models), on_view
         self._target = np.array((math.nan, math.nan) if target is None else target)
         self._angles = np.array(ray_angles(task))
-        self._lidar_heading = CaseArrays(task).lidar.theta
+        self._lidar_heading = CaseArrays(task).robot.lidar.theta
         self._single, self._sectors = task.observation.ray_tables(task.robots)
         self._restart()
 

@@ -131,8 +131,8 @@ DISTURBANCE_KINDS = (
 
 @dataclass(frozen=True, slots=True)
 class Disturbances:
-    """What differs between a robot and its simulation; nothing where all are zero. Two robots each have wheels of
-    their own; the rest is the same for both.
+    """What differs between a robot and its simulation; nothing where all are zero. Each of several robots has wheels
+    of its own, and its commands are late by times of their own; the rest is the same for all.
 
     >>> Disturbances(latency=UniformRange(0.0, 0.2)).as_dict()
     {'latency': [0.0, 0.2]}
@@ -145,7 +145,7 @@ class Disturbances:
     latency: UniformRange = NONE
     """s, by which every command is late."""
     command_jitter: UniformRange = NONE
-    """s, up to which each command is late by another time, beside ``latency``."""
+    """s, up to which each command of each robot is late by another time, beside ``latency``."""
     wheel_radius: UniformRange = NONE
     """Relative error: the robot moves ``1 + wheel_radius`` times as fast as it is told."""
     drift: UniformRange = NONE

@@ -63,6 +63,9 @@ class LearningTask:
     """s"""
     collision_checks: int = 2
     """Into how many equal moves a step is divided; after each one, collisions are looked for."""
+    stops_between: bool = False
+    """Whether a robot stops at the end of each step until its next command takes effect, if that is late; else the last one
+    goes on."""
     max_steps: int = 200
     start: StartVariation = StartVariation()
     target_radius: float = 0.25

@@ -63,6 +63,8 @@ class ObservationSpec:
     """Whether the share of the goal that is achieved so far is given."""
     frames: int = 1
     """How many of the last observations are given, the newest last."""
+    other_rays: tuple[int, ...] = ()
+    """Rays of every robot but the first, as many as ``rays``; empty: the same."""
 
     @property
     def sector_count(self) -> int:
@@ -99,7 +101,8 @@ class ObservationSpec:
     def ray_tables(self, robots: int) -> tuple[IntArray, IntArray]:
         """(robots, single) the rays that each robot's numbers start with; (m, 3) sector, first ray and end of every
         stretch of rays in one sector."""
-        single = [self.rays + (tuple(SIDE_RAYS[k]) if self.side_rays else ()) for k in range(robots)]
+        own = [self.rays, *[self.other_rays or self.rays] * (robots - 1)]
+        single = [rays + (tuple(SIDE_RAYS[k]) if self.side_rays else ()) for k, rays in enumerate(own)]
         rays = np.array(single, dtype=np.int64).reshape(robots, -1)
         if not self.sectors:
             return rays, np.zeros((0, 3), dtype=np.int64)
@@ -113,6 +116,8 @@ class ObservationSpec:
 
         Raises ValueError where the two sides are not alike.
         """
+        if self.other_rays and robots > 1:
+            raise ValueError("robots see different rays")
         single, last = list(self.rays), RAY_COUNT - 1
         sectors = [
             {ray for ray, sector in enumerate(self.sectors) if sector == k} for k in range(self.sector_count)

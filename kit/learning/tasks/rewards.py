@@ -84,24 +84,32 @@ def elapsed_reward(t: Transition) -> Array:
     return np.ones(np.shape(t.step))
 
 
-def forward_reward(t: Transition) -> Array:
-    """1 for each robot that moves forward, half of it along a curve; as a share of all steps."""
-    return _sum_over_robots(FORWARD_SHARE[t.move]) / t.max_steps
+def _sum_over_moving(t: Transition, each: Array, there: float) -> Array:
+    """(...) of the robots (..., R), as a share of all steps; of those in the target times ``there``."""
+    return _sum_over_robots(each if there == 1.0 else np.where(t.in_target, there * each, each)) / t.max_steps
 
 
-def idle_reward(t: Transition) -> Array:
-    """1 for each robot that stops or goes back; as a share of all steps."""
-    return _sum_over_robots(IDLE_MOVES[t.move]) / t.max_steps
+def forward_reward(t: Transition, there: float = 1.0) -> Array:
+    """1 for each robot that moves forward, half of it along a curve, ``there`` times as much in the target; as a share of all
+    steps."""
+    return _sum_over_moving(t, FORWARD_SHARE[t.move], there)
 
 
-def turning_with_room_reward(t: Transition) -> Array:
-    """1 for each robot that turns on the spot with room ahead; as a share of all steps."""
-    return _sum_over_robots(TURNING_MOVES[t.move] * (t.front > TIGHT_RANGE)) / t.max_steps
+def idle_reward(t: Transition, there: float = 1.0) -> Array:
+    """1 for each robot that stops or goes back, ``there`` times as much in the target; as a share of all steps."""
+    return _sum_over_moving(t, IDLE_MOVES[t.move], there)
 
 
-def turning_in_need_reward(t: Transition) -> Array:
-    """1 for each robot that turns on the spot before a wall; as a share of all steps."""
-    return _sum_over_robots(TURNING_MOVES[t.move] * (t.front <= TIGHT_RANGE)) / t.max_steps
+def turning_with_room_reward(t: Transition, there: float = 1.0) -> Array:
+    """1 for each robot that turns on the spot with room ahead, ``there`` times as much in the target; as a share of all
+    steps."""
+    return _sum_over_moving(t, TURNING_MOVES[t.move] * (t.front > TIGHT_RANGE), there)
+
+
+def turning_in_need_reward(t: Transition, there: float = 1.0) -> Array:
+    """1 for each robot that turns on the spot before a wall, ``there`` times as much in the target; as a share of all
+    steps."""
+    return _sum_over_moving(t, TURNING_MOVES[t.move] * (t.front <= TIGHT_RANGE), there)
 
 
 def undoing_reward(t: Transition) -> Array:
@@ -130,21 +138,22 @@ def room_aside_reward(t: Transition) -> Array:
     return _sum_over_robots((t.front > FREE_RANGE) * both) / t.max_steps
 
 
-def room_diagonal_reward(t: Transition, left_share: float = 0.5) -> Array:
+def room_diagonal_reward(t: Transition, left_share: float = 0.5, others_less: float = 0.0) -> Array:
     """Metres of room to the left and to the right of ahead, beyond half a metre each, where there is room ahead; as a share
-    of all steps. ``left_share``: of the two, how much the left one counts."""
-    room = left_share * t.front_left + (1.0 - left_share) * t.front_right - FREE_RANGE
+    of all steps. ``left_share``: of the two, how much the left one counts, of every robot but the first ``others_less``."""
+    left: Array = left_share - others_less * (np.arange(t.robots) > 0) if others_less else left_share
+    room = left * t.front_left + (1.0 - left) * t.front_right - FREE_RANGE
     return _sum_over_robots((t.front > FREE_RANGE) * 2.0 * room) / t.max_steps
 
 
-def entering_reward(t: Transition) -> Array:
-    """1 for each robot that enters the target."""
-    return 1.0 * _sum_over_robots(t.in_target & ~t.was_in_target)
+def entering_reward(t: Transition, most: float = 4.0) -> Array:
+    """1 for each robot that enters the target, up to ``most`` in one step."""
+    return np.minimum(1.0 * _sum_over_robots(t.in_target & ~t.was_in_target), most)
 
 
-def leaving_reward(t: Transition) -> Array:
-    """1 for each robot that leaves the target."""
-    return 1.0 * _sum_over_robots(t.was_in_target & ~t.in_target)
+def leaving_reward(t: Transition, most: float = 4.0) -> Array:
+    """1 for each robot that leaves the target, up to ``most`` in one step."""
+    return np.minimum(1.0 * _sum_over_robots(t.was_in_target & ~t.in_target), most)
 
 
 def stopping_there_reward(t: Transition) -> Array:
@@ -397,30 +406,46 @@ ALGORITHM_2_STOPPING = Reward(
 """The same where stopping in the target is rewarded and anything else there charged (section 4.2.1.1, which gives no
 amount; this one outweighs what stopping costs)."""
 
+_CODE_OUTCOME_WEIGHTS = (
+    TermWeight("collided", -400.0),
+    TermWeight("reached", 900.0),
+    TermWeight("time_left", 2.0 / 3.0),
+    TermWeight("timed_out", -600.0),
+    TermWeight("forward_lost", -FULL_FORWARD),
+)
+_CODE_HABIT_WEIGHTS = (
+    TermWeight("undoing", -5 * FULL_FORWARD),
+    TermWeight("turn_completed", -75.0),
+    TermWeight("room_ahead", 2 * FULL_FORWARD),
+    TermWeight("room_diagonal", FULL_FORWARD, settings=(("others_less", 0.5),)),
+    TermWeight("entering", 100.0, settings=(("most", 1.0),)),
+    TermWeight("leaving", -100.0, settings=(("most", 1.0),)),
+    TermWeight("adjacent", 10.0),
+)
+
 ALGORITHM_2_AS_RUN = Reward(
     "algorithm-2-as-run",
     (
-        TermWeight("collided", -400.0),
-        TermWeight("reached", 800.0),
-        TermWeight("time_left", 1.0),
-        TermWeight("timed_out", -600.0),
-        TermWeight("forward_lost", -FULL_FORWARD),
-        TermWeight("forward", FULL_FORWARD, at_end=False),
-        TermWeight("idle", -8 * FULL_FORWARD, at_end=False),
-        TermWeight("turning_with_room", -2 * FULL_FORWARD, at_end=False),
-        TermWeight("turning_in_need", 0.5 * FULL_FORWARD, at_end=False),
-        TermWeight("undoing", -5 * FULL_FORWARD),
-        TermWeight("turn_completed", -75.0),
-        TermWeight("room_ahead", 2 * FULL_FORWARD),
-        TermWeight("room_diagonal", FULL_FORWARD),
-        TermWeight("entering", 100.0),
-        TermWeight("leaving", -100.0),
-        TermWeight("stopping_there", 9.0),
-        TermWeight("adjacent", 10.0),
+        *_CODE_OUTCOME_WEIGHTS,
+        *(TermWeight(weight.term, weight.value) for weight in _MOVE_WEIGHTS),
+        *_CODE_HABIT_WEIGHTS,
     ),
 )
-"""The same as its code ran: outcomes count twice, stopping costs more, a whole turn is charged once, the two diagonals are added
-instead of multiplied. Stopping in the target earns 1."""
+"""The same as its code ran for table 4.1: outcomes count twice and arriving in the n-th of 300 steps earns 800 + 300 - 2n/3, a
+whole turn is charged once, the two diagonals are added instead of multiplied, of the right wheelchair both are the ray to the
+right of ahead, and two that enter or leave the target in one step count as one."""
+
+ALGORITHM_2_STOPPING_AS_RUN = Reward(
+    "algorithm-2-stopping-as-run",
+    (
+        *_CODE_OUTCOME_WEIGHTS,
+        *(TermWeight(weight.term, weight.value, settings=(("there", 0.0),)) for weight in _MOVE_WEIGHTS),
+        *_CODE_HABIT_WEIGHTS,
+        TermWeight("stopping_there", 1.0),
+    ),
+)
+"""The same from table 4.2 on: in the target a robot earns 1 for stopping and -1 for anything else, instead of what the move
+earns elsewhere."""
 
 ALGORITHM_3 = Reward(
     "algorithm-3",
@@ -469,6 +494,7 @@ REWARDS: Mapping[str, Reward] = MappingProxyType(
             ALGORITHM_2,
             ALGORITHM_2_STOPPING,
             ALGORITHM_2_AS_RUN,
+            ALGORITHM_2_STOPPING_AS_RUN,
             ALGORITHM_3,
             PROGRESS,
             SIDE_BY_SIDE,

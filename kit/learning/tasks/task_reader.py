@@ -310,8 +310,15 @@ def _read_observation(section: Section, robots: int) -> ObservationSpec:
         clip=section.number("clip", 2.0, above=0, maximum=100),
         scale=section.number("scale", 1.0, above=0, maximum=1000),
         frames=section.integer("frames", 1, minimum=1, maximum=MAX_FRAMES),
+        other_rays=section.integers("other_rays", (), minimum=0, maximum=RAY_COUNT - 1),
         **flags,
     )
+    if found.other_rays and (robots == 1 or len(found.other_rays) != len(found.rays)):
+        section.error(
+            f"other_rays are those of every robot but the first, {len(found.rays)} as for that one",
+            "other_rays",
+        )
+        found = replace(found, other_rays=())
     section.finish()
     if not found.frame_size:
         section.error("an agent needs observations: give rays, sectors or others")
@@ -375,6 +382,7 @@ def _with_step(task: LearningTask, section: Section | None) -> LearningTask:
         step_time=section.number("time", task.step_time, minimum=0.01, maximum=10),
         collision_checks=section.integer("collision_checks", task.collision_checks, minimum=1, maximum=100),
         max_steps=section.integer("limit", task.max_steps, minimum=1, maximum=MAX_STEPS),
+        stops_between=section.flag("stops_between", False),
     )
     section.finish()
     return task

@@ -16,20 +16,19 @@ from kit.run.recording import Recording
 from kit.school.game import leaderboard
 from kit.school.game.ghosts import load_ghosts, reference_seconds, save_ghost
 from kit.school.game.levels import GameLevel, all_levels
+from kit.school.game.medal import Medal, medal_of
 from kit.school.game.player_progress import (
     BY_HAND,
     DAILY_PREFIX,
     DriverFacts,
     ExtraRule,
     LevelProgress,
-    Medal,
     belt_of,
     completed_lessons,
     daily_level,
     is_best_drive,
     kept_rules,
     level_progress,
-    medal_of,
     streak,
     today,
 )

@@ -18,7 +18,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
-from kit.school.game.player_progress import DAILY_PREFIX, LevelProgress, Medal
+from kit.school.game.medal import Medal
+from kit.school.game.player_progress import DAILY_PREFIX, LevelProgress
 from kit.school.game.race import DriverKind
 from kit.workspace import open_common_folder, write_atomically
 

@@ -15,17 +15,8 @@ from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.leaderboard import LeaderboardEntry, PlayerStanding
 from kit.school.game.levels import GameLevel, GameWorld, all_levels, all_worlds
-from kit.school.game.player_progress import (
-    ExtraRule,
-    GameSummary,
-    LevelProgress,
-    Medal,
-    belt_of,
-    daily_level,
-    medal_of,
-    medal_time,
-    today,
-)
+from kit.school.game.medal import Medal, medal_of, medal_time
+from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of, daily_level, today
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedGameState, SharedMode, SharedPhase
 

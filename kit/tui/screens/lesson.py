@@ -21,8 +21,8 @@ from kit.school.lessons.records import LessonStep
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.lessons.training_curves import CURVE_ROWS, ROOMY_CURVE_ROWS
 from kit.tui.input.drive import DriveState
-from kit.tui.input.driver import KeyRepeated
-from kit.tui.input.modes import base_key, named
+from kit.tui.input.drive_keys import base_key, named
+from kit.tui.input.key_parser import KeyRepeated
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows import lesson_rows
 from kit.tui.screens.defence import DefenceScreen

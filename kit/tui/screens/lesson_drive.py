@@ -15,7 +15,7 @@ from kit.inspection.sockets import sockets_folder
 from kit.run.recording import Recording, save_recording
 from kit.run.scenario import Scenario, find_scenario
 from kit.tui.input.drive import DriveState
-from kit.tui.input.modes import drive_key, named
+from kit.tui.input.drive_keys import drive_key, named
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme

@@ -28,12 +28,13 @@ from kit.run.view import View
 from kit.school.game.drive_records import DriveRecord, card_rows, record_drive, save_card
 from kit.school.game.ghosts import Ghost, GhostComparison, Split, compare_tracks, reference_seconds
 from kit.school.game.levels import GameLevel
-from kit.school.game.player_progress import BY_HAND, DriverFacts, Medal, medal_of
+from kit.school.game.medal import Medal, medal_of
+from kit.school.game.player_progress import BY_HAND, DriverFacts
 from kit.school.game.race import SEED, DriverKind, RaceFinish, RaceReferee, open_race, sensors_in_use
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
-from kit.tui.input.modes import drive_key, named
+from kit.tui.input.drive_keys import drive_key, named
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import MessageDialog, wrapped

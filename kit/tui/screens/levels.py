@@ -20,13 +20,8 @@ from kit.document.rows import Row, row, spread
 from kit.plain_text import counted
 from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
-from kit.school.game.challenge_answers import task_lines
-from kit.school.game.challenges import (
-    Challenge,
-    RepairTask,
-    all_challenges,
-    challenge_medals,
-)
+from kit.school.game.challenge import Challenge
+from kit.school.game.challenges import all_challenges, challenge_medals
 from kit.school.game.ghosts import (
     Ghost,
     ghost_file,
@@ -35,12 +30,12 @@ from kit.school.game.ghosts import (
     reference_seconds,
 )
 from kit.school.game.levels import CHALLENGES_WORLD, GameLevel, GameWorld, all_levels, all_worlds
+from kit.school.game.medal import Medal
 from kit.school.game.player_progress import (
     BY_HAND,
     DriverFacts,
     GameSummary,
     LevelProgress,
-    Medal,
     belt_of,
     completed_lessons,
     daily_level,
@@ -247,7 +242,7 @@ class LevelsScreen(RowsScreen[None]):
             *self._world_heading([medals.get(each.id, Medal.NONE) for each in self._challenges]),
             *challenge_rows.challenge_list(self._challenges, medals, chosen.id),
         ]
-        drawing = [row(), *(row((f"  {line}", "code")) for line in task_lines(chosen))]
+        drawing = [row(), *(row((f"  {line}", "code")) for line in chosen.task.lines())]
         if len(listed) + len(drawing) <= self._rows("map").size.height:
             listed += drawing
         medal = medals.get(chosen.id, Medal.NONE)
@@ -385,7 +380,7 @@ class LevelsScreen(RowsScreen[None]):
             self._load_ghosts()
             following = self.chosen_challenge
             # A repair's clock begins with the first look: nobody is taken there by the key for the next one.
-            if screen.wish == "back" or (following and isinstance(following.task, RepairTask)):
+            if screen.wish == "back" or (following and following.task.clock is not None):
                 return
 
     @work(exclusive=True, group="drive")

@@ -16,7 +16,8 @@ from kit.learning.authoring.task_check import check_task
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.tasks.catalogue import tasks_folder
 from kit.learning.tasks.task_reader import read_task
-from kit.mapmaking.new_map import read_drawing, write_map
+from kit.mapmaking.map_drawing import read_drawing
+from kit.mapmaking.new_map import write_map
 
 DRAWING = "#########\n#S      #\n#   ##  #\n#      T#\n#########"
 TASK = """\

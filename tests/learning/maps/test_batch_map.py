@@ -15,7 +15,7 @@ from kit.learning.maps.batch_map import (
     UnsupportedWorld,
     batch_geometry,
     batch_map_of_world,
-    hulls_in_lidar_frame,
+    geometry_for_scans,
 )
 from kit.learning.maps.obstacles import SEEN, TOUCHED, make_obstacle_parts
 from tests.sim.workshop import Workshop
@@ -157,7 +157,7 @@ def test_a_round_robot_with_a_lidar_off_its_origin(workshop: Workshop) -> None:
     assert (taken.robot.lidar.x, taken.robot.max_speed, taken.robot.max_turn_rate) == (0.05, 0.2, math.inf)
     assert taken.robot.ray_angles == pytest.approx(np.radians(np.arange(-180, 181, 4)))
     fleet = batch_geometry([taken])
-    seen = hulls_in_lidar_frame(fleet, taken.robot.lidar)
+    seen = geometry_for_scans(fleet, taken.robot, 1)
     assert seen.hulls.corners[:, 0] == pytest.approx(fleet.hulls.corners[:, 0] - 0.05)
     assert seen.hull_radius == pytest.approx(0.15, rel=0.02)
 

@@ -169,7 +169,7 @@ def test_late_commands_keep_to_the_motors_limits_as_in_the_single_world(tmp_path
     for number in range(30):
         before = batch.state.pose[0, 0].copy()
         step = batch.step(chance.integers(len(task.actions.names), size=1))
-        takes_effect = number * ticks + float(batch.state.disturbed.due[0, 0]) / length
+        takes_effect = number * ticks + float(batch.state.disturbed.due[0, 0, 0]) / length
         sent.append((takes_effect, step.transition.twist[0, 0].tolist()))
         for tick in range(ticks):
             due = [twist for when, twist in sent if when <= number * ticks + tick + 0.5]

@@ -20,7 +20,8 @@ from kit.school.game.leaderboard import (
     publish_entry,
     read_entries,
 )
-from kit.school.game.player_progress import LevelProgress, Medal
+from kit.school.game.medal import Medal
+from kit.school.game.player_progress import LevelProgress
 from kit.school.game.race import DriverKind
 from tests.kit_content import kit_levels
 

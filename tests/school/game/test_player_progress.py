@@ -16,15 +16,13 @@ from kit.ros.node.node import create_graph_node
 from kit.run.session import Session
 from kit.school.game.ghosts import drive_reference, load_drives, reference_seconds
 from kit.school.game.levels import GameLevel, UnknownLevel, all_worlds, find_level
+from kit.school.game.medal import Medal, medal_of, medal_time
 from kit.school.game.player_progress import (
     BELTS,
     LevelProgress,
-    Medal,
     belt_of,
     daily_level,
     find_playable_level,
-    medal_of,
-    medal_time,
     streak,
 )
 from kit.school.game.race import DriverKind, RaceFinish, judge_recording, run_race

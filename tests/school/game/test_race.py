@@ -21,11 +21,11 @@ from kit.school.game import ghosts, leaderboard
 from kit.school.game.drive_records import join_leaderboard, record_drive
 from kit.school.game.ghosts import classmate_ghosts, drive_reference, load_ghosts, load_reference_ghost
 from kit.school.game.levels import UnknownLevel, all_levels, find_level
+from kit.school.game.medal import Medal
 from kit.school.game.player_progress import (
     BY_HAND,
     DriverFacts,
     ExtraRule,
-    Medal,
     completed_lessons,
     daily_level,
     facts_of_program,

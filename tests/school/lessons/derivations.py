@@ -21,7 +21,7 @@ from PIL import Image
 from grader.evidence.contract import EvidenceOptions
 from grader.evidence.training_results import TrainingResults
 from grader.grading import GradingOptions, grade
-from grader.kinds.training import collect_evidence
+from grader.kinds.training.kind import collect_evidence
 from grader.reading import read_assignment
 from grader.submission import read_submission
 from kit.cli import main
@@ -41,7 +41,7 @@ from kit.run.session import Session
 from kit.school.lessons.reading import lessons_folder, solutions_folder
 from kit.school.lessons.records import LessonStep
 from kit.sim.simulation import Simulation, load_world
-from kit.tui.input.modes import named
+from kit.tui.input.drive_keys import named
 from kit.world.catalogue import find_map
 from kit.world.problems import WorldError
 from kit.world.records import Polygon

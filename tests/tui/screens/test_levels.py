@@ -15,12 +15,14 @@ from textual.pilot import Pilot
 from kit.controllers import prepare_workspace
 from kit.learning.authoring.new_task import new_task_file
 from kit.learning.tasks.goals.target import REACH_TARGET
-from kit.mapmaking.new_map import read_drawing, write_map
+from kit.mapmaking.map_drawing import read_drawing
+from kit.mapmaking.new_map import write_map
 from kit.school.game import ghosts, leaderboard
 from kit.school.game.challenges import all_challenges
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.levels import GameLevel, all_worlds
-from kit.school.game.player_progress import ExtraRule, Medal, daily_level, today
+from kit.school.game.medal import Medal
+from kit.school.game.player_progress import ExtraRule, daily_level, today
 from kit.school.game.race import DriverKind
 from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
