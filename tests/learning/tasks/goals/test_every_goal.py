@@ -51,7 +51,9 @@ def read_goal_task(kind: str, folder: Path, settings: str = "") -> ReadTask:
     """A task with that goal, on a road with carts."""
     file = folder / f"{kind}.yaml"
     goal = f"{{kind: {kind}{settings}}}"
-    targets = TARGETS[KINDS[kind].case_targets] + (", target_heading: 0" if "heading_tolerance" in settings else "")
+    targets = TARGETS[KINDS[kind].case_targets] + (
+        ", target_heading: 0" if "heading_tolerance" in settings else ""
+    )
     file.write_text(TASK.format(targets=targets, goal=goal))
     return read_task(file)
 
