@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from kit.arrays import Float32Array, FloatArray
 from kit.learning.environment.batch import ALL_WORLDS, BatchEnv
-from kit.learning.policies.policies import Policy
+from kit.learning.policies.policy import Policy
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.transition import average_speeds

@@ -28,7 +28,7 @@ from kit.school.game.objective import Objective
 from kit.sim.simulation import STEP_SIZE_S, Simulation
 
 if TYPE_CHECKING:
-    from kit.learning.policies.policies import Policy
+    from kit.learning.policies.policy import Policy
 
 
 DOCK_RADIUS: Final = 0.25
