@@ -14,7 +14,7 @@ import numpy as np
 from kit.arrays import FloatArray, IntArray
 from kit.learning.grid.grid_learner import GridLearner, GridLearnerSettings
 from kit.learning.grid.grid_world import MOVES, GridCell, GridWorld
-from kit.learning.grid.q_learning import epsilon_greedy
+from kit.learning.grid.q_learning import choose_by_values
 
 HIDDEN: Final = 32
 """Neurons of each of the two hidden layers."""
@@ -108,7 +108,7 @@ class DqnLearner(GridLearner):
         self._show_values()
 
     def choose(self, cell: GridCell) -> int:
-        return epsilon_greedy(self.values[cell], self.settings.epsilon, self.rng)
+        return choose_by_values(self.values[cell], self.settings, self.rng)
 
     def learn(
         self, cell: GridCell, move: int, reward: float, reached: GridCell, next_move: int, terminated: bool

@@ -38,6 +38,10 @@ class GridLearnerSettings:
     """How far PPO's ratio counts, from 1; 0: as far as it goes."""
     entropy: float = 0.01
     """What PPO pays for entropy."""
+    temperature: float = 0.0
+    """Moves are drawn in proportion to exp(value / temperature), in place of epsilon; 0: they are not."""
+    value_limit: float = 0.0
+    """For that draw, values beyond it count as much as it does; 0: there is none."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from kit.arrays import BoolArray, FloatArray, IntArray
+from kit.learning.grid.chances import draw, softmax
 from kit.learning.grid.grid_learner import MAX_EPISODE_STEPS, GridLearner, GridLearnerSettings
 from kit.learning.grid.grid_world import MOVES, GridCell, GridWorld
 
@@ -21,13 +22,6 @@ EPOCHS: Final = 10
 GAE_LAMBDA: Final = 0.95
 CRITIC_RATE: Final = 0.5
 """The part of the way to its target that a critic's value goes in an epoch."""
-
-
-def softmax(logits: FloatArray) -> FloatArray:
-    """Returns probabilities (..., n) that sum to 1, from any numbers (..., n)."""
-    powers = np.exp(logits - logits.max(axis=-1, keepdims=True))
-    chances: FloatArray = powers / powers.sum(axis=-1, keepdims=True)
-    return chances
 
 
 def advantages_of(
@@ -71,8 +65,7 @@ class PpoLearner(GridLearner):
         return self._draw(cell)
 
     def _draw(self, cell: GridCell) -> int:
-        chances = softmax(self.logits[self.world.number_of(cell)])
-        return int(np.searchsorted(np.cumsum(chances)[:-1], self._policy_rng.random()))
+        return draw(softmax(self.logits[self.world.number_of(cell)]), self._policy_rng)
 
     def learn(
         self, cell: GridCell, move: int, reward: float, reached: GridCell, next_move: int, terminated: bool

@@ -11,7 +11,8 @@ from typing import ClassVar
 import numpy as np
 
 from kit.arrays import FloatArray
-from kit.learning.grid.grid_learner import GridLearner
+from kit.learning.grid.chances import draw, softmax
+from kit.learning.grid.grid_learner import GridLearner, GridLearnerSettings
 from kit.learning.grid.grid_world import GridCell
 
 
@@ -30,7 +31,7 @@ class QLearner(GridLearner):
     algorithm: ClassVar[str] = "q-learning"
 
     def choose(self, cell: GridCell) -> int:
-        return epsilon_greedy(self.values[cell], self.settings.epsilon, self.rng)
+        return choose_by_values(self.values[cell], self.settings, self.rng)
 
     def learn(
         self, cell: GridCell, move: int, reward: float, reached: GridCell, next_move: int, terminated: bool
@@ -42,8 +43,13 @@ class QLearner(GridLearner):
         return target
 
 
-def epsilon_greedy(values: FloatArray, epsilon: float, rng: np.random.Generator) -> int:
-    """A best move by ``values`` (moves,), any one of several; with probability ``epsilon`` any move at all."""
-    if rng.random() < epsilon:
+def choose_by_values(values: FloatArray, settings: GridLearnerSettings, rng: np.random.Generator) -> int:
+    """A best move by ``values`` (moves,), any one of several; now and then any move at all. With a temperature: drawn by
+    its value."""
+    if settings.temperature > 0:
+        limit = settings.value_limit
+        limited = np.clip(values, -limit, limit) if limit > 0 else values
+        return draw(softmax(limited / settings.temperature), rng)
+    if rng.random() < settings.epsilon:
         return int(rng.integers(len(values)))
     return int(rng.choice(np.flatnonzero(values >= values.max() - 1e-12)))

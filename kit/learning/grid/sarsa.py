@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from kit.learning.grid.grid_learner import GridLearner
 from kit.learning.grid.grid_world import GridCell
-from kit.learning.grid.q_learning import epsilon_greedy
+from kit.learning.grid.q_learning import choose_by_values
 
 
 class SarsaLearner(GridLearner):
@@ -18,7 +18,7 @@ class SarsaLearner(GridLearner):
     algorithm: ClassVar[str] = "sarsa"
 
     def choose(self, cell: GridCell) -> int:
-        return epsilon_greedy(self.values[cell], self.settings.epsilon, self.rng)
+        return choose_by_values(self.values[cell], self.settings, self.rng)
 
     def learn(
         self, cell: GridCell, move: int, reward: float, reached: GridCell, next_move: int, terminated: bool

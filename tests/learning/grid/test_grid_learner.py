@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from kit.learning.grid.chances import softmax
 from kit.learning.grid.dqn import DqnLearner, ValueNetwork
 from kit.learning.grid.grid_learner import MAX_EPISODE_STEPS, GridLearnerSettings
 from kit.learning.grid.grid_world import GridRewards, GridWorld
-from kit.learning.grid.ppo import GAE_LAMBDA, PpoLearner, advantages_of, softmax
+from kit.learning.grid.ppo import GAE_LAMBDA, PpoLearner, advantages_of
 from kit.learning.grid.registry import make_learner
 from tests.learning.worlds import trained
 
