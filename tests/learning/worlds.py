@@ -13,7 +13,7 @@ from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
 from kit.learning.grid.grid_learner import GridLearner, GridLearnerSettings
 from kit.learning.grid.grid_world import GridWorld
-from kit.learning.grid.registry import make_learner
+from kit.learning.grid.registry import make_grid_learner
 from kit.learning.tasks.actions import Move
 from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS, WHEELCHAIRS_SEED
 from kit.learning.tasks.learning_task import LearningTask
@@ -83,7 +83,7 @@ def short(task: LearningTask, case: str) -> LearningTask:
 
 def trained(world: GridWorld, settings: GridLearnerSettings, episodes: int) -> GridLearner:
     """A learner after so many episodes."""
-    learner = make_learner(world, settings)
+    learner = make_grid_learner(world, settings)
     while learner.episodes < episodes:
         learner.step()
     return learner

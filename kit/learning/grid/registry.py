@@ -18,6 +18,6 @@ GRID_LEARNERS: Final[Mapping[str, type[GridLearner]]] = MappingProxyType(
 )
 
 
-def make_learner(world: GridWorld, settings: GridLearnerSettings) -> GridLearner:
+def make_grid_learner(world: GridWorld, settings: GridLearnerSettings) -> GridLearner:
     """The learner that the settings name."""
     return GRID_LEARNERS[settings.algorithm](world, settings)

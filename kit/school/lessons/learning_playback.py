@@ -9,7 +9,7 @@ import numpy as np
 
 from kit.learning.grid.grid_learner import GridLearner
 from kit.learning.grid.grid_world import CLIFF, GridCell
-from kit.learning.grid.registry import make_learner
+from kit.learning.grid.registry import make_grid_learner
 from kit.plain_text import counted, wrap
 from kit.render.curve import Axes, Curve, draw_curves, paste_frame, write_text
 from kit.render.encode import AsciiEncoder, Encoder, Frame
@@ -200,7 +200,7 @@ def _described(name: str, learner: GridLearner) -> str:
 
 
 def _new_learners(scene: LearningScene) -> tuple[GridLearner, ...]:
-    return tuple(make_learner(scene.world, settings) for settings in scene.learners)
+    return tuple(make_grid_learner(scene.world, settings) for settings in scene.learners)
 
 
 def _updates_of(learner: GridLearner, episodes: int) -> int:

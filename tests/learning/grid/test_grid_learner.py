@@ -12,7 +12,7 @@ from kit.learning.grid.dqn import DqnLearner, ValueNetwork
 from kit.learning.grid.grid_learner import MAX_EPISODE_STEPS, GridLearnerSettings
 from kit.learning.grid.grid_world import GridRewards, GridWorld
 from kit.learning.grid.ppo import GAE_LAMBDA, PpoLearner, advantages_of
-from kit.learning.grid.registry import make_learner
+from kit.learning.grid.registry import make_grid_learner
 from tests.learning.worlds import trained
 
 CLIFF = GridWorld((*("........",) * 3, "SCCCCCCG"), GridRewards(-1, -1, 0, -100))
@@ -22,7 +22,7 @@ CLIFF = GridWorld((*("........",) * 3, "SCCCCCCG"), GridRewards(-1, -1, 0, -100)
 def test_each_update_goes_alpha_of_the_way_to_its_target(algorithm: str) -> None:
     """The target is worked out again from the table before the update; SARSA's from the move that comes next."""
     settings = GridLearnerSettings(algorithm, alpha=0.25, gamma=0.8, epsilon=0.3, seed=4)
-    learner = make_learner(CLIFF, settings)
+    learner = make_grid_learner(CLIFF, settings)
     before, first = learner.values.copy(), learner.step()
     for _ in range(2000):
         kept = learner.values.copy()
@@ -64,7 +64,7 @@ def test_sarsa_keeps_away_from_the_cliff_and_q_learning_does_not() -> None:
 
 def test_an_episode_that_never_ends_is_truncated_and_its_estimate_counts() -> None:
     world = GridWorld(("S" + "." * 30 + "G",), GridRewards(step=-1))
-    learner = make_learner(world, GridLearnerSettings(epsilon=1.0, seed=2))
+    learner = make_grid_learner(world, GridLearnerSettings(epsilon=1.0, seed=2))
     while True:
         update = learner.step()
         if update.ended:

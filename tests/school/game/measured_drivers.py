@@ -59,7 +59,7 @@ class OrdinaryDriver(TidyDriver):
 def targets_of(level: GameLevel) -> list[tuple[float, float]]:
     """The targets in the order of the file, whatever order would be best."""
     if level.goal.is_route:
-        return list(level.targets) * level.goal.rounds
+        return list(level.goal.route(level.targets))
     case = level.find_scenario().case
     assert case is not None
     return [case.target]

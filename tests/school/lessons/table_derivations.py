@@ -13,7 +13,7 @@ import numpy as np
 from kit.learning.environment.env import TurnEnv
 from kit.learning.grid.grid_learner import GridLearner, GridLearnerSettings
 from kit.learning.grid.grid_world import SMALL_TARGET, GridCell, GridWorld
-from kit.learning.grid.registry import make_learner
+from kit.learning.grid.registry import make_grid_learner
 from kit.learning.policies.policy_network import ActionValueTable
 from kit.learning.tasks.catalogue import TURN
 from kit.learning.tasks.task_spec import TaskSpec
@@ -73,7 +73,7 @@ def grid_rewards(words: str, step: LessonStep, folder: Path) -> str:
 
 def grid_zeros(words: str, step: LessonStep, folder: Path) -> str:
     (settings,) = scene_of(step).learners
-    values = make_learner(scene_of(step).world, settings).values
+    values = make_grid_learner(scene_of(step).world, settings).values
     assert values.min() == values.max()
     return f"All of them begin at {values[0, 0, 0]:g}"
 
@@ -81,7 +81,7 @@ def grid_zeros(words: str, step: LessonStep, folder: Path) -> str:
 def first_success(words: str, step: LessonStep, folder: Path) -> str:
     """The step's own learner, until its first episode has ended at the target."""
     (settings,) = scene_of(step).learners
-    learner = make_learner(scene_of(step).world, settings)
+    learner = make_grid_learner(scene_of(step).world, settings)
     updates = [learner.step()]
     while not updates[-1].ended:
         updates.append(learner.step())
@@ -189,7 +189,7 @@ def scene_alpha(words: str, step: LessonStep, folder: Path) -> str:
 def found_first(words: str, step: LessonStep, folder: Path) -> str:
     """The first end that the learner without exploration came to is the one it leads to."""
     scene = scene_of(step)
-    learner = make_learner(scene.world, scene.learners[0])
+    learner = make_grid_learner(scene.world, scene.learners[0])
     while not learner.returns or learner.returns[-1] == 0:
         update = learner.step()
     assert learner.settings.epsilon == 0

@@ -8,7 +8,7 @@ import numpy as np
 
 from kit.learning.grid.grid_learner import GridLearner, GridLearnerSettings
 from kit.learning.grid.grid_world import GridCell, GridRewards, GridWorld
-from kit.learning.grid.registry import make_learner
+from kit.learning.grid.registry import make_grid_learner
 from kit.school.quiz.items import QuizItem
 from tests.learning.worlds import trained
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
@@ -18,7 +18,7 @@ RIGHT = 0
 
 def second_success(item: QuizItem, folder: Path) -> Finding:
     """A cell beside the target, whose move into it has the value 0.5."""
-    learner = make_learner(GridWorld(("SG",)), GridLearnerSettings(alpha=0.5, epsilon=0.0))
+    learner = make_grid_learner(GridWorld(("SG",)), GridLearnerSettings(alpha=0.5, epsilon=0.0))
     learner.values[0, 0, RIGHT] = 0.5
     learner.step()
     while not learner.episodes:
@@ -33,7 +33,7 @@ def three_moves_away(item: QuizItem, folder: Path) -> Finding:
 
 def never_explores(item: QuizItem, folder: Path) -> Finding:
     """The small target is known, the other one is not."""
-    learner = make_learner(GridWorld(("g..S..G",)), GridLearnerSettings(epsilon=0.0))
+    learner = make_grid_learner(GridWorld(("g..S..G",)), GridLearnerSettings(epsilon=0.0))
     learner.values[0, 1:4, 2] = 0.2
     ends = [_episode_reward(learner) for _ in range(1000)]
     small = np.mean(np.array(ends) == 0.3)
@@ -146,7 +146,7 @@ def sarsa_without_exploring(item: QuizItem, folder: Path) -> Finding:
 
 def sarsa_target_needs(item: QuizItem, folder: Path) -> Finding:
     """Which change of the next step changes the target: another best move, or another move made?"""
-    learner = make_learner(CLIFF, GridLearnerSettings("sarsa", epsilon=1.0, gamma=1.0, seed=1))
+    learner = make_grid_learner(CLIFF, GridLearnerSettings("sarsa", epsilon=1.0, gamma=1.0, seed=1))
     learner.values[:] = np.random.default_rng(1).normal(size=learner.values.shape)
     update = learner.step()
     while update.ended or update.reached == update.cell:
