@@ -175,7 +175,7 @@ def run_teacher_tests(
             name: [_Outcome(CriterionStatus(status), text, uses) for status, text, uses in each]
             for name, each in told.items()
         }
-    except AuthorCodeError as error:
+    except (AuthorCodeError, AttributeError, TypeError, ValueError) as error:  # or what is no answer
         broken = _Outcome(CriterionStatus.GRADER_ERROR, str(error), uses_secrets=True)
         outcomes = {test.id: [broken] for test in tests}
     return tuple(_test(test, outcomes.get(test.id, [])) for test in tests)

@@ -486,10 +486,17 @@ def hears(drive: GradedDrive, params: HeardTopicsParams) -> float:
 
 @check(none=0, full=1, unit="%", params=ProfilesParams)
 def profiles(drive: GradedDrive, params: ProfilesParams) -> float:
-    """Of the asked publishers and subscriptions {actual} are there with the asked quality of service ({where})."""
+    """Of the asked publishers and subscriptions {actual} are there with the asked quality of service, and with no other
+    ({where})."""
     found = [f"{line} " for line in drive.connections.profiles]
-    asked = [any(line.startswith(f"{end} ") for line in found) for end in params.ends]
+    asked = [_has_profile(found, end) for end in params.ends]
     return sum(asked) / len(asked) if asked else math.nan
+
+
+def _has_profile(found: Sequence[str], end: str) -> bool:
+    place = " ".join(end.split()[:3])
+    lines = [line for line in found if line.startswith(f"{place} ")]
+    return bool(lines) and all(line.startswith(f"{end} ") for line in lines)
 
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(

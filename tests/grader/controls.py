@@ -92,9 +92,9 @@ CONTROLS: Final = (
     Control(
         "a disk of files that are mapped and unlinked",
         "kit/host/sandbox/namespaces.py",
-        '        _mount("none", scratch, "tmpfs", _NO_SUID | _NO_DEVICES, _scratch_options(room, files))\n    except',
-        "        raise OSError\n    except",
-        "host/sandbox/test_confinement.py::test_files_that_nobody_sees_are_limited_too",
+        'return f"size={room},nr_inodes={files + 1},mode=700"',
+        'return f"size={100 * room},nr_inodes={files + 1},mode=700"',
+        "host/sandbox/test_promises.py::test_files_that_nobody_sees_fill_a_disk_that_is_not_their_own",
     ),
     Control(
         "a lesson that is checked at its own level",
@@ -235,6 +235,13 @@ CONTROLS: Final = (
         "    if status.st_uid not in (0, os.geteuid()):\n",
         "    if status.st_uid < 0:\n",
         "test_workspace.py::test_a_common_folder_of_another_user_is_refused",
+    ),
+    Control(
+        "a program that reads otherwise than it runs",
+        "grader/submitted_files.py",
+        "    if encoding.removesuffix(\"-sig\") not in READ_AS_SHOWN:\n",
+        "    if not encoding:\n",
+        "grader/test_submission.py::test_what_reads_otherwise_than_it_runs_is_refused",
     ),
     Control(
         "a stranger's reference",
