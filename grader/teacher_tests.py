@@ -2,24 +2,25 @@
 
 They run under pytest, get the fixture ``grading``, and examine recordings that the grader made::
 
-    @pytest.mark.points(3, hints=["Drive on the right."])
+    @pytest.mark.points(3, after="reached", hints=["Drive on the right."])
     def test_keeps_to_the_right(grading):
         \"\"\"The robot left its side of the corridor.\"\"\"
         assert all((drive.track[:, 0] > 0.4).all() for drive in grading.evidence("runs"))
 
-The docstring is the feedback, unless the assertion has a message of its own; a test's source is never shown. Only the
-files named are imported, since a student may work in the assignment's folder.
+The docstring is the feedback, unless the assertion has a message of its own; a test's source is never shown. ``after`` names
+the criterion or earlier test that must earn everything first. Only the files named are imported, since a student may work in the assignment's folder.
 """
 
 from __future__ import annotations
 
 import ast
+import hashlib
 import os
 import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -39,7 +40,9 @@ if TYPE_CHECKING:
     import pytest
 
 MARK: Final = "points"
-MARK_HELP: Final = f"{MARK}(number, visibility='visible', hints=()): what a teacher's test is worth"
+MARK_HELP: Final = (
+    f"{MARK}(number, after=None, visibility='visible', hints=()): what a teacher's test is worth"
+)
 
 
 def read_teacher_tests(file: Path) -> Iterator[TeacherTest]:
@@ -67,14 +70,34 @@ def _read_test(node: ast.FunctionDef, mark: ast.Call | None, file: Path) -> Teac
             text,
             Visibility(keywords.pop("visibility", Visibility.VISIBLE.value)),
             tuple(map(str, keywords.pop("hints", ()))),
+            None if (after := keywords.pop("after", None)) is None else str(after),
         )
     except (ValueError, TypeError):
         keywords = {"?": None}
     if keywords or not 0.0 <= test.points <= 1e6:
         raise ValueError(
-            f"{file.name}:{mark.lineno}: {MARK} takes a number from 0 on, a visibility and hints"
+            f"{file.name}:{mark.lineno}: {MARK} takes a number from 0 on, and after, visibility and hints"
         )
     return test
+
+
+def tests_digest(files: Sequence[Path]) -> str:
+    """Returns a digest of what decides the outcomes of tests: their code, without what they are worth and what they say to
+    whom. Empty without files. Raises OSError, SyntaxError."""
+    digest = hashlib.sha256()
+    for file in files:
+        tree = ast.parse(file.read_text(encoding="utf-8"), file.name)
+        for node in tree.body:
+            if isinstance(node, ast.FunctionDef) and node.name.startswith("test_"):
+                node.decorator_list = [
+                    each
+                    for each in node.decorator_list
+                    if not (isinstance(each, ast.Call) and _is_mark(each))
+                ]
+                if ast.get_docstring(node) is not None:
+                    node.body = [*node.body[1:], ast.Pass()]
+        digest.update(ast.unparse(tree).encode())
+    return digest.hexdigest()[:32] if files else ""
 
 
 MIN_TIME_S: Final = 30.0
@@ -123,8 +146,10 @@ def _raise_time_used_up(*_: object) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class _Outcome:
+class TestOutcome:
     """The outcome of one run of a test function."""
+
+    __test__ = False  # no class of tests
 
     status: CriterionStatus
     message: str
@@ -139,12 +164,12 @@ class _Session:
     first_failure: Callable[[], Failure | None]
     """How the program failed; None if it did not."""
     deadline: TestDeadline
-    outcomes: dict[str, list[_Outcome]] = field(default_factory=dict)
+    outcomes: dict[str, list[TestOutcome]] = field(default_factory=dict)
 
     def note(self, item: Any, status: CriterionStatus, text: str) -> None:
         name = getattr(item, "originalname", None) or item.name
         # Secret evidence that an earlier test was given may be kept in a fixture.
-        outcome = _Outcome(status, text, uses_secrets=self.grading.has_given_secrets)
+        outcome = TestOutcome(status, text, uses_secrets=self.grading.has_given_secrets)
         self.outcomes.setdefault(name, []).append(outcome)
 
 
@@ -156,29 +181,29 @@ def run_teacher_tests(
     first_failure: Callable[[], Failure | None],
     clock: SubmissionClock,
     level: Level,
-) -> tuple[CriterionResult, ...]:
-    """Runs the tests apart from the grader. An error in a test is the teacher's and costs no student a point.
+) -> Mapping[str, Sequence[TestOutcome]]:
+    """Runs the tests apart from the grader, and returns the outcomes of each. An error in a test is the teacher's and costs
+    no student a point.
 
     All evidence has been collected before. ``first_failure`` returns how the program failed: an error in a test that examines a
     failed program is the student's.
     The tests together may take what is left of the submission's time by ``clock``, and ``MIN_TIME_S`` in any case.
     """
     if not tests:
-        return ()
+        return {}
     limit_s = max(MIN_TIME_S, clock.left_s)
     session = _Session(grading, first_failure, TestDeadline(limit_s))
     try:
         told = run_author_code(
             lambda: _run_pytest(session, folder, files), folder, level, limit_s + PYTEST_START_S
         )
-        outcomes = {
-            name: [_Outcome(CriterionStatus(status), text, uses) for status, text, uses in each]
+        return {
+            name: [TestOutcome(CriterionStatus(status), text, uses) for status, text, uses in each]
             for name, each in told.items()
         }
     except (AuthorCodeError, AttributeError, TypeError, ValueError) as error:  # or what is no answer
-        broken = _Outcome(CriterionStatus.GRADER_ERROR, str(error), uses_secrets=True)
-        outcomes = {test.id: [broken] for test in tests}
-    return tuple(_test(test, outcomes.get(test.id, [])) for test in tests)
+        broken = TestOutcome(CriterionStatus.GRADER_ERROR, str(error), uses_secrets=True)
+        return {test.id: [broken] for test in tests}
 
 
 PYTEST_START_S: Final = 60.0
@@ -279,7 +304,7 @@ def _assertion_message(message: str) -> str:
     return message.partition("\nassert ")[0] if not message.startswith("assert ") else ""
 
 
-def _test(test: TeacherTest, outcomes: Sequence[_Outcome]) -> CriterionResult:
+def teacher_test_result(test: TeacherTest, outcomes: Sequence[TestOutcome]) -> CriterionResult:
     """Makes the result of one test; each outcome of a parametrized test is worth its share.
 
     A test that may have seen secret evidence pays in steps, and its own message is the teacher's alone.

@@ -566,3 +566,39 @@ def _read_grants(level: Level, file: Path, package: PackageProgram | None) -> Re
         return ReadGrants()
     more = () if package is None else (package.folder, *package.imports, *package.interfaces.values())
     return find_grants((file.parent, *more))
+
+
+class HostedFile:
+    """A student's file that runs in a process of its own. Use it as a context manager, or ``close`` it."""
+
+    def __init__(self, process: StudentProcess) -> None:
+        self._process = process
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def failure(self) -> Failure | None:
+        """Why the student's code has failed; None while it runs, and when it has ended by itself."""
+        return self._process.failure
+
+    @property
+    def pid(self) -> int:
+        """Process id of the process above the student's, which ends with it."""
+        return self._process.pid
+
+    @property
+    def level(self) -> Level:
+        """Confinement level of the process."""
+        return self._process.level
+
+    def take_output(self) -> ProgramOutput:
+        """Removes and returns what the file has printed since the last call, including its log."""
+        return self._process.take_output()
+
+    def close(self) -> None:
+        """Ends the process. May be called twice."""
+        self._process.close()

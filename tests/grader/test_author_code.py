@@ -117,7 +117,7 @@ def test_a_reference_that_answers_nonsense_costs_no_student_a_point(
         "title: T\nkind: function\nsubmit: work.py\nfunctions: [{name: f}]\nchecks: [{check: agrees, points: 1}]\n"
     )
     (tmp_path / "reference.py").write_text("def f(x): return x\ndef f_cases(chance): yield {'x': 1}\n")
-    monkeypatch.setattr("grader.kinds.function.run_author_code", lambda *given: value)
+    monkeypatch.setattr("grader.kinds.function.kind.run_author_code", lambda *given: value)
     work = Submission("ada", "work.py", {"work.py": b"def f(x): return x\n"})
     result = grade(read_assignment(tmp_path), work, GradingOptions(Level.FILTERED))
     assert result.tests[0].status is CriterionStatus.GRADER_ERROR

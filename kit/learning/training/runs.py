@@ -10,20 +10,21 @@ from __future__ import annotations
 import fcntl
 import io
 import json
+import math
 import os
 import re
 import time
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import IO, Any, Final, Literal, get_args
 
 from kit.array_archives import READ_ERRORS, check_arrays, check_stored
 from kit.field_types import check_field_types
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import Policy, load_policy
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.events import (
     Evaluated,
     EventReader,
@@ -59,9 +60,18 @@ def _try_lock(lock: IO[bytes]) -> bool:
             return True
 
 
+NO_LIMIT = "none"
+"""Stands for an infinite limit."""
+
+
 def format_settings(settings: Iterable[tuple[str, float]]) -> str:
     """Changed settings, as ``--set`` takes them: ``gamma=0.98 n_steps=64``."""
-    return " ".join(f"{name}={number:.12g}" for name, number in settings)
+    return " ".join(f"{name}={format_setting(number)}" for name, number in settings)
+
+
+def format_setting(number: float) -> str:
+    """A setting's number, as ``--set`` takes it: infinity, of a limit, is ``none``."""
+    return NO_LIMIT if math.isinf(number) else f"{number:.12g}"
 
 
 class RunError(Exception):
@@ -143,6 +153,8 @@ class TrainingSummary:
     best_evaluation: Evaluated | None = None
     """That of the best policy."""
     reason: str = ""
+    measures: dict[str, float] = field(default_factory=dict)
+    """What the learner last measured of its own learning; see ``kit.learning.training.measures``."""
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able."""
@@ -336,6 +348,7 @@ def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: R
     steps, seconds, rate, reason = 0, 0.0, 0.0, ""
     tested: Evaluated | None = None
     best: Evaluated | None = None
+    measures: dict[str, float] = {}
     state: RunState = "interrupted" if events else "new"
     for event in events:
         match event:
@@ -343,8 +356,9 @@ def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: R
                 state, steps = "interrupted", event.steps
             case TrainingProgress():
                 steps, seconds, rate = event.steps, event.seconds, event.rate
+                measures = event.measures or measures
             case Evaluated():
-                tested = event
+                tested, measures = event, event.measures or measures
                 best = event if event.kept else best
             case TrainingEnded():
                 state, steps, seconds, reason = event.how, event.steps, event.seconds, event.reason
@@ -352,7 +366,7 @@ def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: R
                 pass
     if alive:
         state = "paused" if order == "pause" else "running"
-    return TrainingSummary(state, steps, seconds, rate, tested, best, reason)
+    return TrainingSummary(state, steps, seconds, rate, tested, best, reason, measures)
 
 
 def create_run(folder: Path, config: RunConfig, name: str | None = None) -> TrainingRun:

@@ -13,7 +13,7 @@ from types import ModuleType
 import pytest
 
 from grader.grading import GradingOptions, grade
-from grader.kinds.function import (
+from grader.kinds.function.kind import (
     MAX_CASES,
     FunctionsTask,
     _as_json,
