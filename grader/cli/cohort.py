@@ -39,7 +39,7 @@ from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.cli.options import describe_error, executor_options
 from kit.document.blocks import CellStyle, Column, Table
 from kit.document.layout import lines_of
-from kit.host.job_executors import read_shard, serve_jobs
+from kit.host.job_executors import SlurmResources, read_shard, serve_jobs
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
 from kit.school.game.levels import UnknownLevel, find_level
@@ -74,6 +74,7 @@ def cohort(
     jobs: int,
     executor: str,
     cluster: str,
+    slurm: SlurmResources,
 ) -> None:
     """Grade every file, folder or archive in SUBMISSIONS that has no grade yet.
 
@@ -112,7 +113,7 @@ def cohort(
         click.echo(f"{len(entries)} submissions{anew}, {len(waiting)} to grade", err=True)
         with click.progressbar(length=len(waiting), label="graded", file=sys.stderr) as bar:
             if executor == "slurm":
-                run_on_slurm(queue, jobs)
+                run_on_slurm(queue, jobs, slurm)
             elif executor == "dask":
                 run_on_dask(queue, waiting, cluster, count)
             elif executor == "local":
