@@ -10,7 +10,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, Final
 
-from grader.evidence.service_calls import ServiceCall
+from grader.driving.service_calls import ServiceCall
 from grader.scoring import Anchors
 from kit.geometry import Pose
 from kit.host.sandbox.confinement import Level
@@ -134,7 +134,7 @@ class TeacherTest:
 
 @dataclass(frozen=True, slots=True)
 class GridTask:
-    """The grid on which a reward's optimal behaviour is computed; see ``grader.evidence.task_model``."""
+    """The grid on which a reward's optimal behaviour is computed; see ``grader.kinds.reward.task_model``."""
 
     rows: tuple[str, ...]
     """``#`` wall, ``.`` floor, ``G`` target."""
@@ -175,6 +175,8 @@ class Assignment:
     """All of its secret seeds."""
     public_version: str = ""
     """Digest of the same files without the secret one, for students: a digest of short secrets gives them away."""
+    packages: tuple[str, ...] = ()
+    """Packages whose devices, checks and kinds are loaded while its submissions are graded."""
     teacher_tests: tuple[TeacherTest, ...] = ()
     """Tests in the order of their files."""
     teacher_test_files: tuple[Path, ...] = ()

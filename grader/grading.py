@@ -14,6 +14,7 @@ from types import MappingProxyType
 from typing import Final
 
 from grader.assignment import MAX_HINTS, Assignment, Criterion, KnownMistake, SeedSet
+from grader.author_code import AuthorCodeError
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
 from grader.evidence.findings import (
     Findings,
@@ -32,6 +33,7 @@ from grader.submission import Submission
 from grader.submitted_files import YAML_ENDINGS, SubmissionRefused, reading_submission
 from grader.teacher_tests import TestOutcome, run_teacher_tests, teacher_test_result, tests_digest
 from grader.version import grader_version
+from kit.extensions import admitting
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level, shield_this_process
 from kit.host.sandbox.probe import highest_level_up_to
@@ -138,7 +140,9 @@ class Grading:
         self._examples = examples
         self._has_run_public = not secret
         """Whether everything public was run. Nothing secret is run before: what a program says after that is not shown."""
-        self._checks = find_kind(assignment.kind).checks
+        with admitting(assignment.packages):
+            kind = find_kind(assignment.kind)
+        self._checks, self._tells_secret_runs = kind.checks, kind.tells_secret_runs
         self._scored: dict[str, tuple[_ScoredEvidence, ...]] = {}
         self._tests: dict[str, CriterionResult] = {}
         self._counterexamples: dict[str, _ScoredEvidence | None] = {}
@@ -214,6 +218,7 @@ class Grading:
             files,
             self.first_failure,
             self._clock,
+            self._collector.level,
         )
         if self.recorder is not None and files:
             self.recorder.findings.own_tests = tests_digest(files)
@@ -321,13 +326,16 @@ class Grading:
         self, criterion: Criterion, scored: Sequence[_ScoredEvidence], *, full: bool
     ) -> Sequence[_ScoredEvidence]:
         """Returns the evidence that a student is told of: the public, or where only secret evidence lost points, a
-        counterpart that loses points too. Empty if none of these was found."""
+        counterpart that loses points too; else the secret itself, where the kind tells of it. Empty if none of these was
+        found."""
         public = [each for each in scored if not each.evidence.secret]
         if full or any(each.share < 1.0 for each in public):
             return public
         if self._looks_afterwards and criterion.id not in self._counterexamples:
             self._counterexamples[criterion.id] = self._find_counterexample(criterion)
         found = self._counterexamples.get(criterion.id)
+        if found is None and self._looks_afterwards and self._tells_secret_runs:
+            return scored
         return [] if found is None else [found]
 
     @property
@@ -342,7 +350,7 @@ class Grading:
         if self._has_run_public:
             return
         self._has_run_public = True
-        with reading_submission(self.submission.name):
+        with reading_submission(self.submission.name, AuthorCodeError):
             for criterion in self.assignment.criteria:
                 self._collector.public_evidence(criterion)
         if not self._examples or self._looks_afterwards:
@@ -384,7 +392,7 @@ class Grading:
         self._run_public()
         ready = self._ready(criterion)
         # An error in here was brought to light by this work: it must look like no fault of the grader's.
-        with reading_submission(self.submission.name):
+        with reading_submission(self.submission.name, AuthorCodeError):
             collected = self._collector.evidence(criterion)
         self._scored[criterion.id] = tuple(
             self._score_evidence(criterion, each, is_ready=ready(each)) for each in collected
@@ -552,6 +560,7 @@ def open_grading(
         clock = SubmissionClock(assignment.submission_limit_s, options.show_progress)
         evidence_options = EvidenceOptions(available, options.secret, clock)
         with ExitStack() as stack:
+            stack.enter_context(admitting(assignment.packages))
             with reading_submission(submission.name):
                 collector = stack.enter_context(
                     find_kind(assignment.kind).collect(assignment, file, evidence_options)

@@ -27,10 +27,11 @@ from grader.assignment import (
     TeacherTest,
     Trial,
 )
-from grader.checks.contract import Check
+from grader.check import Check
 from grader.kinds.contract import AssignmentFiles, find_kind, kind_names
 from grader.scoring import MAX_SHARE_STEPS, Anchors
 from grader.teacher_tests import read_teacher_tests
+from kit.extensions import ExtensionError, admitting, installed_extensions
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS, MIB, Limits
 from kit.plain_files import is_file_there
@@ -137,9 +138,28 @@ def read_assignment(folder: Path) -> Assignment:
     secret_file = folder / SECRET_FILE
     secrets = documents.section(secret_file, SourceLocation(secret_file)) if secret_file.is_file() else None
     with documents.open(folder / ASSIGNMENT_FILE) as section:
-        kind = section.text("kind", "controller", choices=kind_names())
-        documents.problems.raise_if_any()  # the meaning of the other keys depends on the kind
-        return read_sheet(kind, section, secrets, folder)
+        packages = section.texts("packages", ())
+        with admitting(packages):
+            _check_packages(section, packages)
+            kind = section.text("kind", "controller", choices=kind_names())
+            documents.problems.raise_if_any()  # the meaning of the other keys depends on the kind
+            try:
+                return read_sheet(kind, section, secrets, folder, packages)
+            except ExtensionError as error:
+                section.error(str(error), "packages")
+                raise documents.problems.error() from error
+
+
+def _check_packages(section: Section, packages: tuple[str, ...]) -> None:
+    """Notes each package that brings no parts, or is not installed on this machine."""
+    known = sorted({each.package for each in installed_extensions()} if packages else ())
+    for name in packages:
+        if name not in known:
+            section.error(
+                f"no installed package {quoted(name)} brings parts of the kit: {suggestion(name, known)}. Every machine "
+                "that grades needs it",
+                "packages",
+            )
 
 
 JUDGEMENT_KEYS: Final = ("title", "id", "checks", "tests")
@@ -147,10 +167,12 @@ JUDGEMENT_KEYS: Final = ("title", "id", "checks", "tests")
 is part of what is found about it: see ``grader.evidence.findings``."""
 
 
-def evidence_digest(folder: Path, test_files: Sequence[str]) -> str:
+def evidence_digest(folder: Path, test_files: Sequence[str], packages: tuple[str, ...] = ()) -> str:
     """Returns a digest of what decides what is found about a submission: of the sheet only the keys and values that count,
     however they are written, and of the other files all but the teacher's own tests."""
-    parsed = hashlib.sha256(folder_digest(folder, ignored=(ASSIGNMENT_FILE, *test_files)).encode())
+    parsed = hashlib.sha256(
+        folder_digest(folder, ignored=(ASSIGNMENT_FILE, *test_files), packages=packages).encode()
+    )
     with suppress(
         OSError, UnicodeDecodeError, yaml.YAMLError
     ):  # the sheet's own reader reports what is wrong with it
@@ -170,9 +192,13 @@ def _content(node: yaml.Node) -> object:
     return str(node.value)
 
 
-def folder_digest(folder: Path, *, ignored: Sequence[str] = ()) -> str:
-    """Returns a digest of all files in the folder that grading depends on, but for those of these names."""
+def folder_digest(folder: Path, *, ignored: Sequence[str] = (), packages: tuple[str, ...] = ()) -> str:
+    """Returns a digest of all files in the folder that grading depends on, but for those of these names, and of the versions
+    of the packages that it needs."""
     parsed = hashlib.sha256()
+    sources = {each.source for each in installed_extensions() if each.package in packages} if packages else ()
+    for source in sorted(sources):
+        parsed.update(source.encode())
     for file in sorted(path for path in folder.rglob("*") if path.is_file()):
         name = file.relative_to(folder)
         if (
@@ -193,7 +219,9 @@ TRANSLATION: Final = re.compile(r"assignment\.[a-z]{2}\.yaml")
 """Words in another language, which change nothing of what is graded either."""
 
 
-def read_sheet(kind: str, section: Section, secrets: Section | None, folder: Path) -> Assignment:
+def read_sheet(
+    kind: str, section: Section, secrets: Section | None, folder: Path, packages: tuple[str, ...] = ()
+) -> Assignment:
     """Reads the sheet of an assignment of this kind in ``folder``, and its secret file; notes their mistakes."""
     kind_record = find_kind(kind)
     teacher_test_files = tuple(_teacher_test_files(section, folder))
@@ -207,6 +235,7 @@ def read_sheet(kind: str, section: Section, secrets: Section | None, folder: Pat
         id=section.name("id", folder.resolve().name),
         title=section.name("title"),
         kind=kind,
+        packages=packages,
         submit=_file_name(section, kind_record.endings),
         level=Level(section.integer("level", int(Level.FILTERED), minimum=0, maximum=max(Level))),
         limits=limits,
@@ -214,10 +243,10 @@ def read_sheet(kind: str, section: Section, secrets: Section | None, folder: Pat
         trials=task.trials,
         criteria=criteria,
         task=task.task,
-        version=folder_digest(folder),
-        public_version=folder_digest(folder, ignored=(SECRET_FILE,)),
+        version=folder_digest(folder, packages=packages),
+        public_version=folder_digest(folder, ignored=(SECRET_FILE,), packages=packages),
         has_secrets=secrets is not None,
-        evidence_version=evidence_digest(folder, [file.name for file in teacher_test_files]),
+        evidence_version=evidence_digest(folder, [file.name for file in teacher_test_files], packages),
         secret_seeds=(*(seed for trial in task.trials for seed in trial.secret_seeds), *task.secret_seeds),
         teacher_tests=tuple(_teacher_tests(section, teacher_test_files, criteria)),
         teacher_test_files=teacher_test_files,

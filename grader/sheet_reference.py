@@ -19,7 +19,8 @@ from typing import Final
 import yaml
 
 from grader.new_assignment import example_of_kind
-from grader.reading import ASSIGNMENT_FILE, SECRET_FILE, YAML_LOADER, read_sheet
+from grader.reading import SECRET_FILE, YAML_LOADER, read_sheet
+from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.world.documents import open_document
 from kit.world.key_table import OWN_NAME, FormatKey, format_keys
 from kit.world.yaml_section import Section

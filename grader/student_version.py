@@ -20,10 +20,11 @@ from typing import Final
 import yaml
 
 from grader.assignment import TEACHERS_STEMS, Assignment
-from grader.reading import ASSIGNMENT_FILE, SECRET_FILE, YAML_LOADER
+from grader.reading import SECRET_FILE, YAML_LOADER
 from grader.submitted_files import IGNORED_NAMES
 from grader.teacher_tests import read_teacher_tests
 from kit.plain_text import join_names
+from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.school.result import Visibility
 
 REFERENCE: Final = "reference"

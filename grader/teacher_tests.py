@@ -27,10 +27,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from grader.assignment import TeacherTest
+from grader.author_code import AuthorCodeError, run_author_code
 from grader.evidence.contract import EvidenceSource
 from grader.evidence.submission_clock import SHORTEST_S, SubmissionClock
 from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
 from kit.host.failure import Failure
+from kit.host.sandbox.confinement import Level
+from kit.host.wire import Json
 from kit.school.result import CriterionResult, CriterionStatus, Visibility
 
 if TYPE_CHECKING:
@@ -177,24 +180,51 @@ def run_teacher_tests(
     files: Sequence[Path],
     first_failure: Callable[[], Failure | None],
     clock: SubmissionClock,
+    level: Level,
 ) -> Mapping[str, Sequence[TestOutcome]]:
-    """Runs the tests in this process, and returns the outcomes of each. An error in a test is the teacher's and costs no student a point.
+    """Runs the tests apart from the grader, and returns the outcomes of each. An error in a test is the teacher's and costs
+    no student a point.
 
-    ``first_failure`` returns how the program failed: an error in a test that examines a failed program is the student's.
+    All evidence has been collected before. ``first_failure`` returns how the program failed: an error in a test that examines a
+    failed program is the student's.
     The tests together may take what is left of the submission's time by ``clock``, and ``MIN_TIME_S`` in any case.
     """
     if not tests:
         return {}
-    session = _Session(grading, first_failure, TestDeadline(max(MIN_TIME_S, clock.left_s)))
+    limit_s = max(MIN_TIME_S, clock.left_s)
+    session = _Session(grading, first_failure, TestDeadline(limit_s))
+    try:
+        told = run_author_code(
+            lambda: _run_pytest(session, folder, files), folder, level, limit_s + PYTEST_START_S
+        )
+    except AuthorCodeError as error:
+        broken = TestOutcome(CriterionStatus.GRADER_ERROR, str(error), uses_secrets=True)
+        return {test.id: [broken] for test in tests}
+    return {
+        name: [TestOutcome(CriterionStatus(status), text, uses) for status, text, uses in each]
+        for name, each in told.items()
+    }
+
+
+PYTEST_START_S: Final = 60.0
+"""Wall clock granted besides to pytest itself [s]."""
+
+
+def _run_pytest(session: _Session, folder: Path, files: Sequence[Path]) -> dict[str, list[list[Json]]]:
+    """Returns the outcomes of each test: status, message, whether it may have seen secret evidence."""
     with _isolated_environment():
         import pytest
 
         options = ["-p", "no:terminal", "-p", "no:cacheprovider", "-p", "no:faulthandler", "--capture=sys"]
-        options += ["-c", os.devnull, "--rootdir", str(folder), "--import-mode=importlib"]
+        options += ["-c", os.devnull, "--rootdir", str(folder), "--confcutdir", str(folder)]
+        options += ["--import-mode=importlib"]
         options += ["--noconftest"]  # one above the assignment's folder may be a student's
         pytest.main([*options, *map(str, files)], plugins=[_plugin(session)])
     _forget_modules(files)
-    return session.outcomes
+    return {
+        name: [[each.status.value, each.message, each.uses_secrets] for each in outcomes]
+        for name, outcomes in session.outcomes.items()
+    }
 
 
 def _forget_modules(files: Sequence[Path]) -> None:

@@ -14,7 +14,7 @@ from typing import Final
 import click
 
 from grader.assignment import Assignment
-from grader.checks.contract import Check
+from grader.check import Check
 from grader.ci import (
     GRADESCOPE,
     GRADESCOPE_ARCHIVE,
@@ -32,12 +32,14 @@ from grader.cli.progress import shown_progress
 from grader.grading import GradingOptions, LevelTooLow
 from grader.kinds.contract import KINDS_PACKAGE, find_kind, kind_names
 from grader.new_assignment import example_of_exercise, example_of_kind, make_assignment
-from grader.reading import ASSIGNMENT_FILE, SECRET_FILE, budget_lines
+from grader.reading import SECRET_FILE, budget_lines
 from grader.reports.cleaning import plain
 from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds, works_of
+from kit.cli.options import describe_os_error
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.plain_text import counted, quoted, suggestion
+from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.workspace import write_atomically
 
 
@@ -70,7 +72,7 @@ def new(folder: Path, kind: str | None, exercise: str | None) -> None:
     except LookupError as error:
         options.fail(str(error))
     except OSError as error:
-        options.fail(f"Cannot create {folder}: {error.strerror or error}.")
+        options.fail(f"Cannot create {folder}: {describe_os_error(error)}")
     shown = shlex.quote(str(folder))
     click.echo(f"{folder}: {assignment.kind}, ready. Try it: grader self-test {shown}")
     if assignment.has_secrets:
@@ -104,7 +106,7 @@ def _kinds_as_json() -> str:
     kinds = [
         {
             "kind": name,
-            "about": inspect.getdoc(sys.modules[f"{KINDS_PACKAGE}.{name}"]),
+            "about": inspect.getdoc(sys.modules[f"{KINDS_PACKAGE}.{name}.kind"]),
             "endings": find_kind(name).endings,
             "checks": [
                 {

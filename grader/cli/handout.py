@@ -18,12 +18,13 @@ from grader.ci import REPOSITORY_SERVICES, WORKFLOWS, GitSource, GradedWork, wor
 from grader.cli import options
 from grader.kinds.contract import kind_names
 from grader.new_assignment import CARD
-from grader.reading import ASSIGNMENT_FILE, budget_lines
+from grader.reading import budget_lines
 from grader.sheet_reference import SheetKey, documented_attributes, sheet_keys
 from grader.student_version import ReleaseRefused, StudentVersion, missing_for_practice, student_version
 from kit.document.blocks import Block, Code, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.plain_text import counted, join_names
+from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.workspace import write_atomically
 from kit.world.problems import WorldError
 
@@ -185,7 +186,7 @@ def help_page(topic: str, kind: str) -> None:
 def tests_blocks() -> list[Block]:
     """Returns the page on a teacher's own tests."""
     # Only for this page: they bring numpy.
-    from grader.evidence.drive_record import GradedDrive, TopicTraffic
+    from grader.driving.drive_record import GradedDrive, TopicTraffic
     from kit.run.metrics import DriveMetrics
 
     told = (inspect.getdoc(teacher_tests) or "").split("\n\n")

@@ -26,6 +26,7 @@ from tests.grader.conftest import FORWARD, LOCKS
 
 HANDED_IN = 150
 MISSING = 8
+DIFFERENT = 60
 SEED = 41
 SECRET = 2_718_281_828_459_045_235
 SHEET = """\
@@ -34,7 +35,7 @@ kind: controller
 submit: controller.py
 level: 1
 trials:
-  - {name: hall, place: hall/world.yaml, target: [4.25, 1.25], time: 4, seeds: [1]}
+  - {name: hall, place: hall/world.yaml, target: [4.25, 1.25], time: 3, seeds: [1]}
 checks:
   - {check: runs, points: 1}
   - {check: moves, title: It goes on, points: 4, after: runs, share: {none: 0, full: 0.8, steps: 4}, hints: [Publish more often.]}
@@ -69,7 +70,7 @@ def invoke(*command: str, status: int = 0) -> Result:
 
 
 def program(number: int) -> str:
-    return f"# {number}\n" + FORWARD.replace("SPEED = 0.3", f"SPEED = {0.05 + 0.01 * (number % 40):.2f}")
+    return FORWARD.replace("SPEED = 0.3", f"SPEED = {0.05 + 0.01 * number:.2f}")
 
 
 def _plain(folder: Path, text: str) -> None:
@@ -226,8 +227,8 @@ def hand_in(chance: random.Random) -> list[str]:
         if number >= 10 and chance.random() < 0.2:
             BAD[chance.choice(list(BAD))](folder)
         else:
-            # Every fifth program is that of another student.
-            GOOD[chance.choice(list(GOOD))](folder, program(number if number % 5 else number // 2))
+            # Some have the program of another student, which is graded once.
+            GOOD[chance.choice(list(GOOD))](folder, program(number % DIFFERENT))
     return names
 
 
