@@ -11,6 +11,7 @@ from pathlib import Path
 import click
 
 from grader.cli import options
+from grader.cli.progress import counted_progress
 from grader.cohort.gradebook import (
     UNREADABLE,
     WAITING,
@@ -89,9 +90,6 @@ def cohort(
     grader failed for some, or a worker left no result for some.
     """
 
-    def count(key: str) -> None:
-        bar.update(1)
-
     assignment = options.load_assignment(folder)
     if secret:
         options.warn_of_short_seeds(assignment)
@@ -111,7 +109,11 @@ def cohort(
         waiting = queue.waiting()
         anew = f", {judged} judged anew by what was found before" if judged else ""
         click.echo(f"{len(entries)} submissions{anew}, {len(waiting)} to grade", err=True)
-        with click.progressbar(length=len(waiting), label="graded", file=sys.stderr) as bar:
+        with counted_progress(len(waiting), "graded") as count_one:
+
+            def count(key: str) -> None:
+                count_one()
+
             if executor == "slurm":
                 run_on_slurm(queue, jobs, slurm)
             elif executor == "dask":
