@@ -45,7 +45,12 @@ from kit.workspace import write_atomically
 
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path))
-@click.option("--kind", type=click.Choice(kind_names()), help="What students submit (default: controller).")
+@click.option(
+    "--kind",
+    type=click.Choice(kind_names()),
+    metavar="KIND",
+    help="What students submit; `grader checks` names the kinds (default: controller).",
+)
 @click.option(
     "--from",
     "exercise",
@@ -258,7 +263,7 @@ def ci(service: str, folders: tuple[str, ...], kit: str, python: str, runner: st
 
     \b
     grader ci github --assignment tasks/one --kit https://HOST/PATH@v1
-    grader ci github --assignment tasks/one=one.py --assignment tasks/two=two --kit https://HOST/PATH
+    grader ci github --assignment one=one.py --assignment two=two --kit https://HOST/PATH
     grader ci gradescope --assignment tasks/one --kit https://HOST/PATH@v1
 
     Anyone who can push can change the workflow and the assignment in a repository, so these results are only for practice.

@@ -9,6 +9,7 @@ import csv
 import io
 import json
 import random
+import re
 import tarfile
 import time
 import zipfile
@@ -194,8 +195,10 @@ def test_a_course_from_the_template_to_the_grades(tmp_path: Path, monkeypatch: p
         Path("task/assignment.yaml").write_text(sheet.replace("points: 4", "points: 5"))
         again = invoke(*cohort, status=1)
     regrade_s = time.perf_counter() - began
-    assert "0 to grade" in again.stderr
-    assert regrade_s < grading_s / 4, "no drive is run again"
+    # What was known only while a program ran, as where this machine stood still, is not judged by what was found.
+    (run_again,) = re.findall(r"judged anew by what was found before, (\d+) to grade", again.stderr)
+    assert int(run_again) <= DIFFERENT // 10
+    assert regrade_s < grading_s / 4
     changed = invoke("gradebook", "queue", *files, "--against", "before.json").stdout.splitlines()
     assert changed
     assert all("moves" in line for line in changed)
