@@ -377,9 +377,14 @@ class LessonScreen(DialogueScreen, DriveScreen):
         return printed and "\n".join(plain_lines(printed))
 
     async def _drive(self, request: Drive) -> str | None:
-        from kit.tui.screens.lesson_drive import RecordedDriveScreen  # of no use to the first frame
+        from kit.run.recording_file import RecordingFile  # of no use to the first frame, as what follows
+        from kit.tui.screens.lesson_drive import RecordedDriveScreen
 
-        drive = RecordedDriveScreen(self.theme, request.scene, request.file, self.workspace)
+        try:
+            kept = RecordingFile(request.file)
+        except OSError as error:
+            return f"{request.file}: {error.strerror}." if error.strerror else str(error)
+        drive = RecordedDriveScreen(self.theme, request.scene, kept, self.workspace)
         await self.app.push_screen_wait(drive)
         return drive.problem or ("" if drive.was_kept else None)
 

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.controllers import find_controller
-from kit.learning.environment.tasks import find_task, task_names
+from kit.learning.tasks.catalogue import find_task, task_names
 from kit.mapmaking.map_drawing import read_drawing
 from kit.mapmaking.new_map import write_map
 from kit.run.recording import load_recording
@@ -109,7 +109,9 @@ def test_a_program_races_on_a_task_for_its_own_best_and_no_medal(own_task: Path,
     assert finish.reached
     with ProgressJournal(workspace.folder) as journal:
         first, second = (
-            record_drive(journal, workspace, level, DriverKind.CONTROLLER, finish, recording, DriverFacts())
+            record_drive(
+                journal, workspace, level, DriverKind.CONTROLLER, [(finish, recording)], DriverFacts()
+            )
             for _ in range(2)
         )
     assert (first.medal, first.rules, first.is_best) == (Medal.NONE, (), True)

@@ -19,7 +19,8 @@ from kit.arrays import FloatArray
 from kit.cli import main
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.grid_world import GridWorld
-from kit.learning.environment.tasks import TaskSpec, find_task
+from kit.learning.tasks.catalogue import find_task
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.grid_learner import GridLearnerSettings, NetworkLearner
 from kit.learning.training.presets import find_preset

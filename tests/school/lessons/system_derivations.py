@@ -330,11 +330,12 @@ def wrapped_degrees(words: str, step: LessonStep, folder: Path) -> str:
 
 
 def values_above_the_limit(words: str, step: LessonStep, folder: Path) -> str:
-    from kit.learning.training.boltzmann_dqn import MAX_EXPONENT  # brings torch along
+    from kit.learning.training.presets import SEED_DQN  # brings torch along
 
+    limit = SEED_DQN.settings.value_limit  # type: ignore[union-attr]  # a deep Q-network's
     if words.startswith("Its"):
-        return f"Its library had the limit of {MAX_EXPONENT:g}"
-    return f"The library took all values above {MAX_EXPONENT:g} for equal"
+        return f"Its library had the limit of {limit:g}"
+    return f"The library took all values above {limit:g} for equal"
 
 
 def pairs_of_actions(words: str, step: LessonStep, folder: Path) -> str:

@@ -12,8 +12,9 @@ import numpy as np
 
 from kit.learning.environment.env import TurnEnv
 from kit.learning.environment.grid_world import SMALL_TARGET, GridCell, GridWorld
-from kit.learning.environment.tasks import TURN, TaskSpec
 from kit.learning.policies.policies import ActionValueTable
+from kit.learning.tasks.catalogue import TURN
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.grid_learner import GridAlgorithm, GridLearner, GridLearnerSettings
 from kit.learning.training.presets import TabularParams, find_preset
