@@ -15,19 +15,14 @@ import click
 from kit.cli import options
 from kit.controllers import find_controller
 from kit.host.failure import StudentCodeError
-from kit.learning.environment.batch_map import UnsupportedWorld
-from kit.learning.environment.disturbances import (
-    DISTURBANCE_KINDS,
-    DisturbanceError,
-    DisturbanceKind,
-    UniformRange,
-)
-from kit.learning.environment.tasks import LearningTask, UnknownTask
+from kit.learning.maps.batch_map import UnsupportedWorld
 from kit.learning.policies.policies import Policy, PolicyError, load_policy
+from kit.learning.tasks.disturbances import DISTURBANCE_KINDS, DisturbanceError, DisturbanceKind, UniformRange
+from kit.learning.tasks.learning_task import LearningTask, UnknownTask
+from kit.learning.tasks.student_reward import RewardFileError
 from kit.learning.training.algorithms import LearnExtraMissing, UnknownAlgorithm, UnsuitableAlgorithm
 from kit.learning.training.demonstrations import DemonstrationError
 from kit.learning.training.runs import NO_LIMIT, RunError, find_run
-from kit.learning.training.student_reward import RewardFileError
 from kit.run.recording import RecordingError
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError

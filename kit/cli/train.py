@@ -15,9 +15,10 @@ from kit.cli import learning_options, options
 from kit.cli.full_screen import run_screen
 from kit.cli.shared_game import join_shared_game
 from kit.document.layout import lines_of
-from kit.learning.environment.disturbances import UniformRange
-from kit.learning.environment.rewards import REWARDS
-from kit.learning.environment.tasks import TaskSpec, all_tasks
+from kit.learning.tasks.catalogue import all_tasks
+from kit.learning.tasks.disturbances import UniformRange
+from kit.learning.tasks.rewards import REWARDS
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import (
     ALGORITHMS,
     IMITATION_ALGORITHMS,

@@ -11,8 +11,8 @@ from statistics import fmean, pstdev, stdev
 from typing import Any, Final, Literal, NamedTuple
 
 from kit.document.blocks import Cell, CellStyle, Column, Table
-from kit.learning.environment.tasks import find_task
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
+from kit.learning.tasks.catalogue import find_task
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.presets import find_preset
 from kit.learning.training.runs import PresetName

@@ -21,8 +21,8 @@ from kit.document.blocks import (
     Table,
     Text,
 )
-from kit.document.files import document_to_markdown, table_to_markdown
-from kit.learning.environment.tasks import find_task
+from kit.document.markdown import document_to_markdown, table_to_markdown
+from kit.learning.tasks.catalogue import find_task
 from kit.plain_text import suggestion
 from kit.study.author_agents import author_agents_table, read_author_agents
 from kit.study.evaluation import (

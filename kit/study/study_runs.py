@@ -15,7 +15,6 @@ import numpy as np
 from kit.controllers import find_controller
 from kit.document.blocks import ScenePlot
 from kit.learning.environment.episode_stats import EpisodeOutcome
-from kit.learning.environment.tasks import find_task
 from kit.learning.policies.evaluation import (
     EpisodePath,
     EpisodeShare,
@@ -25,6 +24,7 @@ from kit.learning.policies.evaluation import (
     record_paths,
 )
 from kit.learning.policies.policies import Policy
+from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.training.algorithms import versions
 from kit.learning.training.events import Evaluated, EventReader

@@ -10,14 +10,14 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from kit.learning.environment.actions import DiscreteActions
+from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.learning_task import LearningTask
 
 
 def test_differences(one: LearningTask, other: LearningTask) -> list[str]:
     """What differs, each with both values; empty where agents of both are tested alike.
 
-    >>> from kit.learning.environment.tasks import find_task
+    >>> from kit.learning.tasks.catalogue import find_task
     >>> test_differences(find_task("hallway"), find_task("hallway-seed"))
     []
     >>> test_differences(find_task("wheelchairs"), find_task("wheelchairs-seed-49"))[-1]

@@ -11,8 +11,8 @@ import pytest
 from gymnasium.spaces import Discrete
 
 from kit.cli import main
-from kit.learning.environment.actions import DiscreteActions
-from kit.learning.environment.tasks import find_task, task_names
+from kit.learning.tasks.actions import DiscreteActions
+from kit.learning.tasks.catalogue import find_task, task_names
 from kit.learning.training.crosstable import CrosstableColumn
 from kit.study.evaluation import evaluation_plots, read_evaluation_data
 from kit.study.pairs import TABLE_46, TABLE_53

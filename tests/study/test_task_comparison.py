@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from kit.learning.environment.tasks import HALLWAY, WHEELCHAIRS, StartVariation, find_task
-from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.catalogue import HALLWAY, WHEELCHAIRS, find_task
+from kit.learning.tasks.learning_task import LearningTask, StartVariation
 from kit.study.task_comparison import test_differences as differences
 
 

@@ -11,7 +11,7 @@ from kit.arrays import FloatArray
 from kit.fields.adjacency import is_adjacent_by_poses
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
-from kit.learning.environment.transition import Transition
+from kit.learning.tasks.transition import Transition
 
 
 class EpisodeOutcome(Enum):

@@ -13,15 +13,14 @@ from threadpoolctl import threadpool_limits
 from kit.arrays import FloatArray, IndexArray
 from kit.document.blocks import Cell, CellStyle, Column, Table
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import load_batch_map
 from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.env import obstacle_outlines
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
-from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.tasks import LearningTask
+from kit.learning.maps.batch_map import load_batch_map
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
 from kit.learning.policies.policies import Policy, load_policy
-from kit.learning.tasks.learning_task import Area, PatrolGoal, TargetGoal, TaskCase
+from kit.learning.tasks.learning_task import Area, LearningTask, PatrolGoal, TargetGoal, TaskCase
+from kit.learning.tasks.rewards import RewardFunction
 from kit.render.drive_playback import DrivenPlace, DrivePlayback
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.world.catalogue import MapCard

@@ -22,7 +22,6 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import (
     ActionSampling,
     Activation,
@@ -32,6 +31,7 @@ from kit.learning.policies.policies import (
     action_counts,
     task_interface,
 )
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.deep import LEARNING_RATE_FACTOR, EpisodeReporter
 from kit.learning.training.learner import TrainingCallback

@@ -19,10 +19,11 @@ from torch import nn
 from torch.nn import functional
 
 from kit.arrays import FloatArray
-from kit.learning.environment.tasks import LearningTask, TaskSpec
 from kit.learning.policies.evaluation import derive_seed
 from kit.learning.policies.export import convert_modules
 from kit.learning.policies.policies import ActionSampling, Policy, action_counts, task_interface
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.demonstrations import DemonstrationError, Demonstrator, Examples, join_examples
 from kit.learning.training.learner import TrainingCallback

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText
-from kit.learning.environment.tasks import UnknownTask
+from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.training.algorithms import UnknownAlgorithm
 from kit.learning.training.events import Evaluated
 from kit.learning.training.measures import VALUE_MAX, format_measure, is_value_too_large, value_warning

@@ -11,19 +11,20 @@ import fcntl
 import io
 import json
 import math
+import os
 import re
 import time
 import zipfile
-import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import IO, Any, Literal, get_args
+from typing import IO, Any, Final, Literal, get_args
 
+from kit.array_archives import READ_ERRORS, check_arrays, check_stored
 from kit.field_types import check_field_types
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import Policy, load_policy
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.events import (
     Evaluated,
     EventReader,
@@ -32,6 +33,7 @@ from kit.learning.training.events import (
     TrainingProgress,
     TrainingStarted,
 )
+from kit.plain_files import open_plain_file
 from kit.plain_text import quoted, suggestion
 from kit.workspace import write_atomically
 
@@ -305,12 +307,10 @@ class TrainingRun:
         damage = ""
         for file in self.checkpoints:
             try:
-                with zipfile.ZipFile(file) as archive:
-                    return {name: archive.read(name) for name in archive.namelist()}, damage
+                return _read_checkpoint(file), damage
             except FileNotFoundError:
                 continue
-            # RuntimeError: zipfile's, of an encrypted member or an unknown method of packing
-            except (zipfile.BadZipFile, zlib.error, OSError, EOFError, RuntimeError) as error:
+            except READ_ERRORS as error:
                 damage = f"{file.name} is damaged ({error})"
         if damage:
             raise RunError(
@@ -318,6 +318,29 @@ class TrainingRun:
                 "new run with `kit train`."
             )
         return None
+
+
+MAX_CHECKPOINT_BYTES: Final = 4 << 30
+"""Bytes of a checkpoint: its replay buffer is the largest part."""
+
+
+def _read_checkpoint(file: Path) -> dict[str, bytes]:
+    """Returns the parts of a checkpoint, which may be somebody else's: none of them unpacks to more than it is. Raises OSError,
+    ValueError and zipfile.BadZipFile."""
+    with open_plain_file(file) as opened:
+        size = os.fstat(opened.fileno()).st_size
+        if size > MAX_CHECKPOINT_BYTES:
+            raise zipfile.BadZipFile(f"it is larger than {MAX_CHECKPOINT_BYTES >> 30} GiB")
+        with zipfile.ZipFile(opened) as archive:
+            check_stored(archive, size)
+            parts = {name: archive.read(name) for name in archive.namelist()}
+    for name, data in parts.items():
+        if zipfile.is_zipfile(io.BytesIO(data)):  # arrays, or parameters of torch's
+            with zipfile.ZipFile(io.BytesIO(data)) as inner:
+                check_stored(inner, len(data))
+                if name.endswith(".npz"):
+                    check_arrays(inner, MAX_CHECKPOINT_BYTES)
+    return parts
 
 
 def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: RunCommand) -> TrainingSummary:

@@ -21,15 +21,16 @@ import numpy as np
 
 from kit.arrays import FloatArray
 from kit.host.failure import StudentCodeError
-from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.batch import BatchEnv, RewardError
-from kit.learning.environment.batch_map import UnsupportedWorld
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
-from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.tasks import LearningTask, TaskSpec
+from kit.learning.maps.batch_map import UnsupportedWorld
 from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError, save_policy
-from kit.learning.tasks.learning_task import CasePractice, practices
+from kit.learning.tasks.actions import DiscreteActions
+from kit.learning.tasks.learning_task import CasePractice, LearningTask, practices
+from kit.learning.tasks.rewards import RewardFunction
+from kit.learning.tasks.student_reward import RewardFileError, StudentReward
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import (
     Algorithm,
     UnsuitableAlgorithm,
@@ -61,7 +62,6 @@ from kit.learning.training.stopping_rules import (
     TrainUntilGoal,
     TrainUntilSure,
 )
-from kit.learning.training.student_reward import RewardFileError, StudentReward
 from kit.run.recording import RecordingError
 
 PROGRESS_S = 0.5

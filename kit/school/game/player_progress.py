@@ -5,12 +5,11 @@ from __future__ import annotations
 import ast
 import contextlib
 import datetime
-import math
 import random
 import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from enum import IntEnum, StrEnum
+from enum import StrEnum
 from pathlib import Path
 from typing import Final
 
@@ -24,31 +23,13 @@ from kit.school.game.levels import (
     all_worlds,
     find_level,
 )
+from kit.school.game.medal import Medal
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.task_levels import find_task_level
 from kit.school.lessons.catalogue import lesson_progress_from_events
 from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressEvent
 from kit.world.problems import WorldError
-
-GOLD_SHARE: Final = 1.02
-"""Gold: at most this many times the reference drive's time, and nothing touched."""
-SILVER_SHARE: Final = 1.05
-"""Silver, likewise."""
-
-
-class Medal(IntEnum):
-    """The medal of a drive; a greater one is better."""
-
-    NONE = 0
-    BRONZE = 1
-    """The goal was reached."""
-    SILVER = 2
-    GOLD = 3
-
-    @property
-    def title(self) -> str:
-        return "no medal" if self is Medal.NONE else self.name.lower()
 
 
 class ExtraRule(StrEnum):
@@ -84,24 +65,6 @@ class DriverFacts:
 
 
 BY_HAND: Final = DriverFacts()
-
-
-def medal_of(finish: RaceFinish, reference_s: float | None) -> Medal:
-    """The medal of a finish. ``reference_s``: the reference drive's time [s]; None: there is only bronze."""
-    if not finish.reached:
-        return Medal.NONE
-    if finish.collisions or reference_s is None:
-        return Medal.BRONZE
-    earned = (
-        medal for medal in (Medal.GOLD, Medal.SILVER) if finish.seconds <= medal_time(medal, reference_s)
-    )
-    return next(earned, Medal.BRONZE)
-
-
-def medal_time(medal: Medal, reference_s: float) -> float:
-    """The longest time that earns gold or silver [s], in whole hundredths as it is shown: a tick takes one."""
-    share = GOLD_SHARE if medal is Medal.GOLD else SILVER_SHARE
-    return math.floor(round(100.0 * share * reference_s, 6)) / 100.0
 
 
 def kept_rules(level: GameLevel, finish: RaceFinish, facts: DriverFacts) -> tuple[ExtraRule, ...]:
@@ -239,8 +202,8 @@ def level_progress(
 
 
 def belt_of(best: Sequence[Medal]) -> str:
-    """The belt of a world, by the best medal on each of its levels: white for its first medal, yellow for one on every level, green and blue for silver on half of
-    the levels and on all, brown and black likewise for gold."""
+    """The belt of a world, by the best medal on each of its levels: white for its first medal, yellow for one on every level,
+    green and blue for silver on half of the levels and on all, brown and black likewise for gold."""
 
     def share(medal: Medal) -> float:
         return sum(each >= medal for each in best) / len(best) if best else 0.0

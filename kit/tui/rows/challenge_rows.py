@@ -8,9 +8,8 @@ from typing import Final
 
 from kit.document.rows import Row, row
 from kit.plain_text import wrap
-from kit.school.game.challenge_answers import task_lines
-from kit.school.game.challenges import AnswerComparison, Challenge, Judgement
-from kit.school.game.player_progress import Medal
+from kit.school.game.challenge import AnswerComparison, Challenge, Judgement
+from kit.school.game.medal import Medal
 from kit.school.lessons.reading import lesson_number
 from kit.school.lessons.shell_lines import shell_path
 from kit.tui.rows.level_rows import MEDAL_SIGNS, MEDAL_STYLES, TITLE_WIDTH, medal_row
@@ -59,7 +58,7 @@ def challenge_page(challenge: Challenge, file: Path | None, width: int) -> list[
     return [
         *_wrapped("", challenge.story, width),
         *_wrapped("task  ", challenge.task_text, width, "dim"),
-        *(row((line, "code")) for line in task_lines(challenge)),
+        *(row((line, "code")) for line in challenge.task.lines()),
         row((place, "bold")),
     ]
 

@@ -29,8 +29,8 @@ from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import agent_panel
 
 if TYPE_CHECKING:
-    from kit.learning.environment.tasks import LearningTask
-    from kit.learning.policies.demonstration import DemonstrationView
+    from kit.learning.tasks.learning_task import LearningTask
+    from kit.learning.training.demonstration import DemonstrationView
     from kit.learning.training.run_status import CaseStatus, RunStatus
     from kit.learning.training.run_upkeep import RunOverview
 
@@ -40,7 +40,7 @@ def no_trainings(tasks: Sequence[LearningTask], width: int, height: int) -> list
     begin = (
         "No trainings yet. Press t to start one: choose a task, its cases, an algorithm, a reward, a seed."
     )
-    from kit.learning.tasks.task_text import tasks_table
+    from kit.learning.authoring.task_text import tasks_table
 
     rows = rows_of([Text(begin), tasks_table(tasks)], Page(width=width - 2, margin=1))
     if len(rows) <= height:

@@ -15,17 +15,9 @@ from textual.binding import BindingType
 from kit.dialogue.actions import ScreenActions
 from kit.document.rows import Row, row
 from kit.host.file_watcher import FileWatcher
-from kit.school.game.challenge_answers import answers_folder, prepare_answer, read_answer
-from kit.school.game.challenges import (
-    Challenge,
-    ChallengeError,
-    Judgement,
-    RepairTask,
-    challenge_medals,
-    judge,
-    record_judgement,
-)
-from kit.school.game.player_progress import Medal
+from kit.school.game.challenge import Challenge, ChallengeError, HandedIn, Judgement
+from kit.school.game.challenges import answers_folder, challenge_medals, prepare_answer, record_judgement
+from kit.school.game.medal import Medal
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.challenge_rows import challenge_page, judged
 from kit.tui.rows.key_rows import bindings, footer
@@ -123,10 +115,10 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
     # The check
 
     def _poll(self) -> None:
-        task = self._challenge.task
-        if isinstance(task, RepairTask):
+        if self._challenge.task.clock is not None:
+            gold_s, silver_s = self._challenge.task.clock
             seconds = time.monotonic() - self._clock_began_at
-            medals = f"gold until {task.gold_s:.0f} s, silver until {task.silver_s:.0f} s"
+            medals = f"gold until {gold_s:.0f} s, silver until {silver_s:.0f} s"
             self._title = f"{self._challenge.title}   {seconds:.0f} s; {medals}"
             self._show()
         if self._started_at is not None:
@@ -155,8 +147,9 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
     def _judge(self, run: str) -> tuple[Judgement, Medal]:
         """Judges the answer, in a thread. Also returns the best medal before. ``run``: the training's name, where that is the answer."""
         file, seconds = self._prepare()
-        answer = run if file is None else read_answer(self._challenge, file)
-        judgement = judge(self._challenge, answer, self._workspace.runs, seconds, self._note_progress)
+        answer = run if file is None else self._challenge.task.read_answer(file)
+        handed_in = HandedIn(answer, self._workspace.runs, seconds, self._note_progress)
+        judgement = self._challenge.task.judge(handed_in)
         medals = challenge_medals(self._progress.events(EventKind.FINISH))
         record_judgement(self._progress, self._challenge, judgement)
         return judgement, medals.get(self._challenge.id, Medal.NONE)

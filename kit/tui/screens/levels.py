@@ -20,27 +20,16 @@ from kit.document.rows import Row, row, spread
 from kit.plain_text import counted
 from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
-from kit.school.game.challenge_answers import task_lines
-from kit.school.game.challenges import (
-    Challenge,
-    RepairTask,
-    all_challenges,
-    challenge_medals,
-)
-from kit.school.game.ghosts import (
-    Ghost,
-    ghost_file,
-    level_ghosts,
-    reference_recording,
-    reference_seconds,
-)
+from kit.school.game.challenge import Challenge
+from kit.school.game.challenges import all_challenges, challenge_medals
+from kit.school.game.ghosts import Ghost, ghost_file, level_ghosts
 from kit.school.game.levels import CHALLENGES_WORLD, GameLevel, GameWorld, all_levels, all_worlds
+from kit.school.game.medal import Medal
 from kit.school.game.player_progress import (
     BY_HAND,
     DriverFacts,
     GameSummary,
     LevelProgress,
-    Medal,
     belt_of,
     completed_lessons,
     daily_level,
@@ -50,6 +39,7 @@ from kit.school.game.player_progress import (
     today,
 )
 from kit.school.game.race import DriverKind, agent_controller
+from kit.school.game.references import reference_recording, reference_seconds
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
@@ -70,7 +60,7 @@ ABOUT_ROWS: Final = 6
 MAP_WIDTH: Final = 84
 """Columns of the list where the chosen level is shown beside it."""
 NOTES: Final = (
-    ("G S B", "gold, silver, bronze: by hand, by your program, by your agent"),
+    ("B S G M R", "bronze, silver, gold, master, record: each driver has a ladder"),
     ("*", "a star for an extra rule that a drive has kept:"),
     ("", "touched nothing, never stood still, one sensor, few lines,"),
     ("", "few training steps"),
@@ -247,7 +237,7 @@ class LevelsScreen(RowsScreen[None]):
             *self._world_heading([medals.get(each.id, Medal.NONE) for each in self._challenges]),
             *challenge_rows.challenge_list(self._challenges, medals, chosen.id),
         ]
-        drawing = [row(), *(row((f"  {line}", "code")) for line in task_lines(chosen))]
+        drawing = [row(), *(row((f"  {line}", "code")) for line in chosen.task.lines())]
         if len(listed) + len(drawing) <= self._rows("map").size.height:
             listed += drawing
         medal = medals.get(chosen.id, Medal.NONE)
@@ -385,7 +375,7 @@ class LevelsScreen(RowsScreen[None]):
             self._load_ghosts()
             following = self.chosen_challenge
             # A repair's clock begins with the first look: nobody is taken there by the key for the next one.
-            if screen.wish == "back" or (following and isinstance(following.task, RepairTask)):
+            if screen.wish == "back" or (following and following.task.clock is not None):
                 return
 
     @work(exclusive=True, group="drive")

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.learning.environment.tasks import TaskSpec
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import ALGORITHMS
 from kit.learning.training.events import Evaluated, TrainingNote, TrainingProgress, decode_event, encode_event
 from kit.learning.training.measures import (

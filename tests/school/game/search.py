@@ -27,15 +27,10 @@ from kit.kernels import grids
 from kit.learning.environment.case_arrays import compute_distance_field
 from kit.learning.tasks.learning_task import FollowGoal, PatrolGoal
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.school.game.ghosts import (
-    DriveCommand,
-    ReferenceDrive,
-    drive_reference,
-    drives_file,
-    load_drives,
-)
 from kit.school.game.levels import SPEED, TURN_RATE, GameLevel, all_levels
-from kit.school.game.race import DOCK_TIME, SEED, RaceReferee
+from kit.school.game.race import DOCK_TIME, RaceReferee
+from kit.school.game.references import DriveCommand, ReferenceDrive, drive_reference, drives_file, load_drives
+from kit.school.game.starts import OWN_SEED
 from kit.sim.simulation import Simulation
 
 TICKS = 10
@@ -270,7 +265,7 @@ def track_front_wheel(level: GameLevel, scenario, points: list[tuple[np.ndarray,
 
     ``points``: the pose planned after each primitive, and the speed on the way there.
     """
-    simulation = Simulation(scenario.world, seed=SEED, has_subscribers=lambda topic: False)
+    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
     commands: list[DriveCommand] = []
     for number, (_, speed) in enumerate(points):
         ahead = number
@@ -385,9 +380,7 @@ def search_lattice(level: GameLevel) -> list[ReferenceDrive]:
     tricycle = is_tricycle(scenario)
     hull = true_hull + (0.035 if tricycle else MARGIN) * np.sign(true_hull)
     reach = float(np.hypot(hull[:, 0], hull[:, 1]).max())
-    walls = np.concatenate(
-        [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
-    )
+    walls = scenario.world.wall_segments
     points = walls.reshape(-1, 2)
     origin = points.min(axis=0) - 2 * CELL
     columns, rows = np.ceil((points.max(axis=0) + 2 * CELL - origin) / CELL).astype(int) + 1
@@ -528,7 +521,7 @@ def drive_time(
 def polish(level: GameLevel, drive: ReferenceDrive, seconds: float) -> ReferenceDrive:
     """Shortens a drive by moving the ends of its commands by single ticks, for ``seconds`` of wall clock."""
     scenario = level.find_scenario()
-    simulation = Simulation(scenario.world, seed=SEED, has_subscribers=lambda topic: False)
+    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
     best = drive_time(level, scenario, simulation, drive, math.inf)
     random, end = np.random.default_rng(1), time.perf_counter() + seconds
     while time.perf_counter() < end:
@@ -552,12 +545,10 @@ def polish(level: GameLevel, drive: ReferenceDrive, seconds: float) -> Reference
 def search_pursuit(level: GameLevel, seconds: float) -> ReferenceDrive | None:
     """Searches the gains of a driver that follows a way, or a leader, where no lattice can be measured."""
     scenario = level.find_scenario()
-    simulation = Simulation(scenario.world, seed=SEED, has_subscribers=lambda topic: False)
+    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
     random, end = np.random.default_rng(1), time.perf_counter() + seconds
     fields: dict[float, object] = {}
-    walls = np.concatenate(
-        [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
-    )
+    walls = scenario.world.wall_segments
     best, found, tries = math.inf, None, 0
     while time.perf_counter() < end:
         tries += 1

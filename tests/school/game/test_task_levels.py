@@ -9,13 +9,15 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.controllers import find_controller
-from kit.learning.environment.tasks import find_task, task_names
-from kit.mapmaking.new_map import read_drawing, write_map
+from kit.learning.tasks.catalogue import find_task, task_names
+from kit.mapmaking.map_drawing import read_drawing
+from kit.mapmaking.new_map import write_map
 from kit.run.recording import load_recording
 from kit.school.game.drive_records import record_drive
 from kit.school.game.ghosts import load_ghosts
 from kit.school.game.levels import UnknownLevel, find_level
-from kit.school.game.player_progress import DriverFacts, Medal, find_playable_level
+from kit.school.game.medal import Medal
+from kit.school.game.player_progress import DriverFacts, find_playable_level
 from kit.school.game.race import DriverKind, judge_recording, race_controller
 from kit.school.game.task_levels import MAX_ROBOTS, TaskLevel, task_level
 from kit.school.progress import ProgressJournal
@@ -107,7 +109,9 @@ def test_a_program_races_on_a_task_for_its_own_best_and_no_medal(own_task: Path,
     assert finish.reached
     with ProgressJournal(workspace.folder) as journal:
         first, second = (
-            record_drive(journal, workspace, level, DriverKind.CONTROLLER, finish, recording, DriverFacts())
+            record_drive(
+                journal, workspace, level, DriverKind.CONTROLLER, [(finish, recording)], DriverFacts()
+            )
             for _ in range(2)
         )
     assert (first.medal, first.rules, first.is_best) == (Medal.NONE, (), True)

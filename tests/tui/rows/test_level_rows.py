@@ -7,7 +7,8 @@ from dataclasses import replace
 import pytest
 
 from kit.school.game.levels import all_worlds
-from kit.school.game.player_progress import GameSummary, LevelProgress, Medal, level_progress
+from kit.school.game.medal import Medal
+from kit.school.game.player_progress import GameSummary, LevelProgress, level_progress
 from kit.school.game.race import DriverKind
 from kit.tui.rows.level_rows import (
     about,

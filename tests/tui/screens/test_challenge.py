@@ -11,20 +11,13 @@ from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
 from kit.school.game import leaderboard
-from kit.school.game.challenge_answers import answers_folder
-from kit.school.game.challenges import (
-    Challenge,
-    ExploitTask,
-    Judgement,
-    RepairTask,
-    TrainingTask,
-    all_challenges,
-    best_moves,
-    challenge_medals,
-    shortest_moves,
-)
+from kit.school.game.challenge import Challenge, HandedIn, Judgement
+from kit.school.game.challenge_kinds.exploit import ExploitTask, best_moves, shortest_moves
+from kit.school.game.challenge_kinds.repair import RepairTask
+from kit.school.game.challenge_kinds.training import TrainingTask
+from kit.school.game.challenges import all_challenges, answers_folder, challenge_medals
 from kit.school.game.levels import CHALLENGES_WORLD
-from kit.school.game.player_progress import Medal
+from kit.school.game.medal import Medal
 from kit.school.progress import ProgressJournal
 from kit.tui.screens import challenge as challenge_module
 from kit.tui.screens.challenge import ChallengeScreen
@@ -160,18 +153,16 @@ def test_a_check_shows_what_it_does_and_ends_when_the_challenge_is_left(
 ) -> None:
     ended = threading.Event()
 
-    def long_check(
-        challenge: Challenge, answer: str, runs: Path, seconds: float, show_progress: Callable[[str], None]
-    ) -> Judgement:
-        assert Path(answer).is_file()
+    def long_check(task: RepairTask, handed_in: HandedIn) -> Judgement:
+        assert Path(handed_in.answer).is_file()
         try:
             while True:
-                show_progress("episode 2 of 5")
+                handed_in.show_progress("episode 2 of 5")
                 ended.wait(0.01)
         finally:
             ended.set()
 
-    monkeypatch.setattr(challenge_module, "judge", long_check)
+    monkeypatch.setattr(RepairTask, "judge", long_check)
 
     async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
         keys = choose(levels, RepairTask)

@@ -1,0 +1,137 @@
+"""What a challenge without driving is: its contract for every kind, an answer that is handed in, and what it is worth."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar, Final, Self
+
+from kit.school.game.medal import Medal
+from kit.workspace import write_atomically
+from kit.world.yaml_section import Section
+
+COMMENT: Final = "#"
+"""Begins a line of an answer's file that is not part of the answer."""
+
+
+class ChallengeError(ValueError):
+    """An answer cannot be judged; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class AnswerComparison:
+    """An answer beside others, all in one unit."""
+
+    unit: str
+    answer: float
+    others: tuple[tuple[str, float], ...]
+    """Name and figure of each: the naive answer and the best one, or what earns the medals."""
+    more_is_better: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """The result of judging one answer."""
+
+    medal: Medal
+    text: str
+    """One sentence."""
+    comparison: AnswerComparison | None = None
+    """None where an answer does not do what is asked, so that no figure can be compared."""
+
+
+def _say_nothing(_: str) -> None:
+    """Shows no progress."""
+
+
+@dataclass(frozen=True, slots=True)
+class HandedIn:
+    """An answer that is handed in."""
+
+    answer: str
+    """What ``ChallengeTask.read_answer`` read, or the word after ``kit game challenge NAME``."""
+    runs: Path
+    """The folder of the training runs."""
+    seconds: float = math.inf
+    """Since the first look at the challenge."""
+    show_progress: Callable[[str], None] = _say_nothing
+    """Called a few times a second while a program is checked, with what is being done; what it raises ends the check."""
+
+
+class ChallengeTask(ABC):
+    """What one challenge asks for. Each kind is a subclass in a file of its own in ``challenge_kinds``."""
+
+    kind: ClassVar[str]
+    """Its name in ``challenges.yaml``."""
+    answer_file: ClassVar[str] = ""
+    """Name of the file that an answer is written in; empty where it is no file of its own."""
+    clock: tuple[float, float] | None = None
+    """Until how many seconds since the first look an answer earns gold, and silver; None: no clock runs."""
+
+    @classmethod
+    @abstractmethod
+    def read(cls, section: Section, folder: Path) -> Self:
+        """Reads the kind's keys of one challenge. ``folder``: of the lessons. Mistakes are noted in the section."""
+
+    @abstractmethod
+    def judge(self, handed_in: HandedIn) -> Judgement:
+        """Judges an answer. Raises ChallengeError and WorldError."""
+
+    def lines(self) -> list[str]:
+        """What is shown beside the text: a drawing, prices, a list."""
+        return []
+
+    def naive_answer(self) -> str:
+        """The content of an answer's file before anybody has written in it: an answer that earns no medal."""
+        return ""
+
+    def prepare(self, folder: Path, about: Sequence[str]) -> Path | None:
+        """Makes the answer's file in ``folder`` unless it is there, and returns it; None where the answer is no file.
+
+        ``about``: lines that stand above the naive answer as comments. Raises OSError.
+        """
+        if not self.answer_file:
+            return None
+        file = folder / self.answer_file
+        if not file.exists():
+            file.parent.mkdir(parents=True, exist_ok=True)
+            comments = [*about, "Below is the naive answer, which earns no medal.", *self.lines()]
+            write_atomically(file, (as_comments(comments) + self.naive_answer()).encode())
+        return file
+
+    def read_answer(self, file: Path) -> str:
+        """Reads what ``judge`` takes from an answer's file. Raises ChallengeError."""
+        try:
+            lines = file.read_text().splitlines()
+        except (OSError, UnicodeDecodeError) as error:
+            raise ChallengeError(f"{file} cannot be read: {error}") from None
+        return " ".join(line for line in lines if not line.lstrip().startswith(COMMENT))
+
+
+def as_comments(lines: Sequence[str]) -> str:
+    """Lines of an answer's file that are not part of the answer."""
+    return "".join(f"{COMMENT} {line}\n" for line in lines)
+
+
+@dataclass(frozen=True, slots=True)
+class Challenge:
+    """One challenge."""
+
+    id: str
+    title: str
+    story: str
+    task_text: str
+    lesson: str
+    task: ChallengeTask
+
+
+def judge_count(unit: str, text: str, count: int, fewest: int, naive: int) -> Judgement:
+    """Judges an answer of which less is better and ``fewest`` is proved."""
+    comparison = AnswerComparison(unit, count, (("naive answer", naive), ("best answer", fewest)))
+    if count >= naive:
+        return Judgement(Medal.NONE, text, comparison)
+    medal = Medal.GOLD if count <= fewest else Medal.SILVER if count == fewest + 1 else Medal.BRONZE
+    return Judgement(medal, text, comparison)

@@ -1,0 +1,129 @@
+"""Mount the fewest lasers that see all places of a drawing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Final, Self, TypeAlias
+
+from kit.layers.cover import minimum_cover
+from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn, Judgement, judge_count
+from kit.school.game.medal import Medal
+from kit.world.yaml_section import Section
+
+WALL: Final = "#"
+STEPS_PER_SQUARE: Final = 10
+"""A line of sight is looked at so often on the length of a square."""
+MAX_DEVICES: Final = 100
+
+Square: TypeAlias = tuple[int, int]
+"""Row and column, from 0."""
+
+
+@dataclass(frozen=True, slots=True)
+class DevicesTask(ChallengeTask):
+    """A drawing: ``#`` wall, lower-case letters the places to be seen, everything else floor."""
+
+    kind = "devices"
+    answer_file = "lasers.txt"
+
+    grid: tuple[str, ...]
+
+    @classmethod
+    def read(cls, section: Section, folder: Path) -> Self:
+        return cls(section.texts("map", at_least=1))
+
+    def lines(self) -> list[str]:
+        columns = "   " + "".join(str(column % 10) for column in range(len(self.grid[0])))
+        return [columns, *(f"{number:>2} {line}" for number, line in enumerate(self.grid))]
+
+    def naive_answer(self) -> str:
+        return "".join(f"{row},{column}\n" for row, column in naive_lasers(self))
+
+    def judge(self, handed_in: HandedIn) -> Judgement:
+        """Judges by what is not seen, then by the number of lasers against the fewest and the naive plan's."""
+        lasers = read_lasers(self, handed_in.answer)
+        missed = sorted(set(self.places) - self.seen_from(lasers))
+        if missed:
+            return Judgement(Medal.NONE, f"Nothing sees {', '.join(missed)}.")
+        count, fewest, naive = len(lasers), len(fewest_lasers(self)), len(naive_lasers(self))
+        text = f"{count} lasers; one at every place takes {naive}, and {fewest} are enough."
+        return judge_count("lasers", text, count, fewest, naive)
+
+    @property
+    def places(self) -> dict[str, Square]:
+        """The places by their letters."""
+        return {sign: square for square, sign in self._squares().items() if sign.islower()}
+
+    @property
+    def floor(self) -> tuple[Square, ...]:
+        """The squares where a laser can be mounted."""
+        return tuple(square for square, sign in self._squares().items() if sign != WALL)
+
+    def sees(self, laser: Square, square: Square) -> bool:
+        """Whether no wall lies on the straight line between the middles of two squares."""
+        steps = STEPS_PER_SQUARE * max(abs(laser[0] - square[0]), abs(laser[1] - square[1]), 1)
+        for step in range(steps + 1):
+            row, column = (round(a + (b - a) * step / steps) for a, b in zip(laser, square, strict=True))
+            if self.grid[row][column] == WALL:
+                return False
+        return True
+
+    def seen_from(self, lasers: tuple[Square, ...]) -> set[str]:
+        """The letters of the places that at least one laser sees."""
+        visible = _visible(self)
+        return {name for laser in lasers for name in visible[laser]}
+
+    def _squares(self) -> dict[Square, str]:
+        return {(row, column): sign for row, line in enumerate(self.grid) for column, sign in enumerate(line)}
+
+
+def naive_lasers(task: DevicesTask) -> tuple[Square, ...]:
+    """A laser at every place: the naive answer."""
+    return tuple(task.places.values())
+
+
+@cache
+def _visible(task: DevicesTask) -> dict[Square, frozenset[str]]:
+    """Computes which squares are seen from each square of the floor."""
+    places = task.places
+    return {
+        square: frozenset(name for name, place in places.items() if task.sees(square, place))
+        for square in task.floor
+    }
+
+
+@cache
+def fewest_lasers(task: DevicesTask) -> tuple[Square, ...]:
+    """A plan than which none has fewer lasers."""
+    places = list(task.places)
+    columns = [
+        frozenset(number for number, name in enumerate(places) if name in task.seen_from((square,)))
+        for square in task.floor
+    ]
+    cover = minimum_cover(columns, len(places))
+    assert cover.is_proved  # no deadline
+    return tuple(task.floor[column] for column in cover.chosen)
+
+
+def read_lasers(task: DevicesTask, answer: str) -> tuple[Square, ...]:
+    """Reads ``ROW,COLUMN ROW,COLUMN``. Raises ChallengeError."""
+    words = answer.split()
+    if not 0 < len(words) <= MAX_DEVICES:
+        raise ChallengeError(f"Write the places of 1 to {MAX_DEVICES} lasers, such as 1,4 6,2.")
+    found = []
+    for word in words:
+        parts = word.split(",")
+        if len(parts) != 2 or not all(part.isascii() and part.isdigit() and len(part) < 5 for part in parts):
+            raise ChallengeError(
+                f"{word[:20]!r} is not a place: write its row, a comma and its column, counting from 0."
+            )
+        square = int(parts[0]), int(parts[1])
+        if square not in task.floor:
+            raise ChallengeError(f"{word}: there is a wall, or nothing.")
+        found.append(square)
+    return tuple(found)
+
+
+KIND = DevicesTask

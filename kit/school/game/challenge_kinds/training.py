@@ -1,0 +1,75 @@
+"""Train within a budget: an agent that succeeds often enough after few steps."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Self
+
+from kit.school.game.challenge import AnswerComparison, ChallengeError, ChallengeTask, HandedIn, Judgement
+from kit.school.game.medal import Medal
+from kit.world.yaml_section import Section
+
+GOLD_STEPS: Final = 0.35
+"""Share of the budget of training steps that earns gold."""
+SILVER_STEPS: Final = 0.6
+"""Silver, likewise."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingTask(ChallengeTask):
+    """A task to train within a budget. The answer is the name of a training run."""
+
+    kind = "training"
+
+    trains: str
+    max_steps: int
+    success: float
+    """Share of the test's episodes."""
+    own_reward: bool
+
+    @classmethod
+    def read(cls, section: Section, folder: Path) -> Self:
+        return cls(
+            section.name("trains"),
+            section.integer("max_steps", minimum=1, maximum=10**9),
+            section.number("success", above=0, maximum=1),
+            section.flag("own_reward"),
+        )
+
+    def judge(self, handed_in: HandedIn) -> Judgement:
+        from kit.learning.training.run_text import success_shares
+        from kit.learning.training.runs import RunError, find_run
+
+        name = handed_in.answer
+        try:
+            run = find_run(handed_in.runs, name)
+            config, summary = run.config(), run.summary()
+        except (RunError, LookupError) as error:
+            raise ChallengeError(str(error)) from None
+        trained = json.dumps(config.choice.as_dict())
+        if f'"{self.trains}"' not in trained:
+            raise ChallengeError(f"{name} trains another task than {self.trains}.")
+        best = summary.best_evaluation
+        shares = [] if best is None else list(success_shares(best).values())
+        success = sum(shares) / len(shares) if shares else 0.0
+        return judge_training(self, summary.steps, success, has_own_reward=config.reward_file is not None)
+
+
+def judge_training(task: TrainingTask, steps: int, success: float, *, has_own_reward: bool) -> Judgement:
+    """Judges a training by its steps, its test's successes (0 to 1) and its reward."""
+    text = f"{success:.0%} successes after {steps:,} steps."
+    if task.own_reward and not has_own_reward:
+        return Judgement(Medal.NONE, f"{text} The reward was the kit's: --reward FILE trains with yours.")
+    others = (("budget", task.max_steps), ("gold at", int(GOLD_STEPS * task.max_steps)))
+    comparison = AnswerComparison("steps", steps, others)
+    if success < task.success or steps > task.max_steps:
+        text = f"{text} {task.success:.0%} in at most {task.max_steps:,} are asked for."
+        return Judgement(Medal.NONE, text, comparison)
+    share = steps / task.max_steps
+    medal = Medal.GOLD if share <= GOLD_STEPS else Medal.SILVER if share <= SILVER_STEPS else Medal.BRONZE
+    return Judgement(medal, text, comparison)
+
+
+KIND = TrainingTask

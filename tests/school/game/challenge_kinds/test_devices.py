@@ -1,0 +1,51 @@
+"""Mounting lasers: one at every place earns nothing, the fewest gold."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from kit.school.game.challenge import ChallengeError, HandedIn
+from kit.school.game.challenge_kinds.devices import DevicesTask, fewest_lasers, naive_lasers
+from kit.school.game.challenges import all_challenges
+from kit.school.game.medal import Medal
+
+DEVICES = [each for each in all_challenges() if isinstance(each.task, DevicesTask)]
+
+
+@pytest.mark.parametrize("challenge", DEVICES, ids=lambda each: each.id)
+def test_a_laser_at_every_place_earns_nothing_and_the_fewest_gold(challenge, tmp_path: Path) -> None:
+    task = challenge.task
+
+    def worth(lasers: Sequence[tuple[int, int]]) -> Medal:
+        return challenge.task.judge(
+            HandedIn(" ".join(f"{row},{column}" for row, column in lasers), tmp_path)
+        ).medal
+
+    best, naive = fewest_lasers(task), naive_lasers(task)
+    assert len({len(line) for line in task.grid}) == 1
+    assert len(best) + 2 < len(naive)
+    assert worth(naive) is Medal.NONE
+    assert worth(best) is Medal.GOLD
+    assert worth((*best, best[0])) is Medal.SILVER
+    assert worth((*best, *best[:1] * 2)) is Medal.BRONZE
+    assert worth(best[1:]) is Medal.NONE
+    tidy: list[
+        tuple[int, int]
+    ] = []  # always the laser that sees most of what is left: no gold for the first idea
+    while missed := set(task.places) - task.seen_from(tuple(tidy)):
+        tidy.append(max(task.floor, key=lambda square: len(missed & task.seen_from((square,)))))
+    assert worth(tidy) < Medal.GOLD
+    for wrong in ("", "1", "1,1,1", "-1,2", "0,0", "a,b", "99999,1", "1,1 " * 101):
+        with pytest.raises(ChallengeError):
+            challenge.task.judge(HandedIn(wrong, tmp_path))
+
+
+def test_walls_are_not_seen_through() -> None:
+    task = DevicesTask(("#####", "#a#b#", "#...#", "#####"))
+    assert not task.sees((1, 1), (1, 3))
+    assert task.sees((2, 2), (2, 1))
+    assert all(task.sees(a, b) == task.sees(b, a) for a in task.floor for b in task.floor)
+    assert len(fewest_lasers(task)) == 1

@@ -1,0 +1,34 @@
+"""Beating a layer plan: a layer for every line earns nothing, the fewest gold."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from kit.layers.planning import solve_layers
+from kit.layers.requirements_file import read_requirements
+from kit.school.game.challenge import ChallengeError, HandedIn
+from kit.school.game.challenge_kinds.layers import LayersTask, judge_assignment, naive_plan
+from kit.school.game.challenges import all_challenges
+from kit.school.game.medal import Medal
+
+PLANS = [each for each in all_challenges() if isinstance(each.task, LayersTask)]
+
+
+@pytest.mark.parametrize("challenge", PLANS, ids=lambda each: each.id)
+def test_a_plan_with_a_layer_for_every_line_earns_nothing(challenge, tmp_path: Path) -> None:
+    case = read_requirements(challenge.task.file).case
+    naive, best = naive_plan(case), solve_layers(case).assignment
+    assert judge_assignment(challenge.task, naive).medal is Medal.NONE
+    assert "enough" in judge_assignment(challenge.task, naive).text  # it does what is asked, with too many
+    assert judge_assignment(challenge.task, best).medal is Medal.GOLD
+    assert judge_assignment(challenge.task, replace(best, layers=best.layers[:-1])).medal is Medal.NONE
+    file = tmp_path / "plan.yaml"
+    rows = [f"  {layer.name}: [{', '.join(sorted(layer.members))}]" for layer in best.layers]
+    watched = [f"  {laser}: [{', '.join(names)}]" for laser, names in best.watches.items()]
+    file.write_text("\n".join(["layers:", *rows, "lasers:", *watched, ""]))
+    assert challenge.task.judge(HandedIn(str(file), tmp_path)).medal is Medal.GOLD
+    with pytest.raises(ChallengeError, match="no such file"):
+        challenge.task.judge(HandedIn(str(tmp_path / "none.yaml"), tmp_path))
