@@ -78,7 +78,7 @@ def command(
     kit study 3.5 --again --kit   the same with the kit's own preset
     kit study 4.1 --again --no-limit   without his library's limit of values
     kit study clip                values with and without that limit; --again
-                                  makes both again, in about five minutes
+                                  makes both again, in about three minutes
     kit study --html FOLDER       everything on one page; --csv for tables
     kit study --check             check that the document follows from the logs
 
