@@ -10,7 +10,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import SimpleNamespace
 from typing import Final
-from unittest import mock
 
 import numpy as np
 from click.testing import CliRunner
@@ -32,6 +31,8 @@ from tests.school.lessons.table_derivations import scene_of
 FAILING: Final = "27-why-a-training-fails"
 TABLES: Final = "28-a-papers-table"
 PAIR: Final = "wheelchairs-seed-49"
+SEED_LIMIT: Final = 500.0
+"""The dissertation's limit of values; see ``kit.learning.training.presets``."""
 LAST: Final = 10
 STOP, FORWARD = 0, 1
 STANDING_SEEDS: Final = range(8)
@@ -98,25 +99,21 @@ def side_by_side_bonus(words: str, step: LessonStep, folder: Path) -> str:
 
 def largest_values(limit: float) -> dict[int, float]:
     """By the steps of a training as the lesson runs it: the largest of the best values in what it has seen."""
-    from kit.learning.training import boltzmann_dqn  # brings torch along
-
     algorithm, choice = find_algorithm("boltzmann-dqn"), TaskSpec(PAIR, on=("pair_straight",))
     task = choice.resolve()
-    learner = make_learner(algorithm, find_preset("seed", algorithm, task.preset), choice, task, seed=0)
+    preset = find_preset("seed", algorithm, task.preset).changed({"value_limit": limit})
+    learner = make_learner(algorithm, preset, choice, task, seed=0)
     watcher = SimpleNamespace(between_updates=lambda: None, on_episode_end=lambda episode: None)
     found = {}
     for steps in (5_000, 10_000, 20_000, 30_000):
-        with mock.patch.object(boltzmann_dqn, "MAX_EXPONENT", limit):
-            learner.learn(steps, watcher)
+        learner.learn(steps, watcher)
         seen = learner._buffer.sample(np.random.default_rng(0), SEEN_STEPS).seen
         found[steps] = float(learner._network.outputs(seen)[-1].max())
     return found
 
 
 def exploding_values(words: str, step: LessonStep, folder: Path) -> str:
-    from kit.learning.training.boltzmann_dqn import MAX_EXPONENT  # brings torch along
-
-    limited, free = largest_values(MAX_EXPONENT), largest_values(np.inf)
+    limited, free = largest_values(SEED_LIMIT), largest_values(np.inf)
     steps, *rows = (
         " ".join(f"{each:,.0f}" for each in row) for row in (limited, limited.values(), free.values())
     )
