@@ -10,7 +10,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, Final
 
-from grader.evidence.service_calls import ServiceCall
+from grader.driving.service_calls import ServiceCall
 from grader.scoring import Anchors
 from kit.geometry import Pose
 from kit.host.sandbox.confinement import Level
@@ -132,7 +132,7 @@ class TeacherTest:
 
 @dataclass(frozen=True, slots=True)
 class GridTask:
-    """The grid on which a reward's optimal behaviour is computed; see ``grader.evidence.task_model``."""
+    """The grid on which a reward's optimal behaviour is computed; see ``grader.kinds.reward.task_model``."""
 
     rows: tuple[str, ...]
     """``#`` wall, ``.`` floor, ``G`` target."""

@@ -24,7 +24,7 @@ from grader.assignment import (
     TeacherTest,
     Trial,
 )
-from grader.checks.contract import Check
+from grader.check import Check
 from grader.kinds.contract import AssignmentFiles, find_kind, kind_names
 from grader.scoring import MAX_SHARE_STEPS, Anchors
 from grader.teacher_tests import read_teacher_tests

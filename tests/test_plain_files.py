@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from grader.kinds.policy import load_submitted_policy
+from grader.kinds.policy.kind import load_submitted_policy
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
 from kit.array_archives import MAX_UNPACKED_BYTES

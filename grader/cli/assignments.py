@@ -13,7 +13,7 @@ from typing import Final
 
 import click
 
-from grader.checks.contract import Check
+from grader.check import Check
 from grader.ci import WORKFLOWS, GitSource, warnings, workflow
 from grader.cli import options
 from grader.cli.progress import shown_progress
@@ -84,7 +84,7 @@ def _kinds_as_json() -> str:
     kinds = [
         {
             "kind": name,
-            "about": inspect.getdoc(sys.modules[f"{KINDS_PACKAGE}.{name}"]),
+            "about": inspect.getdoc(sys.modules[f"{KINDS_PACKAGE}.{name}.kind"]),
             "endings": find_kind(name).endings,
             "checks": [
                 {

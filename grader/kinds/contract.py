@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
 from grader.assignment import Assignment, Trial
-from grader.checks.contract import Check
+from grader.check import Check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, SingleEvidence
 from grader.submitted_files import reading_submission
 from kit.extensions import Extension, ExtensionError, extensions, load
@@ -27,7 +27,6 @@ Parsed = TypeVar("Parsed")
 Part = TypeVar("Part")
 
 KINDS_PACKAGE: Final = "grader.kinds"
-NON_KIND_MODULES: Final = ("contract",)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,11 +68,7 @@ class Kind:
 
 def _own_kinds() -> tuple[str, ...]:
     package = import_module(KINDS_PACKAGE)
-    return tuple(
-        sorted(
-            each.name for each in pkgutil.iter_modules(package.__path__) if each.name not in NON_KIND_MODULES
-        )
-    )
+    return tuple(sorted(each.name for each in pkgutil.iter_modules(package.__path__) if each.ispkg))
 
 
 def kind_names() -> tuple[str, ...]:
@@ -82,10 +77,11 @@ def kind_names() -> tuple[str, ...]:
 
 
 def find_kind(kind: str) -> Kind:
-    """Returns a kind's record, with the checks that admitted packages add to it; imports its module on first use. Raises
+    """Returns a kind's record, with the checks that admitted packages add to it; imports the module
+    `kind` of its folder on first use. Raises
     ExtensionError if a package's part cannot be used."""
     if kind in _own_kinds():
-        found: Kind = import_module(f"{KINDS_PACKAGE}.{kind}").KIND
+        found: Kind = import_module(f"{KINDS_PACKAGE}.{kind}.kind").KIND
     else:
         found = _loaded(extensions("kinds")[kind], Kind)
     prefix = f"{kind}."

@@ -24,9 +24,10 @@ from PIL import Image
 
 from grader.assignment import Assignment
 from grader.evidence.contract import EvidenceOptions
-from grader.evidence.world.world_reading import read_world_facts
-from grader.kinds import drive, training
 from grader.kinds.contract import find_kind, read_submitted_yaml
+from grader.kinds.drive import kind as drive
+from grader.kinds.training import kind as training
+from grader.kinds.world.world_reading import read_world_facts
 from grader.reading import read_assignment
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused, SubmissionUnreadable

@@ -17,7 +17,7 @@ import numpy as np
 from grader.cohort.gradebook import as_csv, as_json, gradebook_rows
 from grader.cohort.queue import Queue, prepare_queue, record_incident
 from grader.grading import GradingOptions
-from grader.kinds.policy import load_submitted_policy
+from grader.kinds.policy.kind import load_submitted_policy
 from grader.reading import read_assignment
 from grader.reports import FORMATS
 from kit.bridge.channels import WireCodec

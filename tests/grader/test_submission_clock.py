@@ -16,13 +16,13 @@ from kit.learning.policies.policies import policy_bytes
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.grader.conftest import FORWARD, TEMPLATES, write_assignment
 from tests.grader.kinds import (
-    test_environment,
     test_field,
     test_function,
     test_policy,
-    test_reward,
     test_training,
 )
+from tests.grader.kinds.environment import test_kind as test_environment
+from tests.grader.kinds.reward import test_kind as test_reward
 
 LESSONS = Path(__file__).parents[2] / "lessons"
 SOLUTIONS = Path(__file__).parents[1] / "solutions"

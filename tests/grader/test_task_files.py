@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from grader.evidence.environment import EnvironmentTask
-from grader.evidence.reward import RewardTrainingParams, mean_success
 from grader.evidence.submission_clock import SubmissionClock
-from grader.evidence.training import TrainingBudget
+from grader.kinds.environment.examination import EnvironmentTask
+from grader.kinds.reward.reward_training import RewardTrainingParams, mean_success
+from grader.kinds.training.trainings import TrainingBudget
 from grader.reading import read_assignment
 from grader.task_files import assignment_task, task_scenario
 from kit.learning.environment.tasks import UnknownTask, find_task

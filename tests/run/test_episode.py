@@ -11,11 +11,11 @@ from typing import cast
 import pytest
 
 from grader.assignment import Assignment, Shift, Trial
+from grader.driving.episodes import run_episode
 from grader.evidence.contract import EpisodeSpec
-from grader.evidence.environment import EnvironmentTask, examine_environment
-from grader.evidence.episodes import run_episode
-from grader.evidence.world.facts import WorldRunSpec
-from grader.evidence.world.world_run import run_world
+from grader.kinds.environment.examination import EnvironmentTask, examine_environment
+from grader.kinds.world.facts import WorldRunSpec
+from grader.kinds.world.world_run import run_world
 from grader.task_files import task_scenario
 from kit.controllers import ControllerFile, find_controller
 from kit.geometry import Pose

@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from grader.__main__ import main
-from grader.evidence.reward import TICKS_PER_MOVE
+from grader.kinds.reward.exploit_recording import TICKS_PER_MOVE
 from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario
 from kit.school.lessons.reading import lessons_folder

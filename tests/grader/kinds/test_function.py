@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from grader.grading import GradingOptions, grade
-from grader.kinds.function import MAX_CASES, cases_of, format_value, is_close, load_reference
+from grader.kinds.function.kind import MAX_CASES, cases_of, format_value, is_close, load_reference
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from grader.evidence.posed_task import ActionLoop, PosedTask
 from grader.evidence.submission_clock import SubmissionClock
 from grader.evidence.training_results import PosedTaskPlan
 from grader.grading import GradingOptions, grade
+from grader.kinds.task.posed_task import ActionLoop, PosedTask
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level

@@ -11,8 +11,8 @@ import pytest
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.training_results import CaseOrder, StopRule, TrainingResults
 from grader.grading import GradingOptions, grade
-from grader.kinds import training
-from grader.kinds.training import CHECKS, collect_evidence
+from grader.kinds.training import kind as training
+from grader.kinds.training.kind import CHECKS, collect_evidence
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level

@@ -21,7 +21,7 @@ from PIL import Image
 from grader.evidence.contract import EvidenceOptions
 from grader.evidence.training_results import TrainingResults
 from grader.grading import GradingOptions, grade
-from grader.kinds.training import collect_evidence
+from grader.kinds.training.kind import collect_evidence
 from grader.reading import read_assignment
 from grader.submission import read_submission
 from kit.cli import main

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from grader.kinds.function import cases_of, load_reference
+from grader.kinds.function.kind import cases_of, load_reference
 from kit.controllers import find_controller
 from kit.fields.adjacency import (
     MAX_RANGE_DIFFERENCE,
