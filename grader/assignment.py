@@ -123,6 +123,8 @@ class TeacherTest:
     feedback: str = ""
     visibility: Visibility = Visibility.VISIBLE
     hints: tuple[str, ...] = ()
+    after: str | None = None
+    """Id of a criterion, or of an earlier test, that must earn everything first."""
 
     @property
     def title(self) -> str:
@@ -166,6 +168,9 @@ class Assignment:
     version: str
     """Digest of the folder's files that decide a grade."""
     has_secrets: bool
+    evidence_version: str = ""
+    """Digest of what decides what is found about a submission: the same files without words, points and what else only
+    decides what that is worth."""
     secret_seeds: tuple[int, ...] = ()
     """All of its secret seeds."""
     public_version: str = ""
@@ -190,6 +195,9 @@ class Assignment:
     def trial(self, name: str) -> Trial:
         return next(trial for trial in self.trials if trial.name == name)
 
+
+TEACHERS_STEMS: Final = ("secret", "solution", "solutions", "wrong", "reference")
+"""Files and folders of an assignment, without their endings, that stay with the teacher."""
 
 MAX_HINTS = 3
 """The most hints a criterion may have, from the vaguest to the most specific."""

@@ -15,7 +15,7 @@ Training with PPO on many worlds at once (``kit train`` does more):
 
 >>> from stable_baselines3 import PPO
 >>> from kit.learning.environment.sb3_vec_env import make_vec_env
->>> from kit.learning.environment.tasks import find_task
+>>> from kit.learning.tasks.catalogue import find_task
 >>> worlds = make_vec_env(find_task("turn"), 64, seed=1)
 >>> model = PPO("MlpPolicy", worlds, n_steps=32, batch_size=1024, device="cpu", seed=1)
 >>> model = model.learn(4_096)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from grader.grading import GradingOptions, grade
-from grader.reading import ASSIGNMENT_FILE, read_assignment
+from grader.reading import read_assignment
 from grader.self_test import STARTER, STARTER_SHARE, list_wrong_works, try_works, written_out
 from grader.submission import Submission, read_submission
 from kit.cli import VERBS
@@ -19,6 +19,7 @@ from kit.host.sandbox.probe import highest_level_up_to
 from kit.school.game.challenges import all_challenges
 from kit.school.lessons.checking import check_exercise, install_exercise, read_solution, submission_path
 from kit.school.lessons.reading import (
+    ASSIGNMENT_FILE,
     lesson_names,
     lesson_number,
     lessons_folder,

@@ -13,7 +13,6 @@ import pytest
 
 import kit
 from kit.help.topic import find_topic
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import (
     ActionSampling,
     LinearLayer,
@@ -22,6 +21,7 @@ from kit.learning.policies.policies import (
     save_policy,
     task_interface,
 )
+from kit.learning.tasks.task_spec import TaskSpec
 
 ROOT = Path(__file__).parent.parent
 

@@ -166,7 +166,9 @@ def test_the_drawing_names_every_room() -> None:
 
 
 def test_the_readme_is_short() -> None:
-    assert len(README.read_text().split()) <= 1_200
+    assert (
+        len(README.read_text().split()) <= 1_400
+    )  # of which the study's tables, made from its logs, take 250
 
 
 if __name__ == "__main__":

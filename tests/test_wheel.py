@@ -144,7 +144,7 @@ print(json.dumps({
     "verbs": [*verbs(main, "kit"), *verbs(grader, "grader")],
     "kinds": [find_kind(name).__class__.__name__ + " " + name for name in kind_names()],
     "public names": [getattr(kit, name).__name__ for name in kit.__all__],
-    "processes": [find_spec(f"grader.evidence.{name}").name for name in ("posed_task_child", "world.child")],
+    "processes": [find_spec(f"grader.kinds.{name}.child").name for name in ("task", "world")],
 }))
 """
 

@@ -77,9 +77,8 @@ def kind_names() -> tuple[str, ...]:
 
 
 def find_kind(kind: str) -> Kind:
-    """Returns a kind's record, with the checks that admitted packages add to it; imports the module
-    `kind` of its folder on first use. Raises
-    ExtensionError if a package's part cannot be used."""
+    """Returns a kind's record, ``KIND`` of the module ``kind`` in its folder, with the checks that admitted packages add to
+    it; imports its module on first use. Raises ExtensionError if a package's part cannot be used."""
     if kind in _own_kinds():
         found: Kind = import_module(f"{KINDS_PACKAGE}.{kind}.kind").KIND
     else:

@@ -33,8 +33,8 @@ from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused, SubmissionUnreadable
 from kit.host.failure import Failure
 from kit.host.sandbox.confinement import Level
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import PolicyError
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run, list_runs
 from kit.learning.training.training import train
 from kit.run.recording import RecordingError, load_recording, rerun, save_recording

@@ -25,10 +25,10 @@ from kit.document.markdown import document_to_markdown
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox.confinement import Level
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import Policy, PolicyError, load_policy, policy_bytes
 from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.tasks.task_reader import read_task
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.msg.interfaces import find_interface, interface_names
 from kit.msg.message import Message
 from kit.msg.std_msgs import String

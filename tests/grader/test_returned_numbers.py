@@ -20,7 +20,7 @@ from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox.confinement import Level
-from kit.learning.training.student_reward import LARGEST_REWARD
+from kit.learning.tasks.student_reward import LARGEST_REWARD
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.cases import every_case
 from tests.grader.attack import REWARD_SHEET

@@ -6,6 +6,8 @@ import shutil
 from pathlib import Path
 
 import pytest
+from tests.grader.kinds.environment.kind import test_kind as test_environment
+from tests.grader.kinds.reward.kind import test_kind as test_reward
 
 from grader.grading import GradingOptions, grade
 from grader.reading import default_submission_limit_s, read_assignment
@@ -21,8 +23,6 @@ from tests.grader.kinds import (
     test_policy,
     test_training,
 )
-from tests.grader.kinds.environment import test_kind as test_environment
-from tests.grader.kinds.reward import test_kind as test_reward
 
 LESSONS = Path(__file__).parents[2] / "lessons"
 SOLUTIONS = Path(__file__).parents[1] / "solutions"

@@ -13,7 +13,8 @@ from grader.kinds.reward.reward_training import RewardTrainingParams, mean_succe
 from grader.kinds.training.trainings import TrainingBudget
 from grader.reading import read_assignment
 from grader.task_files import assignment_task, task_scenario
-from kit.learning.environment.tasks import UnknownTask, find_task
+from kit.learning.tasks.catalogue import find_task
+from kit.learning.tasks.learning_task import UnknownTask
 from kit.mapmaking.map_drawing import read_drawing
 from kit.mapmaking.new_map import write_map
 from kit.world.problems import WorldError

@@ -23,7 +23,7 @@ from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
-from kit.learning.environment.tasks import find_task
+from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.learning_task import PatrolGoal
 from kit.ros.execution.arguments import parse_ros_arguments
 from kit.run.episode import (

@@ -61,7 +61,7 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     section = files.public.section("environment")
     if section.has("task"):
         # Only here: whatever has tasks imports numba and Gymnasium, which takes a second.
-        from kit.learning.environment.actions import DiscreteActions
+        from kit.learning.tasks.actions import DiscreteActions
 
         task = _read_task(section, files.folder)
         scenario = None if task is None else _scenario_of_task(section, task)
@@ -96,7 +96,7 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
 def _read_task(section: Section, folder: Path) -> LearningTask | None:
     """The task that the environment is to be; notes what this kind cannot examine and returns None."""
     from grader.task_files import read_task_choice
-    from kit.learning.environment.actions import DiscreteActions
+    from kit.learning.tasks.actions import DiscreteActions
 
     choice = read_task_choice(section, folder)
     if choice is None:

@@ -30,10 +30,10 @@ from kit.array_archives import READ_ERRORS, check_arrays
 from kit.document.layout import lines_of
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.confidence_intervals import lower_bound
 from kit.learning.policies.evaluation import EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError, load_policy
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.plain_files import read_plain_file
 
 MAX_BYTES: Final = 2 << 20

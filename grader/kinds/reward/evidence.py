@@ -36,13 +36,8 @@ from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import printable
-from kit.learning.environment.transition import Transition
-from kit.learning.training.student_reward import (
-    REWARD_FUNCTION,
-    RewardFileError,
-    call_reward,
-    reward_parameters,
-)
+from kit.learning.tasks.student_reward import REWARD_FUNCTION, RewardFileError, call_reward, reward_parameters
+from kit.learning.tasks.transition import Transition
 from kit.plain_text import suggestion
 
 MIRRORED_MOVES[[LEFT, RIGHT]] = RIGHT, LEFT

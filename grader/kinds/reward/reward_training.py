@@ -10,8 +10,8 @@ from typing import Final
 from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
 from grader.task_files import assignment_task
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.environment.rewards import RewardFunction
 from kit.learning.policies.evaluation import Evaluator, PathRecorder, derive_seed, worst_drive
+from kit.learning.tasks.rewards import RewardFunction
 from kit.learning.training.algorithms import find_algorithm, require_learn_extra
 from kit.learning.training.learner import Learner
 from kit.learning.training.presets import find_preset

@@ -10,9 +10,9 @@ import numpy as np
 
 from grader.kinds.reward.task_model import CELL, LAST_MOVES, MOVES, GridModel
 from kit.arrays import BoolArray, IntArray
-from kit.learning.environment.actions import Move
-from kit.learning.environment.observations import RAY_COUNT
-from kit.learning.environment.transition import FAR, Transition
+from kit.learning.maps.ray_directions import RAY_COUNT
+from kit.learning.tasks.actions import Move
+from kit.learning.tasks.transition import FAR, Transition
 
 MODEL_FACTS: Final = (
     "collided",

@@ -23,10 +23,10 @@ from grader.evidence.reader_process import PROGRESS
 from grader.evidence.submission_clock import SubmissionClock
 from grader.evidence.training_results import PosedTaskPlan
 from grader.task_files import problem_of_task
+from kit.learning.authoring.task_check import touching
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import load_batch_map, measure_floor
-from kit.learning.environment.tasks import TaskSpec
-from kit.learning.tasks.task_check import touching
+from kit.learning.maps.batch_map import load_batch_map, measure_floor
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.world.catalogue import maps_folder
 
 KNOWN_TASK: Final = "turn"

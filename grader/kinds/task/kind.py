@@ -33,7 +33,7 @@ from grader.kinds.task.task_process import PosedTaskProcess
 from grader.submitted_files import reading_submission
 from kit.host.failure import StudentCodeError
 from kit.host.wire import printable
-from kit.learning.environment.actions import DiscreteActions
+from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.learning_task import TargetGoal, UnknownTask
 from kit.learning.tasks.task_reader import read_task
 from kit.plain_text import quoted

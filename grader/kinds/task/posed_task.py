@@ -28,14 +28,14 @@ from grader.evidence.training_results import (
 from grader.kinds.task.task_process import PosedMeasure
 from grader.kinds.training.trainings import run_trainings
 from kit.arrays import IntArray
-from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.environment.tasks import LearningTask, TaskSpec
 from kit.learning.policies.confidence_intervals import lower_bound
 from kit.learning.policies.evaluation import EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError
-from kit.learning.tasks.learning_task import TaskCase
+from kit.learning.tasks.actions import DiscreteActions
+from kit.learning.tasks.learning_task import LearningTask, TaskCase
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.presets import LinearSchedule, find_preset
 from kit.learning.training.training import make_learner

@@ -34,8 +34,9 @@ from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_o
 from grader.task_files import read_task_choice
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
-from kit.learning.environment.actions import DiscreteActions
-from kit.learning.environment.tasks import TaskSpec, UnknownTask
+from kit.learning.tasks.actions import DiscreteActions
+from kit.learning.tasks.learning_task import UnknownTask
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import (
     ALGORITHMS,
     LearnExtraMissing,

@@ -18,7 +18,6 @@ from grader.evidence.training_results import (
     TrainingSettings,
     TrainingTest,
 )
-from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.policies.evaluation import (
     EvaluationResult,
@@ -28,6 +27,7 @@ from kit.learning.policies.evaluation import (
     worst_drive,
 )
 from kit.learning.policies.policies import Policy
+from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.training.algorithms import find_algorithm, require_learn_extra
 from kit.learning.training.learner import Learner, StopLearning
 from kit.learning.training.presets import Preset, TabularParams, find_preset

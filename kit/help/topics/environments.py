@@ -13,9 +13,9 @@ from kit.document.blocks import Block, CellStyle, Chapter, Column, Table
 from kit.environment_ids import ENVIRONMENTS, register
 from kit.help.docstrings import docstring_blocks
 from kit.help.topic import Shelf, Topic, chapter
-from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.env import TaskEnv
-from kit.learning.environment.tasks import TASKS
+from kit.learning.tasks.actions import DiscreteActions
+from kit.learning.tasks.catalogue import TASKS
 
 _TEXT: Final = CellStyle.TEXT
 

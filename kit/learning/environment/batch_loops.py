@@ -10,10 +10,10 @@ from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
 from kit.kernels import batch_step, compilation, grids, world_kernels
 from kit.kernels.arrays import StepInputs, StepOutputs, StepRules
-from kit.learning.environment.batch_map import geometry_for_scans
 from kit.learning.environment.case_arrays import CELL, CaseArrays
-from kit.learning.environment.observations import RAY_COUNT
-from kit.learning.environment.tasks import LearningTask
+from kit.learning.maps.batch_map import geometry_for_scans
+from kit.learning.maps.ray_directions import RAY_COUNT
+from kit.learning.tasks.learning_task import LearningTask
 
 SCAN_LENGTH = -(-RAY_COUNT // 32) * 32
 """A scan's room: whole vectors of numbers are faster. What follows the last ray is the reach."""

@@ -11,8 +11,8 @@ import numpy as np
 from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.kernels import world_kernels
 from kit.kernels.arrays import StepMoves
-from kit.learning.environment.tasks import LearningTask
-from kit.learning.environment.transition import Array, Transition
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.transition import Array, Transition
 
 NO_MOVE = -1
 TRANSITION_ARRAYS = (

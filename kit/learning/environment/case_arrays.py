@@ -14,7 +14,7 @@ from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.fields.adjacency import wrap_angles
 from kit.fields.occupancy_grid import wall_distances
 from kit.kernels import compilation, grids, kernels, world_kernels
-from kit.learning.environment.batch_map import (
+from kit.learning.maps.batch_map import (
     FLOOR_CELL,
     BatchMap,
     UnsupportedWorld,
@@ -24,13 +24,13 @@ from kit.learning.environment.batch_map import (
     load_batch_map,
     measure_floor,
 )
-from kit.learning.environment.observations import LEFT_RAYS, RAY_COUNT, RIGHT_RAYS
-from kit.learning.environment.obstacles import ObstacleMotions, make_obstacle_parts
-from kit.learning.environment.tasks import LearningTask
+from kit.learning.maps.obstacles import ObstacleMotions, make_obstacle_parts
+from kit.learning.maps.ray_directions import LEFT_RAYS, RAY_COUNT, RIGHT_RAYS
 from kit.learning.tasks.learning_task import (
     AvoidGoal,
     CoverGoal,
     FollowGoal,
+    LearningTask,
     PatrolGoal,
     TargetGoal,
     TaskCase,

@@ -16,11 +16,11 @@ import numpy as np
 
 from kit.arrays import FloatArray
 from kit.geometry import Pose
-from kit.learning.environment.actions import Actions
-from kit.learning.environment.disturbances import UNDISTURBED, Disturbances
-from kit.learning.environment.observations import ObservationSpec
-from kit.learning.environment.rewards import Reward
-from kit.learning.environment.transition import Array, Transition
+from kit.learning.tasks.actions import Actions
+from kit.learning.tasks.disturbances import UNDISTURBED, Disturbances
+from kit.learning.tasks.observations import ObservationSpec
+from kit.learning.tasks.rewards import Reward
+from kit.learning.tasks.transition import Array, Transition
 from kit.plain_text import counted, quoted, suggestion
 from kit.world.catalogue import MapCard, MapCase, find_map
 from kit.world.yaml_section import Section

@@ -13,24 +13,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Literal
 
-from kit.learning.environment.actions import (
-    MAX_SPEED,
-    MAX_TURN_RATE,
-    Actions,
-    ContinuousActions,
-    DiscreteActions,
-)
-from kit.learning.environment.disturbances import UNDISTURBED, DisturbanceError, Disturbances
-from kit.learning.environment.observations import PART_NAMES, RAY_COUNT, ObservationSpec
-from kit.learning.environment.rewards import (
-    REWARDS,
-    TERMS,
-    Reward,
-    TermWeight,
-    UnknownRewardTerm,
-    term_settings,
-)
+from kit.learning.maps.ray_directions import RAY_COUNT
+from kit.learning.tasks.actions import MAX_SPEED, MAX_TURN_RATE, Actions, ContinuousActions, DiscreteActions
 from kit.learning.tasks.case_reader import CaseReader, PlacedCase
+from kit.learning.tasks.disturbances import UNDISTURBED, DisturbanceError, Disturbances
 from kit.learning.tasks.learning_task import (
     PRESET_NAMES,
     AvoidGoal,
@@ -45,6 +31,8 @@ from kit.learning.tasks.learning_task import (
     WallGoal,
     read_curriculum,
 )
+from kit.learning.tasks.observations import PART_NAMES, ObservationSpec
+from kit.learning.tasks.rewards import REWARDS, TERMS, Reward, TermWeight, UnknownRewardTerm, term_settings
 from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import WORLD_FILE, MapCard, UnknownMap, allowed_root_of, find_map

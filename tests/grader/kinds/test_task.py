@@ -16,8 +16,8 @@ from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import policy_bytes, task_interface
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.school.lessons.reading import lessons_folder, solutions_folder
 from kit.school.result import CriterionStatus, GradingResult
 from kit.world.problems import WorldError

@@ -32,9 +32,9 @@ from kit.layers.greedy import run_greedy
 from kit.layers.planning import solve_layers
 from kit.layers.requirements import LayerCase
 from kit.learning.environment.env import TurnEnv
-from kit.learning.environment.rewards import ALGORITHM_3
-from kit.learning.environment.tasks import TURN
 from kit.learning.policies.confidence_intervals import lower_bound
+from kit.learning.tasks.catalogue import TURN
+from kit.learning.tasks.rewards import ALGORITHM_3
 from kit.msg.sensor_msgs import LaserScan
 from kit.run.scenario import scenario_on_map
 from kit.run.session import Session

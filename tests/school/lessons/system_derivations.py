@@ -330,9 +330,10 @@ def wrapped_degrees(words: str, step: LessonStep, folder: Path) -> str:
 
 
 def values_above_the_limit(words: str, step: LessonStep, folder: Path) -> str:
-    from kit.learning.training.boltzmann_dqn import MAX_EXPONENT  # brings torch along
+    from kit.learning.training.presets import SEED_DQN  # brings torch along
 
-    return f"The library took all values above {MAX_EXPONENT:g} for equal"
+    limit = SEED_DQN.settings.value_limit  # type: ignore[union-attr]  # a deep Q-network's
+    return f"The library took all values above {limit:g} for equal"
 
 
 def pairs_of_actions(words: str, step: LessonStep, folder: Path) -> str:

@@ -11,8 +11,8 @@ import pytest
 from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
 from grader.kinds.reward.reward_training import TESTS, TestedTraining
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.evaluation import Evaluator
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.learner import Learner
 from kit.learning.training.presets import find_preset
