@@ -161,7 +161,12 @@ def _write_class(folder: Path) -> None:
     shutil.copy(template / "solution.py", folder / "handed_in" / "ada.py")
     shutil.copy(template / "starter.py", folder / "handed_in" / "alan.py")
     (folder / "answers").mkdir()
-    exported = [sys.executable, "-m", "kit", "progress", "export", "answers/ada.json"]
+    kit = [sys.executable, "-m", "kit"]
+    answers = "3\n3\n3\nq\n"
+    subprocess.run(
+        [*kit, "form", "--plain"], cwd=folder, input=answers, text=True, check=True, capture_output=True
+    )
+    exported = [*kit, "progress", "export", "answers/ada.json"]
     subprocess.run(exported, cwd=folder, check=True, capture_output=True)
 
 
