@@ -21,8 +21,10 @@ from grader.evidence.findings import (
     FindingsRecorder,
     KeptFindings,
     NotKept,
+    failure_before,
     measure_of,
     original_of,
+    state_after,
 )
 from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.contract import find_kind
@@ -108,6 +110,8 @@ class _ScoredEvidence:
     share: float
     failure: Failure | None
     """How the program failed, in a run or while it was measured; None if it did not."""
+    steps: int
+    """How many had been simulated then."""
 
 
 class Grading:
@@ -137,7 +141,8 @@ class Grading:
         self._has_run_public = not secret
         """Whether everything public was run. Nothing secret is run before: what a program says after that is not shown."""
         with admitting(assignment.packages):
-            self._checks = find_kind(assignment.kind).checks
+            kind = find_kind(assignment.kind)
+        self._checks, self._tells_secret_runs = kind.checks, kind.tells_secret_runs
         self._scored: dict[str, tuple[_ScoredEvidence, ...]] = {}
         self._tests: dict[str, CriterionResult] = {}
         self._counterexamples: dict[str, _ScoredEvidence | None] = {}
@@ -321,13 +326,16 @@ class Grading:
         self, criterion: Criterion, scored: Sequence[_ScoredEvidence], *, full: bool
     ) -> Sequence[_ScoredEvidence]:
         """Returns the evidence that a student is told of: the public, or where only secret evidence lost points, a
-        counterpart that loses points too. Empty if none of these was found."""
+        counterpart that loses points too; else the secret itself, where the kind tells of it. Empty if none of these was
+        found."""
         public = [each for each in scored if not each.evidence.secret]
         if full or any(each.share < 1.0 for each in public):
             return public
         if self._looks_afterwards and criterion.id not in self._counterexamples:
             self._counterexamples[criterion.id] = self._find_counterexample(criterion)
         found = self._counterexamples.get(criterion.id)
+        if found is None and self._looks_afterwards and self._tells_secret_runs:
+            return scored
         return [] if found is None else [found]
 
     @property
@@ -392,14 +400,16 @@ class Grading:
         return self._scored[criterion.id]
 
     def _score_evidence(self, criterion: Criterion, evidence: Evidence, *, is_ready: bool) -> _ScoredEvidence:
-        if evidence.failure is not None or not is_ready:
-            return _ScoredEvidence(evidence, None, 0.0, evidence.failure)
+        name, params = criterion.check, criterion.params
+        failure = failure_before(evidence, name, params)
+        if failure is not None or not is_ready:
+            return _ScoredEvidence(evidence, None, 0.0, failure, evidence.steps)
         try:
-            check = self._checks[criterion.check]
-            measure = measure_of(evidence, criterion.check, criterion.params, check.measure)
+            measure = measure_of(evidence, name, params, self._checks[name].measure)
         except StudentCodeError as error:  # what it returned takes longer to measure than a submission may
-            return _ScoredEvidence(evidence, None, 0.0, self._clock.explain(error.failure))
-        return _ScoredEvidence(evidence, measure, criterion.anchors.share(measure), evidence.failure)
+            return _ScoredEvidence(evidence, None, 0.0, self._clock.explain(error.failure), evidence.steps)
+        failure, steps = state_after(evidence, name, params)
+        return _ScoredEvidence(evidence, measure, criterion.anchors.share(measure), failure, steps)
 
     def _ready(self, criterion: Criterion) -> Callable[[Evidence], bool]:
         """Returns a predicate: did this evidence earn full points in the criterion that comes first?"""
@@ -548,7 +558,12 @@ def open_grading(
         shield_this_process()
     with submission.in_temporary_folder() as file:
         clock = SubmissionClock(assignment.submission_limit_s, options.show_progress)
-        evidence_options = EvidenceOptions(available, options.secret, clock)
+        evidence_options = EvidenceOptions(
+            available,
+            options.secret,
+            clock,
+            stops_at_death=options.examples and available is Level.LIMITED,
+        )
         with ExitStack() as stack:
             stack.enter_context(admitting(assignment.packages))
             with reading_submission(submission.name):
@@ -650,7 +665,7 @@ def _share(criterion: Criterion, scored: Sequence[_ScoredEvidence]) -> float:
 def _summary(scored: _ScoredEvidence) -> EpisodeSummary:
     evidence = scored.evidence
     measure = None if scored.measure is None else _finite(scored.measure)
-    return EpisodeSummary(evidence.label, evidence.outcome, evidence.steps, measure, evidence.secret)
+    return EpisodeSummary(evidence.label, evidence.outcome, scored.steps, measure, evidence.secret)
 
 
 def _public_failure(evidence: Evidence) -> Failure:

@@ -33,11 +33,15 @@ READ_ERRORS: Final = (
 def read_arrays(file: Path) -> dict[str, NDArray[Any]]:
     """Returns all arrays of an archive by name. Raises OSError where it cannot be read, and ``READ_ERRORS`` where it is
     damaged, something else, or too large."""
-    data = read_plain_file(file, MAX_PACKED_BYTES)
+    return unpack_arrays(read_plain_file(file, MAX_PACKED_BYTES), MAX_UNPACKED_BYTES)
+
+
+def unpack_arrays(data: bytes, max_bytes: int) -> dict[str, NDArray[Any]]:
+    """All arrays of an archive of at most ``max_bytes`` unpacked, by name. Raises ``READ_ERRORS`` for any other."""
     if not zipfile.is_zipfile(io.BytesIO(data)):  # of another file numpy says that pickle might read it
         raise ValueError("no .npz file, or a part of one")
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        check_arrays(archive, MAX_UNPACKED_BYTES)
+        check_arrays(archive, max_bytes)
     with np.load(io.BytesIO(data), allow_pickle=False) as stored:
         return {name: stored[name] for name in stored.files}
 

@@ -64,6 +64,9 @@ class Kind:
     """Notes mistakes in the sections; need not finish these."""
     collect: Callable[[Assignment, Path, EvidenceOptions], AbstractContextManager[EvidenceCollector]]
     """(assignment, the main submitted file, options) -> the collector of its evidence."""
+    tells_secret_runs: bool = False
+    """Whether a student's own check at level 0 says what it found with secret seeds where no public run shows the same:
+    trainings, of which no program of the student's is a part, and whose curves were shown while they ran."""
 
 
 def _own_kinds() -> tuple[str, ...]:

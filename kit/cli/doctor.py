@@ -221,17 +221,10 @@ def as_json(report: list[Finding]) -> str:
 
 @click.command
 @click.option("--json", "machine_readable", is_flag=True, help="Print the report as JSON.")
-@click.option(
-    "-r",
-    "--report",
-    "-rf",
-    "--report-failed",
-    "everything",
-    is_flag=True,
-    help="The same: the report is always printed.",
-)
-def command(machine_readable: bool, everything: bool) -> None:
+def command(machine_readable: bool) -> None:
     """Report what the kit found on this machine and terminal, what it decided, and why.
+
+    The running world and the packages are the subject of `kit ros doctor`.
 
     The output contains no secrets: paste it when you ask for help.
     """

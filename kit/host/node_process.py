@@ -21,7 +21,7 @@ from kit.host.failure import (
 from kit.host.graph_bridge import KeptLimitError, MessageLimitError, ParentBridge
 from kit.host.process import HostedFile, PackageProgram, StudentProcess
 from kit.host.program_terminal import ProgramStreams
-from kit.host.protocol import Ended, Frame, Reply
+from kit.host.protocol import HOLD_NS, Ended, Frame, Reply
 from kit.host.proxy_nodes import ReservedNameError
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
@@ -180,6 +180,8 @@ class NodeProcess(HostedFile):
             frame = answer()
             if not isinstance(frame, (Reply, Ended)):
                 raise ProtocolError("another kind of answer")
+            if isinstance(frame, Reply) and frame.wake_ns == HOLD_NS:
+                raise ProtocolError("time to stand still")
             began = time.monotonic()
             try:
                 self._bridge.apply_events(frame.events)

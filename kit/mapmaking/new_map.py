@@ -27,6 +27,7 @@ from kit.mapmaking.route import (
     widest_route,
 )
 from kit.plain_text import quoted
+from kit.workspace import errors_name_file
 from kit.world.catalogue import CARD_FILE, WORLD_FILE, maps_folder
 from kit.world.loading import load_world
 
@@ -126,7 +127,10 @@ def write_map(
     """Writes the map's files into a new folder, all or none. ``overlay``: the drawing, as large as the plan, over which
     walls and way are shown. Raises NoRoute, OSError, and ValueError if there are no walls."""
     folder.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}.") as name:
+    with (
+        errors_name_file(folder),
+        tempfile.TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}.") as name,
+    ):
         made = Path(name) / folder.name
         made.mkdir()
         picture = Image.fromarray(np.where(plan.walls, 0, 255).astype(np.uint8))

@@ -55,6 +55,11 @@ class PhotoPlan:
     corners: Corners
     """Corners of the sheet in the photograph [pixels]."""
 
+    @property
+    def walls_width(self) -> float:
+        """From the outside of the leftmost wall to that of the rightmost one [m]."""
+        return _walls_columns(self.plan.walls) * self.plan.resolution
+
 
 def open_photo(path: Path) -> Image.Image:
     """The photograph, upright. Raises PhotoError."""
@@ -152,10 +157,15 @@ def _sheet_size(corners: Corners, paper: float) -> tuple[int, int]:
 def _resolution(walls: BoolArray, scale: Scale) -> float:
     columns = int(walls.shape[1])
     if scale.walls_width is not None:
-        used = np.flatnonzero(walls.any(axis=0))
-        return scale.walls_width / int(used[-1] - used[0] + 1)
+        return scale.walls_width / _walls_columns(walls)
     if scale.sheet_width is None:
         raise PhotoError(
             "The scale is missing: give the width of the sheet in the world (--width), or of the walls (--walls-width)."
         )
     return scale.sheet_width / columns
+
+
+def _walls_columns(walls: BoolArray) -> int:
+    """The columns from the leftmost wall to the rightmost one."""
+    used = np.flatnonzero(walls.any(axis=0))
+    return int(used[-1] - used[0] + 1)

@@ -11,6 +11,7 @@ import json
 import math
 import os
 import sqlite3
+import threading
 import uuid
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, suppress
@@ -109,6 +110,8 @@ class ProgressJournal:
 
     def __init__(self, folder: Path) -> None:
         self._file = folder / FILE
+        self._using = threading.Lock()
+        """Held while the connection is used: SQLite crashes if it is closed meanwhile, and a transaction is one thread's."""
         self.notice = ""
         """Message for the student about a damaged file found at opening; else empty."""
         try:
@@ -126,7 +129,9 @@ class ProgressJournal:
         self.close()
 
     def close(self) -> None:
-        self._connection.close()
+        """Closes the file; waits for the threads that use it. What they do afterwards raises ProgressError."""
+        with self._using:
+            self._connection.close()
 
     def add(
         self,
@@ -154,9 +159,10 @@ class ProgressJournal:
         conditions = " AND ".join(f"{column} = ?" for column, value in filters if value is not None)
         query = f"{_ALL} WHERE {conditions}" if conditions else _ALL
         try:
-            rows = self._connection.execute(
-                f"{query} ORDER BY at, number", [str(value) for _, value in filters if value is not None]
-            )
+            with self._using:
+                rows = self._connection.execute(
+                    f"{query} ORDER BY at, number", [str(value) for _, value in filters if value is not None]
+                ).fetchall()
             return [event for row in rows if (event := _event_from_row(row)) is not None]
         except sqlite3.Error as error:
             raise self._unusable_error(error) from None
@@ -198,13 +204,14 @@ class ProgressJournal:
                 f"{too_long[3]}: {len(too_long[4])} characters are too many; {MAX_CONTENT_LENGTH} fit."
             )
         try:
-            try:
-                return _insert_rows(self._connection, rows)
-            except sqlite3.OperationalError:
-                if not self._has_moved():
-                    raise
-                self._restore_file()
-                return _insert_rows(self._connection, rows)
+            with self._using:
+                try:
+                    return _insert_rows(self._connection, rows)
+                except sqlite3.OperationalError:
+                    if not self._has_moved():
+                        raise
+                    self._restore_file()
+                    return _insert_rows(self._connection, rows)
         except sqlite3.Error as error:
             raise self._unusable_error(error) from None
 
@@ -276,7 +283,7 @@ def _open_connection(file: Path) -> sqlite3.Connection:
     with suppress(OSError):  # SQLite says what is wrong
         os.close(os.open(file, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600))
         file.chmod(0o600)
-    # Several threads of a screen may use it; SQLite serialises them itself.
+    # Several threads of a screen may use it, one at a time.
     connection = sqlite3.connect(file, timeout=LOCK_TIMEOUT_S, check_same_thread=False)
     try:
         # Not the write-ahead log: it needs shared memory, which network homes do not have.

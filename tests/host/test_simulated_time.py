@@ -195,3 +195,75 @@ def test_what_a_program_published_before_it_failed_arrives(student: Student) -> 
         assert process.failure.status == 3
         graph.run_due()
     assert heard == ["stop"]
+
+
+ENDING = """
+import atexit, threading, time
+from concurrent.futures import ThreadPoolExecutor
+import rclpy
+from std_msgs.msg import String
+
+def main():
+    rclpy.init()
+    node = rclpy.create_node("ending")
+    says = node.create_publisher(String, "said", 10)
+    say = lambda text: says.publish(String(data=f"{text} {node.get_clock().now().nanoseconds / 1e9:.2f}"))
+    atexit.register(say, "first registered")
+    atexit.register(say, "second registered")
+    pool = ThreadPoolExecutor(2)
+    pool.submit(say, "pool").result()
+    threading.Thread(target=lambda: (time.sleep(0.5), say("thread"))).start()
+    say("main")
+    {ending}
+"""
+
+
+@pytest.mark.parametrize("ending", ["pass", "raise SystemExit(0)", "raise SystemExit(3)"])
+def test_a_program_ends_as_in_python(student: Student, ending: str) -> None:
+    """Idle pools do not keep it; its threads do; then what it has registered is called, the last first."""
+    graph, heard = Graph(log_sink=lambda record: None), []
+    node = create_graph_node(graph, "listener")
+    node.create_subscription(String, "said", lambda message: heard.append(message.data), 100)
+    with NodeProcess.start(graph, student(ENDING.replace("{ending}", ending)), limits=QUICK) as process:
+        while process.is_running and graph.now_ns < 3e9:
+            exchange_until_idle(graph, [process])
+            graph.advance(graph.now_ns + TICK_NS)
+        assert not process.is_running
+        graph.run_due()
+    assert [text.rpartition(" ")[0] for text in heard] == [
+        "pool",
+        "main",
+        "thread",
+        "second registered",
+        "first registered",
+    ]
+    assert float(heard[-1].split()[-1]) >= 0.5
+
+
+def test_a_listener_that_spins_by_itself_fills_the_buffer(student: Student) -> None:
+    file = student(
+        """
+        import threading
+        import rclpy
+        from geometry_msgs.msg import TransformStamped
+        from rclpy.duration import Duration
+        from rclpy.time import Time
+        from std_msgs.msg import String
+        from tf2_ros import Buffer, TransformBroadcaster, TransformListener
+
+        def main():
+            rclpy.init()
+            node = rclpy.create_node("looker")
+            says = node.create_publisher(String, "said", 10)
+            buffer = Buffer()
+            TransformListener(buffer, node, spin_thread=True)
+            broadcaster = TransformBroadcaster(node)
+            transform = TransformStamped(child_frame_id="b")
+            transform.header.frame_id = "a"
+            threading.Timer(0.5, broadcaster.sendTransform, (transform,)).start()
+            buffer.lookup_transform("a", "b", Time(), timeout=Duration(seconds=2))
+            says.publish(String(data=f"{node.get_clock().now().nanoseconds / 1e9:.1f}"))
+            rclpy.shutdown()
+        """
+    )
+    assert run(file, 1.5) == ["0.5"]

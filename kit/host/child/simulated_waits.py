@@ -158,8 +158,8 @@ class SimulatedWaits:
         def make_rlock() -> Any:
             return threading._PyRLock() if waits.is_program() else make_real_rlock()  # type: ignore[attr-defined]
 
-        threading.Lock = threading._allocate_lock = Lock  # type: ignore[attr-defined, misc, assignment]
-        threading.RLock = make_rlock  # type: ignore[misc, assignment]
+        threading.Lock = threading._allocate_lock = Lock  # type: ignore[attr-defined]
+        threading.RLock = make_rlock  # type: ignore[assignment]
 
     def _replace_join(self) -> None:
         waits, graph = self, self._graph
@@ -175,11 +175,12 @@ class SimulatedWaits:
             real_join(thread, timeout)
 
         def forget_and_tell(thread: threading.Thread) -> None:
-            forget(thread)
-            waits._ended.add(thread)
-            graph.notify()
+            with graph.lock:  # a waiter sees both or none
+                forget(thread)
+                waits._ended.add(thread)
+                graph.notify()
 
-        threading.Thread.join = join  # type: ignore[method-assign]
+        threading.Thread.join = join  # type: ignore[assignment, method-assign]
         threading.Thread._delete = forget_and_tell  # type: ignore[attr-defined]
 
     def _replace_queues(self, module: Any) -> None:

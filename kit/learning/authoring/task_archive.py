@@ -18,7 +18,7 @@ from kit.learning.authoring.task_check import check_task
 from kit.learning.tasks.task_reader import TASK_FILE, read_task, task_name
 from kit.plain_text import is_printable, quoted
 from kit.sim.simulation import load_world
-from kit.workspace import write_atomically
+from kit.workspace import errors_name_file, write_atomically
 from kit.world.catalogue import allowed_root_of, maps_folder
 from kit.world.documents import collected_reads
 
@@ -114,8 +114,9 @@ def unpack_task(archive: Path, folder: Path) -> Path:
     try:
         for path, data in contents.items():
             target = folder / Path(*path.parts)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(data)
+            with errors_name_file(target):
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.write_bytes(data)
         check_task(read_task(file))
     except BaseException:  # Ctrl-C too leaves nothing half made
         shutil.rmtree(made, ignore_errors=True)

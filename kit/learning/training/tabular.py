@@ -21,13 +21,8 @@ from kit.arrays import FloatArray, IntArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.episode_stats import EpisodeStatsRecorder
-from kit.learning.policies.policies import (
-    ActionSampling,
-    ActionValueTable,
-    Policy,
-    action_counts,
-    task_interface,
-)
+from kit.learning.policies.policy import ActionSampling, Policy, action_counts, task_interface
+from kit.learning.policies.policy_network import ActionValueTable
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.learner import TrainingCallback
@@ -189,11 +184,24 @@ class Sarsa(TableLearner):
         return taken
 
 
+def table_rows(inputs: int, bins: int) -> int:
+    """Returns how many rows a table has for so many numbers seen, each sorted into so many bins.
+
+    >>> table_rows(9, 3)
+    19683
+    """
+    return int(bins ** _used_count(inputs, bins))
+
+
+def _used_count(inputs: int, bins: int) -> int:
+    return min(inputs, int(np.log(MAX_STATES) / np.log(bins)))
+
+
 def _empty_table(batch: BatchEnv, settings: TabularParams) -> ActionValueTable:
     """One that counts as many inputs, evenly spread over what is seen, as make a table of reasonable size."""
     inputs = int(batch.observation_space.shape[0])
     bins = len(settings.edges) + 1
-    count = min(inputs, int(np.log(MAX_STATES) / np.log(bins)))
+    count = _used_count(inputs, bins)
     used = np.linspace(0, inputs - 1, count).round().astype(np.int64)
     actions = action_counts(batch.action_space)[0]
     values = np.zeros((bins**count, actions), dtype=np.float32)

@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Final
 
 from kit.controllers import kit_controllers
-from kit.learning.tasks.learning_task import PatrolGoal
 from kit.school.game.levels import (
     CHALLENGES_WORLD,
     GameLevel,
@@ -202,8 +201,8 @@ def level_progress(
 
 
 def belt_of(best: Sequence[Medal]) -> str:
-    """The belt of a world, by the best medal on each of its levels: white for its first medal, yellow for one on every level, green and blue for silver on half of
-    the levels and on all, brown and black likewise for gold."""
+    """The belt of a world, by the best medal on each of its levels: white for its first medal, yellow for one on every level,
+    green and blue for silver on half of the levels and on all, brown and black likewise for gold."""
 
     def share(medal: Medal) -> float:
         return sum(each >= medal for each in best) / len(best) if best else 0.0
@@ -277,7 +276,7 @@ def today() -> datetime.date:
 def daily_level(day: datetime.date) -> GameLevel:
     """The level of a day: one of the levels with a single robot, on every second day in fog. It is always open."""
     chance = random.Random(day.toordinal())
-    levels = [each for each in all_levels() if each.world != "pair" and not isinstance(each.goal, PatrolGoal)]
+    levels = [each for each in all_levels() if each.world != "pair" and not each.goal.is_route]
     level = chance.choice(levels)
     fog = level.conditions.fog or chance.random() < 0.5
     title = f"{day.isoformat()}: {level.title}{' in fog' if fog else ''}"

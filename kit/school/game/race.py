@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 import time
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
-
-import numpy as np
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers
 from kit.host.failure import Failure, FailureKind
@@ -20,21 +18,19 @@ from kit.host.private_folder import private_folder
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.probe import is_level_available
-from kit.learning.maps.batch_map import FLOOR_CELL, hull_radius, hull_width, load_batch_map, measure_floor
-from kit.learning.tasks.learning_task import CoverGoal, FollowGoal, PatrolGoal
-from kit.render.scene import Disc
 from kit.run.episode import EndCondition, EndReason, run_until, when, when_failed
 from kit.run.lockstep import Observer
-from kit.run.metrics import MetricsRecorder, is_in_target
+from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel, LevelConditions
-from kit.sim.simulation import Simulation
-from kit.world.catalogue import MapCard
+from kit.school.game.objective import Objective
+from kit.school.game.starts import OWN_SEED, scenario_from, seeds_of
+from kit.sim.simulation import STEP_SIZE_S, Simulation
 
 if TYPE_CHECKING:
-    from kit.learning.policies.policies import Policy
+    from kit.learning.policies.policy import Policy
 
 
 DOCK_RADIUS: Final = 0.25
@@ -43,159 +39,6 @@ DOCK_TIME: Final = 1.0
 """Standing still for this time charges the battery [s]."""
 STILL: Final = 1e-4
 """A robot that moves less than this in a tick stands still [m]."""
-
-
-class Objective(ABC):
-    """What is to be achieved. ``on_step`` is called after every tick until it is."""
-
-    reached_s: float | None = None
-    """When it was achieved [simulated s]."""
-    splits: tuple[float, ...] = ()
-    """When each part of it was achieved [simulated s]."""
-    target_m: float | None = None
-    """From the hull of the robot that is farthest to the nearest target that is left [m]; None where there is none."""
-
-    @abstractmethod
-    def on_step(self, simulation: Simulation) -> None: ...
-
-    def put_back(self) -> None:  # noqa: B027 - only where what was achieved lies along a way
-        """A robot has bumped and was put back to its start."""
-
-    @property
-    @abstractmethod
-    def progress(self) -> str:
-        """How much of it is achieved, in a few words; empty where there is nothing to count."""
-
-    @property
-    def discs(self) -> tuple[Disc, ...]:
-        """The targets that are still to be reached."""
-        return ()
-
-
-class TargetObjective(Objective):
-    """All robots are in the case's target at the same time."""
-
-    progress = ""
-
-    def __init__(self, metrics: MetricsRecorder, scenario: Scenario) -> None:
-        self._metrics = metrics
-        case = scenario.case
-        self._discs = () if case is None else (Disc(*case.target, case.target_radius),)
-
-    def on_step(self, simulation: Simulation) -> None:
-        self.reached_s = self._metrics.all_reached_s
-        self.target_m = self._metrics.metrics.target_m
-
-    @property
-    def discs(self) -> tuple[Disc, ...]:
-        return self._discs
-
-
-class PatrolObjective(Objective):
-    """All robots are in each target at the same time, one target after the other or in any order."""
-
-    def __init__(self, level: GameLevel, scenario: Scenario) -> None:
-        assert isinstance(level.goal, PatrolGoal)
-        radius = 0.25 if scenario.case is None else scenario.case.target_radius
-        self._all = [Disc(x, y, radius) for x, y in level.goal.route(level.targets)]
-        self._left = list(self._all)
-        self._any_order = level.any_order
-        self._count = len(self._all)
-        self._partners = scenario.partners
-
-    def on_step(self, simulation: Simulation) -> None:
-        if not self._left:
-            return
-        self.target_m = min(
-            max(simulation.hull_distance(name, (disc.x, disc.y)) for name in self._partners)
-            for disc in self.discs
-        )
-        for disc in self.discs:
-            if all(is_in_target(simulation, name, (disc.x, disc.y), disc.radius) for name in self._partners):
-                self._left.remove(disc)
-                now = simulation.time_ns / 1e9
-                self.splits = (*self.splits, now)
-                if not self._left:
-                    self.reached_s = now
-                return
-
-    def put_back(self) -> None:
-        """All targets are to be reached again: else a bump would be the shortest way home."""
-        self._left, self.splits = list(self._all), ()
-
-    @property
-    def progress(self) -> str:
-        return f"{self._count - len(self._left)} of {self._count} targets"
-
-    @property
-    def discs(self) -> tuple[Disc, ...]:
-        return tuple(self._left) if self._any_order else tuple(self._left[:1])
-
-
-class CoverObjective(Objective):
-    """A share of the floor is driven over."""
-
-    def __init__(self, goal: CoverGoal, card: MapCard, scenario: Scenario) -> None:
-        assert scenario.robot is not None  # a level has one
-        batch_map = load_batch_map(card, scenario.partners)
-        floor, start = measure_floor(batch_map), scenario.starts[0]
-        self._floor = floor.reached_from(start.x, start.y, hull_width(batch_map)) & (
-            floor.clearance > max(hull_radius(batch_map) - goal.radius, 0.0)
-        )
-        self._x, self._y = np.meshgrid(floor.x, floor.y)
-        self._covered = np.zeros_like(self._floor)
-        self._robot = scenario.robot
-        self._goal = goal
-
-    @property
-    def share(self) -> float:
-        """The share of the floor that is covered."""
-        return float((self._covered & self._floor).sum() / self._floor.sum())
-
-    def on_step(self, simulation: Simulation) -> None:
-        if simulation.tick % 5:  # 25 mm at full speed, half a cell
-            return
-        pose, radius = simulation.pose(self._robot), self._goal.radius
-        column = round((pose.x - self._x[0, 0]) / FLOOR_CELL)
-        row = round((pose.y - self._y[0, 0]) / FLOOR_CELL)
-        reach = math.ceil(radius / FLOOR_CELL)
-        window = (
-            slice(max(row - reach, 0), max(row + reach + 1, 0)),
-            slice(max(column - reach, 0), max(column + reach + 1, 0)),
-        )
-        self._covered[window] |= np.hypot(self._x[window] - pose.x, self._y[window] - pose.y) <= radius
-        if self.share >= self._goal.share:
-            self.reached_s = simulation.time_ns / 1e9
-
-    @property
-    def uncovered(self) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-        """(k, 2) the middles of the floor's cells that are still to be covered [m]."""
-        left = self._floor & ~self._covered
-        return np.stack([self._x[left], self._y[left]], axis=1)
-
-    @property
-    def progress(self) -> str:
-        return f"{self.share:.0%} of {self._goal.share:.0%} covered"
-
-
-class FollowObjective(Objective):
-    """The robot stays near a leader for a time."""
-
-    def __init__(self, goal: FollowGoal, leader: str, scenario: Scenario) -> None:
-        self._goal, self._leader, self._partners = goal, leader, scenario.partners
-        self._seconds = 0.0
-
-    def on_step(self, simulation: Simulation) -> None:
-        leader = simulation.pose(self._leader)
-        distances = [math.dist(simulation.pose(name)[:2], leader[:2]) for name in self._partners]
-        if all(self._goal.nearest <= each <= self._goal.farthest for each in distances):
-            self._seconds += simulation.step_size
-        if self._seconds >= self._goal.time:
-            self.reached_s = simulation.time_ns / 1e9
-
-    @property
-    def progress(self) -> str:
-        return f"{self._seconds:.1f} of {self._goal.time:g} s near the leader"
 
 
 class Battery:
@@ -223,27 +66,12 @@ class Battery:
             self.charge = self._conditions.charge
 
 
-def objective_of(level: GameLevel, scenario: Scenario, metrics: MetricsRecorder) -> Objective:
-    """The objective of a level's drive."""
-    match level.goal:
-        case PatrolGoal():
-            return PatrolObjective(level, scenario)
-        case CoverGoal():
-            return CoverObjective(level.goal, level.map_card, scenario)
-        case FollowGoal():
-            return FollowObjective(level.goal, level.leader, scenario)
-        case _:
-            return TargetObjective(metrics, scenario)
-
-
 STANDING_SPEED: Final = 0.02
 """A robot slower than this stands still [m/s]."""
 OUTPUT_INTERVAL: Final = 10
 """Ticks after which the program's output is read."""
 ALLOWED_SERVICES: Final = ("move_model", "pause", "resume", "toggle_pause", "change_rate")
 """World services allowed during a race; models may only be moved to their start."""
-SEED: Final = 1
-"""Seed of every race, so that conditions are equal."""
 
 
 class DriverKind(StrEnum):
@@ -293,16 +121,17 @@ class RaceFinish:
 class RaceReferee(Observer):
     """Observes a runner: when all driven robots have reached the target, how often they collided, and any foul."""
 
-    def __init__(self, level: GameLevel, scenario: Scenario) -> None:
-        """``scenario``: the level's own, as it was loaded."""
+    def __init__(self, level: GameLevel, scenario: Scenario, step_size: float = STEP_SIZE_S) -> None:
+        """``scenario``: the level's own, as it was loaded; ``step_size``: of the runner's ticks [s]."""
         self._level = level
         self._scenario = scenario
+        self._step_size = step_size
         self._last_tick = -1
         self._reset()
 
     def _reset(self) -> None:
         self._metrics = MetricsRecorder.for_scenario(self._scenario)
-        self.objective: Objective = objective_of(self._level, self._scenario, self._metrics)
+        self.objective = Objective(self._level, self._scenario, self._step_size)
         self.battery = Battery(self._level.conditions, self._scenario.partners[0])
         self._seconds = 0.0
         self._foul = ""
@@ -374,16 +203,43 @@ def race_controller(
     *,
     on_second: Callable[[float], None] | None = None,
     wall_limit_s: float = math.inf,
+    seed: int = OWN_SEED,
 ) -> tuple[RaceFinish, Recording]:
-    """Lets a controller drive the level, as fast as the simulation runs. ``wall_limit_s``: seconds of wall clock after which it
-    has failed."""
+    """Lets a controller drive the level once, as fast as the simulation runs. ``wall_limit_s``: seconds of wall clock after
+    which it has failed. ``seed``: of the start."""
 
     def install_driver(session: Session) -> None:
         session.drive_with(controller)
         session.wait_until_driven()
 
-    scenario, confinement = level.find_scenario(), _confinement(controller)
-    return run_race(level, scenario, install_driver, on_second, confinement, wall_limit_s)
+    scenario, confinement = scenario_from(level, seed), _confinement(controller)
+    return run_race(level, scenario, install_driver, on_second, confinement, wall_limit_s, seed)
+
+
+def race_from_all_starts(
+    level: GameLevel,
+    controller: ControllerFile,
+    *,
+    first: tuple[RaceFinish, Recording] | None = None,
+    on_second: Callable[[int, float], None] = lambda start, seconds: None,
+) -> list[tuple[RaceFinish, Recording]]:
+    """Lets a controller drive the level from each of its starts. ``first``: the drive from the level's own start, where it
+    was watched. ``on_second``: gets the number of the start, from 1, and the seconds driven; what it raises ends the race."""
+    drives = [] if first is None else [first]
+    for number, seed in enumerate(seeds_of(level)[len(drives) :], len(drives) + 1):
+        drives.append(race_controller(level, controller, on_second=partial(on_second, number), seed=seed))
+    return drives
+
+
+def finish_order(finish: RaceFinish) -> tuple[bool, bool, float]:
+    """Smaller is better: at the goal, without a bump, soon."""
+    return not finish.reached, finish.collisions > 0, finish.seconds
+
+
+def middle_drive(finishes: Sequence[RaceFinish]) -> int:
+    """The number of the drive that counts: as many are better as are worse."""
+    in_order = sorted(range(len(finishes)), key=lambda number: finish_order(finishes[number]))
+    return in_order[len(in_order) // 2]
 
 
 def open_race(
@@ -393,7 +249,7 @@ def open_race(
 
     The caller closes the session.
     """
-    session = Session(scenario, seed=SEED, level=_confinement(controller), always_scan=True)
+    session = Session(scenario, seed=OWN_SEED, level=_confinement(controller), always_scan=True)
     referee = RaceReferee(level, scenario)
     recorder = Recorder.for_scenario(scenario, session.runner.simulation)
     session.runner.observers += [referee, recorder]
@@ -422,25 +278,24 @@ def agent_controller(policy: Policy) -> Iterator[ControllerFile]:
         yield find_controller(str(file))
 
 
-def race_agent(
-    level: GameLevel, policy: Policy, *, on_second: Callable[[float], None] | None = None
-) -> tuple[RaceFinish, Recording]:
-    """Lets a trained policy drive the level. Raises PolicyError."""
-    with agent_controller(policy) as controller:
-        return race_controller(level, controller, on_second=on_second)
-
-
-def judge_recording(level: GameLevel, recording: Recording) -> RaceFinish:
-    """Runs a recorded drive again, bit for bit, and judges it. Raises ValueError if it is of another level."""
-    scenario = level.find_scenario()
+def run_again(level: GameLevel, recording: Recording) -> tuple[RaceFinish, Recording]:
+    """Runs a recorded drive again, bit for bit, and judges it. Raises ValueError if it is of another level or from a start
+    that it has not, and RecordingError where an input is not possible in its world."""
+    scenario = scenario_from(level, recording.seed)
     if (recording.place, recording.case) != (scenario.name, level.case):
         raise ValueError(f"this is a drive of {recording.place} {recording.case or ''}, not of {level.title}")
     with Session(scenario, seed=recording.seed, step_size=recording.step_size) as session:
-        referee = RaceReferee(level, scenario)
-        session.runner.observers.append(referee)
+        referee = RaceReferee(level, scenario, recording.step_size)
+        recorder = Recorder.for_scenario(scenario, session.runner.simulation)
+        session.runner.observers += [referee, recorder]
         session.play_back(recording)
-        run_until(session.runner, ticks=recording.ticks, ends=(referee.when_finished,))
-        return referee.finish
+        run_until(session.runner, ticks=recording.ticks)
+        return referee.finish, recorder.recording()
+
+
+def judge_recording(level: GameLevel, recording: Recording) -> RaceFinish:
+    """The finish of a recorded drive. Raises as ``run_again``."""
+    return run_again(level, recording)[0]
 
 
 def run_race(
@@ -450,9 +305,11 @@ def run_race(
     on_second: Callable[[float], None] | None = None,
     confinement: Confinement = INTERACTIVE_LEVEL,
     wall_limit_s: float = math.inf,
+    seed: int = OWN_SEED,
 ) -> tuple[RaceFinish, Recording]:
+    """Runs a drive from ``scenario``'s start to its end. ``seed``: of that start."""
     ends_at = time.monotonic() + wall_limit_s
-    with Session(scenario, seed=SEED, level=confinement) as session:
+    with Session(scenario, seed=seed, level=confinement) as session:
         simulation = session.runner.simulation
         referee, recorder = RaceReferee(level, scenario), Recorder.for_scenario(scenario, simulation)
         session.runner.observers += [referee, recorder]

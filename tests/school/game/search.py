@@ -24,18 +24,12 @@ import numpy as np
 from kit.fields.occupancy_grid import wall_distances
 from kit.geometry import convex_hull, wrap_angle
 from kit.kernels import grids
-from kit.learning.environment.case_arrays import compute_distance_field
-from kit.learning.tasks.learning_task import FollowGoal, PatrolGoal
+from kit.learning.environment.distance_field import compute_distance_field
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.school.game.ghosts import (
-    DriveCommand,
-    ReferenceDrive,
-    drive_reference,
-    drives_file,
-    load_drives,
-)
 from kit.school.game.levels import SPEED, TURN_RATE, GameLevel, all_levels
-from kit.school.game.race import DOCK_TIME, SEED, RaceReferee
+from kit.school.game.race import DOCK_TIME, RaceReferee
+from kit.school.game.references import DriveCommand, ReferenceDrive, drive_reference, drives_file, load_drives
+from kit.school.game.starts import OWN_SEED
 from kit.sim.simulation import Simulation
 
 TICKS = 10
@@ -270,7 +264,7 @@ def track_front_wheel(level: GameLevel, scenario, points: list[tuple[np.ndarray,
 
     ``points``: the pose planned after each primitive, and the speed on the way there.
     """
-    simulation = Simulation(scenario.world, seed=SEED, has_subscribers=lambda topic: False)
+    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
     commands: list[DriveCommand] = []
     for number, (_, speed) in enumerate(points):
         ahead = number
@@ -356,10 +350,10 @@ def legs_of(level: GameLevel, scenario):
     radius = scenario.case.target_radius
     if level.id in ROUTES:
         return [[(x, y, 0.06, 0.0) for x, y in ROUTES[level.id]]]
-    if not isinstance(level.goal, PatrolGoal):
+    if not level.goal.is_route:
         orders = [[(*scenario.case.target, radius, 0.0)]]
     else:
-        targets = [(x, y, radius, 0.0) for x, y in level.targets] * level.goal.rounds
+        targets = [(x, y, radius, 0.0) for x, y in level.goal.route(level.targets)]
         orders = [list(each) for each in itertools.permutations(targets)] if level.any_order else [targets]
     if level.conditions.charge:
         docks = [(x, y, 0.2, DOCK_TIME) for x, y in level.conditions.docks]
@@ -526,7 +520,7 @@ def drive_time(
 def polish(level: GameLevel, drive: ReferenceDrive, seconds: float) -> ReferenceDrive:
     """Shortens a drive by moving the ends of its commands by single ticks, for ``seconds`` of wall clock."""
     scenario = level.find_scenario()
-    simulation = Simulation(scenario.world, seed=SEED, has_subscribers=lambda topic: False)
+    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
     best = drive_time(level, scenario, simulation, drive, math.inf)
     random, end = np.random.default_rng(1), time.perf_counter() + seconds
     while time.perf_counter() < end:
@@ -550,7 +544,7 @@ def polish(level: GameLevel, drive: ReferenceDrive, seconds: float) -> Reference
 def search_pursuit(level: GameLevel, seconds: float) -> ReferenceDrive | None:
     """Searches the gains of a driver that follows a way, or a leader, where no lattice can be measured."""
     scenario = level.find_scenario()
-    simulation = Simulation(scenario.world, seed=SEED, has_subscribers=lambda topic: False)
+    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
     random, end = np.random.default_rng(1), time.perf_counter() + seconds
     fields: dict[float, object] = {}
     walls = scenario.world.wall_segments
@@ -620,7 +614,7 @@ def main(names: list[str]) -> None:
         if names and level.id not in names:
             continue
         begin = time.perf_counter()
-        if isinstance(level.goal, FollowGoal) or level.conditions.acceleration:
+        if level.goal.needs_leader or level.conditions.acceleration:
             found = search_pursuit(level, PURSUIT_S)
             candidates = [] if found is None else [found]
         else:

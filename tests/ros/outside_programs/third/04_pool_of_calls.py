@@ -15,9 +15,9 @@ class Server(Node):
         super().__init__('slow_server')
         self.gate = threading.Semaphore(2)        # at most two at a time
         self.group = ReentrantCallbackGroup()
-        self.srv = self.create_service(AddTwoInts, 'slow_sum', self.handle, callback_group=self.group)
+        self.srv = self.create_service(AddTwoInts, 'slow_sum', self.serve, callback_group=self.group)
 
-    def handle(self, req, res):
+    def serve(self, req, res):
         if not self.gate.acquire(timeout=30.0):
             self.get_logger().error('no free place')
             return res

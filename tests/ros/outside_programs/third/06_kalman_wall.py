@@ -67,6 +67,7 @@ def main(args=None):
     try:
         rclpy.spin(node)
     except SystemExit:
+        node.cmd_pub.publish(Twist())
         rclpy.logging.get_logger('Quitting').info('Done')
     node.destroy_node()
     rclpy.shutdown()
