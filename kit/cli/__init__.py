@@ -246,19 +246,25 @@ class LazyGroup(click.Group):
                 formatter.write_dl([(name, f"From {each.source}.") for name, each in others.items()])
 
 
+class UnusablePart(click.ClickException):
+    """A verb of another package cannot be used."""
+
+    exit_code = BAD_INPUT
+
+
 def _command_of(extension: Extension) -> click.Command:
     """The verb, or the verb that opens a dialogue, of another package; one that cannot be used ends with a sentence."""
     try:
         found = load(extension)
     except ExtensionError as error:
-        raise click.UsageError(str(error)) from None
+        raise UnusablePart(str(error)) from None
     if extension.group == "dialogues":
         from kit.cli.dialogue import dialogue_command
 
         return dialogue_command(extension.name, found)
     if isinstance(found, click.Command):
         return found
-    raise click.UsageError(f"The verb {extension.name} of {extension.source} is no click command.")
+    raise UnusablePart(f"The verb {extension.name} of {extension.source} is no click command.")
 
 
 @click.group(

@@ -127,12 +127,14 @@ def _piece_html(piece: StyledText, links: Links) -> str:
 def _table_lines(table: Table) -> Iterator[str]:
     kinds = ["" if column.style is CellStyle.TEXT else ' class="number"' for column in table.columns]
     caption = f"<caption>{_html_text(table.title)}</caption>" if table.title else ""
-    yield f'<div class="wide"><table>{caption}<thead><tr>'
-    yield "".join(
-        f'<th scope="col"{kind}>{_html_text(column.title)}</th>'
-        for kind, column in zip(kinds, table.columns, strict=True)
-    )
-    yield "</tr></thead><tbody>"
+    yield f'<div class="wide"><table>{caption}'
+    if any(column.title for column in table.columns):
+        heads = (
+            f'<th scope="col"{kind}>{_html_text(column.title)}</th>'
+            for kind, column in zip(kinds, table.columns, strict=True)
+        )
+        yield f"<thead><tr>{''.join(heads)}</tr></thead>"
+    yield "<tbody>"
     for number, row in enumerate(table.rows):
         shown = (row[0] if table.shows_first_cell(number) else "", *row[1:])
         cells = (
