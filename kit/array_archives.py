@@ -33,13 +33,29 @@ READ_ERRORS: Final = (
 def read_arrays(file: Path) -> dict[str, NDArray[Any]]:
     """Returns all arrays of an archive by name. Raises OSError where it cannot be read, and ``READ_ERRORS`` where it is
     damaged, something else, or too large."""
-    data = read_plain_file(file, MAX_PACKED_BYTES)
+    return unpack_arrays(read_plain_file(file, MAX_PACKED_BYTES), MAX_UNPACKED_BYTES)
+
+
+def unpack_arrays(data: bytes, max_bytes: int) -> dict[str, NDArray[Any]]:
+    """All arrays of an archive of at most ``max_bytes`` unpacked, by name. Raises ``READ_ERRORS`` for any other."""
     if not zipfile.is_zipfile(io.BytesIO(data)):  # of another file numpy says that pickle might read it
         raise ValueError("no .npz file, or a part of one")
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        check_arrays(archive, MAX_UNPACKED_BYTES)
+        check_arrays(archive, max_bytes)
     with np.load(io.BytesIO(data), allow_pickle=False) as stored:
         return {name: stored[name] for name in stored.files}
+
+
+def check_stored(archive: zipfile.ZipFile, size: int) -> None:
+    """Checks that what is in an archive is packed as it is, and so takes no more memory than the archive's ``size`` [bytes].
+
+    Raises zipfile.BadZipFile for anything else.
+    """
+    members = archive.infolist()
+    if any(each.compress_type != zipfile.ZIP_STORED for each in members):
+        raise zipfile.BadZipFile("a part is compressed, which the kit's never are")
+    if len(members) > MAX_ARRAYS or sum(each.file_size for each in members) > size:
+        raise zipfile.BadZipFile("its parts are larger than itself")
 
 
 def check_arrays(archive: zipfile.ZipFile, max_bytes: int) -> dict[str, tuple[int, ...]]:

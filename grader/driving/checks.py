@@ -30,6 +30,8 @@ class TopicsParams:
     topics: tuple[str, ...] = ("/cmd_vel geometry_msgs/msg/Twist",)
     """Each a name; after a space optionally the message type, and after another the only node that may publish
     it."""
+    least: int = 1
+    """Messages on each of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,20 +52,33 @@ class WaypointParams:
 
 
 @dataclass(frozen=True, slots=True)
-class SpeedParams:
-    speeds: tuple[str, ...] = ("0.5",)
-    """m/s, forward."""
-    within: float = 0.02
-    """m/s"""
-
-
-@dataclass(frozen=True, slots=True)
 class SpeedByRangeParams:
     topic: str = "/static_laser"
     """The laser's."""
     bands: tuple[str, ...] = ("0.5 0", "1.2 0.3", "inf 0.6")
     """Each the distance straight ahead up to which it holds [m], and the speed that is asked there [m/s]; nearest first. All
     must occur."""
+    within: float = 0.02
+    """m/s"""
+
+
+@dataclass(frozen=True, slots=True)
+class FlagByRangeParams:
+    topic: str = "/wall_ahead"
+    """Of the booleans."""
+    laser: str = "/static_laser"
+    """The laser's topic."""
+    nearer: float = 0.5
+    """m: true where something is nearer ahead."""
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedByFlagParams:
+    topic: str = "/wall_ahead"
+    """Of the booleans."""
+    at_true: float = 0.0
+    at_false: float = 0.4
+    """m/s, forward."""
     within: float = 0.02
     """m/s"""
 
@@ -107,7 +122,9 @@ class CircleParams:
 @dataclass(frozen=True, slots=True)
 class HeadingParams:
     turned: float = 90.0
-    """Degrees by which the robot is turned at the end against its start, counter-clockwise."""
+    """Degrees by which the robot is turned at the end, counter-clockwise."""
+    against: str = "start"
+    """What they are counted from: ``start``, its heading there, or ``world``, the x axis."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,6 +217,18 @@ def moves(drive: GradedDrive, params: NoParams) -> float:
     return drive.score.distance_m
 
 
+@check(none=1, full=3, unit="m")
+def gets_about(drive: GradedDrive, params: NoParams) -> float:
+    """The robot drove only {actual} where it had not been before ({where}); {full} are wanted. To and fro on one place, or
+    round and round, leads nowhere."""
+    places = np.floor(drive.track[::CLEARANCE_INTERVAL, :2] / PLACE_SIZE)
+    return PLACE_SIZE * (len(np.unique(places, axis=0)) - 1) if len(places) else 0.0
+
+
+PLACE_SIZE: Final = 0.2
+"""Width and height of a square in which a robot has been or not [m]."""
+
+
 @check(none=2, full=1, unit="m/s")
 def top_speed(drive: GradedDrive, params: NoParams) -> float:
     """The robot drove faster than is allowed: up to {actual} ({where}); the limit is {full}."""
@@ -262,13 +291,15 @@ LEAST_PER_SPAN: Final = 4
 def topics(drive: GradedDrive, params: TopicsParams) -> float:
     """Of the asked topics the program published {actual} ({where}). Compare the names and the types with
     what the task says: `kit ros topic list` shows what there is, `kit ros node info` who publishes."""
-    published = [_is_published(drive, *each.split()) for each in params.topics]
+    published = [_is_published(drive, params.least, *each.split()) for each in params.topics]
     return sum(published) / len(published) if published else math.nan
 
 
-def _is_published(drive: GradedDrive, name: str, kind: str = "", node: str = "") -> bool:
+def _is_published(drive: GradedDrive, least: int, name: str, kind: str = "", node: str = "") -> bool:
     traffic = drive.traffic.get(name)
-    return traffic is not None and kind in ("", traffic.kind) and (not node or traffic.nodes == (node,))
+    if traffic is None or traffic.count < least:
+        return False
+    return kind in ("", traffic.kind) and (not node or traffic.nodes == (node,))
 
 
 @check(none=1, full=0, unit="changes")
@@ -308,18 +339,10 @@ def faces(drive: GradedDrive, params: HeadingParams) -> float:
     """At its end the robot faces {actual} away from the asked direction ({where}); at most {full} earns all points."""
     if not len(drive.track):
         return math.nan
-    turned = float(drive.track[-1, 2] - drive.track[0, 2])
+    if params.against not in ("start", "world"):
+        raise ValueError(f"against is start or world, not {params.against}")
+    turned = float(drive.track[-1, 2] - (drive.track[0, 2] if params.against == "start" else 0.0))
     return abs(math.degrees(math.remainder(turned - math.radians(params.turned), math.tau)))
-
-
-@check(none=0, full=1, unit="%", params=SpeedParams)
-def drives_at(drive: GradedDrive, params: SpeedParams) -> float:
-    """Of the required speeds your program ever commanded {actual} ({where}). Compare the numbers you publish, and when,
-    with the task's."""
-    entry = drive.commands[:, 1]
-    return float(
-        np.mean([bool(np.any(np.abs(entry - float(each)) <= params.within)) for each in params.speeds])
-    )
 
 
 @check(none=0.5, full=0.9, unit="%", params=SpeedByRangeParams)
@@ -330,21 +353,55 @@ def speed_by_range(drive: GradedDrive, params: SpeedByRangeParams) -> float:
     bands = [tuple(map(float, each.split())) for each in params.bands]
     if scans is None or not len(scans) or not len(commands):
         return 0.0
-    latest = np.searchsorted(scans[:, 0], commands[:, 0] + 1e-9, side="right") - 1
-    asked = np.array([_band_of(bands, distance) for distance in scans[:, 1]])
-    is_right = np.zeros(len(commands), dtype=np.bool_)
-    for back in (0, 1):  # a command may answer the scan before the newest
-        band = asked[np.maximum(latest - back, 0)]
-        speeds = np.array([speed for _, speed in bands])[band]
-        is_right |= np.abs(commands[:, 1] - speeds) <= params.within
-    case = asked[np.maximum(latest, 0)]
-    shares = [float(is_right[case == each].mean()) for each in range(len(bands)) if (case == each).any()]
-    return min(shares) if len(shares) == len(bands) else 0.0
+    cases = np.array([float(_band_of(bands, distance)) for distance in scans[:, 1]])
+    return _follows(commands, scans[:, 0], cases, [speed for _, speed in bands], params.within)
+
+
+def _follows(
+    values: FloatArray, times: FloatArray, cases: FloatArray, asked: Sequence[float], within: float
+) -> float:
+    """Returns in what share of ``values`` (k, 2 or more: time [s], value) the value is the asked one, in the case that goes worst;
+    0 where one of the cases never occurs.
+
+    ``cases``: (n,) at each of ``times`` [s], the index of the value in ``asked`` that belongs to what was known then; nan where
+    any value will do. A value may also answer what was known before the newest.
+    """
+    latest = np.searchsorted(times, values[:, 0] + 1e-9, side="right") - 1
+    is_right = np.zeros(len(values), dtype=np.bool_)
+    for back in (0, 1):
+        case = cases[np.maximum(latest - back, 0)]
+        wanted = np.array(asked)[np.nan_to_num(case).astype(int)]
+        is_right |= np.isnan(case) | (np.abs(values[:, 1] - wanted) <= within)
+    case = cases[np.maximum(latest, 0)]
+    shares = [float(is_right[case == each].mean()) for each in range(len(asked)) if (case == each).any()]
+    return min(shares) if len(shares) == len(asked) else 0.0
 
 
 def _band_of(bands: Sequence[tuple[float, ...]], distance: float) -> int:
     """Returns the first band whose end is beyond a distance; the last one for nan, for nothing that was met."""
     return next((number for number, band in enumerate(bands) if distance < band[0]), len(bands) - 1)
+
+
+@check(none=0.5, full=0.9, unit="%", params=FlagByRangeParams)
+def flag_by_range(drive: GradedDrive, params: FlagByRangeParams) -> float:
+    """What the program says of walls ahead is true for {actual} of its messages, in the case that goes worst ({where}); {full}
+    earns all points. Both cases must occur. True is asked where the ray straight ahead is nearer than that, false where
+    nothing within 60 degrees of it is."""
+    scans, said = drive.ahead.get(params.laser), drive.flags.get(params.topic)
+    if scans is None or not len(scans) or said is None or not len(said):
+        return 0.0
+    cases = np.where(scans[:, 1] < params.nearer, 1.0, np.where(scans[:, 2] < params.nearer, math.nan, 0.0))
+    return _follows(said, scans[:, 0], cases, (0.0, 1.0), 0.0)
+
+
+@check(none=0.5, full=0.9, unit="%", params=SpeedByFlagParams)
+def speed_by_flag(drive: GradedDrive, params: SpeedByFlagParams) -> float:
+    """The speed does not follow what is said on the topic: it is the asked one for {actual} of the commands, in the case that
+    goes worst ({where}); {full} earns all points. Both cases must occur."""
+    said, commands = drive.flags.get(params.topic), drive.commands
+    if said is None or not len(said) or not len(commands):
+        return 0.0
+    return _follows(commands, said[:, 0], said[:, 1], (params.at_false, params.at_true), params.within)
 
 
 @check(none=0.5, full=0.95, unit="%", params=SpeedSpanParams)
@@ -365,16 +422,16 @@ def answered(drive: GradedDrive, params: AnswerParams) -> float:
 
 @check(none=0, full=1, unit="%")
 def goes_home(drive: GradedDrive, params: NoParams) -> float:
-    """After {actual} of its bumps the robot was sent home within a second ({where}). A bump is a message on
-    collisions; going home is a request to the service /move_model."""
-    entry = [each.tick for each in drive.recording.inputs if each.kind == "move_model"]
-    bump_ticks = drive.bump_ticks
-    soon = 1.0 / drive.recording.step_size
-    return (
-        sum(any(0 <= tick - at <= soon for tick in entry) for at in bump_ticks) / len(bump_ticks)
-        if bump_ticks
-        else 0.0
-    )
+    """After {actual} of its bumps the robot was sent home within a second, and not otherwise ({where}). A bump is a message
+    on collisions; going home is a request to the service /move_model."""
+    # Before the first tick it is the grader who puts the robot at its start.
+    sent = np.array([each.tick for each in drive.recording.inputs if each.kind == "move_model" and each.tick])
+    bumps = np.array(drive.bump_ticks)
+    if not len(sent) or not len(bumps):
+        return 0.0
+    waited = sent[None, :] - bumps[:, None]
+    soon = (waited >= 0) & (waited <= 1.0 / drive.recording.step_size)
+    return float(min(soon.any(axis=1).mean(), soon.any(axis=0).mean()))
 
 
 @check(none=0.5, full=0.1, unit="%", params=PrintedTextParams)
@@ -392,7 +449,7 @@ def says(drive: GradedDrive, params: PrintedTextParams) -> float:
 def circle(drive: GradedDrive, params: CircleParams) -> float:
     """The robot's way should be a circle of the asked radius, to the asked side; its points are off by {actual} of that
     ({where}); {full} is allowed. A circle's radius is the speed divided by the rate of turning; a circle to the other
-    side is off by twice its radius."""
+    side is off by twice its radius, and what is driven back on the same arc counts too."""
     path = drive.track[round(params.after / drive.recording.step_size) :, :2]
     if len(path) < 10 or params.radius <= 0.0:
         return math.inf
@@ -400,17 +457,17 @@ def circle(drive: GradedDrive, params: CircleParams) -> float:
     rows = np.column_stack((2 * path, np.ones(len(path))))
     (a, b, _), *_ = np.linalg.lstsq(rows, (path**2).sum(axis=1), rcond=None)
     spokes = path - (a, b)
-    off = np.abs(_signed_radii(spokes, params.turning) - params.radius)
-    return float(off.max()) / params.radius
-
-
-def _signed_radii(spokes: FloatArray, turning: str) -> FloatArray:
-    """Returns (n,) distances from the middle [m]; negative if the path runs round it to the other side."""
-    if turning not in ("", "left", "right"):
-        raise ValueError(f"turning is left or right, not {turning}")
-    turned_left = float((spokes[:-1, 0] * spokes[1:, 1] - spokes[:-1, 1] * spokes[1:, 0]).sum()) > 0.0
-    lengths: FloatArray = np.hypot(spokes[:, 0], spokes[:, 1])
-    return lengths if turning in ("", "left" if turned_left else "right") else -lengths
+    crosses = spokes[:-1, 0] * spokes[1:, 1] - spokes[:-1, 1] * spokes[1:, 0]
+    if params.turning not in ("", "left", "right"):
+        raise ValueError(f"turning is left or right, not {params.turning}")
+    if not np.any(crosses):
+        return math.inf
+    radii = np.hypot(spokes[:, 0], spokes[:, 1])
+    if params.turning not in ("", "left" if crosses.sum() > 0.0 else "right"):
+        radii = -radii
+    # What it drives back on the same arc is no way round.
+    back = 1.0 - abs(crosses.sum()) / np.abs(crosses).sum()
+    return max(float(np.abs(radii - params.radius).max()) / params.radius, float(back))
 
 
 @check(none=0, full=1, unit="%", params=NodeNamesParams)
@@ -448,6 +505,7 @@ CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
             keeps_distance,
             smooth,
             moves,
+            gets_about,
             top_speed,
             short_way,
             rate,
@@ -460,8 +518,9 @@ CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
             comes_by,
             comes_back,
             faces,
-            drives_at,
             speed_by_range,
+            flag_by_range,
+            speed_by_flag,
             says,
             keeps_speed,
             answered,

@@ -78,7 +78,11 @@ class GradedDrive:
     printed_at: tuple[int, ...] = ()
     """The second of the episode in which each line was printed."""
     ahead: Mapping[str, FloatArray] = field(default_factory=dict)
-    """By a laser's topic, (k, 2): the time of each scan [s] and its range straight ahead [m]; nan where nothing was met."""
+    """By a laser's topic, (k, 3): the time of each scan [s], its range straight ahead, and its nearest range within 60 degrees
+    to either side of that [m]; nan where nothing was met."""
+    flags: Mapping[str, FloatArray] = field(default_factory=dict)
+    """By the topic of a ``std_msgs/msg/Bool``, (k, 2): the time of each tick in which the program published one [s], and the
+    last one's value, 0 or 1."""
 
     @property
     def steps(self) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from collections import Counter
 from collections.abc import Mapping
@@ -26,6 +27,7 @@ from kit.host.wire import printable
 from kit.msg.message import Message, type_name
 from kit.msg.robot_kit_msgs import GetState
 from kit.msg.sensor_msgs import LaserScan
+from kit.msg.std_msgs import Bool
 from kit.ros.graph.connections import ConnectionsReader, NodeConnections
 from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph
@@ -116,22 +118,24 @@ class RestrictedRunner(Runner):
 
 
 class TrafficRecorder:
-    """Counts the messages on each topic that nodes other than the world's own publish, second by second, and notes what a
-    laser of the world measured straight ahead."""
+    """Counts the messages on each topic that nodes other than the world's own publish, second by second, and notes what the
+    lasers of the world measured ahead and what the program's booleans said."""
 
     def __init__(self, graph: Graph, world_node: GraphNode | None) -> None:
         self._world_node = world_node
         self._counts: dict[tuple[str, str], Counter[int]] = {}
         self._nodes: dict[tuple[str, str], set[str]] = {}
-        self._ahead: dict[str, list[tuple[float, float]]] = {}
+        self._ahead: dict[str, list[tuple[float, float, float]]] = {}
+        self._flags: dict[str, dict[int, bool]] = {}
         self.stop = graph.add_message_listener(self._on_message)
 
     def _on_message(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
         if node is self._world_node:
             if isinstance(message, LaserScan) and message.ranges:
-                ahead = float(message.ranges[len(message.ranges) // 2])
-                self._ahead.setdefault(name, []).append((time_ns / 1e9, ahead))
+                self._ahead.setdefault(name, []).append((time_ns / 1e9, *_ranges_ahead(message)))
             return
+        if isinstance(message, Bool):
+            self._flags.setdefault(name, {})[time_ns] = bool(message.data)
         key = name, type_name(type(message))
         self._counts.setdefault(key, Counter())[time_ns // 10**9] += 1
         self._nodes.setdefault(key, set()).add(node.handle.full_name)
@@ -143,8 +147,26 @@ class TrafficRecorder:
         }
 
     def ahead(self) -> Mapping[str, FloatArray]:
-        """Returns (k, 2) for each laser's topic: the time [s] and the range of the ray in the middle of each scan [m]."""
+        """Returns (k, 3) for each laser's topic; see ``GradedDrive``."""
         return {name: np.array(rows, dtype=np.float64) for name, rows in self._ahead.items()}
+
+    def flags(self) -> Mapping[str, FloatArray]:
+        """Returns (k, 2) for each topic of booleans; see ``GradedDrive``."""
+        return {
+            name: np.array([(time_ns / 1e9, value) for time_ns, value in said.items()], dtype=np.float64)
+            for name, said in self._flags.items()
+        }
+
+
+AHEAD: Final = math.radians(60)
+"""What a scan sees within this angle to either side of its middle may be called ahead [rad]."""
+
+
+def _ranges_ahead(scan: LaserScan) -> tuple[float, float]:
+    """Returns the range of the ray in the middle, and the nearest of those within ``AHEAD`` of it [m]; nan for none."""
+    middle, count = len(scan.ranges) // 2, round(AHEAD / abs(scan.angle_increment or math.inf))
+    near = [each for each in scan.ranges[max(0, middle - count) : middle + count + 1] if each == each]
+    return float(scan.ranges[middle]), float(min(near, default=math.nan))
 
 
 class PrintedRecorder:
@@ -308,6 +330,7 @@ class _EpisodeWorld:
             printed=printed.lines,
             printed_at=printed.seconds,
             ahead=self._traffic_recorder.ahead(),
+            flags=self._traffic_recorder.flags(),
             fingerprint=self._fingerprint.text,
             level=int(program.level),
             answers=self._service_caller.answers(),

@@ -30,7 +30,7 @@ def confine_before_reading(
     ``kernel_modules``: those of ``kit.kernels`` that it will use. ``beside``: other paths that it will read.
     """
     # Only here: a world that cannot be read needs no numba, and a student's own check is not confined.
-    from grader.ci import TEACHERS_STEMS
+    from grader.assignment import TEACHERS_STEMS
     from kit.host.sandbox.confinement import confine_reader
 
     granted = find_grants([file.parent])

@@ -17,6 +17,7 @@ from kit.cli.shared_game import guest, host
 from kit.controllers import find_controller, prepare_workspace
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
 from kit.document.layout import lines_of
+from kit.document.rows import row_text
 from kit.plain_text import counted
 from kit.workspace import Workspace, WorkspaceError
 
@@ -94,8 +95,10 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     kit game leaderboard                  the best times on this machine
 
     A level can be driven once a level before it is finished or the lesson that opens it too is completed; the level of
-    the day is always open. Driving by hand, your program and your agent win separate medals; gold needs a time near the reference drive's
-    and no collisions. Each extra rule earns a star: no collisions, never standing still, one sensor, few lines of
+    the day is always open. Driving by hand, your program and your agent win separate medals, by ladders
+    of their own: bronze, silver, gold, master and, quicker than the reference drive, the record; who touches something
+    gets bronze at best. A program or an agent drives from five starts (shifted, with noise, other traffic), and the
+    middle drive counts. Each extra rule earns a star: no collisions, never standing still, one sensor, few lines of
     code, few training steps. The kit's own controllers demonstrate and earn nothing. A task used as a level (its first
     case) has no reference drive and so no medals; it has your time, your best time and its ghost. KIT_BELL=1 rings
     the bell for a new medal.
@@ -126,8 +129,8 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
             show_levels(journal, opened_workspace, terminal, chosen)
         _require_open(journal, chosen)
         click.echo(f"{chosen.title}. {chosen.story} {chosen.hint}")
-        finish, recording = _drive_line_by_line(chosen, opened_workspace)
-        _record_drive(journal, opened_workspace, chosen, DriverKind.KEYS, finish, recording)
+        drive = _drive_line_by_line(chosen, opened_workspace)
+        _record_drive(journal, opened_workspace, chosen, DriverKind.KEYS, [drive])
 
 
 @command.command("race")
@@ -145,7 +148,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
     from kit.learning.policies.policies import PolicyError
     from kit.learning.training.runs import RunError
     from kit.school.game.player_progress import facts_of_program, find_playable_level
-    from kit.school.game.race import DriverKind, race_agent, race_controller
+    from kit.school.game.race import DriverKind, agent_controller, race_from_all_starts
 
     if (controller is None) == (agent is None):
         options.fail("Give either --controller NAME or --agent RUN. To drive by hand, use `kit game play`.")
@@ -159,15 +162,16 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
                     find_controller(controller, opened_workspace.controllers),
                 )
                 facts = facts_of_program(program.file)
-                finish, recording = race_controller(chosen, program, on_second=_print_race_time)
+                drives = race_from_all_starts(chosen, program, on_second=_print_race_time)
             else:
                 driver, (policy, facts) = DriverKind.AGENT, _find_policy(agent or "", opened_workspace)
-                finish, recording = race_agent(chosen, policy, on_second=_print_race_time)
+                with agent_controller(policy) as program:
+                    drives = race_from_all_starts(chosen, program, on_second=_print_race_time)
         except (LookupError, PolicyError, RunError) as error:
             options.fail(str(error))
         finally:
-            _print_race_time(None)
-        _record_drive(journal, opened_workspace, chosen, driver, finish, recording, facts)
+            _print_race_time(0, None)
+        _record_drive(journal, opened_workspace, chosen, driver, drives, facts)
 
 
 @command.command("daily")
@@ -256,9 +260,10 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
 def replay(workspace: Path | None, level: str, driver: str | None) -> None:
     """Replay your best drive of LEVEL, or the reference drive."""
     from kit.run.recording import RecordingError, load_recording
-    from kit.school.game.ghosts import ghost_file, load_ghosts, reference_recording
+    from kit.school.game.ghosts import ghost_file, load_ghosts
     from kit.school.game.player_progress import find_playable_level
     from kit.school.game.race import DriverKind
+    from kit.school.game.references import reference_recording
 
     with _open_journal(workspace) as (_journal, opened_workspace):
         chosen = find_playable_level(level)
@@ -294,7 +299,7 @@ def replay(workspace: Path | None, level: str, driver: str | None) -> None:
 @command.command("leaderboard")
 @click.pass_obj
 def leaderboard(workspace: Path | None) -> None:
-    """Show the leaderboard of this machine: medals, then best times. Each player's own kit records the times."""
+    """Show the leaderboard of this machine: medals, then best times. Every drive on it is run again and judged here."""
     from kit.school.game.leaderboard import has_joined, leaderboard_folder, read_entries, standings
     from kit.tui.rows.level_rows import leaderboard_standings, leaderboard_times
 
@@ -303,7 +308,7 @@ def leaderboard(workspace: Path | None) -> None:
         click.echo("\n".join(lines_of([*leaderboard_standings(standings(found)), leaderboard_times(found)])))
         if not has_joined(leaderboard_folder()):
             options.say(
-                "You are not on it. `kit game join` adds your name and times; `kit game leave` removes them."
+                "You are not on it. `kit game join` adds your name and drives; `kit game leave` removes them."
             )
 
 
@@ -311,7 +316,7 @@ def leaderboard(workspace: Path | None) -> None:
 @click.option("--name", help="Your name on it (default: the one set with `kit progress name`).")
 @click.pass_obj
 def join(workspace: Path | None, name: str | None) -> None:
-    """Join the leaderboard. All users of this machine can then see your name, best times and ghosts."""
+    """Join the leaderboard. All users of this machine can then see your name and your best drives."""
     from kit.school.game.drive_records import join_leaderboard
     from kit.school.game.leaderboard import leaderboard_folder
 
@@ -328,7 +333,7 @@ def join(workspace: Path | None, name: str | None) -> None:
 @command.command("leave")
 @click.pass_obj
 def leave_(workspace: Path | None) -> None:
-    """Remove your name and times from the leaderboard."""
+    """Remove your name and drives from the leaderboard."""
     from kit.school.game.leaderboard import leaderboard_folder, remove_own_entry
 
     with _open_journal(workspace):
@@ -346,7 +351,8 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
     from kit.host.private_folder import private_folder
     from kit.run.recording import RecordingError, load_recording
     from kit.run.recording_file import RecordingFile
-    from kit.school.game.race import SEED, RaceReferee, judge_recording
+    from kit.school.game.race import RaceReferee, judge_recording
+    from kit.school.game.starts import OWN_SEED
 
     scenario = level.find_scenario()
     referee = RaceReferee(level, scenario)
@@ -366,7 +372,7 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
             PlainSession(
                 scenario,
                 find_controller("teleop", opened_workspace.controllers),
-                seed=SEED,
+                seed=OWN_SEED,
                 folder=opened_workspace.controllers,
                 record=RecordingFile(file),
                 prints_file=False,
@@ -390,7 +396,7 @@ def _print_levels(summary: GameSummary) -> None:
 
     blocks: list[Block] = [
         Text(
-            "Of each level: its number; the medals by hand, by your program and by your agent (G, S, B); the stars of five "
+            "Of each level: its number; the medals by hand, by your program and by your agent (B, S, G, M, R); the stars of five "
             "extra rules; its name; your best times, or what opens it."
         )
     ]
@@ -429,21 +435,24 @@ def _record_drive(
     opened_workspace: Workspace,
     level: GameLevel,
     driver: DriverKind,
-    finish: RaceFinish,
-    recording: Recording,
+    drives: list[tuple[RaceFinish, Recording]],
     facts: DriverFacts | None = None,
 ) -> None:
-    """Records a drive and prints what it earned."""
+    """Records a drive, or a program's drives from all starts, and prints what it earned."""
     from kit.school.game.drive_records import record_drive
-    from kit.school.game.ghosts import reference_seconds
-    from kit.school.game.medal import Medal, medal_time
     from kit.school.game.player_progress import BY_HAND
+    from kit.school.game.references import reference_seconds
+    from kit.tui.rows.level_rows import ladder_rows, starts_rows
 
+    record = record_drive(journal, opened_workspace, level, driver, drives, facts or BY_HAND)
+    finishes = [each for each, _ in drives]
+    finish = finishes[record.counts]
+    for each in starts_rows(finishes, record.counts):
+        click.echo(row_text(each))
     if finish.failure is not None:
         click.echo(f"The program stopped: {finish.failure}")
     if finish.foul:
         click.echo(f"It does not count: {finish.foul}.")
-    record = record_drive(journal, opened_workspace, level, driver, finish, recording, facts or BY_HAND)
     end = f"reached the goal after {finish.seconds:.2f} s" if finish.reached else "did not reach the goal"
     click.echo(f"{level.title}: {end}, {counted(finish.collisions, 'bump')}.")
     if record.is_shipped:
@@ -460,8 +469,8 @@ def _record_drive(
         )
     reference = reference_seconds(level)
     if reference is not None:
-        gold, silver = (medal_time(each, reference) for each in (Medal.GOLD, Medal.SILVER))
-        click.echo(f"The reference takes {reference:.2f} s: gold at {gold:.2f} s, silver at {silver:.2f} s.")
+        for each in ladder_rows(driver, reference, finish.seconds if finish.reached else None):
+            click.echo(row_text(each))
     for opened in record.unlocked:
         click.echo(f"Opened: {opened.title} ({opened.id}).")
     if record.belt:
@@ -485,8 +494,8 @@ def _find_policy(agent: str, opened_workspace: Workspace) -> tuple[Policy, Drive
     return run.policy(), DriverFacts(training_steps=run.summary().steps)
 
 
-def _print_race_time(seconds: float | None) -> None:
-    """Shows the race's time on a terminal; None clears it."""
+def _print_race_time(start: int, seconds: float | None) -> None:
+    """Shows the number of the start and the race's time on a terminal; None clears it."""
     if sys.stderr.isatty():
-        text = "" if seconds is None else f"driving: {seconds:.0f} s"
+        text = "" if seconds is None else f"start {start}: {seconds:.0f} s"
         click.echo(f"\r{text:<24}" + ("\r" if seconds is None else ""), nl=False, err=True)

@@ -39,6 +39,7 @@ from kit.learning.training.runs import (
     TrainingRun,
     create_run,
     find_run,
+    format_setting,
     list_runs,
 )
 from kit.learning.training.training import resolve_preset
@@ -401,6 +402,8 @@ def _list_settings(task: str, algo: str, preset: PresetName) -> list[str]:
     for name in found.setting_types(algorithm):
         number = found.learning_rate if name == LEARNING_RATE else getattr(found.settings, name)
         own = f"{algorithm.own_defaults().get(name)} (the library's)"
+        if isinstance(number, int | float):
+            number = format_setting(number)
         lines.append(f"  {name:24} {own if number is None else number}")
     return lines
 

@@ -21,6 +21,8 @@ from kit.world.yaml_tree import MapNode
 
 T = TypeVar("T")
 
+OWN_NAME: Final = "NAME"
+"""Stands for the keys of a mapping whose names are the writer's own: ``arguments.NAME``."""
 SHOWN_ITEMS: Final = 4
 """A longer default of equal numbers is counted instead."""
 
@@ -45,6 +47,8 @@ class _Run:
 
     decided: Mapping[str, str]
     """The options that choices take in it, by key."""
+    absent: str = ""
+    """A key that is not written in it."""
     keys: dict[str, FormatKey] = field(default_factory=dict)
     choices: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
@@ -62,11 +66,14 @@ class _Run:
 
 
 def format_keys(
-    read: Callable[[Section], object], alternatives: Mapping[str, Sequence[str]] = MappingProxyType({})
+    read: Callable[[Section], object],
+    alternatives: Mapping[str, Sequence[str]] = MappingProxyType({}),
+    absent: Sequence[str] = (),
 ) -> tuple[FormatKey, ...]:
     """All keys that ``read`` can ask for, in the order of its questions, whatever is chosen.
 
-    ``alternatives``: texts by which the reader tells cases apart although any other text is allowed too.
+    ``alternatives``: texts by which the reader tells cases apart although any other text is allowed too. ``absent``: keys in
+    whose place the reader asks for others, where they are not written.
 
     >>> def read(section: Section) -> None:
     ...     section.number("radius", 1.0, above=0)
@@ -74,17 +81,17 @@ def format_keys(
     (FormatKey(key='radius', type='number, greater than 0', default='1', only_with=''),)
     """
     runs: list[_Run] = []
-    pending: list[dict[str, str]] = [{}]
+    pending = [_Run({}), *(_Run({}, each) for each in absent)]
     tried: set[tuple[str, str]] = set()
     while pending:
-        run = _Run(pending.pop(0))
+        run = pending.pop(0)
         read(_NotingSection(run, "", alternatives))
         runs.append(run)
         for key, options in run.choices.items():
             for option in options:
                 if key not in run.decided and (key, option) not in tried:
                     tried.add((key, option))
-                    pending.append({**run.decided, key: option})
+                    pending.append(_Run({**run.decided, key: option}))
     return tuple(_merged(runs))
 
 
@@ -126,9 +133,13 @@ class _NotingSection(Section):
     def _note(self, key: str, type_: str, default: object = REQUIRED) -> None:
         self._run.note(self._prefix + key, type_, default)
 
+    def keys(self) -> tuple[str, ...]:
+        """One key, which stands for all names that are the writer's own."""
+        return (OWN_NAME,)
+
     def has(self, key: str) -> bool:
         self._run.guarded.add(self._prefix + key)
-        return True
+        return self._prefix + key != self._run.absent
 
     def is_blank(self, key: str) -> bool:
         return False
@@ -148,7 +159,8 @@ class _NotingSection(Section):
 
     def name(self, key: str, default: str | Required = REQUIRED) -> str:
         self._note(key, "name", default)
-        return super().name(key, default)
+        options = tuple(self._alternatives.get(self._prefix + key, ()))
+        return self._decide(key, options) if options else super().name(key, default)
 
     @overload
     def choice(self, key: str, options: Mapping[str, T]) -> T | None: ...
@@ -255,6 +267,8 @@ class _NotingSection(Section):
     @overload
     def section(self, key: str, default: None) -> Section | None: ...
     def section(self, key: str, default: Required | None = REQUIRED) -> Section | None:
+        if default is None and self._prefix + key == self._run.absent:
+            return None
         self._note(key, "mapping", {} if default is None else default)
         return _NotingSection(self._run, f"{self._prefix}{key}.", self._alternatives)
 

@@ -1,7 +1,7 @@
 """A Python file with functions, called in a process of its own and compared with the teacher's.
 
-``reference.py`` in the assignment's folder, which is the teacher's and runs in the grader, has each function as it should
-be, and beside it the cases it is called with::
+``reference.py`` in the assignment's folder, which is the teacher's and runs apart from the grader (``grader.author_code``), has
+each function as it should be, and beside it the cases it is called with::
 
     def nearest(ranges): ...
 
@@ -19,9 +19,11 @@ The assignment names the functions; ``secret.yaml`` may set another seed::
 
 from __future__ import annotations
 
+import ast
 import importlib.util
 import math
 import random
+import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
@@ -32,6 +34,7 @@ from types import ModuleType
 from typing import Any, Final
 
 from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, SeedSet, counterpart_seed, read_seed
+from grader.author_code import AuthorCodeError, run_author_code
 from grader.check import check
 from grader.evidence.contract import (
     CachingCollector,
@@ -51,6 +54,8 @@ REFERENCE: Final = "reference.py"
 CASES_SUFFIX: Final = "_cases"
 """Suffix of the function that makes a function's cases."""
 MAX_CASES: Final = 500
+REFERENCE_LIMIT_S: Final = 60.0
+"""Wall clock of the reference for all cases of a submission."""
 MAX_SHOWN: Final = 9
 """The most entries of a list that feedback shows."""
 
@@ -128,13 +133,13 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     secret = None if files.secret is None else read_seed(files.secret)
     secret_seeds = () if secret is None else (secret,)
     try:
-        module = load_reference(file)
-    except (OSError, SyntaxError) as error:
+        defined = _names_in(file)
+    except (OSError, ValueError, SyntaxError) as error:
         files.public.error(f"{REFERENCE}, which has the functions as they should be, cannot be read: {error}")
         return KindSettings(task=FunctionsTask(spec, file, seed, secret), secret_seeds=secret_seeds)
     for each in spec:
         for name in (each.name, each.name + CASES_SUFFIX):
-            if not callable(getattr(module, name, None)):
+            if name not in defined:
                 files.public.error(f"{REFERENCE} has no function {name}()", "functions")
     return KindSettings(task=FunctionsTask(spec, file, seed, secret), secret_seeds=secret_seeds)
 
@@ -153,6 +158,20 @@ def _function_specs(section: Section) -> Iterator[FunctionSpec]:
         names.add(spec.name)
 
 
+def _names_in(file: Path) -> frozenset[str]:
+    """Returns the names of the functions that a Python file defines or imports, without running it. Raises OSError,
+    ValueError and SyntaxError."""
+    names: set[str] = set()
+    for node in ast.parse(file.read_bytes(), file.name).body:
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            names.add(node.name)
+        elif isinstance(node, (ast.Import, ast.ImportFrom)):
+            names |= {each.asname or each.name for each in node.names}
+        elif isinstance(node, ast.Assign):
+            names |= {each.id for each in node.targets if isinstance(each, ast.Name)}
+    return frozenset(names)
+
+
 def load_reference(file: Path) -> ModuleType:
     """Imports the teacher's reference as a new module each time. Raises what it raises."""
     spec = importlib.util.spec_from_file_location(f"reference_of_{file.parent.name}", file)
@@ -169,6 +188,20 @@ def cases_of(module: ModuleType, name: str, seed: int) -> Sequence[Mapping[str, 
     return list(islice(make(random.Random(f"{name} {seed}")), MAX_CASES))
 
 
+def answer_cases(file: Path, wanted: Sequence[tuple[str, int]]) -> list[Json]:
+    """Returns for each function and seed a list of cases, each with the reference's answer; or why there is none."""
+    module = load_reference(file)
+    return [_answers_of(module, name, seed) for name, seed in wanted]
+
+
+def _answers_of(module: ModuleType, name: str, seed: int) -> Json:
+    try:
+        right = getattr(module, name)
+        return [[case, _as_json(right(**case))] for case in cases_of(module, name, seed)]
+    except Exception:  # noqa: BLE001  # an error in one function costs no other
+        return traceback.format_exc()
+
+
 class FunctionCollector(CachingCollector):
     """Calls each function when a criterion first needs it, so that an error in one costs no other."""
 
@@ -178,7 +211,8 @@ class FunctionCollector(CachingCollector):
         self._assignment = assignment
         self._file = file
         self._secret = options.secret and self._task.secret_seed is not None
-        self._reference = load_reference(self._task.reference)
+        self._known: dict[tuple[str, int], Json] = {}
+        """By function and seed: each case with the right answer, or why there are none."""
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         name = self._function(criterion.params.function)
@@ -214,19 +248,38 @@ class FunctionCollector(CachingCollector):
         run = partial(self._compare, spec, seed, EvidenceRecord(label=label, secret=secret))
         return self._collect((spec.name, secret), run, label, secret=secret)
 
+    def _cases(self, name: str, seed: int) -> Sequence[tuple[Mapping[str, Json], Json]]:
+        """Returns the cases of a function for this seed, each with the right answer. Raises AuthorCodeError."""
+        if (name, seed) not in self._known:
+            wanted = {(name, seed)}
+            if not self._known:  # all that is sure to be needed, at once
+                seeds = [self._task.seed]
+                if self._secret and self._task.secret_seed is not None:
+                    seeds.append(self._task.secret_seed)
+                wanted |= {(each.name, one) for each in self._task.functions for one in seeds}
+            ordered = sorted(wanted)
+            file = self._task.reference
+            answers = run_author_code(
+                lambda: answer_cases(file, ordered), file.parent, self.level, REFERENCE_LIMIT_S
+            )
+            self._known.update(zip(ordered, answers, strict=True))
+        known = self._known[name, seed]
+        if isinstance(known, str):
+            raise AuthorCodeError(known)
+        return [(case, answer) for case, answer in known]
+
     def _compare(self, spec: FunctionSpec, seed: int, blank: EvidenceRecord) -> EvidenceRecord:
         """Calls the function with the cases of a seed. ``blank``: what the record is called."""
-        cases = cases_of(self._reference, spec.name, seed)
-        right = getattr(self._reference, spec.name)
+        cases = self._cases(spec.name, seed)
         differences = []
         clock = self._clock
         case: Mapping[str, Json] | None = None
         try:
             limits = clock.shorten(self._assignment.limits)
             with StudentFunctions(self._file, limits=limits, level=self.level) as functions:
-                for case in cases:
+                for case, expected in cases:
                     clock.check()
-                    expected, actual = _as_json(right(**case)), functions.call_json(spec.name, case)
+                    actual = functions.call_json(spec.name, case)
                     if not is_close(expected, actual, spec.within):
                         differences.append(CaseDifference(case, expected, actual))
                 printed = tuple(printable(line.text) for line in functions.take_output().lines)

@@ -108,4 +108,5 @@ def mean_success(
         training.test_last_steps()
         progress.show_exam()
         shares.append(evaluator.test(learner.policy(), budget.episodes, derive_seed(seed, "exam")).mean)
+        progress.add_exam(shares[-1])
     return fmean(shares)

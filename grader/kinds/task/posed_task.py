@@ -38,8 +38,10 @@ from kit.learning.tasks.learning_task import LearningTask, TaskCase
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.presets import LinearSchedule, find_preset
+from kit.learning.training.tabular import table_rows
 from kit.learning.training.training import make_learner
 from kit.plain_files import is_file_there
+from kit.plain_text import counted
 
 TEACHING_REWARD: Final = "progress"
 """The kit's reward by which a robot is taught to arrive, to see what its drives earn by the task's own reward."""
@@ -49,6 +51,8 @@ TEACHERS: Final = 4
 """Most robots that are trained, one after the other, until one arrives."""
 DRIVES: Final = 32
 """Drives whose mean return is that of arriving."""
+TABLE_EDGES: Final = (0.2,)
+"""Between the bins of the tables that learn a task."""
 TESTS: Final = 6
 """Tests during a training."""
 
@@ -161,7 +165,7 @@ class PosedTask:
             learning_rate=LinearSchedule(0.2, 0.02),
             exploration=LinearSchedule(0.3, 0.02),
             discount=0.99,
-            edges=(0.2,),
+            edges=TABLE_EDGES,
             worlds=16,
             train_on=names,
             order=CaseOrder.MIXED,
@@ -236,7 +240,13 @@ class PosedTask:
             for exam in exams
         )
         shares = ", ".join(f"{training.accuracy:.2f}" for training in self.results.trainings)
-        return PosedMeasure(surest, f"The tests of its trainings: {shares}.", self.results.picture())
+        inputs = int(self.task.observation.space(self.task.robots).shape[0])
+        rows = table_rows(inputs, len(TABLE_EDGES) + 1)
+        sees = (
+            f"It sees {counted(inputs, 'number')}, so its table has {counted(rows, 'row')} to fill: fewer are learned sooner; "
+            "with too few, places look alike that ask for different actions."
+        )
+        return PosedMeasure(surest, f"The exams of its trainings: {shares}. {sees}", self.results.picture())
 
     def _measure_arriving(self, params: Mapping[str, str]) -> PosedMeasure:
         if isinstance(self.policy_test, str):

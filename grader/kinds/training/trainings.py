@@ -87,7 +87,9 @@ def _run_training(
     claimed = monitor.best_accuracy if settings.keeps_best else monitor.last_accuracy
     progress.show_exam()
     exam = monitor.examine(policy, budget.episodes, derive_seed(seed, "exam"))
-    return TrainingResult(progress.number, learner.steps, tuple(monitor.tests), claimed, exam)
+    result = TrainingResult(progress.number, learner.steps, tuple(monitor.tests), claimed, exam)
+    progress.add_exam(result.accuracy)
+    return result
 
 
 def _learner(

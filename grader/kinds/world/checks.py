@@ -240,9 +240,23 @@ def noise(run: WorldRun, params: NoiseParams) -> Iterator[str]:
         yield f"on {params.topic} what stands still spreads by {spread:.4g} m, not {params.deviation:g} m"
 
 
-@run_check()
-def drives(run: WorldRun, params: NoParams) -> Iterator[str]:
+@dataclass(frozen=True, slots=True)
+class DrivesParams:
+    start_x: float = UNSPECIFIED
+    start_y: float = UNSPECIFIED
+    """Where the robot must begin: from its target there is no way left."""
+    within: float = 0.3
+    """m"""
+
+
+@run_check(DrivesParams)
+def drives(run: WorldRun, params: DrivesParams) -> Iterator[str]:
     """Our driver does not reach its target in your world ({where}):"""
+    for wanted, actual, axis in zip((params.start_x, params.start_y), run.run.start, "xy", strict=False):
+        if abs(actual - wanted) > params.within:
+            yield f"the robot begins at {axis} = {format_metres(actual)}; {format_metres(wanted)} is wanted"
+    if run.run.reached_s is not None and run.run.distance < LEAST_WAY:
+        yield "the robot is at its target before it has driven"
     if run.run.reached_s is None:
         away = "" if run.run.target_distance is None else f"it ended {run.run.target_distance:.1f} m away"
         yield ", ".join(
@@ -254,6 +268,10 @@ def drives(run: WorldRun, params: NoParams) -> Iterator[str]:
             )
             if part
         )
+
+
+LEAST_WAY: Final = 0.1
+"""A robot that drove less did not drive to its target [m]."""
 
 
 @check(none=1, full=0, unit="bumps")

@@ -210,6 +210,8 @@ class RunFacts(JsonRecord):
     seconds: float = 0.0
     topics: tuple[TopicStatistics, ...] = ()
     reached_s: float | None = None
+    start: tuple[float, ...] = ()
+    """x and y of the robot's start in the world [m]; empty without a robot."""
     target_distance: float | None = None
     """From the robot's hull to the target at the end [m]."""
     distance: float = 0.0

@@ -167,6 +167,7 @@ def run_world(world: World, spec: WorldRunSpec) -> RunFacts:
         seconds=ticks * STEP,
         topics=topic_recorder.statistics(),
         reached_s=score.reached_s,
+        start=() if model is None else (model.pose.x, model.pose.y),
         target_distance=score.target_m
         if score.target_m is not None and math.isfinite(score.target_m)
         else None,

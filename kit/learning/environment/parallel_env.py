@@ -9,6 +9,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from kit.installation import install_command
 from kit.learning.environment.env import Observation, TaskEnv, resolve_task
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.catalogue import WHEELCHAIRS
@@ -19,7 +20,7 @@ try:
     from pettingzoo import ParallelEnv
 except ImportError:
     raise ImportError(
-        "PettingZoo is not installed. In the kit's folder: pip install -c constraints.txt -e '.[pettingzoo]'"
+        f"PettingZoo is not installed. To have it, type: {install_command('pettingzoo')}"
     ) from None
 
 

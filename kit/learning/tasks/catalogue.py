@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Final
 
+from kit.extensions import folders
 from kit.learning.tasks.learning_task import LearningTask, UnknownTask
 from kit.learning.tasks.own_files import workspace_task_file
 from kit.learning.tasks.task_reader import TASK_FILE, read_task
@@ -53,6 +54,9 @@ def find_task_file(name: str) -> Path | None:
         raise UnknownTask(f"there is no file {quoted(name, 200)}")
     if own := workspace_task_file(name):
         return own
+    for _, folder in folders("tasks"):
+        if is_file_there(folder / f"{name}.yaml"):
+            return folder / f"{name}.yaml"
     raise UnknownTask(f"there is no task {quoted(name)}: {suggestion(name, names)}")
 
 

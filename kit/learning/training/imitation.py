@@ -137,6 +137,9 @@ class ImitationLearner:
             apart = self._network(torch.from_numpy(seen)).numpy() - done
         return tuple(np.sqrt(np.square(apart).mean(axis=0)).astype(float).tolist())
 
+    def measures(self) -> dict[str, float]:
+        return {}
+
     def snapshot(self) -> Any:
         return copy.deepcopy(self._network.state_dict())
 

@@ -6,6 +6,7 @@ The card of a drive: its path in dots, its time and its medal, as text to share.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.render.world_text import scene_rows
 from kit.run.recording import Recording
 from kit.school.game import leaderboard
-from kit.school.game.ghosts import load_ghosts, reference_seconds, save_ghost
+from kit.school.game.ghosts import best_recordings, save_ghost
 from kit.school.game.levels import GameLevel, all_levels
 from kit.school.game.medal import Medal, medal_of
 from kit.school.game.player_progress import (
@@ -22,7 +23,6 @@ from kit.school.game.player_progress import (
     DAILY_PREFIX,
     DriverFacts,
     ExtraRule,
-    LevelProgress,
     belt_of,
     completed_lessons,
     daily_level,
@@ -32,17 +32,20 @@ from kit.school.game.player_progress import (
     streak,
     today,
 )
-from kit.school.game.race import DriverKind, RaceFinish
+from kit.school.game.race import DriverKind, RaceFinish, middle_drive
+from kit.school.game.references import reference_seconds
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace, write_atomically
 
 
 @dataclass(frozen=True, slots=True)
 class DriveRecord:
-    """The result of recording one drive."""
+    """The result of recording one drive, or a program's drives from all starts."""
 
+    counts: int
+    """The number of the drive that counts: a program's middle one."""
     medal: Medal
-    """Medal of this drive."""
+    """Medal of that drive."""
     rules: tuple[ExtraRule, ...]
     """Extra rules that this drive kept."""
     new_rules: tuple[ExtraRule, ...]
@@ -68,11 +71,15 @@ def record_drive(
     workspace: Workspace,
     level: GameLevel,
     driver: DriverKind,
-    finish: RaceFinish,
-    recording: Recording,
+    drives: Sequence[tuple[RaceFinish, Recording]],
     facts: DriverFacts = BY_HAND,
 ) -> DriveRecord:
-    """Records a drive. Medals and stars count even where the recording cannot be written. Raises ProgressError."""
+    """Records a drive. Medals and stars count even where the recording cannot be written. Raises ProgressError.
+
+    ``drives``: one by hand; of a program or an agent those from all starts, of which the middle one counts.
+    """
+    counts = middle_drive([finish for finish, _ in drives])
+    finish = drives[counts][0]
     levels, events = all_levels(), journal.events()
     lessons = completed_lessons(levels, events)
     before = level_progress(levels, events, lessons)
@@ -81,11 +88,13 @@ def record_drive(
     recording_file = None
     if is_best:
         try:
-            recording_file = save_ghost(workspace, level, driver, recording)
+            recording_file = save_ghost(
+                workspace, level, driver, [recording for _, recording in drives], counts
+            )
         except OSError:
             recording_file = None
     earns = level.has_medals and not facts.is_shipped
-    medal = medal_of(finish, reference_seconds(level)) if earns else Medal.NONE
+    medal = medal_of(finish, reference_seconds(level), driver) if earns else Medal.NONE
     rules = kept_rules(level, finish, facts) if earns else ()
     content = {
         **finish.as_event(driver, None if recording_file is None else recording_file.name),
@@ -100,8 +109,10 @@ def record_drive(
         belt_of([each.best_medal for each in progress if each.level.world == level.world])
         for progress in (before, after)
     )
-    _update_leaderboard(journal, workspace, level)
+    if is_best:
+        _update_leaderboard(journal, workspace, level, driver)
     return DriveRecord(
+        counts,
         medal,
         rules,
         tuple(rule for rule in rules if rule not in of_level.rules),
@@ -121,38 +132,27 @@ def record_drive(
 
 
 def join_leaderboard(journal: ProgressJournal, workspace: Workspace, name: str) -> None:
-    """Puts the player's name, times, medals and ghosts on the leaderboard. Raises LeaderboardError and ProgressError."""
-    progress = _published(journal)
-    tracks = {
-        (each.level.id, ghost.name): ghost.sampled_track()
-        for each in progress
-        if each.best_times
-        for ghost in load_ghosts(workspace, each.level)
+    """Puts the player's name and best drives on the leaderboard. Raises LeaderboardError and ProgressError."""
+    drives = {
+        (level.id, driver): recordings
+        for level in (*all_levels(), daily_level(today()))
+        for driver in DriverKind
+        if (recordings := best_recordings(workspace, level, driver))
     }
-    leaderboard.publish_entry(leaderboard.leaderboard_folder(), name, progress, tracks)
+    leaderboard.publish_drives(leaderboard.leaderboard_folder(), name, drives)
 
 
-def _published(journal: ProgressJournal) -> tuple[LevelProgress, ...]:
-    """The progress that others may see: in all levels, and in that of the day."""
-    return level_progress((*all_levels(), daily_level(today())), journal.events(EventKind.FINISH))
-
-
-def _update_leaderboard(journal: ProgressJournal, workspace: Workspace, driven: GameLevel) -> None:
-    """Updates the player's entry on the leaderboard after a drive, if the player has joined it."""
+def _update_leaderboard(
+    journal: ProgressJournal, workspace: Workspace, level: GameLevel, driver: DriverKind
+) -> None:
+    """Puts the player's best drive on the leaderboard, if the player has joined it."""
     folder = leaderboard.leaderboard_folder()
-    if not leaderboard.has_joined(folder):
+    recordings = best_recordings(workspace, level, driver)
+    if not recordings or not leaderboard.has_joined(folder):
         return
-    mine = [each for each in leaderboard.read_entries(folder) if each.is_mine]
-    tracks: dict[tuple[str, str], Sequence[Sequence[float]]] = {
-        (each.level, each.driver.value): each.track for each in mine
-    }
-    for ghost in load_ghosts(workspace, driven):  # those of other levels are there
-        tracks[driven.id, ghost.name] = ghost.sampled_track()
-    name = next((each.name for each in mine), journal.student_name or "somebody")
-    try:
-        leaderboard.publish_entry(folder, name, _published(journal), tracks)
-    except leaderboard.LeaderboardError:
-        return  # the drive counts without it
+    name = leaderboard.own_name(folder) or journal.student_name or "somebody"
+    with suppress(leaderboard.LeaderboardError):  # the drive counts without it
+        leaderboard.publish_drives(folder, name, {(level.id, driver): recordings})
 
 
 COLUMNS, ROWS = 48, 14

@@ -1,126 +1,23 @@
-"""Drives to race against: the reference drives that ship with the kit, each driver's best, and splits between two drives."""
+"""Drives to race against: the reference's, each driver's best, classmates', and splits between two drives."""
 
 from __future__ import annotations
 
-import json
 import math
-from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from kit.arrays import FloatArray
-from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.recording import Recording, RecordingError, load_recording, save_recording
 from kit.run.scenario import Scenario
-from kit.run.session import Session
 from kit.school.game import leaderboard
 from kit.school.game.levels import GameLevel
-from kit.school.game.race import DriverKind, RaceFinish, run_race
-from kit.school.lessons.reading import lessons_folder
+from kit.school.game.race import DriverKind
+from kit.school.game.references import reference_recording
 from kit.workspace import Workspace
-
-DRIVES_FILE: Final = "reference_drives.json"
-
-
-@dataclass(frozen=True, slots=True)
-class DriveCommand:
-    """A command that is held for a time."""
-
-    ticks: int
-    speed: float
-    """Forward [m/s]; of the point between two robots."""
-    turn: float
-    """[rad/s], or the steering angle of a tricycle [rad]."""
-
-
-@dataclass(frozen=True, slots=True)
-class ReferenceDrive:
-    """All commands of a drive, from the first tick on."""
-
-    commands: tuple[DriveCommand, ...]
-    seconds: float = 0.0
-    """When it reaches the goal [simulated s]."""
-
-
-def drives_file() -> Path:
-    """The file of all reference drives. Raises FileNotFoundError where the lessons are missing."""
-    return lessons_folder() / DRIVES_FILE
-
-
-@cache
-def load_drives() -> dict[str, ReferenceDrive]:
-    """The reference drive of each level that has one, by the level's id; none where there is no such file."""
-    try:
-        content = json.loads(drives_file().read_text())
-    except FileNotFoundError:
-        return {}
-    return {
-        level: ReferenceDrive(
-            tuple(DriveCommand(int(ticks), speed, turn) for ticks, speed, turn in drive["commands"]),
-            drive["seconds"],
-        )
-        for level, drive in content.items()
-    }
-
-
-def reference_seconds(level: GameLevel) -> float | None:
-    """The time of a level's reference drive [s]; None for a level without one."""
-    drive = load_drives().get(level.reference_id)
-    return None if drive is None else drive.seconds
-
-
-def drive_reference(
-    level: GameLevel,
-    drive: ReferenceDrive | None = None,
-    on_second: Callable[[float], None] | None = None,
-) -> tuple[RaceFinish, Recording]:
-    """Drives a level's reference drive, or another one; calls ``on_second`` with the race's time [s] now and then.
-    Raises LookupError for a level that has none."""
-    if drive is None:
-        drive = load_drives().get(level.reference_id)
-        if drive is None:
-            raise LookupError(f"There is no reference drive of {level.title}.")
-    chosen = drive
-    return run_race(
-        level,
-        level.find_scenario(),
-        lambda session: session.runner.participants.append(_CommandPlayer(session, chosen)),
-        on_second,
-    )
-
-
-class _CommandPlayer:
-    """Gives the robots of a session the commands of a drive; the last one is held."""
-
-    def __init__(self, session: Session, drive: ReferenceDrive) -> None:
-        self._session = session
-        self._scenario = session.scenario
-        starts = self._scenario.starts
-        self._half_gap = 0.5 * math.dist(starts[0][:2], starts[1][:2]) if len(starts) > 1 else 0.0
-        self._due: dict[int, DriveCommand] = {}
-        tick = 0
-        for command in drive.commands:
-            self._due[tick] = command
-            tick += command.ticks
-
-    def exchange(self) -> bool:
-        """Publishes the command that begins at this tick, if one does."""
-        command = self._due.pop(self._session.runner.simulation.tick, None)
-        if command is None:
-            return False
-        for name, offset in zip(self._scenario.partners, (-self._half_gap, self._half_gap), strict=False):
-            twist = Twist(
-                linear=Vector3(x=command.speed + command.turn * offset), angular=Vector3(z=command.turn)
-            )
-            for topic in self._session.command_topics(name):
-                self._session.runner.accept(topic, twist)
-        return False
-
 
 FOLDER: Final = "levels"
 REFERENCE: Final = "reference"
@@ -145,25 +42,28 @@ class Ghost:
         tick = max(0, round(time_s / self.step_size))
         return [tuple(track[min(tick, len(track) - 1)].tolist()) for track in self.tracks if len(track)]
 
-    def sampled_track(self) -> list[list[float]]:
-        """The first robot's poses in steps of ``leaderboard.TRACK_STEP``, rounded: what classmates may see."""
-        if not self.tracks:
-            return []
-        stride = max(1, round(leaderboard.TRACK_STEP / self.step_size))
-        sampled: list[list[float]] = np.round(self.tracks[0][::stride], 3).tolist()
-        return sampled
-
 
 def ghosts_folder(workspace: Workspace) -> Path:
     """The folder of the recorded drives of levels."""
     return workspace.recordings / FOLDER
 
 
-def save_ghost(workspace: Workspace, level: GameLevel, driver: DriverKind, recording: Recording) -> Path:
-    """Saves a drive as the best one of its driver. Raises OSError."""
+def save_ghost(
+    workspace: Workspace,
+    level: GameLevel,
+    driver: DriverKind,
+    recordings: Sequence[Recording],
+    counts: int = 0,
+) -> Path:
+    """Saves the best drive of a driver, and beside it a program's drives from the other starts. ``counts``: the number of
+    the one that counts. Returns its file. Raises OSError."""
     file = ghost_file(workspace, level, driver)
     file.parent.mkdir(parents=True, exist_ok=True)
-    save_recording(recording, file)
+    for stale in other_start_files(workspace, level, driver):
+        stale.unlink(missing_ok=True)
+    for number, recording in enumerate(recordings):
+        name = file if number == counts else file.with_suffix(f".{recording.seed}.npz")
+        save_recording(recording, name)
     return file
 
 
@@ -185,32 +85,6 @@ def load_ghosts(workspace: Workspace, level: GameLevel) -> tuple[Ghost, ...]:
     return tuple(sorted((each for each in ghosts if each is not None), key=lambda each: each.seconds))
 
 
-_RECORDINGS: OrderedDict[GameLevel, Recording] = OrderedDict()
-MAX_RECORDINGS: Final = 8
-"""Reference drives that are kept in memory."""
-
-
-def reference_recording(
-    level: GameLevel, on_progress: Callable[[float], None] | None = None
-) -> Recording | None:
-    """The reference drive of a level, driven again; None for a level without one. Calls ``on_progress`` with the share,
-    0 to 1, that has been driven."""
-    seconds = reference_seconds(level)
-    if seconds is None:
-        return None
-    recording = _RECORDINGS.get(level)
-    if recording is None:
-
-        def share(driven: float) -> None:
-            if on_progress is not None:
-                on_progress(min(1.0, driven / max(seconds, 1e-9)))
-
-        recording = _RECORDINGS[level] = drive_reference(level, on_second=share)[1]
-        if len(_RECORDINGS) > MAX_RECORDINGS:
-            _RECORDINGS.popitem(last=False)
-    return recording
-
-
 def load_reference_ghost(
     level: GameLevel, on_progress: Callable[[float], None] | None = None
 ) -> Ghost | None:
@@ -222,12 +96,9 @@ def load_reference_ghost(
 
 def classmate_ghosts(level: GameLevel) -> tuple[Ghost, ...]:
     """The fastest drives of others who have joined the leaderboard with a drive of this level, fastest first."""
-    ghosts = []
-    for entry in leaderboard.read_entries(leaderboard.leaderboard_folder()):
-        if entry.level == level.id and not entry.is_mine and entry.track:
-            track = np.array(entry.track, dtype=np.float64)
-            ghosts.append(Ghost(entry.name, entry.seconds, (track,), leaderboard.TRACK_STEP))
-    return tuple(ghosts[:MAX_CLASSMATES])
+    entries = leaderboard.read_entries(leaderboard.leaderboard_folder(), [level])
+    others = [each for each in entries if not each.is_mine][:MAX_CLASSMATES]
+    return tuple(Ghost(each.name, each.seconds, each.tracks, each.step_size) for each in others)
 
 
 def level_ghosts(
@@ -243,6 +114,20 @@ def level_ghosts(
 def ghost_file(workspace: Workspace, level: GameLevel, driver: DriverKind) -> Path:
     """The file of a driver's best drive."""
     return ghosts_folder(workspace) / f"{level.id}.{driver.value}.npz"
+
+
+def best_recordings(workspace: Workspace, level: GameLevel, driver: DriverKind) -> list[Recording]:
+    """The recordings of a driver's best drive, of a program those from all its starts; none where one cannot be read."""
+    files = [ghost_file(workspace, level, driver), *other_start_files(workspace, level, driver)]
+    try:
+        return [load_recording(file) for file in files]
+    except (RecordingError, OSError):
+        return []
+
+
+def other_start_files(workspace: Workspace, level: GameLevel, driver: DriverKind) -> list[Path]:
+    """The files of a program's drives from the starts whose drive does not count, in no order."""
+    return list(ghosts_folder(workspace).glob(f"{level.id}.{driver.value}.*.npz"))
 
 
 def _ghost_of(name: str, recording: Recording, scenario: Scenario) -> Ghost:

@@ -1,60 +1,72 @@
-"""The leaderboard of one machine: a shared folder with one file per user who has joined.
+"""The leaderboard of one machine: a shared folder in which users who have joined put a name and the inputs of their drives.
 
-Joining is voluntary. A file counts only if its owner is the user it is named after, so users cannot write for one
-another. It holds names and times only, and leaving deletes it. The times are those that each player's own kit has
-recorded: users who edit their own journal or file can claim any time, but only for themselves. The leaderboard is
-therefore for friends, and must not be used for marks.
+Joining is voluntary, and leaving deletes what was put there. A file counts only if its owner is the user it is named after,
+so users cannot write for one another. No file says a time: everybody's own kit runs the drives again and judges them
+(``shared_drives``). That a person, and not a script, pressed the keys of a drive by hand nobody can tell: the leaderboard is
+for friends, and must not be used for marks.
 """
 
 from __future__ import annotations
 
 import json
 import os
-import stat
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any, Final
+from typing import Final
 
-from kit.school.game.medal import Medal
-from kit.school.game.player_progress import DAILY_PREFIX, LevelProgress
+from kit.arrays import FloatArray
+from kit.plain_files import open_plain_file
+from kit.run.recording import Recording
+from kit.school.game.levels import GameLevel, all_levels
+from kit.school.game.medal import RUNGS, Medal
+from kit.school.game.player_progress import DAILY_PREFIX, daily_level, today
 from kit.school.game.race import DriverKind
+from kit.school.game.shared_drives import (
+    MAX_FILE_BYTES,
+    DriveRefused,
+    JudgedDrive,
+    judge_shared_drives,
+    share_drives,
+)
 from kit.workspace import open_common_folder, write_atomically
 
 DEFAULT_FOLDER: Final = (
     "/var/tmp/robot-learning-kit-hall"  # for all users of a machine, and kept over a restart
 )
 FOLDER_VARIABLE: Final = "KIT_HALL"
-MAX_FILE_SIZE: Final = 1024 * 1024
 MAX_NAME_LENGTH: Final = 40
-TRACK_STEP: Final = 0.2
-"""Between two poses of a shared track [s]."""
-MAX_TRACK_LENGTH: Final = 3000
-MAX_COORDINATE: Final = 1e4
+MAX_NAME_BYTES: Final = 4096
+"""Of the file with a user's name."""
+MAX_JUDGED: Final = 4096
+"""Drives whose judgement is kept in memory."""
 
 
 class LeaderboardError(Exception):
     """The leaderboard cannot be used; the message says why."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class LeaderboardEntry:
-    """The best time of one user on one level, by who drove."""
+    """The best drive of one user on one level, by who drove, as it was judged here."""
 
     name: str
     level: str
     driver: DriverKind
     seconds: float
     stars: int
-    """Number of stars for extra rules."""
+    """Number of stars for extra rules, of those that a drive itself shows."""
     is_mine: bool
     medal: Medal = Medal.NONE
-    track: tuple[tuple[float, float, float], ...] = ()
-    """The first robot's poses every ``TRACK_STEP`` [m, m, rad]; may be empty."""
+    tracks: tuple[FloatArray, ...] = ()
+    """The poses of each driven robot (k, 3) [m, m, rad], ``step_size`` [s] apart."""
+    step_size: float = 0.1
     user: int = 0
     """The number of the user whose it is."""
+    is_same_platform: bool = True
+    """Whether it was driven on a machine like this one; else the referee's judgement stands, not equality to the bit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +84,7 @@ class PlayerStanding:
 
 
 def standings(entries: Sequence[LeaderboardEntry]) -> list[PlayerStanding]:
-    """Ranks all users who have joined: by gold medals, then silver ones, bronze ones and stars; the level of the day counts
+    """Ranks all users who have joined: by records, then master, gold, silver and bronze medals, and stars; the level of the day counts
     for none. ``entries``: in the order of ``read_entries``."""
     entries = [each for each in entries if not each.level.startswith(DAILY_PREFIX)]
     first: dict[str, int] = {}
@@ -90,7 +102,7 @@ def standings(entries: Sequence[LeaderboardEntry]) -> list[PlayerStanding]:
                 own[0].is_mine,
             )
         )
-    best_first = (Medal.GOLD, Medal.SILVER, Medal.BRONZE)
+    best_first = tuple(reversed(RUNGS))
     return sorted(
         found, key=lambda each: ([-each.medals[medal] for medal in best_first], -each.stars, each.name)
     )
@@ -104,114 +116,126 @@ def leaderboard_folder() -> Path:
 def has_joined(folder: Path) -> bool:
     """Whether this user has joined. The file must be theirs: another user could have made one of that name."""
     try:
-        return _own_file(folder).lstat().st_uid == os.getuid()
+        return _name_file(folder, os.getuid()).lstat().st_uid == os.getuid()
     except OSError:
         return False
 
 
-def publish_entry(
+def publish_drives(
     folder: Path,
     name: str,
-    levels_progress: Sequence[LevelProgress],
-    tracks: Mapping[tuple[str, str], Sequence[Sequence[float]]] = MappingProxyType({}),
+    drives: Mapping[tuple[str, DriverKind], Sequence[Recording]],
 ) -> None:
-    """Adds or updates this user's entry. ``tracks``: by level and driver. Raises LeaderboardError."""
-    levels = {
-        each.level.id: {
-            "stars": each.star_count,
-            "best": {driver.value: time for driver, time in each.best_times.items()},
-            "medals": {driver.value: medal.value for driver, medal in each.medals.items()},
-            "tracks": {
-                driver.value: tracks[each.level.id, driver.value]
-                for driver in each.best_times
-                if len(tracks.get((each.level.id, driver.value), ())) <= MAX_TRACK_LENGTH
-                and (each.level.id, driver.value) in tracks
-            },
-        }
-        for each in levels_progress
-        if each.best_times
-    }
+    """Adds or renews this user's name and drives. ``drives``: by level and driver; of a program those from all starts.
+    Raises LeaderboardError."""
     try:
         if problem := open_common_folder(folder):
             raise LeaderboardError(f"{folder}: {problem}.")
-        write_atomically(_own_file(folder), _encode(name[:MAX_NAME_LENGTH], levels))
+        content = json.dumps({"name": name[:MAX_NAME_LENGTH]}).encode()
+        write_atomically(_name_file(folder, os.getuid()), content)
+        for (level, driver), recordings in drives.items():
+            share_drives(recordings, _drive_file(folder, os.getuid(), level, driver))
     except OSError as error:
         raise LeaderboardError(
             f"{folder}: the leaderboard cannot be written to ({error.strerror})."
         ) from None
 
 
-def _encode(name: str, levels: Mapping[str, Mapping[str, Any]]) -> bytes:
-    """The content of a user's file, without the longest tracks where it would be too large to be read."""
-    content = {"name": name, "levels": levels}
-    excess = len(json.dumps(content).encode()) - MAX_FILE_SIZE
-    tracks = [(each["tracks"], driver) for each in levels.values() for driver in each["tracks"]]
-    for of_level, driver in sorted(tracks, key=lambda found: -len(found[0][found[1]])):
-        if excess <= 0:
-            break
-        excess -= len(json.dumps(of_level.pop(driver)))
-    return json.dumps(content).encode()
-
-
 def remove_own_entry(folder: Path) -> None:
-    """Deletes this user's entry. Raises LeaderboardError."""
+    """Deletes this user's name and drives. Raises LeaderboardError."""
     try:
-        _own_file(folder).unlink(missing_ok=True)
+        _name_file(folder, os.getuid()).unlink(missing_ok=True)
+        for file in folder.glob(f"{os.getuid()}.*.npz"):
+            file.unlink(missing_ok=True)
     except OSError as error:
         raise LeaderboardError(f"{folder}: {error.strerror}.") from None
 
 
-def read_entries(folder: Path) -> list[LeaderboardEntry]:
-    """Reads all entries, sorted by level and time. Skips files that are malformed or not owned by the user they name."""
-    entries: list[LeaderboardEntry] = []
-    with suppress(OSError):
-        for file in sorted(folder.glob("*.json")):
-            with suppress(
-                OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError
-            ):
-                entries.extend(_read_file(file))
+def own_name(folder: Path) -> str:
+    """The name under which this user has joined; empty if they have not."""
+    return _read_name(folder, os.getuid()) or ""
+
+
+def read_entries(folder: Path, levels: Sequence[GameLevel] | None = None) -> list[LeaderboardEntry]:
+    """Judges the drives of all who have joined, by default on all levels and that of the day; sorted by level and time.
+    Passes over what may not stand there. Takes about a second for twenty drives that were not judged before."""
+    entries = []
+    for user in _users(folder):
+        name = _read_name(folder, user)
+        for level in levels if levels is not None else (*all_levels(), daily_level(today())):
+            for driver in DriverKind:
+                judged = None if name is None else _judged(folder, user, level, driver)
+                if name is not None and judged is not None:
+                    entries.append(_entry(name, user, level, driver, judged))
     return sorted(entries, key=lambda each: (each.level, each.seconds, each.name))
 
 
-def _read_file(file: Path) -> Iterator[LeaderboardEntry]:
-    handle = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
-    with os.fdopen(handle, "rb") as opened:
-        status = os.fstat(handle)
-        if (
-            not stat.S_ISREG(status.st_mode)
-            or file.name != f"{status.st_uid}.json"
-            or status.st_size > MAX_FILE_SIZE
-        ):
-            return
-        content: Mapping[str, Any] = json.loads(opened.read(MAX_FILE_SIZE))
-    name = " ".join("".join(sign for sign in str(content["name"]) if sign.isprintable()).split())[
-        :MAX_NAME_LENGTH
-    ]
-    entries = [
-        LeaderboardEntry(
-            name or f"user {status.st_uid}",
-            str(level),
-            DriverKind(driver),
-            float(seconds),
-            int(each["stars"]),
-            status.st_uid == os.getuid(),
-            Medal(each["medals"].get(driver, 0)),
-            _read_track(each["tracks"].get(driver, ())),
-            status.st_uid,
-        )
-        for level, each in content["levels"].items()
-        for driver, seconds in each["best"].items()
-    ]
-    yield from (entry for entry in entries if 0 < entry.seconds < float("inf"))
+def _entry(
+    name: str, user: int, level: GameLevel, driver: DriverKind, judged: JudgedDrive
+) -> LeaderboardEntry:
+    return LeaderboardEntry(
+        name,
+        level.id,
+        driver,
+        judged.finish.seconds,
+        len(judged.rules),
+        user == os.getuid(),
+        judged.medal,
+        judged.tracks,
+        judged.step_size,
+        user,
+        judged.is_same_platform,
+    )
 
 
-def _read_track(rows: Sequence[Sequence[float]]) -> tuple[tuple[float, float, float], ...]:
-    """The poses of a shared track. Raises ValueError for anything else."""
-    poses = tuple((float(x), float(y), float(theta)) for x, y, theta in rows[:MAX_TRACK_LENGTH])
-    if not all(abs(number) < MAX_COORDINATE for pose in poses for number in pose):  # also nan and inf
-        raise ValueError("a pose that is nowhere")
-    return poses
+def _users(folder: Path) -> Iterator[int]:
+    """The numbers of the users who have joined."""
+    with suppress(OSError):
+        for file in sorted(folder.glob("*.json")):
+            if file.stem.isdecimal() and len(file.stem) < 12:
+                yield int(file.stem)
 
 
-def _own_file(folder: Path) -> Path:
-    return folder / f"{os.getuid()}.json"
+def _read_name(folder: Path, user: int) -> str | None:
+    """The name in a user's own file; None if there is none."""
+    with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
+        content = json.loads(_read_own(_name_file(folder, user), user, MAX_NAME_BYTES))
+        name = "".join(sign for sign in str(content["name"]) if sign.isprintable())
+        return " ".join(name.split())[:MAX_NAME_LENGTH] or f"user {user}"
+    return None
+
+
+def _judged(folder: Path, user: int, level: GameLevel, driver: DriverKind) -> JudgedDrive | None:
+    """A user's shared drive of a level, run again; None if there is none that may stand here."""
+    file = _drive_file(folder, user, level.id, driver)
+    try:
+        content = _read_own(file, user, MAX_FILE_BYTES)
+        return _judge(content, level, driver)
+    except (OSError, DriveRefused):
+        return None
+
+
+@lru_cache(MAX_JUDGED)
+def _judge(content: bytes, level: GameLevel, driver: DriverKind) -> JudgedDrive | None:
+    """Judges the content of a file once; None if it is refused."""
+    with suppress(DriveRefused):
+        return judge_shared_drives(content, level, driver)
+    return None
+
+
+def _read_own(file: Path, user: int, limit: int) -> bytes:
+    """The content of a plain file that belongs to the user it is named after. Raises OSError for any other."""
+    with open_plain_file(file, follows_links=False) as opened:
+        status = os.fstat(opened.fileno())
+        content = opened.read(limit + 1)
+    if status.st_uid != user or len(content) > limit:
+        raise OSError(f"{file} is not that user's, or too large")
+    return content
+
+
+def _name_file(folder: Path, user: int) -> Path:
+    return folder / f"{user}.json"
+
+
+def _drive_file(folder: Path, user: int, level: str, driver: DriverKind) -> Path:
+    return folder / f"{user}.{level}.{driver.value}.npz"

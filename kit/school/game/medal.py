@@ -1,17 +1,14 @@
-"""The medals of the game, and the times that earn them."""
+"""The medals of the game, and the ladder of times that earn them: one for hands, one for programs and agents."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from enum import IntEnum
+from types import MappingProxyType
 from typing import Final
 
-from kit.school.game.race import RaceFinish
-
-GOLD_SHARE: Final = 1.02
-"""Gold: at most this many times the reference drive's time, and nothing touched."""
-SILVER_SHARE: Final = 1.05
-"""Silver, likewise."""
+from kit.school.game.race import DriverKind, RaceFinish
 
 
 class Medal(IntEnum):
@@ -19,28 +16,42 @@ class Medal(IntEnum):
 
     NONE = 0
     BRONZE = 1
-    """The goal was reached."""
     SILVER = 2
     GOLD = 3
+    MASTER = 4
+    RECORD = 5
+    """Quicker than the reference drive."""
 
     @property
     def title(self) -> str:
         return "no medal" if self is Medal.NONE else self.name.lower()
 
 
-def medal_of(finish: RaceFinish, reference_s: float | None) -> Medal:
-    """The medal of a finish. ``reference_s``: the reference drive's time [s]; None: there is only bronze."""
-    if not finish.reached:
+RUNGS: Final = tuple(medal for medal in Medal if medal is not Medal.NONE)
+"""Every medal that can be earned, the lowest first."""
+_TOP: Final = {Medal.MASTER: 1.02, Medal.RECORD: 1.0}
+_PROGRAM: Final = {Medal.BRONZE: 1.25, Medal.SILVER: 1.10, Medal.GOLD: 1.04, **_TOP}
+SHARES: Final[Mapping[DriverKind, Mapping[Medal, float]]] = MappingProxyType(
+    {
+        DriverKind.KEYS: {Medal.BRONZE: 2.0, Medal.SILVER: 1.3, Medal.GOLD: 1.1, **_TOP},
+        DriverKind.CONTROLLER: _PROGRAM,
+        DriverKind.AGENT: _PROGRAM,
+    }
+)
+"""How many times the reference drive's time each driver may take for a medal; for the record, less than that."""
+
+
+def medal_of(finish: RaceFinish, reference_s: float | None, driver: DriverKind = DriverKind.KEYS) -> Medal:
+    """The medal of a finish. ``reference_s``: the reference drive's time [s]; None: there are no medals. Who has touched
+    something gets bronze at best."""
+    if not finish.reached or reference_s is None:
         return Medal.NONE
-    if finish.collisions or reference_s is None:
-        return Medal.BRONZE
-    earned = (
-        medal for medal in (Medal.GOLD, Medal.SILVER) if finish.seconds <= medal_time(medal, reference_s)
-    )
-    return next(earned, Medal.BRONZE)
+    earned = [medal for medal in RUNGS if finish.seconds <= medal_time(medal, reference_s, driver)]
+    best = max(earned, default=Medal.NONE)
+    return min(best, Medal.BRONZE) if finish.collisions else best
 
 
-def medal_time(medal: Medal, reference_s: float) -> float:
-    """The longest time that earns gold or silver [s], in whole hundredths as it is shown: a tick takes one."""
-    share = GOLD_SHARE if medal is Medal.GOLD else SILVER_SHARE
-    return math.floor(round(100.0 * share * reference_s, 6)) / 100.0
+def medal_time(medal: Medal, reference_s: float, driver: DriverKind = DriverKind.KEYS) -> float:
+    """The longest time that earns a medal [s], in whole hundredths as it is shown: a tick takes one."""
+    hundredths = math.floor(round(100.0 * SHARES[driver][medal] * reference_s, 6))
+    return (hundredths - (medal is Medal.RECORD)) / 100.0

@@ -202,8 +202,8 @@ def level_progress(
 
 
 def belt_of(best: Sequence[Medal]) -> str:
-    """The belt of a world, by the best medal on each of its levels: white for its first medal, yellow for one on every level, green and blue for silver on half of
-    the levels and on all, brown and black likewise for gold."""
+    """The belt of a world, by the best medal on each of its levels: white for its first medal, yellow for one on every level,
+    green and blue for silver on half of the levels and on all, brown and black likewise for gold."""
 
     def share(medal: Medal) -> float:
         return sum(each >= medal for each in best) / len(best) if best else 0.0

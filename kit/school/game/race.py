@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -30,6 +31,7 @@ from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel, LevelConditions
+from kit.school.game.starts import OWN_SEED, scenario_from, seeds_of
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import MapCard
 
@@ -242,8 +244,6 @@ OUTPUT_INTERVAL: Final = 10
 """Ticks after which the program's output is read."""
 ALLOWED_SERVICES: Final = ("move_model", "pause", "resume", "toggle_pause", "change_rate")
 """World services allowed during a race; models may only be moved to their start."""
-SEED: Final = 1
-"""Seed of every race, so that conditions are equal."""
 
 
 class DriverKind(StrEnum):
@@ -374,16 +374,43 @@ def race_controller(
     *,
     on_second: Callable[[float], None] | None = None,
     wall_limit_s: float = math.inf,
+    seed: int = OWN_SEED,
 ) -> tuple[RaceFinish, Recording]:
-    """Lets a controller drive the level, as fast as the simulation runs. ``wall_limit_s``: seconds of wall clock after which it
-    has failed."""
+    """Lets a controller drive the level once, as fast as the simulation runs. ``wall_limit_s``: seconds of wall clock after
+    which it has failed. ``seed``: of the start."""
 
     def install_driver(session: Session) -> None:
         session.drive_with(controller)
         session.wait_until_driven()
 
-    scenario, confinement = level.find_scenario(), _confinement(controller)
-    return run_race(level, scenario, install_driver, on_second, confinement, wall_limit_s)
+    scenario, confinement = scenario_from(level, seed), _confinement(controller)
+    return run_race(level, scenario, install_driver, on_second, confinement, wall_limit_s, seed)
+
+
+def race_from_all_starts(
+    level: GameLevel,
+    controller: ControllerFile,
+    *,
+    first: tuple[RaceFinish, Recording] | None = None,
+    on_second: Callable[[int, float], None] = lambda start, seconds: None,
+) -> list[tuple[RaceFinish, Recording]]:
+    """Lets a controller drive the level from each of its starts. ``first``: the drive from the level's own start, where it
+    was watched. ``on_second``: gets the number of the start, from 1, and the seconds driven; what it raises ends the race."""
+    drives = [] if first is None else [first]
+    for number, seed in enumerate(seeds_of(level)[len(drives) :], len(drives) + 1):
+        drives.append(race_controller(level, controller, on_second=partial(on_second, number), seed=seed))
+    return drives
+
+
+def finish_order(finish: RaceFinish) -> tuple[bool, bool, float]:
+    """Smaller is better: at the goal, without a bump, soon."""
+    return not finish.reached, finish.collisions > 0, finish.seconds
+
+
+def middle_drive(finishes: Sequence[RaceFinish]) -> int:
+    """The number of the drive that counts: as many are better as are worse."""
+    in_order = sorted(range(len(finishes)), key=lambda number: finish_order(finishes[number]))
+    return in_order[len(in_order) // 2]
 
 
 def open_race(
@@ -393,7 +420,7 @@ def open_race(
 
     The caller closes the session.
     """
-    session = Session(scenario, seed=SEED, level=_confinement(controller), always_scan=True)
+    session = Session(scenario, seed=OWN_SEED, level=_confinement(controller), always_scan=True)
     referee = RaceReferee(level, scenario)
     recorder = Recorder.for_scenario(scenario, session.runner.simulation)
     session.runner.observers += [referee, recorder]
@@ -422,25 +449,24 @@ def agent_controller(policy: Policy) -> Iterator[ControllerFile]:
         yield find_controller(str(file))
 
 
-def race_agent(
-    level: GameLevel, policy: Policy, *, on_second: Callable[[float], None] | None = None
-) -> tuple[RaceFinish, Recording]:
-    """Lets a trained policy drive the level. Raises PolicyError."""
-    with agent_controller(policy) as controller:
-        return race_controller(level, controller, on_second=on_second)
-
-
-def judge_recording(level: GameLevel, recording: Recording) -> RaceFinish:
-    """Runs a recorded drive again, bit for bit, and judges it. Raises ValueError if it is of another level."""
-    scenario = level.find_scenario()
+def run_again(level: GameLevel, recording: Recording) -> tuple[RaceFinish, Recording]:
+    """Runs a recorded drive again, bit for bit, and judges it. Raises ValueError if it is of another level or from a start
+    that it has not, and RecordingError where an input is not possible in its world."""
+    scenario = scenario_from(level, recording.seed)
     if (recording.place, recording.case) != (scenario.name, level.case):
         raise ValueError(f"this is a drive of {recording.place} {recording.case or ''}, not of {level.title}")
     with Session(scenario, seed=recording.seed, step_size=recording.step_size) as session:
         referee = RaceReferee(level, scenario)
-        session.runner.observers.append(referee)
+        recorder = Recorder.for_scenario(scenario, session.runner.simulation)
+        session.runner.observers += [referee, recorder]
         session.play_back(recording)
-        run_until(session.runner, ticks=recording.ticks, ends=(referee.when_finished,))
-        return referee.finish
+        run_until(session.runner, ticks=recording.ticks)
+        return referee.finish, recorder.recording()
+
+
+def judge_recording(level: GameLevel, recording: Recording) -> RaceFinish:
+    """The finish of a recorded drive. Raises as ``run_again``."""
+    return run_again(level, recording)[0]
 
 
 def run_race(
@@ -450,9 +476,11 @@ def run_race(
     on_second: Callable[[float], None] | None = None,
     confinement: Confinement = INTERACTIVE_LEVEL,
     wall_limit_s: float = math.inf,
+    seed: int = OWN_SEED,
 ) -> tuple[RaceFinish, Recording]:
+    """Runs a drive from ``scenario``'s start to its end. ``seed``: of that start."""
     ends_at = time.monotonic() + wall_limit_s
-    with Session(scenario, seed=SEED, level=confinement) as session:
+    with Session(scenario, seed=seed, level=confinement) as session:
         simulation = session.runner.simulation
         referee, recorder = RaceReferee(level, scenario), Recorder.for_scenario(scenario, simulation)
         session.runner.observers += [referee, recorder]

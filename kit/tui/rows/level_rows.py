@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
@@ -15,16 +16,31 @@ from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.leaderboard import LeaderboardEntry, PlayerStanding
 from kit.school.game.levels import GameLevel, GameWorld, all_levels, all_worlds
-from kit.school.game.medal import Medal, medal_of, medal_time
+from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time
 from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of, daily_level, today
 from kit.school.game.race import DriverKind, RaceFinish
+from kit.school.game.starts import SEEDS
 from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedGameState, SharedMode, SharedPhase
 
 TITLE_WIDTH: Final = 24
 STAR, NO_STAR, SHUT = "*", ".", "-"
-MEDAL_SIGNS: Final = {Medal.NONE: NO_STAR, Medal.BRONZE: "B", Medal.SILVER: "S", Medal.GOLD: "G"}
-MEDAL_STYLES: Final = {Medal.NONE: "dim", Medal.BRONZE: "", Medal.SILVER: "bold", Medal.GOLD: "warn"}
-HEADER: Final = "  level" + " " * (TITLE_WIDTH - 4) + "hand  program  agent   stars    best   gold at"
+MEDAL_SIGNS: Final = {
+    Medal.NONE: NO_STAR,
+    Medal.BRONZE: "B",
+    Medal.SILVER: "S",
+    Medal.GOLD: "G",
+    Medal.MASTER: "M",
+    Medal.RECORD: "R",
+}
+MEDAL_STYLES: Final = {
+    Medal.NONE: "dim",
+    Medal.BRONZE: "",
+    Medal.SILVER: "bold",
+    Medal.GOLD: "warn",
+    Medal.MASTER: "good",
+    Medal.RECORD: "good",
+}
+HEADER: Final = "  level" + " " * (TITLE_WIDTH - 4) + "hand  program  agent  stars    best   ladder"
 BAR: Final = 12
 """Columns of the longest sector's bar."""
 
@@ -43,7 +59,11 @@ def world_heading(world: GameWorld, number: int, count: int, belt: str) -> list[
 
 def medal_counts(summary: GameSummary) -> str:
     """All medals and stars, on one line."""
-    counts = [f"{each.title} {summary.count(each)}" for each in (Medal.GOLD, Medal.SILVER, Medal.BRONZE)]
+    counts = [
+        f"{each.title} {summary.count(each)}"
+        for each in reversed(RUNGS)
+        if each <= Medal.GOLD or summary.count(each)
+    ]
     return "  ".join([*counts, f"stars {summary.stars}"])
 
 
@@ -72,14 +92,15 @@ def leaderboard_standings(standings: Sequence[PlayerStanding], offer: str = "") 
     columns = (
         Column(""),
         Column("", CellStyle.TEXT),
-        *map(Column, ("gold", "silver", "bronze", "stars")),
+        *(Column(each.title) for each in reversed(RUNGS)),
+        Column("stars"),
         Column("quickest on", CellStyle.TEXT),
     )
     rows: tuple[tuple[Cell, ...], ...] = tuple(
         (
             f"{place}.",
             _player(each.name, each.is_mine),
-            *(each.medals[medal] for medal in (Medal.GOLD, Medal.SILVER, Medal.BRONZE)),
+            *(each.medals[medal] for medal in reversed(RUNGS)),
             each.stars,
             counted(each.fastest, "level"),
         )
@@ -92,11 +113,16 @@ def _player(name: str, is_mine: bool) -> ToneText:
     return ToneText(name, Tone.BOLD if is_mine else Tone.PLAIN)
 
 
+def _driven(entry: LeaderboardEntry) -> str:
+    """Who drove, and whether it was on another kind of machine than this one, where a drive is the same but not to the bit."""
+    return entry.driver.phrase if entry.is_same_platform else f"{entry.driver.phrase}, another machine"
+
+
 def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
     """The quickest drives of today's level and of each other. ``entries``: in the order of ``read_entries``."""
     titles = {daily_level(today()).id: "Today's level", **{each.id: each.title for each in all_levels()}}
     rows = tuple(
-        (title, _player(each.name, each.is_mine), f"{each.seconds:.2f} s", each.driver.phrase)
+        (title, _player(each.name, each.is_mine), f"{each.seconds:.2f} s", _driven(each))
         for level, title in titles.items()
         for each in [each for each in entries if each.level == level][:BEST]
     )
@@ -113,21 +139,24 @@ def world_levels(
         level, is_chosen = each.level, each.level.id == chosen
         style = "chosen" if is_chosen else "" if each.is_open else "dim"
         medals: list[str | tuple[str, str]] = []
-        for driver, width in zip(DriverKind, (6, 9, 8), strict=True):
+        for driver, width in zip(DriverKind, (6, 9, 7), strict=True):
             medal = each.medals.get(driver, Medal.NONE)
             sign = MEDAL_SIGNS[medal] if each.is_open else SHUT
             medals.append((f"{sign:<{width}}", MEDAL_STYLES[medal]))
         best = min(each.best_times.values(), default=None)
         reference = references.get(level.id)
-        gold = f"{medal_time(Medal.GOLD, reference):7.2f} s" if reference is not None else ""
+        driver = max(DriverKind, key=lambda kind: (each.medals.get(kind, -1), kind in each.best_times))
+        bar = (
+            () if reference is None else ladder_bar(driver, reference, each.best_times.get(driver), LIST_BAR)
+        )
         rows.append(
             row(
                 ("> " if is_chosen else "  ", "bold"),
                 (f"{level.title:<{TITLE_WIDTH}.{TITLE_WIDTH}} ", style),
                 *medals,
                 (f"{STAR * each.star_count:{NO_STAR}<{len(ExtraRule)}}", "warn" if each.rules else "dim"),
-                f"{best:7.2f} s" if best is not None else " " * 9,
-                (gold, "dim"),
+                f"{best:8.2f} s  " if best is not None else " " * 12,
+                *(bar if each.is_open else ()),
             )
         )
     return rows
@@ -147,13 +176,109 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
     ]
     if not progress.is_open:
         return [*rows, row(("locked ", "dim"), opens_after(level))]
-    if reference is not None:
-        gold, silver = (medal_time(each, reference) for each in (Medal.GOLD, Medal.SILVER))
-        rows.append(row(("medals ", "dim"), f"gold {gold:.2f} s, silver {silver:.2f} s, bronze at the goal"))
-    times = [f"{driver.phrase} {time:.2f} s" for driver, time in progress.best_times.items()]
-    class_best = next((each for each in ghosts if each.name not in tuple(DriverKind)), None)
-    classmate = "" if class_best is None else f"; {class_best.name} {class_best.seconds:.2f} s"
-    rows.append(row(("best   ", "dim"), (", ".join(times) or "none yet") + classmate))
+    if reference is None:
+        times = [f"{driver.phrase} {time:.2f} s" for driver, time in progress.best_times.items()]
+        return [*rows, row(("best   ", "dim"), ", ".join(times) or "none yet")]
+    for driver in DriverKind:
+        best = progress.best_times.get(driver)
+        rows.append(
+            row(
+                (f"{driver.phrase:<11}", "dim"),
+                *ladder_bar(driver, reference, best, ABOUT_BAR),
+                ladder_words(driver, reference, best),
+            )
+        )
+    return rows
+
+
+LIST_BAR, ABOUT_BAR, RESULT_BAR = 13, 34, 40
+"""Columns of a ladder in the list of levels, below it, and at the end of a drive."""
+HERE: Final = "\u25cf"
+"""Where a drive stands on a ladder."""
+
+
+def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, width: int) -> Row:
+    """All rungs of a driver's ladder, as far apart as the logarithms of their times, and where a time stands among them.
+
+    >>> from kit.document.rows import row_text
+    >>> row_text(ladder_bar(DriverKind.KEYS, 10.0, 15.0, 30))
+    'B━━━━━━━━━━━●──────S──────G──M'
+    """
+    shares = SHARES[driver]
+    widest = math.log(shares[Medal.BRONZE])
+
+    def column(share: float) -> int:
+        return round((width - 1) * (1.0 - min(math.log(max(share, 1.0)) / widest, 1.0)))
+
+    signs = ["─"] * width
+    for medal in RUNGS[:-1]:  # the record is to the right of all
+        at = column(shares[medal])
+        signs[at] = MEDAL_SIGNS[medal]
+    if seconds is None or seconds > medal_time(Medal.BRONZE, reference, driver):
+        return row(("".join(signs), "dim"))
+    here = column(seconds / reference)
+    passed = "".join("━" if sign == "─" else sign for sign in signs[:here])
+    return row((passed, "good"), (HERE, "bold"), ("".join(signs[here + 1 :]), "dim"))
+
+
+def next_rung(driver: DriverKind, reference: float, seconds: float | None) -> Medal | None:
+    """The lowest rung that a time does not reach; None above the record."""
+    missing = [medal for medal in RUNGS if seconds is None or seconds > medal_time(medal, reference, driver)]
+    return min(missing, default=None)
+
+
+def ladder_words(driver: DriverKind, reference: float, seconds: float | None) -> str:
+    """A time and what the next rung asks for."""
+    rung = next_rung(driver, reference, seconds)
+    asked = "" if rung is None else f"{rung.title} at {medal_time(rung, reference, driver):.2f} s"
+    return f"  {asked}" if seconds is None else f"  {seconds:.2f} s{', ' if asked else ''}{asked}"
+
+
+def ladder_rows(driver: DriverKind, reference: float, seconds: float | None) -> list[Row]:
+    """A ladder with the times of its rungs below it, and how far the next one is."""
+    times = [
+        (f"{MEDAL_SIGNS[medal]} {medal.title} {medal_time(medal, reference, driver):.2f}", medal)
+        for medal in RUNGS
+    ]
+    rows = [
+        row("   ", *ladder_bar(driver, reference, seconds, RESULT_BAR), (f"  {driver.phrase}", "dim")),
+        row(("   " + "  ".join(text for text, _ in times) + " s", "dim")),
+    ]
+    rung = next_rung(driver, reference, seconds)
+    if seconds is not None and rung is not None:
+        missing = seconds - medal_time(rung, reference, driver)
+        rows.append(row("   next ", (f"{rung.title}, {missing:.2f} s away", "bold")))
+    return rows
+
+
+def other_start(number: int, seconds: float) -> Row:
+    """What is said while a program drives from its other starts."""
+    return row(
+        (f" From {len(SEEDS)} starts, of which the middle drive counts: ", "dim"),
+        f"start {number}, {seconds:.0f} s",
+    )
+
+
+def starts_rows(finishes: Sequence[RaceFinish], counts: int) -> list[Row]:
+    """The times of a program's drives from all starts, the one that counts in brackets; none for a single drive."""
+    if len(finishes) < 2:
+        return []
+    times = [f"{each.seconds:.2f}" if each.reached else "not there" for each in finishes]
+    times = [f"[{time}]" if number == counts else time for number, time in enumerate(times)]
+    return [row((f"   {len(times)} starts  ", "dim"), "  ".join(times), (" s", "dim"))]
+
+
+def ladder_of_drive(
+    finish: RaceFinish, record: DriveRecord, driver: DriverKind, reference: float | None
+) -> list[Row]:
+    """The ladder of a drive that has ended; none where it earns nothing."""
+    if reference is None or record.is_shipped or not finish.reached:
+        return []
+    rows = ladder_rows(driver, reference, finish.seconds)
+    unharmed = medal_of(replace(finish, collisions=0), reference, driver)
+    if unharmed > record.medal:
+        bumps = "the bump" if finish.collisions == 1 else "the bumps"
+        rows[2:] = [row((f"   without {bumps} it would have been {unharmed.title}", "dim"))]
     return rows
 
 
@@ -227,15 +352,6 @@ def compared(
     for name, seconds in times:
         if seconds is not None:
             rows.append(row(f"   {name:<18.18} {seconds:7.2f} s  ", _difference(finish.seconds - seconds)))
-    if reference is not None and record.medal is not Medal.GOLD and not record.is_shipped:
-        unharmed = medal_of(replace(finish, collisions=0), reference)
-        wanted = Medal.SILVER if unharmed < Medal.SILVER else Medal.GOLD
-        missing = finish.seconds - medal_time(wanted, reference)
-        text = f"{missing:.2f} s too slow for {wanted.title}"
-        if unharmed > record.medal:
-            bumps = "the bump" if finish.collisions == 1 else "the bumps"
-            text = f"without {bumps} it would have been {unharmed.title}"
-        rows.append(row((f"   {text}", "dim")))
     return rows
 
 
@@ -365,7 +481,7 @@ def map_rows(
             f"{medal} {each.level.title}"[: place.columns].ljust(place.columns),
             style,
         )
-        style = "warn" if each.best_medal is Medal.GOLD else "" if each.is_open else "dim"
+        style = "warn" if each.best_medal >= Medal.GOLD else "" if each.is_open else "dim"
         for number, text in enumerate(pictures.get(each.level.id, ())[: place.rows]):
             _write(signs, place.x, place.y + 1 + number, text[: place.columns].ljust(place.columns), style)
     return [

@@ -18,6 +18,7 @@ from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import COLUMN, MessageDialog, TextScreen, wrapped
+from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
 
 
@@ -29,7 +30,7 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         ("scroll", "join", "back"),
         ("close",),
         own=(
-            letter("join", "j", "join", "add or remove your name and times"),
+            letter("join", "j", "join", "add or remove your name and drives"),
         ),
     )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
@@ -43,26 +44,31 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         self._has_joined = False
 
     def on_mount(self) -> None:
+        self._rows = (row(), row(("  Running the drives again ...", "dim")))
         self._read()
 
     def on_resize(self, event: events.Resize) -> None:
         self._width = 0  # Textual calls the inherited handler after this one, which then wraps the rows again
 
-    def _read(self) -> None:
+    @work(exclusive=True, group="read")
+    async def _read(self) -> None:
+        """Judges the drives, which takes a moment where they were not judged before."""
         self._has_joined = leaderboard.has_joined(self._folder)
-        entries = leaderboard.read_entries(self._folder)
+        entries = await to_thread(leaderboard.read_entries, self._folder)
         standings = level_rows.leaderboard_standings(leaderboard.standings(entries), self._offer)
         page = Page(width=COLUMN - 4, margin=2)
         self._rows = (row(), *rows_of(standings, page))
         self._beside = (row(), *rows_of([level_rows.leaderboard_times(entries)], page))
         self._width = 0
+        if self.query(TextRows):  # not where the screen was left meanwhile
+            self._show()
 
     @property
     def _offer(self) -> str:
         """What the key for it does."""
         if self._has_joined:
-            return "You are on it; j takes your name, times and ghosts off."
-        return f"j puts you on it as {self._player_name}: all users here see name, times, ghosts."
+            return "You are on it; j takes your name and drives off."
+        return f"j puts you on it as {self._player_name}: all users here see name and drives."
 
     def _keys(self) -> Row:
         labels = {"join": "leave" if self._has_joined else "join"}
@@ -79,4 +85,3 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         except (leaderboard.LeaderboardError, ProgressError) as error:
             self.app.push_screen(MessageDialog("Leaderboard", wrapped(str(error))))
         self._read()
-        self._show()

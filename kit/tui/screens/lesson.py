@@ -315,9 +315,9 @@ class LessonScreen(DialogueScreen, DriveScreen):
 
     def _poll(self) -> None:
         work, is_checking = self.dialogue.work, bool(self.dialogue.busy)
-        if work is None or not (self.is_active or is_checking):
+        if not self.dialogue.polls or not (self.is_active or is_checking):
             return
-        is_read_anew = work.reads_anew()
+        is_read_anew = work is not None and work.reads_anew()
         super()._poll()
         if is_read_anew:
             self.show()

@@ -26,11 +26,20 @@ from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.run.view import View
 from kit.school.game.drive_records import DriveRecord, card_rows, record_drive, save_card
-from kit.school.game.ghosts import Ghost, GhostComparison, Split, compare_tracks, reference_seconds
+from kit.school.game.ghosts import Ghost, GhostComparison, Split, compare_tracks
 from kit.school.game.levels import GameLevel
 from kit.school.game.medal import Medal, medal_of
 from kit.school.game.player_progress import BY_HAND, DriverFacts
-from kit.school.game.race import SEED, DriverKind, RaceFinish, RaceReferee, open_race, sensors_in_use
+from kit.school.game.race import (
+    DriverKind,
+    RaceFinish,
+    RaceReferee,
+    open_race,
+    race_from_all_starts,
+    sensors_in_use,
+)
+from kit.school.game.references import reference_seconds
+from kit.school.game.starts import OWN_SEED
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
@@ -76,6 +85,8 @@ class DriveResult:
     ghosts: Sequence[Ghost]
     reference: float | None
     splits: Sequence[Split]
+    finishes: Sequence[RaceFinish] = ()
+    """Of a program's drives from all starts; the middle one counts."""
 
 
 class DriveResultDialog(ModalScreen[Wish]):
@@ -96,12 +107,13 @@ class DriveResultDialog(ModalScreen[Wish]):
         self._workspace = workspace
         finish, record = result.finish, result.record
         self._fixed = [
-            row((f" {result.level.title}, {result.driver.phrase}", "bold")),
             *wrapped(f" {level_rows.finish_sentence(finish)}"),
             row(),
         ]
         self._before_finish = [
             *level_rows.earned(result.level, finish, record),
+            *level_rows.ladder_of_drive(finish, record, result.driver, result.reference),
+            *level_rows.starts_rows(result.finishes, record.counts),
             *level_rows.compared(finish, record, result.reference, result.ghosts),
             *level_rows.sector_rows(result.splits),
         ]
@@ -111,7 +123,7 @@ class DriveResultDialog(ModalScreen[Wish]):
 
     def compose(self) -> ComposeResult:
         with Vertical() as box:
-            box.border_title = "The end of this drive"
+            box.border_title = f"{self._result.level.title}, {self._result.driver.phrase}"
             yield TextRows()
 
     def on_mount(self) -> None:
@@ -229,6 +241,19 @@ SIGHT: Final = 1.5
 """Distance within which the target is drawn in fog [m]."""
 
 
+class LeftError(Exception):
+    """Nobody waits for the end of the race any more."""
+
+
+class OtherStart(Message):
+    """A program is driving from another start."""
+
+    def __init__(self, number: int, seconds: float) -> None:
+        super().__init__()
+        self.number = number
+        self.seconds = seconds
+
+
 class DriveEnded(Message):
     """The drive has ended."""
 
@@ -272,7 +297,7 @@ class LevelDrive(WatchScreen):
     ) -> None:
         """``program``: what drives; None: the keys do. ``agent``: name and policy, where the program is an agent."""
         super().__init__(
-            theme, level.title, seed=SEED, socket_dir=sockets_folder(workspace.folder), records=True
+            theme, level.title, seed=OWN_SEED, socket_dir=sockets_folder(workspace.folder), records=True
         )
         self._theme = theme
         self._level = level
@@ -293,6 +318,8 @@ class LevelDrive(WatchScreen):
         self._is_over = False
         self._strength = 1.0
         self._result_row: Row = ()
+        self._finishes: list[RaceFinish] = []
+        """The ends of a program's drives from all starts."""
         self.wish: Wish = "back"
 
     @property
@@ -426,12 +453,31 @@ class LevelDrive(WatchScreen):
             finish = replace(finish, failure=session.failure, sensors=sensors_in_use(session))
         if recording is not None:
             try:
+                drives = self._other_starts((finish, recording))
                 record = record_drive(
-                    self._progress, self._workspace, self._level, self._driver, finish, recording, self._facts
+                    self._progress, self._workspace, self._level, self._driver, drives, self._facts
                 )
-            except ProgressError as error:
+                finish, recording = drives[record.counts]
+                self._finishes = [each for each, _ in drives]
+            except (ProgressError, LeftError) as error:
                 problem = str(error)
         self.post_message(DriveEnded(finish, record, recording, problem))
+
+    def _other_starts(self, first: tuple[RaceFinish, Recording]) -> list[tuple[RaceFinish, Recording]]:
+        """A program's drives from all its starts, of which ``first`` was seen. Raises LeftError if nobody waits for them."""
+        if self._race_program is None or self._facts.is_shipped:
+            return [first]
+
+        def note(number: int, seconds: float) -> None:
+            if not self.is_attached:
+                raise LeftError("The drive was left.")
+            self.post_message(OtherStart(number, seconds))
+
+        return race_from_all_starts(self._level, self._race_program, first=first, on_second=note)
+
+    def on_other_start(self, event: OtherStart) -> None:
+        self._result_row = level_rows.other_start(event.number, event.seconds)
+        self._show()
 
     def on_drive_ended(self, event: DriveEnded) -> None:
         record, recording, finish = event.record, event.recording, event.finish
@@ -442,7 +488,7 @@ class LevelDrive(WatchScreen):
         if finish.reached and reference is not None:
             self._behind = finish.seconds - reference  # as the result says it
             self._rows("heading").show([self._heading(finish.seconds)])
-        medal = medal_of(finish, reference)
+        medal = medal_of(finish, reference, self._driver)
         earned = (f" {medal.title}", level_rows.MEDAL_STYLES[medal]) if self._level.has_medals else ""
         self._result_row = row(earned, "  r restarts, Esc goes back to the levels.")
         track = recording.track(self._scenario.partners[0])
@@ -453,7 +499,15 @@ class LevelDrive(WatchScreen):
             else ()
         )
         result = DriveResult(
-            self._level, self._driver, finish, record, recording, self._ghosts, reference, splits
+            self._level,
+            self._driver,
+            finish,
+            record,
+            recording,
+            self._ghosts,
+            reference,
+            splits,
+            self._finishes,
         )
         self.app.push_screen(DriveResultDialog(self._theme, result, self._workspace), self._act_on)
 

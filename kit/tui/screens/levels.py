@@ -22,13 +22,7 @@ from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
 from kit.school.game.challenge import Challenge
 from kit.school.game.challenges import all_challenges, challenge_medals
-from kit.school.game.ghosts import (
-    Ghost,
-    ghost_file,
-    level_ghosts,
-    reference_recording,
-    reference_seconds,
-)
+from kit.school.game.ghosts import Ghost, ghost_file, level_ghosts
 from kit.school.game.levels import CHALLENGES_WORLD, GameLevel, GameWorld, all_levels, all_worlds
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import (
@@ -45,6 +39,7 @@ from kit.school.game.player_progress import (
     today,
 )
 from kit.school.game.race import DriverKind, agent_controller
+from kit.school.game.references import reference_recording, reference_seconds
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
@@ -65,7 +60,7 @@ ABOUT_ROWS: Final = 6
 MAP_WIDTH: Final = 84
 """Columns of the list where the chosen level is shown beside it."""
 NOTES: Final = (
-    ("G S B", "gold, silver, bronze: by hand, by your program, by your agent"),
+    ("B S G M R", "bronze, silver, gold, master, record: each driver has a ladder"),
     ("*", "a star for an extra rule that a drive has kept:"),
     ("", "touched nothing, never stood still, one sensor, few lines,"),
     ("", "few training steps"),

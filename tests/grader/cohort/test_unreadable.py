@@ -161,7 +161,7 @@ def test_the_same_error_in_three_works_is_the_graders_fault(
     if stage == "preparing":
         monkeypatch.setattr(submission_module, "_read_submission", failing)
     else:
-        monkeypatch.setattr("grader.cohort.queue.grade", failing_grade)
+        monkeypatch.setattr("grader.cohort.queue.grade_and_keep", failing_grade)
     queue = Queue(tmp_path / "queue")
     prepare_queue(queue, cohort, read_assignment(write_assignment(tmp_path / "sheet")), TERMS)
     for key in queue.waiting():

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from grader.check import NoParams
 from grader.driving import checks as drives
-from grader.driving.checks import SpeedByRangeParams
+from grader.driving.checks import CircleParams, FlagByRangeParams, SpeedByFlagParams, SpeedByRangeParams
 from grader.driving.drive_record import GradedDrive
 from grader.grading import GradingOptions, grade
 from grader.kinds.environment.examination import FreePlacementRunner
 from grader.reading import read_assignment
 from grader.submission import Submission
+from kit.arrays import FloatArray
 from kit.host.sandbox.confinement import Level
 from kit.ros.graph.graph import Graph
 from kit.run.scenario import find_scenario
@@ -107,10 +111,19 @@ def test_all_messages_and_lines_in_the_first_tick_are_no_rate(
 def drive_by_range(distances: list[float], speeds: list[float]) -> float:
     """What ``speed_by_range`` measures where a scan comes ten times a second, and a command right after it."""
     times = np.arange(len(distances)) / 10
-    drive = object.__new__(GradedDrive)
-    object.__setattr__(drive, "ahead", {"/static_laser": np.column_stack([times, distances])})
-    object.__setattr__(drive, "commands", np.column_stack([times + 0.01, speeds, 0 * times]))
+    drive = drive_of(
+        ahead={"/static_laser": np.column_stack([times, distances, distances])},
+        commands=np.column_stack([times + 0.01, speeds, 0 * times]),
+    )
     return drives.speed_by_range.measure(drive, SpeedByRangeParams())
+
+
+def drive_of(**fields: Any) -> GradedDrive:
+    """A drive of which only these fields are known."""
+    drive = object.__new__(GradedDrive)
+    for name, value in fields.items():
+        object.__setattr__(drive, name, value)
+    return drive
 
 
 def test_the_speed_must_follow_what_the_laser_measures() -> None:
@@ -125,6 +138,90 @@ def test_the_speed_must_follow_what_the_laser_measures() -> None:
     assert drive_by_range(distances, late) < 0.9, "the same speeds in the same order, by the clock"
     assert drive_by_range([2.0] * 50, [0.6] * 50) == 0.0, "who never comes near shows nothing"
     assert drive_by_range([], []) == 0.0
+
+
+def flags_by_range(near: list[float], wide: list[float], said: list[bool]) -> float:
+    times = np.arange(len(near)) / 10
+    drive = drive_of(
+        ahead={"/static_laser": np.column_stack([times, near, wide])},
+        flags={"/wall_ahead": np.column_stack([times, said])},
+    )
+    return drives.flag_by_range.measure(drive, FlagByRangeParams())
+
+
+def test_what_is_said_of_walls_must_be_true() -> None:
+    near = [*[2.0] * 20, *[0.4] * 20, *[float("nan")] * 20]
+    true = [each < 0.5 for each in near]
+    assert flags_by_range(near, near, true) == 1.0
+    assert flags_by_range(near, near, [False] * 60) < 0.1, "never true"
+    assert flags_by_range(near, near, [True] * 60) < 0.1, "always true"
+    assert flags_by_range(near, near, [not each for each in true]) < 0.1
+    beside = [*[0.4] * 10, *near[10:]]  # a wall beside it, which some take for one ahead
+    assert flags_by_range(near, beside, [True] * 10 + true[10:]) == flags_by_range(near, beside, true) == 1.0
+    assert flags_by_range([2.0] * 60, [2.0] * 60, [False] * 60) == 0.0, "who never comes near shows nothing"
+
+
+def test_the_speed_must_follow_what_was_said() -> None:
+    def measured(said: list[bool], speeds: list[float]) -> float:
+        times = np.arange(len(said)) / 10
+        drive = drive_of(
+            flags={"/wall_ahead": np.column_stack([times, said])},
+            commands=np.column_stack([times + 0.01, speeds, 0 * times]),
+        )
+        return drives.speed_by_flag.measure(drive, SpeedByFlagParams())
+
+    said = [False] * 20 + [True] * 20
+    assert measured(said, [0.4] * 20 + [0.0] * 20) == 1.0
+    assert measured(said, [0.4] * 21 + [0.0] * 19) == 1.0, "it may answer the one before the newest"
+    assert measured(said, [0.4] * 40) < 0.1
+    assert measured([False] * 40, [0.4] * 40) == 0.0, "who is never told of a wall shows nothing"
+    assert measured(said, [0.4, 0.0] * 20) < 0.6
+
+
+def test_to_and_fro_leads_nowhere() -> None:
+    along = np.linspace(0, 6, 2500)
+
+    def ground(x: FloatArray, y: FloatArray) -> float:
+        return drives.gets_about.measure(drive_of(track=np.column_stack([x, y, 0 * x])), NoParams())
+
+    assert ground(along, 0 * along) == pytest.approx(6.0, abs=0.3)
+    assert ground(np.abs(along % 0.3 - 0.15), 0 * along) <= 0.2
+    assert ground(0.1 * np.cos(along * 10), 0.1 * np.sin(along * 10)) < 1.0
+    assert ground(along[:0], along[:0]) == 0.0
+
+
+def test_a_circle_is_driven_one_way_round() -> None:
+    def off(angles: FloatArray, turning: str = "left") -> float:
+        track = np.column_stack([0.3 * np.cos(angles), 0.3 * np.sin(angles), angles])
+        drive = drive_of(track=track, recording=SimpleNamespace(step_size=0.01))
+        return drives.circle.measure(drive, CircleParams(0.3, 0.0, turning))
+
+    round_it = np.linspace(0, 15, 1500)
+    assert off(round_it) < 0.01
+    assert off(-round_it, "right") < 0.01
+    assert off(-round_it) > 1.0
+    assert off(np.abs(round_it % 2.0 - 1.0)) > 0.5, "to and fro on an arc"
+    assert off(0 * round_it) > 1.0
+
+
+@every_case(
+    "sent, bumps, share",
+    [
+        ((101, 111), (100,), 1.0),
+        ((0, 101), (100,), 1.0),  # the grader's own, before the first tick
+        ((), (100,), 0.0),
+        ((101,), (), 0.0),
+        ((101,), (100, 500), 0.5),
+        ((101, 301, 501), (100,), 1 / 3),  # by the clock
+        ((320,), (100,), 0.0),
+    ],
+)
+def test_home_after_a_bump_and_not_otherwise(
+    sent: tuple[int, ...], bumps: tuple[int, ...], share: float
+) -> None:
+    inputs = [SimpleNamespace(kind="move_model", tick=tick) for tick in sent]
+    drive = drive_of(bump_ticks=bumps, recording=SimpleNamespace(inputs=inputs, step_size=0.01))
+    assert drives.goes_home.measure(drive, NoParams()) == pytest.approx(share)
 
 
 TWO_ROBOTS = """

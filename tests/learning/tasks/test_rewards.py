@@ -11,6 +11,7 @@ from kit.learning.tasks.rewards import (
     ALGORITHM_1_AS_RUN,
     ALGORITHM_2,
     ALGORITHM_2_AS_RUN,
+    ALGORITHM_2_STOPPING_AS_RUN,
     ALGORITHM_3,
     PROGRESS,
     REWARDS,
@@ -137,18 +138,28 @@ def test_algorithm_1_as_run() -> None:
         assert float(ALGORITHM_1_AS_RUN(t)) == pytest.approx(expected, abs=1e-4)
 
 
-def test_algorithm_2_as_run() -> None:
-    """Where the episode goes on and nobody is in the target."""
+@pytest.mark.parametrize(
+    "reward", [ALGORITHM_2_AS_RUN, ALGORITHM_2_STOPPING_AS_RUN], ids=lambda each: each.name
+)
+def test_algorithm_2_as_run(reward: Reward) -> None:
     for t in some(sampled("wheelchairs")):
-        if t.ended or t.in_target.any() or t.was_in_target.any():
-            continue
-        basic = 300 / t.max_steps
+        basic, n = 300 / t.max_steps, float(t.step)
         expected = 10.0 * bool(t.adjacent)
+        if t.collided:
+            expected -= 400.0
+        elif t.reached:
+            expected += 800.0 + 300.0 - n * 200.0 / 300.0
+        elif t.step >= t.max_steps:
+            expected -= 600.0 + basic * float(t.forward_steps.sum())
+        expected += 100.0 * bool((t.in_target & ~t.was_in_target).any())
+        expected -= 100.0 * bool((t.was_in_target & ~t.in_target).any())
         for k in range(2):
-            stopped = Move(int(t.move[k])) is Move.STOP
-            expected += -8 * basic if stopped else of_moves(t, k, basic)
-            expected += of_habits_as_run(t, k, basic, left=1.0)
-        assert float(ALGORITHM_2_AS_RUN(t)) == pytest.approx(expected, abs=1e-3)
+            if reward is ALGORITHM_2_STOPPING_AS_RUN and t.in_target[k]:
+                expected += 1.0 if Move(int(t.move[k])) is Move.STOP else -1.0
+            else:
+                expected += of_moves(t, k, basic)
+            expected += of_habits_as_run(t, k, basic, left=1.0 if k == 0 else 0.0)
+        assert float(reward(t)) == pytest.approx(expected, abs=1e-3)
 
 
 def test_algorithm_2() -> None:

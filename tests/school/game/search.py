@@ -27,15 +27,10 @@ from kit.kernels import grids
 from kit.learning.environment.case_arrays import compute_distance_field
 from kit.learning.tasks.learning_task import FollowGoal, PatrolGoal
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.school.game.ghosts import (
-    DriveCommand,
-    ReferenceDrive,
-    drive_reference,
-    drives_file,
-    load_drives,
-)
 from kit.school.game.levels import SPEED, TURN_RATE, GameLevel, all_levels
-from kit.school.game.race import DOCK_TIME, SEED, RaceReferee
+from kit.school.game.race import DOCK_TIME, RaceReferee
+from kit.school.game.references import DriveCommand, ReferenceDrive, drive_reference, drives_file, load_drives
+from kit.school.game.starts import OWN_SEED
 from kit.sim.simulation import Simulation
 
 TICKS = 10
@@ -270,7 +265,7 @@ def track_front_wheel(level: GameLevel, scenario, points: list[tuple[np.ndarray,
 
     ``points``: the pose planned after each primitive, and the speed on the way there.
     """
-    simulation = Simulation(scenario.world, seed=SEED, has_subscribers=lambda topic: False)
+    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
     commands: list[DriveCommand] = []
     for number, (_, speed) in enumerate(points):
         ahead = number
@@ -526,7 +521,7 @@ def drive_time(
 def polish(level: GameLevel, drive: ReferenceDrive, seconds: float) -> ReferenceDrive:
     """Shortens a drive by moving the ends of its commands by single ticks, for ``seconds`` of wall clock."""
     scenario = level.find_scenario()
-    simulation = Simulation(scenario.world, seed=SEED, has_subscribers=lambda topic: False)
+    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
     best = drive_time(level, scenario, simulation, drive, math.inf)
     random, end = np.random.default_rng(1), time.perf_counter() + seconds
     while time.perf_counter() < end:
@@ -550,7 +545,7 @@ def polish(level: GameLevel, drive: ReferenceDrive, seconds: float) -> Reference
 def search_pursuit(level: GameLevel, seconds: float) -> ReferenceDrive | None:
     """Searches the gains of a driver that follows a way, or a leader, where no lattice can be measured."""
     scenario = level.find_scenario()
-    simulation = Simulation(scenario.world, seed=SEED, has_subscribers=lambda topic: False)
+    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
     random, end = np.random.default_rng(1), time.perf_counter() + seconds
     fields: dict[float, object] = {}
     walls = scenario.world.wall_segments

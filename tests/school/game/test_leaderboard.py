@@ -1,74 +1,254 @@
-"""The leaderboard of a machine: who stands on it, in which order, and how much one user may put there."""
+"""The leaderboard of a machine: who stands on it and in which order, and what does not: only what was driven stands."""
 
 from __future__ import annotations
 
+import io
 import json
 import os
-from collections.abc import Sequence
+import shutil
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
-from kit.school.game import ghosts, leaderboard
+from kit.run.recording import Input, Recording
+from kit.school.game import ghosts, leaderboard, references, shared_drives
 from kit.school.game.leaderboard import (
-    MAX_COORDINATE,
-    MAX_FILE_SIZE,
+    MAX_NAME_BYTES,
     MAX_NAME_LENGTH,
-    MAX_TRACK_LENGTH,
     LeaderboardEntry,
-    publish_entry,
+    publish_drives,
     read_entries,
 )
 from kit.school.game.medal import Medal
-from kit.school.game.player_progress import LevelProgress
 from kit.school.game.race import DriverKind
+from kit.school.game.references import drive_reference
+from kit.school.game.shared_drives import MAX_FILE_BYTES, platform_name, share_drives
+from kit.school.progress import EventKind, ProgressJournal
+from kit.workspace import open_workspace
 from tests.kit_content import kit_levels
+from tests.school.game.measured_drivers import keys_drive, tape_drives
 
 LEVELS = kit_levels()
 FIRST = LEVELS[0]
-OWN_FILE = f"{os.getuid()}.json"
+BEDROOM = next(level for level in LEVELS if level.id == "the-bedroom")
+OWN = os.getuid()
+KEYS, CONTROLLER = DriverKind.KEYS, DriverKind.CONTROLLER
 
 
-def fastest(seconds: float, level: int = 0) -> LevelProgress:
-    """The progress of somebody who has driven a level once, by hand."""
-    return LevelProgress(LEVELS[level], True, {}, frozenset(), {DriverKind.KEYS: seconds})
+@cache
+def by_hand() -> Recording:
+    return keys_drive(FIRST)[1]
 
 
-def track_of(poses: int) -> list[list[float]]:
-    return [[0.1, 0.2, 0.3]] * poses
+def own_file(board: Path, level: str = FIRST.id, driver: DriverKind = KEYS) -> Path:
+    return board / f"{OWN}.{level}.{driver.value}.npz"
 
 
-def write_entry(
-    folder: Path, track: Sequence[Sequence[float]] = (), name: str = "Ada", padding: int = 0
-) -> Path:
-    """Writes this user's file by hand, ``padding`` bytes longer than it need be."""
-    level = {"stars": 0, "best": {"keys": 5.0}, "medals": {}, "tracks": {"keys": track}}
-    text = json.dumps({"name": name, "levels": {FIRST.id: level}})
-    (folder / OWN_FILE).write_text(text + " " * padding)
-    return folder / OWN_FILE
+def join(board: Path, *recordings: Recording, driver: DriverKind = KEYS) -> Path:
+    publish_drives(board, "Ada", {(FIRST.id, driver): recordings} if recordings else {})
+    return board
+
+
+def change(file: Path, changed: Callable[[dict[str, Any]], None]) -> None:
+    """Changes what a shared file says."""
+    with np.load(file) as stored:
+        content = json.loads(bytes(stored["drives"]))
+    changed(content)
+    data = io.BytesIO()
+    np.savez_compressed(data, drives=np.frombuffer(json.dumps(content).encode(), dtype=np.uint8))
+    file.write_bytes(data.getvalue())
 
 
 def test_the_leaderboard_lists_only_users_who_joined(tmp_path: Path) -> None:
     board = tmp_path / "board"
     assert not leaderboard.has_joined(board)
-    publish_entry(board, "Ada\x1b[31m", [fastest(5.0)])
-    (entry,) = read_entries(board)
-    assert (entry.seconds, entry.is_mine, "\x1b" in entry.name) == (5.0, True, False)
-    own = board / OWN_FILE
-    (board / "123456.json").write_text(own.read_text())  # written for somebody else
-    (board / "999.json").symlink_to(own)
+    publish_drives(board, "Ada\x1b[31m", {(FIRST.id, KEYS): [by_hand()]})
+    assert leaderboard.has_joined(board)
+    (entry,) = read_entries(board, [FIRST])
+    assert (entry.level, entry.is_mine, "\x1b" in entry.name) == (FIRST.id, True, False)
+    shutil.copy(board / f"{OWN}.json", board / "123456.json")  # written for somebody else
+    shutil.copy(own_file(board), board / f"123456.{FIRST.id}.keys.npz")
+    (board / "999.json").symlink_to(board / f"{OWN}.json")
     (board / "0.txt").write_text("x")
-    assert len(read_entries(board)) == 1
+    assert len(read_entries(board, [FIRST])) == 1
     leaderboard.remove_own_entry(board)
     leaderboard.remove_own_entry(board)
-    assert read_entries(board) == []
+    assert read_entries(board, [FIRST]) == []
+    assert not own_file(board).exists()
+
+
+Cheat = Callable[[Path], None]
+
+
+def finishes_only_in_the_journal(board: Path) -> None:
+    """Finishes that were written into the journal, without a recording."""
+    workspace = open_workspace(board.parent / "desk")
+    with ProgressJournal(workspace.folder) as journal:
+        for level in LEVELS:
+            content = {"driver": "keys", "reached": True, "seconds": 1.0, "bumps": 0, "medal": 5, "rules": []}
+            journal.add(EventKind.FINISH, level.id, content)
+        from kit.school.game.drive_records import join_leaderboard
+
+        join_leaderboard(journal, workspace, "Ada")
+
+
+def times_in_the_name_file(board: Path) -> None:
+    """Times, medals and tracks that the user's own file claims."""
+    join(board)
+    level = {"stars": 5, "best": {"keys": 1.0}, "medals": {"keys": 5}, "tracks": {}}
+    (board / f"{OWN}.json").write_text(json.dumps({"name": "Ada", "levels": {FIRST.id: level}}))
+
+
+def drive_of_another_level(board: Path) -> None:
+    join(board, keys_drive(BEDROOM)[1])
+
+
+def inputs_that_were_changed(board: Path) -> None:
+    """A quicker time by faster commands: the poses are others then."""
+    join(board, by_hand())
+
+    def faster(content: dict[str, Any]) -> None:
+        inputs = content["drives"][0]["inputs"]
+        content["drives"][0]["inputs"] = [[max(0, tick - 5), kind, what] for tick, kind, what in inputs]
+
+    change(own_file(board), faster)
+
+
+def drive_that_was_cut(board: Path) -> None:
+    """The end of a drive is left out, so that it would be shorter."""
+    recording = by_hand()
+    half = recording.ticks // 2
+    rows = int(recording.counts[:half].sum())
+    join(board, replace(recording, counts=recording.counts[:half], poses=recording.poses[:rows]))
+
+
+def robot_that_was_moved(board: Path) -> None:
+    """The world's own service puts the robot at its goal."""
+    home = Input(1, "move_model", (FIRST.find_scenario().partners[0], (0.625, 0.5, 0.0)))
+    join(board, replace(by_hand(), inputs=(home, *by_hand().inputs)))
+
+
+def other_model_that_was_moved(board: Path) -> None:
+    command = by_hand().inputs[0]
+    join(
+        board,
+        replace(by_hand(), inputs=(replace(command, content=("/beacon/cmd_vel", *command.content[1:])),)),
+    )
+
+
+def clock_that_was_set_back(board: Path) -> None:
+    """Ticks of half the length would halve the time."""
+    join(board, replace(by_hand(), step_size=0.005))
+
+
+def seed_of_an_easier_start(board: Path) -> None:
+    join(board, replace(by_hand(), seed=3))
+
+
+def tape_as_a_program(board: Path) -> None:
+    """The reference's commands from all five starts, handed in as a program."""
+    join(board, *(recording for _, recording in tape_drives(FIRST)), driver=CONTROLLER)
+
+
+def one_start_as_a_program(board: Path) -> None:
+    join(board, by_hand(), driver=CONTROLLER)
+
+
+def one_start_five_times(board: Path) -> None:
+    join(board, *[by_hand()] * 5, driver=CONTROLLER)
+
+
+def reference_drive_as_a_hand(board: Path) -> None:
+    join(board, drive_reference(FIRST)[1])
+
+
+def digest_of_another_drive(board: Path) -> None:
+    """A forged fingerprint, from a machine like this one."""
+    join(board, by_hand())
+    change(own_file(board), lambda content: content["drives"][0].update(digest="0" * 64))
+
+
+def file_that_is_too_large(board: Path) -> None:
+    join(board, by_hand())
+    with own_file(board).open("ab") as opened:
+        opened.write(b"\0" * MAX_FILE_BYTES)
+
+
+def archive_that_unpacks_to_much(board: Path) -> None:
+    join(board)
+    data = io.BytesIO()
+    np.savez_compressed(data, drives=np.zeros(shared_drives.MAX_INPUTS_BYTES + 1, dtype=np.uint8))
+    own_file(board).write_bytes(data.getvalue())
+
+
+def link_to_anothers_file(board: Path) -> None:
+    join(board, by_hand())
+    elsewhere = board.parent / "elsewhere.npz"
+    shutil.move(own_file(board), elsewhere)
+    own_file(board).symlink_to(elsewhere)
+
+
+CHEATS: tuple[Cheat, ...] = (
+    finishes_only_in_the_journal,
+    times_in_the_name_file,
+    drive_of_another_level,
+    inputs_that_were_changed,
+    drive_that_was_cut,
+    robot_that_was_moved,
+    other_model_that_was_moved,
+    clock_that_was_set_back,
+    seed_of_an_easier_start,
+    tape_as_a_program,
+    one_start_as_a_program,
+    one_start_five_times,
+    reference_drive_as_a_hand,
+    digest_of_another_drive,
+    file_that_is_too_large,
+    archive_that_unpacks_to_much,
+    link_to_anothers_file,
+)
+
+
+@pytest.mark.parametrize("cheat", CHEATS, ids=lambda each: each.__name__)
+def test_what_was_not_driven_stands_nowhere(
+    cheat: Cheat, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    board = tmp_path / "board"
+    monkeypatch.setenv(leaderboard.FOLDER_VARIABLE, str(board))
+    cheat(board)
+    assert leaderboard.has_joined(board)
+    assert read_entries(board, [FIRST, BEDROOM]) == []
+
+
+def test_a_drive_from_another_platform_is_judged_and_marked(tmp_path: Path) -> None:
+    board = join(tmp_path / "board", by_hand())
+
+    def elsewhere(content: dict[str, Any]) -> None:
+        content["platform"] = f"not {platform_name()}"
+        content["drives"][0]["digest"] = "its last digits were others"
+
+    change(own_file(board), elsewhere)
+    (entry,) = read_entries(board, [FIRST])
+    assert not entry.is_same_platform
+    assert entry.medal is Medal.BRONZE
+
+
+def test_a_drive_is_judged_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    board = join(tmp_path / "board", by_hand())
+    first = read_entries(board, [FIRST])
+    monkeypatch.setattr(leaderboard, "judge_shared_drives", pytest.fail)
+    assert [each.seconds for each in read_entries(board, [FIRST])] == [each.seconds for each in first]
 
 
 def test_players_are_ranked_by_medals_and_then_by_stars() -> None:
     def entry(user: int, level: str, seconds: float, medal: Medal, stars: int) -> LeaderboardEntry:
         return LeaderboardEntry(
-            f"user {user}", level, DriverKind.KEYS, seconds, stars, user == 1, medal, (), user
+            f"user {user}", level, DriverKind.KEYS, seconds, stars, user == 1, medal, user=user
         )
 
     by_agent = replace(entry(3, "b", 6.0, Medal.BRONZE, 2), driver=DriverKind.AGENT)
@@ -86,19 +266,30 @@ def test_players_are_ranked_by_medals_and_then_by_stars() -> None:
 
 
 @pytest.mark.parametrize(
-    "content",
+    "content", ["", "[]", "{}", "[" * 100_000, '{"name": "' + "x" * MAX_NAME_BYTES + '"}']
+)
+def test_a_damaged_name_is_passed_over(tmp_path: Path, content: str) -> None:
+    share_drives([by_hand()], own_file(tmp_path))
+    (tmp_path / f"{OWN}.json").write_text(content)
+    assert read_entries(tmp_path, [FIRST]) == []
+
+
+@pytest.mark.parametrize(
+    "damage",
     [
-        "",
-        "[]",
-        "{}",
-        "[" * 100_000,
-        '{"name": "x", "levels": {"a": {"stars": 1e999, "best": {"keys": 1}}}}',
-        json.dumps({"name": "x", "levels": {"a": {"stars": 1, "best": {"keys": "inf"}}}}),
+        lambda content: content.update(format=0),
+        lambda content: content.update(drives=[1]),
+        lambda content: content["drives"][0].pop("inputs"),
+        lambda content: content["drives"][0].update(ticks=1e99),
+        lambda content: content["drives"][0].update(ticks=10**9),
+        lambda content: content["drives"][0].update(inputs=[[0, "accept", []]]),
+        lambda content: content["drives"][0].update(inputs=[[0, "explode", []]]),
     ],
 )
-def test_a_damaged_entry_is_passed_over(tmp_path: Path, content: str) -> None:
-    (tmp_path / OWN_FILE).write_text(content)
-    assert read_entries(tmp_path) == []
+def test_a_damaged_drive_is_passed_over(tmp_path: Path, damage: Callable[[dict[str, Any]], None]) -> None:
+    board = join(tmp_path / "board", by_hand())
+    change(own_file(board), damage)
+    assert read_entries(board, [FIRST]) == []
 
 
 def test_a_folder_in_which_others_can_replace_files_is_refused(tmp_path: Path) -> None:
@@ -106,61 +297,26 @@ def test_a_folder_in_which_others_can_replace_files_is_refused(tmp_path: Path) -
     board.mkdir()
     board.chmod(0o777)
     with pytest.raises(leaderboard.LeaderboardError, match="chmod"):
-        publish_entry(board, "Ada", [])
-
-
-def test_a_file_is_read_up_to_its_largest_size(tmp_path: Path) -> None:
-    size = write_entry(tmp_path).stat().st_size
-    write_entry(tmp_path, padding=MAX_FILE_SIZE - size)
-    assert len(read_entries(tmp_path)) == 1
-    write_entry(tmp_path, padding=MAX_FILE_SIZE - size + 1)
-    assert read_entries(tmp_path) == []
+        publish_drives(board, "Ada", {})
 
 
 def test_a_long_name_is_cut_where_it_is_written_and_where_it_is_read(tmp_path: Path) -> None:
     whole = "n" * MAX_NAME_LENGTH
     board = tmp_path / "board"
-    for name in (whole, whole + "n"):
-        publish_entry(board, name, [fastest(5.0)])
-        assert json.loads((board / OWN_FILE).read_text())["name"] == whole
-        write_entry(tmp_path, name=name)
-        assert [each.name for each in read_entries(tmp_path)] == [whole]
+    publish_drives(board, whole + "n", {})
+    assert leaderboard.own_name(board) == whole
+    (board / f"{OWN}.json").write_text(json.dumps({"name": whole + "n"}))
+    assert leaderboard.own_name(board) == whole
 
 
-def test_a_long_track_is_not_written_and_is_cut_where_it_is_read(tmp_path: Path) -> None:
-    for poses, published in ((MAX_TRACK_LENGTH, MAX_TRACK_LENGTH), (MAX_TRACK_LENGTH + 1, 0)):
-        board = tmp_path / "board"
-        publish_entry(board, "Ada", [fastest(5.0)], {(FIRST.id, "keys"): track_of(poses)})
-        assert [len(each.track) for each in read_entries(board)] == [published]
-        write_entry(tmp_path, track_of(poses))
-        assert [len(each.track) for each in read_entries(tmp_path)] == [MAX_TRACK_LENGTH]
-
-
-def test_of_many_tracks_as_many_are_written_as_a_file_may_hold(tmp_path: Path) -> None:
-    """Whoever has driven many levels stays on the leaderboard; the longest tracks give way."""
-    levels = LEVELS[:24]
-    drives = [fastest(5.0, number) for number in range(len(levels))]
-    long = track_of(MAX_TRACK_LENGTH)
-    tracks = {(each.id, "keys"): long for each in levels} | {(FIRST.id, "keys"): track_of(10)}
-    assert len(json.dumps(list(tracks.values()))) > MAX_FILE_SIZE
-    publish_entry(tmp_path / "board", "Ada", drives, tracks)
-    entries = read_entries(tmp_path / "board")
-    assert len(entries) == len(levels)
-    lengths = [len(each.track) for each in entries]
-    assert lengths.count(10) == 1
-    assert 0 < lengths.count(MAX_TRACK_LENGTH) < len(levels) - 1
-
-
-def test_as_many_classmates_drive_along_as_fit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_as_many_classmates_drive_along_as_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     others = [
-        LeaderboardEntry(
-            f"user {number}", FIRST.id, DriverKind.KEYS, number, 0, False, track=((0.0, 0.0, 0.0),)
-        )
+        LeaderboardEntry(f"user {number}", FIRST.id, DriverKind.KEYS, number, 0, False)
         for number in range(1, ghosts.MAX_CLASSMATES + 2)
     ]
-    monkeypatch.setattr(leaderboard, "read_entries", lambda folder: others[:-1])
+    monkeypatch.setattr(leaderboard, "read_entries", lambda folder, levels: others[:-1])
     assert [each.name for each in ghosts.classmate_ghosts(FIRST)] == [each.name for each in others[:-1]]
-    monkeypatch.setattr(leaderboard, "read_entries", lambda folder: others)
+    monkeypatch.setattr(leaderboard, "read_entries", lambda folder, levels: others)
     assert [each.name for each in ghosts.classmate_ghosts(FIRST)] == [each.name for each in others[:-1]]
 
 
@@ -171,22 +327,14 @@ def test_few_reference_drives_are_kept_in_memory(monkeypatch: pytest.MonkeyPatch
         driven.append(level.id)  # type: ignore[attr-defined]  # the race is a stand-in: its level is typed as object
         return None, f"of {level.id}"  # type: ignore[attr-defined]  # likewise
 
-    monkeypatch.setattr(ghosts, "_RECORDINGS", type(ghosts._RECORDINGS)())
-    monkeypatch.setattr(ghosts, "drive_reference", pretend)
-    monkeypatch.setattr(ghosts, "reference_seconds", lambda level: 1.0)
-    kept, one_more = LEVELS[: ghosts.MAX_RECORDINGS], LEVELS[ghosts.MAX_RECORDINGS]
+    monkeypatch.setattr(references, "_RECORDINGS", type(references._RECORDINGS)())
+    monkeypatch.setattr(references, "drive_reference", pretend)
+    monkeypatch.setattr(references, "reference_seconds", lambda level: 1.0)
+    kept, one_more = LEVELS[: references.MAX_RECORDINGS], LEVELS[references.MAX_RECORDINGS]
     for level in (*kept, *kept):
-        ghosts.reference_recording(level)
+        references.reference_recording(level)
     assert driven == [each.id for each in kept]
-    ghosts.reference_recording(one_more)
-    ghosts.reference_recording(kept[-1])
-    ghosts.reference_recording(kept[0])  # which was there longest, and had to go
+    references.reference_recording(one_more)
+    references.reference_recording(kept[-1])
+    references.reference_recording(kept[0])  # which was there longest, and had to go
     assert driven == [*(each.id for each in kept), one_more.id, kept[0].id]
-
-
-def test_a_track_leads_nowhere_that_no_map_is(tmp_path: Path) -> None:
-    inside = MAX_COORDINATE - 1.0
-    write_entry(tmp_path, [[inside, -inside, 0.0]])
-    assert [each.track for each in read_entries(tmp_path)] == [((inside, -inside, 0.0),)]
-    write_entry(tmp_path, [[0.0, -MAX_COORDINATE, 0.0]])
-    assert read_entries(tmp_path) == []

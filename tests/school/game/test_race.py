@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import os
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -16,11 +14,12 @@ from kit.host.sandbox.probe import is_level_available
 from kit.learning.tasks.learning_task import REACH_TARGET
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.episode import EndCondition, EndReason, run_until
+from kit.run.recording import Recording
 from kit.run.session import Session
-from kit.school.game import ghosts, leaderboard
+from kit.school.game import leaderboard, references
 from kit.school.game.drive_records import join_leaderboard, record_drive
-from kit.school.game.ghosts import classmate_ghosts, drive_reference, load_ghosts, load_reference_ghost
-from kit.school.game.levels import UnknownLevel, all_levels, find_level
+from kit.school.game.ghosts import classmate_ghosts, load_ghosts, load_reference_ghost
+from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, find_level
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import (
     BY_HAND,
@@ -32,12 +31,17 @@ from kit.school.game.player_progress import (
     level_progress,
     today,
 )
-from kit.school.game.race import DriverKind, RaceReferee, race_controller
+from kit.school.game.race import DriverKind, RaceFinish, RaceReferee, race_controller
+from kit.school.game.references import drive_reference
+from kit.school.game.starts import OWN_SEED
 from kit.school.lessons.reading import find_lesson, lesson_names
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.workspace import open_workspace
 from kit.world.problems import WorldError
 from tests.kit_content import kit_levels
+from tests.school.game.measured_drivers import drive as drive_from
+from tests.school.game.measured_drivers import keys_drive, targets_of
+from tests.school.game.tidy import TidyDriver
 
 LEVELS = kit_levels()
 FIRST = LEVELS[0]
@@ -215,24 +219,26 @@ def test_a_drive_is_recorded_with_its_medal_stars_and_ghost(
     monkeypatch.setenv(leaderboard.FOLDER_VARIABLE, str(tmp_path / "board"))
     workspace = open_workspace(tmp_path / "desk")
     finish, recording = drive_reference(FIRST)
-    slow = replace(finish, seconds=99.0)
+    slow = replace(finish, seconds=1.9 * finish.seconds)
     shipped = DriverFacts(is_shipped=True)
     of_today = daily_level(today())
     with ProgressJournal(workspace.folder) as progress:
-        nothing = record_drive(progress, workspace, FIRST, DriverKind.CONTROLLER, finish, recording, shipped)
-        first = record_drive(progress, workspace, FIRST, DriverKind.KEYS, finish, recording, BY_HAND)
-        slower = record_drive(progress, workspace, FIRST, DriverKind.KEYS, slow, recording, BY_HAND)
+        nothing = record_drive(
+            progress, workspace, FIRST, DriverKind.CONTROLLER, [(finish, recording)], shipped
+        )
+        first = record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(finish, recording)], BY_HAND)
+        slower = record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(slow, recording)], BY_HAND)
         (of_level,) = level_progress([FIRST], progress.events())
-        daily = record_drive(progress, workspace, of_today, DriverKind.KEYS, finish, recording)
+        daily = record_drive(progress, workspace, of_today, DriverKind.KEYS, [(finish, recording)])
     assert (daily.streak, first.streak) == (1, 0)
     assert (nothing.medal, nothing.rules, nothing.is_best, nothing.unlocked) == (Medal.NONE, (), False, ())
-    assert (first.medal, slower.medal) == (Medal.GOLD, Medal.BRONZE)
+    assert (first.medal, slower.medal) == (Medal.MASTER, Medal.BRONZE)
     assert {each.id for each in first.unlocked} == {"left-turn", "right-turn"}
     assert (first.belt, slower.belt, slower.unlocked) == ("white", "", ())
     assert (first.is_best, slower.is_best, slower.previous_best) == (True, False, finish.seconds)
     assert ExtraRule.CLEAN in first.new_rules
     assert ExtraRule.CLEAN not in slower.new_rules
-    assert of_level.medals == {DriverKind.KEYS: Medal.GOLD}
+    assert of_level.medals == {DriverKind.KEYS: Medal.MASTER}
     assert first.recording is not None
     (own,) = load_ghosts(workspace, FIRST)
     known = load_reference_ghost(FIRST)
@@ -245,41 +251,44 @@ def test_a_drive_is_recorded_with_its_medal_stars_and_ghost(
 
 
 def test_a_reference_drive_says_how_far_it_is_and_is_driven_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ghosts, "_RECORDINGS", type(ghosts._RECORDINGS)())
+    monkeypatch.setattr(references, "_RECORDINGS", type(references._RECORDINGS)())
     shares: list[float] = []
-    recording = ghosts.reference_recording(FIRST, shares.append)
+    recording = references.reference_recording(FIRST, shares.append)
     assert recording is not None
     assert len(shares) > 5
     assert shares == sorted(shares)
     assert 0.0 <= shares[0] < 0.5 < shares[-1] <= 1.0
-    assert ghosts.reference_recording(FIRST, pytest.fail) is recording
+    assert references.reference_recording(FIRST, pytest.fail) is recording
 
 
 def test_classmates_who_joined_leave_ghosts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     board = tmp_path / "board"
     monkeypatch.setenv(leaderboard.FOLDER_VARIABLE, str(board))
     workspace = open_workspace(tmp_path / "desk")
-    finish, recording = drive_reference(FIRST)
+    finish, recording = keys_drive(FIRST)
     with ProgressJournal(workspace.folder) as progress:
-        record_drive(progress, workspace, FIRST, DriverKind.KEYS, finish, recording)
+        record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(finish, recording)])
         join_leaderboard(progress, workspace, "Ada")
-        of_today = daily_level(today())
-        record_drive(progress, workspace, of_today, DriverKind.KEYS, finish, recording)
-        assert {each.level for each in leaderboard.read_entries(board)} == {FIRST.id, of_today.id}
-        (standing,) = leaderboard.standings(leaderboard.read_entries(board))
-        assert (standing.fastest, standing.medals[Medal.GOLD]) == (1, 1)  # today's level counts for neither
-    (entry,) = (each for each in leaderboard.read_entries(board) if each.level == FIRST.id)
-    assert entry.medal is Medal.GOLD
-    assert len(entry.track) == pytest.approx(finish.seconds / leaderboard.TRACK_STEP, abs=2)
+        (entry,) = leaderboard.read_entries(board, [FIRST])
+        assert (entry.medal, entry.seconds, entry.is_same_platform) == (Medal.BRONZE, finish.seconds, True)
+        better, quicker = drive_tidily(FIRST)
+        record_drive(progress, workspace, FIRST, DriverKind.KEYS, [(better, quicker)])
+    (entry,) = leaderboard.read_entries(board, [FIRST])
+    assert entry.seconds == better.seconds < finish.seconds, (
+        "a better drive takes the place of the one before"
+    )
+    assert entry.step_size * len(entry.tracks[0]) == pytest.approx(better.seconds, abs=0.5)
     assert classmate_ghosts(FIRST) == ()  # one's own is none
-    monkeypatch.setattr(leaderboard, "read_entries", lambda folder: [replace(entry, is_mine=False)])
+    monkeypatch.setattr(leaderboard, "read_entries", lambda folder, levels: [replace(entry, is_mine=False)])
     (ghost,) = classmate_ghosts(FIRST)
     assert (ghost.name, ghost.seconds) == ("Ada", entry.seconds)
-    content = json.loads((board / f"{os.getuid()}.json").read_text())
-    content["levels"][FIRST.id]["tracks"]["keys"] = [[0.0, float("inf"), 0.0]]
-    (board / f"{os.getuid()}.json").write_text(json.dumps(content))
-    monkeypatch.undo()
-    assert leaderboard.read_entries(board) == []
+
+
+def drive_tidily(level: GameLevel) -> tuple[RaceFinish, Recording]:
+    targets = targets_of(level)
+    return drive_from(
+        level, OWN_SEED, lambda session: session.runner.participants.append(TidyDriver(session, targets))
+    )
 
 
 def test_a_level_is_found_by_name_and_number(tmp_path: Path) -> None:

@@ -109,7 +109,9 @@ def test_a_program_races_on_a_task_for_its_own_best_and_no_medal(own_task: Path,
     assert finish.reached
     with ProgressJournal(workspace.folder) as journal:
         first, second = (
-            record_drive(journal, workspace, level, DriverKind.CONTROLLER, finish, recording, DriverFacts())
+            record_drive(
+                journal, workspace, level, DriverKind.CONTROLLER, [(finish, recording)], DriverFacts()
+            )
             for _ in range(2)
         )
     assert (first.medal, first.rules, first.is_best) == (Medal.NONE, (), True)

@@ -46,6 +46,7 @@ from kit.world.catalogue import find_map
 from kit.world.problems import WorldError
 from kit.world.records import Polygon
 from tests.school.lessons.capstone_derivations import CAPSTONE_DERIVATIONS
+from tests.school.lessons.failure_derivations import FAILURE_DEAR, FAILURE_DERIVATIONS
 from tests.school.lessons.follower_derivations import FOLLOWER_DERIVATIONS
 from tests.school.lessons.generalisation_derivations import GENERALISATION_DERIVATIONS
 from tests.school.lessons.imitation_derivations import IMITATION_DERIVATIONS
@@ -779,6 +780,7 @@ DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             *IMITATION_DERIVATIONS,
             *OWN_TASK_DERIVATIONS,
             *POLICY_DERIVATIONS,
+            *FAILURE_DERIVATIONS,
         )
     }
 )
@@ -806,6 +808,7 @@ DEAR: Final = frozenset(
         "careful-or-not",
         "cliff-paths",
         "teleop-near-walls",
+        *FAILURE_DEAR,
     }
 )
 """Those that take more than a fifth of a second: they run with the long tests."""

@@ -17,9 +17,9 @@ from kit.learning.authoring.new_task import new_task_file
 from kit.learning.tasks.learning_task import REACH_TARGET
 from kit.mapmaking.map_drawing import read_drawing
 from kit.mapmaking.new_map import write_map
-from kit.school.game import ghosts, leaderboard
+from kit.school.game import ghosts, leaderboard, references
 from kit.school.game.challenges import all_challenges
-from kit.school.game.drive_records import DriveRecord
+from kit.school.game.drive_records import DriveRecord, record_drive
 from kit.school.game.levels import GameLevel, all_worlds
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import ExtraRule, daily_level, today
@@ -34,6 +34,7 @@ from kit.tui.screens.levels import LevelsScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.widgets.text_rows import TextRows
 from tests.kit_content import kit_levels
+from tests.school.game.measured_drivers import keys_drive
 from tests.waiting import wait_until_shown
 
 Scene = Callable[[LevelsScreen, Pilot[None]], Awaitable[None]]
@@ -314,8 +315,12 @@ def text_of(rows: TextRows) -> str:
 
 
 def test_one_key_joins_the_leaderboard_and_leaves_it(progress: ProgressJournal, tmp_path: Path) -> None:
-    content = {"driver": "keys", "reached": True, "seconds": 6.5, "bumps": 0, "medal": 2}
-    progress.add(EventKind.FINISH, LEVELS[0].id, content)
+    forged = {"driver": "keys", "reached": True, "seconds": 1.5, "bumps": 0, "medal": 5}
+    progress.add(EventKind.FINISH, LEVELS[1].id, forged)  # nothing was driven
+    workspace = prepare_workspace(tmp_path / "desk")
+    finish, recording = keys_drive(LEVELS[0])
+    record_drive(progress, workspace, LEVELS[0], DriverKind.KEYS, [(finish, recording)])
+    shown = f"{finish.seconds:.2f} s"
     progress.add(EventKind.ABOUT, "name", {"value": "Ada"})
     board = leaderboard.leaderboard_folder()
 
@@ -324,13 +329,11 @@ def test_one_key_joins_the_leaderboard_and_leaves_it(progress: ProgressJournal, 
         await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, LeaderboardScreen))
         assert not leaderboard.read_entries(board)
         await pilot.press("j")
-        await wait_until_shown(
-            pilot, lambda: LEVELS[0].title in flat(pilot.app) and "6.50 s" in flat(pilot.app)
-        )
+        await wait_until_shown(pilot, lambda: LEVELS[0].title in flat(pilot.app) and shown in flat(pilot.app))
         (entry,) = leaderboard.read_entries(board)
-        assert (entry.name, entry.seconds, entry.is_mine) == ("Ada", 6.5, True)
+        assert (entry.name, entry.seconds, entry.is_mine) == ("Ada", finish.seconds, True)
         await pilot.press("j")
-        await wait_until_shown(pilot, lambda: "6.50 s" not in flat(pilot.app))
+        await wait_until_shown(pilot, lambda: shown not in flat(pilot.app))
         assert not leaderboard.read_entries(board)
         await pilot.press("escape")
         await wait_until_shown(pilot, lambda: pilot.app.screen is screen)
@@ -343,11 +346,12 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
     progress: ProgressJournal, tmp_path: Path, size: tuple[int, int]
 ) -> None:
     level = LEVELS[0]
-    finish, recording = ghosts.drive_reference(level)
+    finish, recording = references.drive_reference(level)
     reference = ghosts.load_reference_ghost(level)
     assert reference is not None
     others = [replace(reference, name=name) for name in ("keys", "controller", "agent", "Ada", "Ben", "Cleo")]
     record = DriveRecord(
+        2,
         Medal.SILVER,
         tuple(ExtraRule)[:4],
         (),
@@ -362,7 +366,15 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
     )
     splits = (ghosts.Split(2.0, 2.0, 0.1),) * 3
     result = DriveResult(
-        level, DriverKind.CONTROLLER, finish, record, recording, [reference, *others], 6.0, splits
+        level,
+        DriverKind.CONTROLLER,
+        finish,
+        record,
+        recording,
+        [reference, *others],
+        6.0,
+        splits,
+        [finish] * 5,
     )
 
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:

@@ -10,9 +10,10 @@ from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
 from kit.geometry import Pose
-from kit.school.game.ghosts import reference_recording, save_ghost
+from kit.school.game.ghosts import save_ghost
 from kit.school.game.levels import find_level
 from kit.school.game.race import DriverKind
+from kit.school.game.references import reference_recording
 from kit.school.game.shared_protocol import GameOffer
 from kit.school.game.shared_server import SharedGameClient
 from kit.school.game.shared_sockets import Audience, find_game
@@ -47,7 +48,7 @@ def workspace(tmp_path: Path) -> Workspace:
     home = prepare_workspace(tmp_path / "home")
     recording = reference_recording(LEVEL)
     assert recording is not None
-    save_ghost(home, LEVEL, DriverKind.KEYS, recording)
+    save_ghost(home, LEVEL, DriverKind.KEYS, [recording])
     return home
 
 

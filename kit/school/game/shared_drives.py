@@ -1,0 +1,184 @@
+"""Drives as others may see them: the inputs of recordings, which whoever reads them runs again and has judged.
+
+A file says nothing of a time or a medal, so nothing of it can be claimed: what stands on a board is what the referee of the
+reader's own kit has seen. On the platform of the driver a drive must be the same to the bit; on another one the referee's
+judgement counts, and is marked.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from kit.array_archives import READ_ERRORS, unpack_arrays
+from kit.arrays import FloatArray
+from kit.msg.geometry_msgs import Twist
+from kit.run.recording import ACCEPT, Recording, RecordingError, recording_from_header, recording_header
+from kit.run.scenario import Scenario
+from kit.school.game.levels import GameLevel
+from kit.school.game.medal import Medal, medal_of
+from kit.school.game.player_progress import BY_HAND, ExtraRule, kept_rules
+from kit.school.game.race import ALLOWED_SERVICES, DriverKind, RaceFinish, middle_drive, run_again
+from kit.school.game.references import reference_recording, reference_seconds
+from kit.school.game.starts import OWN_SEED, scenario_from, seeds_of
+from kit.sim.simulation import STEP_SIZE_S, Simulation
+from kit.workspace import write_atomically
+
+FORMAT: Final = 1
+TRACK_STRIDE: Final = 10
+"""Of so many poses of a track one is kept."""
+MAX_FILE_BYTES: Final = 1 << 20
+MAX_INPUTS_BYTES: Final = 16 << 20
+"""Bytes of a file's inputs, unpacked."""
+
+
+class DriveRefused(ValueError):
+    """A file is no drive that may stand on a board; the message says why."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JudgedDrive:
+    """A shared drive, run again and judged."""
+
+    finish: RaceFinish
+    """Of a program's drives the one that counts."""
+    medal: Medal
+    rules: tuple[ExtraRule, ...]
+    """Extra rules of which the drive itself shows that they were kept."""
+    tracks: tuple[FloatArray, ...]
+    """The poses of each driven robot (k, 3) [m, m, rad], ``step_size`` [s] apart."""
+    step_size: float
+    is_same_platform: bool
+    """Whether it was driven on this platform, and so is the same to the bit."""
+
+
+def platform_name() -> str:
+    """What two machines must have in common so that a run is the same on both, to the bit."""
+    versions = f"numpy {np.__version__}, Python {platform.python_version()}"
+    return f"{platform.system()} {platform.machine()}, {versions}"
+
+
+def share_drives(recordings: Sequence[Recording], file: Path) -> None:
+    """Writes the inputs of a driver's recordings of one level, whole or not at all. Raises OSError."""
+    content = {
+        "format": FORMAT,
+        "platform": platform_name(),
+        "drives": [
+            {**recording_header(each), "ticks": each.ticks, "digest": _digest(each)} for each in recordings
+        ],
+    }
+    data = io.BytesIO()
+    np.savez_compressed(data, drives=np.frombuffer(json.dumps(content).encode(), dtype=np.uint8))
+    write_atomically(file, data.getvalue())
+
+
+def judge_shared_drives(data: bytes, level: GameLevel, driver: DriverKind) -> JudgedDrive:
+    """Runs the drives of a file of ``share_drives`` again and judges them. Raises DriveRefused."""
+    content = _read(data)
+    recordings = [_stripped_recording(each) for each in content["drives"]]
+    wanted = (OWN_SEED,) if driver is DriverKind.KEYS else seeds_of(level)
+    if tuple(sorted(each.seed for each in recordings)) != wanted:
+        raise DriveRefused(f"it has not one drive from each of the {len(wanted)} starts")
+    is_same_platform = content["platform"] == platform_name()
+    drives = []
+    for recording, entry in zip(recordings, content["drives"], strict=True):
+        _check_inputs(recording, level)
+        try:
+            finish, again = run_again(level, recording)
+        except (ValueError, RecordingError) as error:
+            raise DriveRefused(str(error)) from None
+        if is_same_platform and _digest(again) != entry["digest"]:
+            raise DriveRefused("run again, it is another drive")
+        drives.append((finish, again))
+    counts = middle_drive([finish for finish, _ in drives])
+    finish, again = drives[counts]
+    if not finish.reached:
+        raise DriveRefused("it does not reach the goal")
+    if driver is DriverKind.KEYS and _is_reference(level, again):
+        raise DriveRefused("it is the reference drive")
+    robots = scenario_from(level, again.seed).partners
+    tracks = tuple(again.track(name)[::TRACK_STRIDE] for name in robots)
+    return JudgedDrive(
+        finish,
+        medal_of(finish, reference_seconds(level), driver),
+        kept_rules(level, finish, BY_HAND),
+        tracks,
+        TRACK_STRIDE * again.step_size,
+        is_same_platform,
+    )
+
+
+def _read(data: bytes) -> dict[str, Any]:
+    """The content of a file. Raises DriveRefused."""
+    if len(data) > MAX_FILE_BYTES:
+        raise DriveRefused("it is too large")
+    try:
+        packed = unpack_arrays(data, MAX_INPUTS_BYTES)["drives"]
+        content = json.loads(bytes(packed))
+        if content["format"] != FORMAT or not isinstance(content["platform"], str):
+            raise DriveRefused("it was shared by another version of the kit")
+        if not all(isinstance(each, dict) for each in content["drives"]):
+            raise DriveRefused("it holds something else than drives")
+    except DriveRefused:
+        raise
+    except (*READ_ERRORS, RecursionError, UnicodeDecodeError) as error:
+        raise DriveRefused(f"it is damaged ({error})") from None
+    return dict(content)
+
+
+def _stripped_recording(entry: Mapping[str, Any]) -> Recording:
+    """A shared drive as a recording without poses."""
+    try:
+        ticks = int(entry["ticks"])
+        if not 0 < ticks <= 10**6:
+            raise ValueError(f"{ticks} ticks")
+        header = {**entry, "models": []}
+        return recording_from_header(header, np.empty((0, 3)), np.zeros(ticks, dtype=np.int64))
+    except (KeyError, ValueError, TypeError, AttributeError, OverflowError) as error:
+        raise DriveRefused(f"a drive is damaged ({error})") from None
+
+
+def _check_inputs(recording: Recording, level: GameLevel) -> None:
+    """Raises DriveRefused for a drive with another clock, or inputs that are no commands to its own robots."""
+    if recording.step_size != STEP_SIZE_S or recording.ticks * recording.step_size > level.time_limit + 1.0:
+        raise DriveRefused("its clock is not that of the level")
+    try:
+        scenario = scenario_from(level, recording.seed)
+    except ValueError as error:
+        raise DriveRefused(str(error)) from None
+    topics = command_topics(scenario)
+    for each in recording.inputs:
+        if each.kind == ACCEPT:
+            if not each.content or each.content[0] not in topics:
+                raise DriveRefused("it moves something else than its robots")
+        elif each.kind not in ALLOWED_SERVICES:
+            raise DriveRefused(f"the world was changed during the race ({each.kind})")
+
+
+def command_topics(scenario: Scenario) -> frozenset[str]:
+    """The topics on which the driven robots take commands."""
+    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
+    ends = [end for name in scenario.partners for end in simulation.model_endpoints(name)]
+    return frozenset(end.topic for end in ends if end.direction == "subscribe" and end.type is Twist)
+
+
+def _is_reference(level: GameLevel, recording: Recording) -> bool:
+    """Whether a drive goes where the reference drive goes, tick by tick: no hand does."""
+    reference = reference_recording(level)
+    if reference is None:
+        return False
+    rows = min(len(reference.poses), len(recording.poses))
+    return bool(np.array_equal(reference.poses[:rows], recording.poses[:rows]))
+
+
+def _digest(recording: Recording) -> str:
+    """Equal for drives whose poses are equal to the bit."""
+    return hashlib.sha256(np.ascontiguousarray(recording.poses).tobytes()).hexdigest()

@@ -1,0 +1,108 @@
+"""The starts of a race: the level's own for a hand, five for a program or an agent, of which the middle drive counts.
+
+A list of commands that is right for one start is wrong for another: the drawn starts shift the robots by centimetres and
+degrees, add noise to their lasers and move the traffic on. Which start a drive had is told by its seed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from kit.geometry import Pose
+from kit.run.scenario import Scenario
+from kit.school.game.levels import GameLevel
+from kit.sim.plugins.laser import LaserParams
+from kit.sim.plugins.tween import ProgressCurve, TweenParams
+from kit.sim.simulation import Simulation
+from kit.world.records import Model
+
+OWN_SEED: Final = 1
+"""Seed of a drive from the level's own start."""
+SEEDS: Final = tuple(range(OWN_SEED, OWN_SEED + 5))
+"""Seeds of the drives of a program or an agent, the level's own start first."""
+SHIFT_M, SHIFT_RAD = (0.015, 0.04), (0.15, 0.35)
+"""How far a drawn start lies from the level's own along each axis, at least and at most [m], and by how much it is turned
+[rad]: little for who looks where the robot is, too much for a list of commands."""
+LASER_NOISE_M: Final = 0.01
+"""Standard deviation of a laser's noise at a drawn start [m]."""
+MAX_DRAWS: Final = 20
+"""So often a start is drawn before the level's own is taken: a robot must not stand in a wall."""
+
+
+@dataclass(frozen=True, slots=True)
+class LaterCurve:
+    """The progress of a cart that has already gone on for a while."""
+
+    progress: ProgressCurve
+    turns: float
+    """How far it has gone, in ways from one end to the other."""
+
+    def __call__(self, turns: float) -> float:
+        return self.progress(turns + self.turns)
+
+
+def seeds_of(level: GameLevel) -> tuple[int, ...]:
+    """The seeds of a program's drives on a level: only the own start where there are no medals."""
+    return SEEDS if level.has_medals else SEEDS[:1]
+
+
+def scenario_from(level: GameLevel, seed: int) -> Scenario:
+    """A level's scenario with the start of a drive. Raises as ``GameLevel.find_scenario``, and ValueError for a seed that
+    no drive of the game has."""
+    if seed not in SEEDS:
+        raise ValueError(f"a drive of the game has a seed from {SEEDS[0]} to {SEEDS[-1]}, not {seed}")
+    scenario = level.find_scenario()
+    if seed == OWN_SEED:
+        return scenario
+    random = np.random.default_rng([seed, *level.reference_id.encode()])
+    for _ in range(MAX_DRAWS):
+        phase = float(random.uniform(0.0, 2.0))
+        least, most = np.transpose((SHIFT_M, SHIFT_M, SHIFT_RAD))
+        x, y, turn = random.uniform(least, most) * random.choice((-1.0, 1.0), 3)
+        models = [_disturbed(model, phase) for model in scenario.world.models]
+        disturbed = replace(scenario, world=replace(scenario.world, models=tuple(models)))
+        shifted = _shifted(disturbed, float(x), float(y), float(turn))
+        if _is_free(shifted):
+            return shifted
+    return scenario
+
+
+def _disturbed(model: Model, phase: float) -> Model:
+    """A model with noise on its lasers, and on its way since a while if it is a cart. ``phase``: as of ``LaterCurve``."""
+    plugins = []
+    for plugin in model.plugins:
+        params = plugin.params
+        if isinstance(params, LaserParams):
+            params = replace(params, noise=math.hypot(params.noise, LASER_NOISE_M))
+        elif isinstance(params, TweenParams) and params.progress is not None:
+            params = replace(params, progress=LaterCurve(params.progress, phase))
+        plugins.append(replace(plugin, params=params))
+    return replace(model, plugins=tuple(plugins))
+
+
+def _shifted(scenario: Scenario, x: float, y: float, turn: float) -> Scenario:
+    """The scenario with its robots shifted [m] and turned [rad] about the middle between them."""
+    starts = scenario.starts
+    middle = (sum(each.x for each in starts) / len(starts), sum(each.y for each in starts) / len(starts))
+    cosine, sine = math.cos(turn), math.sin(turn)
+    poses = {}
+    for name, pose in zip(scenario.partners, starts, strict=True):
+        dx, dy = pose.x - middle[0], pose.y - middle[1]
+        poses[name] = Pose(
+            middle[0] + cosine * dx - sine * dy + x,
+            middle[1] + sine * dx + cosine * dy + y,
+            pose.theta + turn,
+        )
+    models = tuple(replace(model, pose=poses.get(model.name, model.pose)) for model in scenario.world.models)
+    return replace(scenario, world=replace(scenario.world, models=models))
+
+
+def _is_free(scenario: Scenario) -> bool:
+    """Whether no robot touches anything where it stands."""
+    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
+    simulation.step()
+    return not any(simulation.is_touching(name) for name in scenario.partners)

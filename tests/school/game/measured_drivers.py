@@ -1,0 +1,147 @@
+"""The drivers that the medals are measured by, each on every level, from all five starts: what they drive, and what it earns.
+
+    python -m tests.school.game.measured_drivers [--level ID ...] [--driver tape keys laser] [--agent RUN_FOLDER]
+
+``keys`` presses the keys of a hand with ordinary skill, ``laser`` is a tidy program, ``tape`` plays the commands of the
+reference drive back, ``agent`` is what ``kit train`` makes with the preset's settings.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections import deque
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Final
+
+from kit.controllers import find_controller
+from kit.geometry import Pose
+from kit.learning.tasks.learning_task import PatrolGoal
+from kit.run.recording import Recording
+from kit.run.session import Session
+from kit.school.game.levels import GameLevel, all_levels
+from kit.school.game.medal import Medal, medal_of
+from kit.school.game.race import (
+    DriverKind,
+    RaceFinish,
+    agent_controller,
+    middle_drive,
+    race_from_all_starts,
+    run_race,
+)
+from kit.school.game.references import CommandPlayer, load_drives, reference_seconds
+from kit.school.game.starts import OWN_SEED, scenario_from, seeds_of
+from tests.school.game.tidy import TidyDriver
+
+LASER_PROGRAM: Final = Path(__file__).with_name("laser_program.py")
+REACTION_TICKS: Final = 20
+"""From what is seen to the key that is pressed: 0.2 s, as of people who expect something."""
+KEY_TICKS: Final = 10
+"""Keys change no faster than a terminal repeats them: every 0.1 s."""
+
+
+class OrdinaryDriver(TidyDriver):
+    """The tidy driver's keys with the delays of a hand: what is seen is acted on a fifth of a second later."""
+
+    def __init__(self, session: Session, targets: Sequence[tuple[float, float]]) -> None:
+        super().__init__(session, targets)
+        self._seen: deque[Pose] = deque(maxlen=REACTION_TICKS)
+        self._tick = 0
+        self._held = (0.0, 0.0)
+
+    def keys(self, pose: Pose) -> tuple[float, float]:
+        self._seen.append(pose)
+        if self._tick % KEY_TICKS == 0:
+            self._held = super().keys(self._seen[0])
+        self._tick += 1
+        return self._held
+
+
+def targets_of(level: GameLevel) -> list[tuple[float, float]]:
+    """The targets in the order of the file, whatever order would be best."""
+    if isinstance(level.goal, PatrolGoal):
+        return list(level.targets) * level.goal.rounds
+    case = level.find_scenario().case
+    assert case is not None
+    return [case.target]
+
+
+Install = Callable[[Session], None]
+
+
+def drive(level: GameLevel, seed: int, install: Install) -> tuple[RaceFinish, Recording]:
+    """One drive from one start."""
+    return run_race(level, scenario_from(level, seed), install, seed=seed)
+
+
+def keys_drive(level: GameLevel, seed: int = OWN_SEED) -> tuple[RaceFinish, Recording]:
+    """The ordinary hand's drive."""
+    targets = targets_of(level)
+    return drive(
+        level, seed, lambda session: session.runner.participants.append(OrdinaryDriver(session, targets))
+    )
+
+
+def tape_drives(level: GameLevel) -> list[tuple[RaceFinish, Recording]]:
+    """The reference's commands from all starts."""
+    reference = load_drives()[level.reference_id]
+    return [
+        drive(
+            level, seed, lambda session: session.runner.participants.append(CommandPlayer(session, reference))
+        )
+        for seed in seeds_of(level)
+    ]
+
+
+def judged(
+    level: GameLevel, driver: DriverKind, drives: Sequence[tuple[RaceFinish, Recording]]
+) -> tuple[RaceFinish, Medal]:
+    """The drive that counts, and its medal."""
+    finishes = [finish for finish, _ in drives]
+    finish = finishes[middle_drive(finishes)]
+    return finish, medal_of(finish, reference_seconds(level), driver)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--level", nargs="*", default=[level.id for level in all_levels()])
+    parser.add_argument("--driver", nargs="*", default=["keys", "laser", "tape"])
+    parser.add_argument("--agent", type=Path, help="folder of a training run, or a policy file")
+    options = parser.parse_args()
+    for level in all_levels():
+        if level.id not in options.level:
+            continue
+        reference = reference_seconds(level) or 0.0
+        cells = []
+        for name in (*options.driver, *(["agent"] if options.agent else [])):
+            if name == "keys":
+                finish, medal = judged(level, DriverKind.KEYS, [keys_drive(level)])
+            elif name == "laser":
+                program = find_controller(str(LASER_PROGRAM))
+                finish, medal = judged(level, DriverKind.CONTROLLER, race_from_all_starts(level, program))
+            elif name == "tape":
+                finish, medal = judged(level, DriverKind.CONTROLLER, tape_drives(level))
+            else:
+                finish, medal = _agent(level, options.agent)
+            time = (
+                f"{finish.seconds / reference:5.2f} b{finish.collisions:<2}"
+                if finish.reached
+                else "  --     "
+            )
+            cells.append(f"{name} {time} {medal.title:<9}")
+        print(f"{level.id:<18} {reference:6.2f} s  {'  '.join(cells)}", flush=True)
+
+
+def _agent(level: GameLevel, place: Path) -> tuple[RaceFinish, Medal]:
+    from kit.learning.policies.policies import load_policy
+    from kit.learning.training.runs import find_run
+
+    policy = load_policy(place) if place.is_file() else find_run(place.parent, place.name).policy()
+    with agent_controller(policy) as program:
+        return judged(level, DriverKind.AGENT, race_from_all_starts(level, program))
+
+
+if __name__ == "__main__":
+    main()
