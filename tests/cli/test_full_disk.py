@@ -56,6 +56,8 @@ ELSEWHERE = {
     "kit class report --csv": "as kit study",
     "kit class report --json": "as kit study",
     "grader check --replay": "as kit run --record",
+    "grader gradebook --feedback": "needs submissions; write_atomically",
+    "grader gradebook --output": "needs submissions; write_atomically",
     "grader cohort --queue": "needs submissions; tests.endings",
 }
 """Outputs that are not tried here, and why."""
