@@ -21,8 +21,10 @@ from grader.evidence.findings import (
     FindingsRecorder,
     KeptFindings,
     NotKept,
+    failure_before,
     measure_of,
     original_of,
+    state_after,
 )
 from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.contract import find_kind
@@ -108,6 +110,8 @@ class _ScoredEvidence:
     share: float
     failure: Failure | None
     """How the program failed, in a run or while it was measured; None if it did not."""
+    steps: int
+    """How many had been simulated then."""
 
 
 class Grading:
@@ -396,14 +400,16 @@ class Grading:
         return self._scored[criterion.id]
 
     def _score_evidence(self, criterion: Criterion, evidence: Evidence, *, is_ready: bool) -> _ScoredEvidence:
-        if evidence.failure is not None or not is_ready:
-            return _ScoredEvidence(evidence, None, 0.0, evidence.failure)
+        name, params = criterion.check, criterion.params
+        failure = failure_before(evidence, name, params)
+        if failure is not None or not is_ready:
+            return _ScoredEvidence(evidence, None, 0.0, failure, evidence.steps)
         try:
-            check = self._checks[criterion.check]
-            measure = measure_of(evidence, criterion.check, criterion.params, check.measure)
+            measure = measure_of(evidence, name, params, self._checks[name].measure)
         except StudentCodeError as error:  # what it returned takes longer to measure than a submission may
-            return _ScoredEvidence(evidence, None, 0.0, self._clock.explain(error.failure))
-        return _ScoredEvidence(evidence, measure, criterion.anchors.share(measure), evidence.failure)
+            return _ScoredEvidence(evidence, None, 0.0, self._clock.explain(error.failure), evidence.steps)
+        failure, steps = state_after(evidence, name, params)
+        return _ScoredEvidence(evidence, measure, criterion.anchors.share(measure), failure, steps)
 
     def _ready(self, criterion: Criterion) -> Callable[[Evidence], bool]:
         """Returns a predicate: did this evidence earn full points in the criterion that comes first?"""
@@ -654,7 +660,7 @@ def _share(criterion: Criterion, scored: Sequence[_ScoredEvidence]) -> float:
 def _summary(scored: _ScoredEvidence) -> EpisodeSummary:
     evidence = scored.evidence
     measure = None if scored.measure is None else _finite(scored.measure)
-    return EpisodeSummary(evidence.label, evidence.outcome, evidence.steps, measure, evidence.secret)
+    return EpisodeSummary(evidence.label, evidence.outcome, scored.steps, measure, evidence.secret)
 
 
 def _public_failure(evidence: Evidence) -> Failure:

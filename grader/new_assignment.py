@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from grader.reading import read_assignment
+from grader.reading import ASSIGNMENT_FILE, read_assignment
 from kit.plain_text import quoted, suggestion
 from kit.school.lessons.reading import find_lesson, lessons_folder, solutions_folder
 from kit.workspace import write_atomically
@@ -48,9 +48,13 @@ class AssignmentExample:
 
 
 def example_of_kind(kind: str) -> AssignmentExample:
-    """Returns the example of a kind of submission. Raises KeyError for an unknown kind, FileNotFoundError."""
+    """Returns the example of a kind of submission. Raises NoExample for a kind without one, FileNotFoundError."""
     if (TEMPLATES / kind).is_dir():
         return AssignmentExample((TEMPLATES / kind,), kind)
+    if kind not in EXERCISES_OF_KINDS:
+        raise NoExample(
+            f"The kind {quoted(kind)} comes with no example; write its {ASSIGNMENT_FILE} by hand."
+        )
     return example_of_exercise(EXERCISES_OF_KINDS[kind])
 
 

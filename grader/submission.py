@@ -22,6 +22,7 @@ from grader.submitted_files import (
     YAML_ENDINGS,
     SubmissionRefused,
     SubmittedFiles,
+    hidden_code,
     is_plain_name,
     reading_submission,
     shown_name,
@@ -96,6 +97,10 @@ def _read_submission(path: Path, main: str) -> Submission:
         files = SubmittedFiles(main)
         with _open_folder(path) as folder:
             _read_folder(folder, "", files)
+            if (archive := _lone_archive(files)) is not None:
+                with _open_plain_file(archive, MAX_PACKED_BYTES, folder) as file:
+                    files = SubmittedFiles(main, packed_limit(os.fstat(file.fileno()).st_size))
+                    unpack_archive(file, archive, files)
         return _find_main_file(name, files, main)
     if archive_stem(path.name) is not None:
         with _open_plain_file(path, MAX_PACKED_BYTES) as file:
@@ -106,6 +111,13 @@ def _read_submission(path: Path, main: str) -> Submission:
         content = file.read(MAX_BYTES + 1)
     _refuse_wrong_format(path.name, content, main)
     return Submission(name, main, {main: content})
+
+
+def _lone_archive(files: SubmittedFiles) -> str | None:
+    """The archive in a folder that holds nothing else that could be the work: platforms put each student's upload into a
+    folder of its own. None if there is none, or more than one."""
+    archives = [path for path in files.ignored if "/" not in path and archive_stem(path) is not None]
+    return archives[0] if len(archives) == 1 and not files.files else None
 
 
 def _find_main_file(name: str, files: SubmittedFiles, main: str) -> Submission:
@@ -120,6 +132,8 @@ def _find_main_file(name: str, files: SubmittedFiles, main: str) -> Submission:
         if path == found:
             continue
         if path.startswith(top) and is_plain_name(inside) and inside != main:
+            if inside.endswith(".py") and (hidden := hidden_code(inside, content)):
+                raise SubmissionRefused(hidden)
             kept[inside] = content
         else:
             files.ignore(path)

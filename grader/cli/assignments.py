@@ -13,8 +13,20 @@ from typing import Final
 
 import click
 
+from grader.assignment import Assignment
 from grader.check import Check
-from grader.ci import WORKFLOWS, GitSource, warnings, workflow
+from grader.ci import (
+    GRADESCOPE,
+    GRADESCOPE_ARCHIVE,
+    REPOSITORY_SERVICES,
+    WORKFLOWS,
+    GitSource,
+    GradedWork,
+    Runner,
+    gradescope_archive,
+    warnings,
+    workflow,
+)
 from grader.cli import options
 from grader.cli.progress import shown_progress
 from grader.grading import GradingOptions, LevelTooLow
@@ -33,7 +45,12 @@ from kit.workspace import write_atomically
 
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path))
-@click.option("--kind", type=click.Choice(kind_names()), help="What students submit (default: controller).")
+@click.option(
+    "--kind",
+    type=click.Choice(kind_names()),
+    metavar="KIND",
+    help="What students submit; `grader checks` names the kinds (default: controller).",
+)
 @click.option(
     "--from",
     "exercise",
@@ -216,46 +233,82 @@ PLAIN_PATH: Final = re.compile(r"[A-Za-z0-9_./-]+")
 
 
 @click.command()
-@click.argument("service", type=click.Choice(sorted(WORKFLOWS)))
-@options.assignment
+@click.argument("service", type=click.Choice([*sorted(WORKFLOWS), GRADESCOPE]))
+@click.option(
+    "--assignment",
+    "folders",
+    multiple=True,
+    required=True,
+    metavar="FOLDER[=WORK]",
+    help="Assignment folder; repeat for more. WORK: where the student's work lies, if not at the repository's top.",
+)
 @click.option(
     "--kit",
     required=True,
     metavar="ADDRESS[@VERSION]",
     help="Repository to clone the kit from: https://..., optionally with a branch or tag.",
 )
+@click.option("--python", default=Runner().python, show_default=True, help="Version of Python.")
+@click.option("--runner", default=Runner().image, show_default=True, help="GitHub's runner.")
 @click.option(
     "--write",
     is_flag=True,
-    help="Write the file to its place below the current folder instead of printing it.",
+    help="Write the file to its place below the current folder instead of printing it; always so for gradescope.",
 )
-def ci(service: str, folder: Path, kit: str, write: bool) -> None:
-    """Print a workflow that grades every push: for GitHub Actions or GitLab CI.
+def ci(service: str, folders: tuple[str, ...], kit: str, python: str, runner: str, write: bool) -> None:
+    """Print a workflow that grades every push: for GitHub Actions, GitLab CI or Classroom 50; or make Gradescope's
+    autograder.zip.
 
-    Give the assignment's folder relative to the repository, and the address of the kit's source:
+    Give the assignments' folders relative to the repository, and the address of the kit's source:
 
     \b
     grader ci github --assignment tasks/one --kit https://HOST/PATH@v1
+    grader ci github --assignment one=one.py --assignment two=two --kit https://HOST/PATH
+    grader ci gradescope --assignment tasks/one --kit https://HOST/PATH@v1
 
-    Anyone who can push can change the workflow and the assignment, so these results are only for practice. For the
-    grade, run `grader cohort` on the submissions.
+    Anyone who can push can change the workflow and the assignment in a repository, so these results are only for practice.
+    For the grade, run `grader cohort` on the submissions.
     """
-    assignment = options.load_assignment(folder)
-    name = folder.as_posix()
-    if not PLAIN_PATH.fullmatch(name) or folder.is_absolute() or ".." in folder.parts:
-        options.fail(f"{name}: give the folder relative to the repository, in letters, digits, _ . - and /.")
+    read = [(*_graded_work(each), each) for each in folders]
+    if len(read) > 1 and service not in REPOSITORY_SERVICES:
+        options.fail(f"{service} takes one assignment.")
+    if len({work.work for work, _, _ in read}) < len(read):
+        options.fail(
+            "Two assignments have one work: say where each lies, such as tasks/one=one/controller.py."
+        )
+    if not PLAIN_PATH.fullmatch(python) or not PLAIN_PATH.fullmatch(runner):
+        options.fail("Give Python's version and the runner in letters, digits, _ . - and /.")
     try:
-        text = workflow(service, submit=assignment.submit, assignment=name, kit=GitSource.read(kit))
-    except ValueError as error:
+        source = GitSource.read(kit)
+        for _, assignment, _ in read:
+            for warning in warnings(assignment, service):
+                click.echo(warning, err=True)
+        if service == GRADESCOPE:
+            file, data = Path(GRADESCOPE_ARCHIVE), gradescope_archive(read[0][1], source)
+        else:
+            text = workflow(service, [work for work, _, _ in read], source, Runner(python, runner))
+            file, data = Path(WORKFLOWS[service][0]), text.encode()
+    except (ValueError, OSError) as error:
         options.fail(f"{error}.")
-    for warning in warnings(assignment, service):
-        click.echo(warning, err=True)
-    if not write:
-        click.echo(text, nl=False)
+    if not write and service != GRADESCOPE:
+        click.echo(data.decode(), nl=False)
         return
-    file = Path(WORKFLOWS[service][0])
     if file.exists():
-        options.fail(f"{file} already exists; remove it first.")
+        options.fail(f"{file} already exists; remove it first. One workflow takes several --assignment.")
     file.parent.mkdir(parents=True, exist_ok=True)
-    write_atomically(file.absolute(), text.encode())
+    write_atomically(file.absolute(), data)
     click.echo(f"{file}: written")
+
+
+def _graded_work(text: str) -> tuple[GradedWork, Assignment]:
+    """Reads ``FOLDER[=WORK]``; ends with what is wrong with it."""
+    name, _, work = text.partition("=")
+    folder = Path(name)
+    for each in filter(None, (name, work)):
+        if not PLAIN_PATH.fullmatch(each) or Path(each).is_absolute() or ".." in Path(each).parts:
+            options.fail(f"{each}: give it relative to the repository, in letters, digits, _ . - and /.")
+    if not folder.is_dir():
+        options.fail(f"{name}: there is no such folder.")
+    assignment = options.load_assignment(folder)
+    known = "-".join(folder.parts) or "assignment"
+    return GradedWork(known, work or assignment.submit, folder.as_posix()), assignment

@@ -26,7 +26,7 @@ _format_option = click.option(
     default="text",
     show_default=True,
     metavar="NAME",
-    help="text, json, junit, gradescope, classroom, prairielearn, check50 or markdown.",
+    help="text, json, junit, gradescope, classroom50, classroom, annotations, prairielearn, check50 or markdown.",
 )
 
 
@@ -192,21 +192,27 @@ def _save_replay(worst: Evidence, replay: Path, grading: Grading) -> str:
     "--output", type=click.Path(dir_okay=False, path_type=Path), help="Write the report to this file."
 )
 @click.option("--for-student", is_flag=True, help="Leave out what students may not see yet.")
-def report(file: Path, format_name: str, output: Path | None, for_student: bool) -> None:
+@click.option(
+    "--work", default="", help="For annotations: the graded file or folder, relative to the repository."
+)
+def report(file: Path, format_name: str, output: Path | None, for_student: bool, work: str) -> None:
     """Convert a result of `grader check --json` to another format."""
     from grader.reports import FORMATS
+    from grader.reports.formats import write_annotations
     from kit.school.result import GradingResult
     from kit.workspace import write_atomically
 
     if format_name not in FORMATS:
         options.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")
+    if work and format_name != "annotations":
+        options.fail("--work is for annotations.")
     try:
         result = GradingResult.from_dict(json.loads(file.read_bytes()))
     except (KeyError, TypeError, ValueError, RecursionError):
         options.fail(f"{file}: not a result of the grader.")
     if for_student:
         result = result.for_student()
-    text = FORMATS[format_name](result)
+    text = write_annotations(result, work) if work else FORMATS[format_name](result)
     if output is None:
         click.echo(text, nl=False)
     else:

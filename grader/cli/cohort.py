@@ -11,6 +11,7 @@ from pathlib import Path
 import click
 
 from grader.cli import options
+from grader.cli.progress import counted_progress
 from grader.cohort.gradebook import (
     UNREADABLE,
     WAITING,
@@ -39,7 +40,7 @@ from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.cli.options import describe_error, executor_options
 from kit.document.blocks import CellStyle, Column, Table
 from kit.document.layout import lines_of
-from kit.host.job_executors import read_shard, serve_jobs
+from kit.host.job_executors import SlurmResources, read_shard, serve_jobs
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
 from kit.school.game.levels import UnknownLevel, find_level
@@ -74,6 +75,7 @@ def cohort(
     jobs: int,
     executor: str,
     cluster: str,
+    slurm: SlurmResources,
 ) -> None:
     """Grade every file, folder or archive in SUBMISSIONS that has no grade yet.
 
@@ -87,9 +89,6 @@ def cohort(
     Exit code: 0 all submissions have a grade, or wait for shards; 1 some cannot be read; 2 an argument is wrong; 3 the
     grader failed for some, or a worker left no result for some.
     """
-
-    def count(key: str) -> None:
-        bar.update(1)
 
     assignment = options.load_assignment(folder)
     if secret:
@@ -110,9 +109,13 @@ def cohort(
         waiting = queue.waiting()
         anew = f", {judged} judged anew by what was found before" if judged else ""
         click.echo(f"{len(entries)} submissions{anew}, {len(waiting)} to grade", err=True)
-        with click.progressbar(length=len(waiting), label="graded", file=sys.stderr) as bar:
+        with counted_progress(len(waiting), "graded") as count_one:
+
+            def count(key: str) -> None:
+                count_one()
+
             if executor == "slurm":
-                run_on_slurm(queue, jobs)
+                run_on_slurm(queue, jobs, slurm)
             elif executor == "dask":
                 run_on_dask(queue, waiting, cluster, count)
             elif executor == "local":

@@ -100,7 +100,7 @@ def gradebook(
 
     \b
     grader gradebook grades --roster class.csv --late late.yaml --times times.csv
-    grader gradebook grades --roster worksheet.csv --for moodle --output upload.csv
+    grader gradebook grades --roster class.csv --for moodle --output upload.csv
     grader gradebook grades --roster class.csv --feedback pages
     grader gradebook grades --statistics
 

@@ -14,7 +14,7 @@ from typing import Final
 import click
 
 from grader import teacher_tests
-from grader.ci import WORKFLOWS, GitSource, workflow
+from grader.ci import REPOSITORY_SERVICES, WORKFLOWS, GitSource, GradedWork, workflow
 from grader.cli import options
 from grader.kinds.contract import kind_names
 from grader.new_assignment import CARD
@@ -50,7 +50,7 @@ STARTER: Final = "starter"
 )
 @click.option(
     "--service",
-    type=click.Choice(sorted(WORKFLOWS)),
+    type=click.Choice(REPOSITORY_SERVICES),
     default="github",
     show_default=True,
     help="With --repository: where it will lie.",
@@ -86,7 +86,8 @@ def release(
         files = version.files
         if repository:
             source = GitSource.read(kit or "")
-            text = workflow(service, submit=WORK_FOLDER, assignment=ASSIGNMENT_FOLDER, kit=source)
+            work = GradedWork(ASSIGNMENT_FOLDER, WORK_FOLDER, ASSIGNMENT_FOLDER)
+            text = workflow(service, [work], source)
             files = repository_files(version, WORKFLOWS[service][0], text, assignment.submit)
     except ReleaseRefused as refused:
         options.fail(f"Not released.\n{refused}")

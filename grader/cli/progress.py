@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Final
 
+import click
+
 from grader.evidence.submission_clock import DRIVE_KIND
 from grader.reports.cleaning import clean_line
 
@@ -88,3 +90,34 @@ def _status_line() -> Iterator[Callable[[str], None]]:
     finally:
         if is_shown:
             show("")
+
+
+LINE_INTERVAL_S: Final = 15.0
+"""Between two lines on how far a class is, where there is no terminal."""
+
+
+@contextmanager
+def counted_progress(total: int, done: str) -> Iterator[Callable[[], None]]:
+    """Yields the function to call for each of ``total`` things that is done: a bar on a terminal; elsewhere, as in a log, a
+    line from time to time, and the last one. ``done``: the word for it, such as "graded"."""
+    if sys.stderr.isatty():
+        with click.progressbar(length=total, label=done, file=sys.stderr) as bar:
+            yield lambda: bar.update(1)
+        return
+    began = time.monotonic()
+    count, said_at, said = 0, began, 0
+
+    def say() -> None:
+        nonlocal said, said_at
+        said, said_at = count, time.monotonic()
+        click.echo(f"{count} of {total} {done}, {said_at - began:.0f} s", err=True)
+
+    def count_one() -> None:
+        nonlocal count
+        count += 1
+        if time.monotonic() - said_at >= LINE_INTERVAL_S:
+            say()
+
+    yield count_one
+    if count > said:
+        say()

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Final
 
-from grader.cohort.gradebook import GradebookRow, as_csv, comment_text
+from grader.cohort.gradebook import GradebookRow, as_csv, comment_text, late_text
 from grader.cohort.roster import Roster
 from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.school.result import format_points
@@ -116,7 +116,7 @@ EXPORTS: Final[Mapping[str, GradebookWriter]] = MappingProxyType(
 
 def feedback_text(row: GradebookRow) -> str:
     """What a student reads beside the grade, in one line that is no formula: lateness, comments, and why points were lost."""
-    return spreadsheet_cell(" ".join(filter(None, (comment_text(row), row.late, row.feedback))), 1000)
+    return spreadsheet_cell(" ".join(filter(None, (comment_text(row), late_text(row), row.feedback))), 1000)
 
 
 def _number_writer(*, decimal_comma: bool) -> Callable[[float | None], str]:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from grader.assignment import Assignment
-from grader.cohort.gradebook import MISSING, GradebookRow
+from grader.cohort.gradebook import MISSING, GradebookRow, late_text
 from grader.cohort.queue import Queue
 from grader.cohort.roster import look
 from grader.cohort.statistics import class_document
@@ -92,7 +92,7 @@ def _grade_blocks(row: GradebookRow, result: GradingResult | None) -> Iterator[B
     elif withheld:
         yield Text("Some of it is shown later, and so is the sum.")
     if row.late:
-        yield Text(row.late)
+        yield Text(row.late if withheld else late_text(row))
     if row.extra:
         yield Text(
             f"Your teacher has {'added' if row.extra > 0 else 'taken away'} {abs(row.extra):g} points."

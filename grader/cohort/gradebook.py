@@ -262,9 +262,17 @@ def as_csv(table: Sequence[GradebookRow], *, decimal_comma: bool = False) -> str
         tests = [number(row.tests.get(identity)) for identity in criteria]
         sums = [number(each) for each in (row.final, row.points, row.max_points, row.kept, row.extra or None)]
         known = [spreadsheet_cell(getattr(row.student, each, "")) for each in of_student]
-        told = map(spreadsheet_cell, (row.late, comment_text(row), row.note))
+        told = map(spreadsheet_cell, (late_text(row), comment_text(row), row.note))
         writer.writerow([spreadsheet_cell(row.name), *known, row.verdict, *sums, *tests, *told])
     return out.getvalue()
+
+
+def late_text(row: GradebookRow) -> str:
+    """Returns how late a work was and how many points that costs; empty if it was in time."""
+    if not row.late or not row.points or row.kept >= 1.0:
+        return row.late
+    lost = format_points(row.points * (1.0 - row.kept))
+    return f"{row.late} That costs {lost} of {format_points(row.points)} points."
 
 
 def comment_text(row: GradebookRow) -> str:

@@ -29,7 +29,7 @@ from grader.submitted_files import IGNORED_NAMES, SubmissionRefused, SubmissionU
 from grader.version import grader_version
 from kit.field_types import check_field_types
 from kit.host import job_executors
-from kit.host.job_executors import MAX_TRIES, JobPool, in_shard, read_result
+from kit.host.job_executors import MAX_TRIES, JobPool, SlurmResources, in_shard, read_result
 from kit.host.job_executors import ExecutorUnavailable as ExecutorUnavailable
 from kit.host.python_command import python_command
 from kit.host.sandbox.confinement import Level
@@ -401,15 +401,17 @@ def run_locally(queue: Queue, keys: Sequence[str], jobs: int, on_done: Callable[
     WorkerPool(queue, keys, jobs, on_done).run()
 
 
-def slurm_script(queue: Queue, shards: int) -> str:
+def slurm_script(queue: Queue, shards: int, resources: SlurmResources | None = None) -> str:
     """Returns the script of an array job of ``shards`` tasks, each of which grades its share of the queue."""
     command = python_command("grader", "work", str(queue.folder.absolute()))
-    return job_executors.slurm_script(queue.folder, command, shards, "grader")
+    return job_executors.slurm_script(queue.folder, command, shards, "grader", resources)
 
 
-def run_on_slurm(queue: Queue, shards: int) -> None:
+def run_on_slurm(queue: Queue, shards: int, resources: SlurmResources | None = None) -> None:
     """Submits the array job and waits until it is over. Raises ExecutorUnavailable."""
-    job_executors.run_on_slurm(queue.folder, slurm_script(queue, shards), lambda: bool(queue.waiting()))
+    job_executors.run_on_slurm(
+        queue.folder, slurm_script(queue, shards, resources), lambda: bool(queue.waiting())
+    )
 
 
 def run_on_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callable[[str], None]) -> None:

@@ -42,6 +42,10 @@ class Finding:
     """By check and params; as text, since JSON has no infinity."""
     failed_measures: dict[str, dict[str, Any]] = field(default_factory=dict)
     """How the program failed where it was measured, by check and params."""
+    failures: dict[str, dict[str, Any] | None] = field(default_factory=dict)
+    """How the program had failed when it had been measured, by check and params: a measure may be the first to run it."""
+    steps_then: dict[str, int] = field(default_factory=dict)
+    """The steps that had been simulated when it had been measured."""
     explained: dict[str, str] = field(default_factory=dict)
     pictures: dict[str, str] = field(default_factory=dict)
     """By check."""
@@ -162,6 +166,9 @@ class NotedEvidence:
             self._finding.failed_measures[key] = _failure_data(error.failure)
             raise
         self._finding.measures[key] = repr(value)
+        failure = self.failure
+        self._finding.failures[key] = None if failure is None else _failure_data(failure)
+        self._finding.steps_then[key] = self.steps
         return value
 
 
@@ -244,6 +251,16 @@ class KeptEvidence:
             raise StudentCodeError(_failure_from(self._finding.failed_measures[key]))
         return float(_kept(self._finding.measures, key))
 
+    def has_measured(self, check: str, params: Any) -> bool:
+        key = _answer_key(check, params)
+        return key in self._finding.measures or key in self._finding.failed_measures
+
+    def state_of(self, check: str, params: Any) -> tuple[Failure | None, int]:
+        """How the program had failed, and the steps that had been simulated, when it had been measured."""
+        key = _answer_key(check, params)
+        failure = _kept(self._finding.failures, key)
+        return None if failure is None else _failure_from(failure), _kept(self._finding.steps_then, key)
+
 
 class KeptFindings:
     """A collector that runs nothing: all its evidence was collected before."""
@@ -290,6 +307,20 @@ def measure_of(evidence: Evidence, check: str, params: Any, measure: Measure) ->
     if isinstance(evidence, (NotedEvidence, KeptEvidence)):
         return evidence.measure(check, params, measure)
     return float(measure(evidence, params))
+
+
+def failure_before(evidence: Evidence, check: str, params: Any) -> Failure | None:
+    """How the program has failed, as it is known before the evidence is measured for a check; None if it has not."""
+    if isinstance(evidence, KeptEvidence) and evidence.has_measured(check, params):
+        return None
+    return evidence.failure
+
+
+def state_after(evidence: Evidence, check: str, params: Any) -> tuple[Failure | None, int]:
+    """How the program has failed, and how many steps were simulated, when the evidence has been measured for a check."""
+    if isinstance(evidence, KeptEvidence):
+        return evidence.state_of(check, params)
+    return evidence.failure, evidence.steps
 
 
 def original_of(evidence: Evidence) -> Evidence:

@@ -7,8 +7,10 @@ from types import MappingProxyType
 from typing import Final
 
 from grader.reports.formats import (
+    write_annotations,
     write_check50,
     write_classroom,
+    write_classroom50,
     write_gradescope,
     write_json,
     write_junit,
@@ -27,6 +29,8 @@ FORMATS: Final[Mapping[str, ReportWriter]] = MappingProxyType(
         "junit": write_junit,
         "gradescope": write_gradescope,
         "classroom": write_classroom,
+        "classroom50": write_classroom50,
+        "annotations": write_annotations,
         "prairielearn": write_prairielearn,
         "check50": write_check50,
         "markdown": write_markdown,

@@ -1,4 +1,5 @@
-"""The report formats: text, JSON, JUnit XML, Gradescope, check50, GitHub Classroom, PrairieLearn and Markdown.
+"""The report formats: text, JSON, JUnit XML, Gradescope, check50, Classroom 50, GitHub Classroom and annotations, PrairieLearn,
+and Markdown.
 
 In JUnit XML ``failure`` is the student's, ``error`` the grader's; points are in properties and in the message. Gradescope gets
 plain text, never HTML or markup.
@@ -7,7 +8,11 @@ plain text, never HTML or markup.
 from __future__ import annotations
 
 import json
+import os
+import re
 from collections.abc import Iterator, Mapping
+from datetime import UTC, datetime
+from pathlib import PurePosixPath
 from types import MappingProxyType
 from typing import Any, Final
 from xml.etree import ElementTree
@@ -141,6 +146,99 @@ def _classroom_test(test: CriterionResult) -> dict[str, Any]:
         ),
         "duration": 0,
     }
+
+
+CLASSROOM50_VARIABLES: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "classroom": "CLASSROOM",
+        "assignment": "ASSIGNMENT",
+        "submission": "SUBMISSION_TAG",
+        "commit": "COMMIT_URL",
+        "release": "RELEASE_URL",
+        "review": "REVIEW_URL",
+    }
+)
+"""What Classroom 50's runner says in the environment, by the key of the result."""
+
+
+def write_classroom50(result: GradingResult) -> str:
+    """Writes the ``result.json`` of Classroom 50 (``classroom50/result/v1``), inside its runner, which says in the environment
+    what it is about, and stamps the owner itself.
+
+    A broken grader writes no score: the runner refuses that, and nobody gets 0.
+    """
+    result = result.for_student()
+    told = {key: os.environ.get(name, "") for key, name in CLASSROOM50_VARIABLES.items()}
+    told["review"] = told["review"] or told["commit"]
+    tests = [
+        {
+            "test-name": clean_line(test.title, 120) + (" (shown later)" if test.is_withheld else ""),
+            "passed": test.is_passed,
+            "score": _whole_if_possible(test.points),
+            "max-score": _whole_if_possible(test.max_points),
+        }
+        for test in result.tests
+    ]
+    started = datetime.fromisoformat(result.timing.started) if result.timing.started else datetime.now(UTC)
+    content = {
+        "schema": "classroom50/result/v1",
+        **told,
+        "datetime": started.astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "score": None if result.points is None else _whole_if_possible(result.points),
+        "max-score": _whole_if_possible(result.max_points),
+        "tests": tests,
+    }
+    return json.dumps(content, indent=2, allow_nan=False) + "\n"
+
+
+def _whole_if_possible(points: float) -> float:
+    rounded = rounded_points(points)
+    return int(rounded) if float(rounded).is_integer() else rounded
+
+
+MAX_ANNOTATIONS: Final = 10
+"""Of each kind; GitHub shows no more of one step."""
+_PLACE: Final = re.compile(r"(?P<file>[A-Za-z0-9_./-]+):(?P<line>\d+): ")
+
+
+def write_annotations(result: GradingResult, work: str = "") -> str:
+    """Writes GitHub's workflow commands: an annotation for each lost criterion, at the student's line where one is known.
+
+    ``work``: the file or folder that was graded, relative to the repository.
+    """
+    result = result.for_student()
+    lines = []
+    for test in result.tests:
+        if test.is_passed or not test.is_judged:
+            continue
+        place = _PLACE.match(test.rationale)
+        where = {"title": clean_line(f"{test.title}: {points_text(test.points, test.max_points)}", 120)}
+        if place is not None:
+            folder = work if work and not PurePosixPath(work).suffix else str(PurePosixPath(work).parent)
+            where = {"file": str(PurePosixPath(folder) / place["file"]), "line": place["line"], **where}
+        told = ",".join(f"{key}={_escaped(value, is_property=True)}" for key, value in where.items())
+        text = _escaped(plain("\n".join((test.rationale, *test.hints[:1])), 1000))
+        lines.append(f"::{'warning' if test.points else 'error'} {told}::{text}")
+    kinds = {
+        kind: [line for line in lines if line.startswith(f"::{kind}")][:MAX_ANNOTATIONS]
+        for kind in ("error", "warning")
+    }
+    points = (
+        "no grade" if result.points is None else f"{points_text(result.points, result.max_points)} points"
+    )
+    later = [test.title for test in result.tests if test.is_withheld]
+    points += f"; shown later: {clean_line(', '.join(later))}" if later else ""
+    kinds["notice"] = [
+        f"::notice title={_escaped(clean_line(result.assignment), is_property=True)}::{_escaped(points)}"
+    ]
+    return "".join(f"{line}\n" for each in kinds.values() for line in each)
+
+
+def _escaped(text: str, *, is_property: bool = False) -> str:
+    """What a workflow command may hold: nothing in it ends the command, or begins another."""
+    for sign, code in (("%", "%25"), ("\r", "%0D"), ("\n", "%0A")):
+        text = text.replace(sign, code)
+    return text.replace(":", "%3A").replace(",", "%2C") if is_property else text
 
 
 NOT_RUN: Final = (CriterionStatus.STUDENT_ERROR, CriterionStatus.SKIPPED)

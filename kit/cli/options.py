@@ -27,6 +27,7 @@ from kit.tui.terminal import (
 from kit.workspace import Workspace, WorkspaceError, open_workspace
 
 if TYPE_CHECKING:
+    from kit.host.job_executors import SlurmResources
     from kit.run.recording_file import RecordingFile
     from kit.school.progress import ProgressJournal
 
@@ -170,8 +171,20 @@ def controller_option(default: str) -> Decorator:
     )
 
 
+def _read_slurm_resources(
+    context: click.Context, parameter: click.Parameter, given: tuple[str, ...]
+) -> SlurmResources:
+    from kit.host.job_executors import SlurmResources  # what few verbs need
+
+    try:
+        return SlurmResources.read(given)
+    except ValueError as error:
+        raise click.BadParameter(str(error)) from None
+
+
 def executor_options(jobs: str, executor: str, *, may_have_none: bool = True) -> Decorator:
-    """The options ``--jobs``, ``--executor`` and ``--cluster``: how many side by side, and where. Both texts are helps."""
+    """The options ``--jobs``, ``--executor``, ``--cluster`` and ``--slurm``: how many side by side, and where. Both texts are
+    helps."""
     names = ("local", "slurm", "dask", *(("none",) if may_have_none else ()))
     options = (
         click.option(
@@ -185,6 +198,13 @@ def executor_options(jobs: str, executor: str, *, may_have_none: bool = True) ->
             "--executor", type=click.Choice(names), default="local", show_default=True, help=executor
         ),
         click.option("--cluster", default="", metavar="ADDRESS", help="Address of the Dask scheduler."),
+        click.option(
+            "--slurm",
+            multiple=True,
+            metavar="NAME=VALUE",
+            callback=_read_slurm_resources,
+            help="What a task asks SLURM for: account, partition, qos, time (04:00:00) or memory (4G); repeat for more.",
+        ),
     )
     return lambda function: reduce(lambda made, option: option(made), reversed(options), function)
 

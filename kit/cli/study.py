@@ -11,7 +11,7 @@ import click
 from kit.cli import learning_options, options, report_output
 from kit.cli.sweep import run_sweep
 from kit.document.blocks import Document
-from kit.host.job_executors import ExecutorUnavailable
+from kit.host.job_executors import ExecutorUnavailable, SlurmResources
 from kit.learning.training.algorithms import require_learn_extra
 from kit.learning.training.runs import RunError
 from kit.study import study_document
@@ -65,6 +65,7 @@ def command(
     jobs: int,
     executor: str,
     cluster: str,
+    slurm: SlurmResources,
     outputs: report_output.ReportOutputs,
     workspace: Path | None,
 ) -> None:
@@ -114,6 +115,7 @@ def command(
                         jobs,
                         executor,
                         cluster,
+                        slurm,
                     )
             to_files = outputs.has_files
             listed, everything = study_document.chapters(
@@ -171,6 +173,7 @@ def _run_again(
     jobs: int,
     executor: str,
     cluster: str,
+    slurm: SlurmResources,
 ) -> None:
     """Trains and tests what is missing of a table; runs its potential fields."""
     tables = {each.id: each for chapter in study_chapters() for each in chapter.tables}
@@ -197,7 +200,7 @@ def _run_again(
         if run.misses_fields:
             _run_fields(run)
         for seed in missing:
-            _run_seed(run, seed, jobs, executor, cluster)
+            _run_seed(run, seed, jobs, executor, cluster, slurm)
         run.record_paths(lambda figure: click.echo(f"paths of figure {figure.id}: recorded", err=True))
     except (ExecutorUnavailable, RunError) as error:
         click.echo(str(error), err=True)
@@ -213,9 +216,11 @@ def _run_fields(run: StudyRun) -> None:
         run.record_fields(lambda case, number: bar.update(1))
 
 
-def _run_seed(run: StudyRun, seed: int, jobs: int, executor: str, cluster: str) -> None:
+def _run_seed(
+    run: StudyRun, seed: int, jobs: int, executor: str, cluster: str, slurm: SlurmResources
+) -> None:
     sweep = run.sweep(seed)
-    run_sweep(sweep, executor, jobs, cluster)
+    run_sweep(sweep, executor, jobs, cluster, slurm)
     run.record(
         sweep,
         seed,

@@ -16,7 +16,7 @@ import click
 from kit.cli import learning_options, options
 from kit.document.layout import lines_of
 from kit.host import job_executors
-from kit.host.job_executors import ExecutorUnavailable
+from kit.host.job_executors import ExecutorUnavailable, SlurmResources
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.crosstable import (
     case_groups,
@@ -157,6 +157,7 @@ def command(
     jobs: int,
     executor: Literal["local", "slurm", "dask", "none"],
     cluster: str,
+    slurm: SlurmResources,
     csv_file: Path | None,
     as_json: bool,
     name: str | None,
@@ -224,7 +225,7 @@ def command(
                 f"{title}: a sweep's name may contain letters, digits, '_', '-' and '.'; set one with --name."
             )
         folder = learning_options.runs_folder(workspace).parent / "sweeps" / title
-        run = partial(run_sweep, executor=executor, jobs=jobs, cluster=cluster)
+        run = partial(run_sweep, executor=executor, jobs=jobs, cluster=cluster, slurm=slurm)
         try:
             if ranges:
                 sweep = _tune(folder, configs, ranges, trials, episodes, goal, run)
@@ -270,7 +271,7 @@ def _tune(
     return tune(folder, configs[0], ranges, seeds, trials=trials, episodes=episodes, goal=goal, run=run)
 
 
-def run_sweep(sweep: TrainingSweep, executor: str, jobs: int, cluster: str) -> None:
+def run_sweep(sweep: TrainingSweep, executor: str, jobs: int, cluster: str, slurm: SlurmResources) -> None:
     """Runs the trainings that have no result yet. Raises ExecutorUnavailable and KeyboardInterrupt."""
     keys = sweep.waiting()
     if executor == "none" or not keys:
@@ -283,7 +284,7 @@ def run_sweep(sweep: TrainingSweep, executor: str, jobs: int, cluster: str) -> N
 
         if executor == "slurm":
             command = sweep_command(sweep)
-            script = job_executors.slurm_script(sweep.folder, command, jobs, "kit-sweep")
+            script = job_executors.slurm_script(sweep.folder, command, jobs, "kit-sweep", slurm)
             job_executors.run_on_slurm(sweep.folder, script, lambda: bool(sweep.waiting()))
         elif executor == "dask":
             job_executors.run_on_dask(sweep.folder, run_job_by_key, keys, cluster, count, sweep.record_loss)

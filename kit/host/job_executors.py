@@ -16,12 +16,13 @@ import threading
 from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import IO, Any, Final, NoReturn
 
 from kit.installation import install_command
 from kit.plain_files import read_plain_file
-from kit.plain_text import quoted
+from kit.plain_text import quoted, suggestion
 from kit.workspace import write_atomically
 
 DONE: Final = "done"
@@ -185,15 +186,59 @@ def _stop_worker(worker: subprocess.Popen[str], *, now: bool = False) -> None:
         worker.stdin.close()
 
 
-def slurm_script(folder: Path, command: Sequence[str], shards: int, name: str) -> str:
+@dataclass(frozen=True, slots=True)
+class SlurmResources:
+    """What a task of an array job asks the cluster for; an empty text leaves it to the cluster."""
+
+    account: str = ""
+    partition: str = ""
+    qos: str = ""
+    time: str = "04:00:00"
+    memory: str = "4G"
+
+    @classmethod
+    def read(cls, given: Sequence[str]) -> SlurmResources:
+        """Reads texts ``NAME=VALUE``. Raises ValueError for another name, and for a value that would end the line of a script.
+
+        >>> SlurmResources.read(["account=robots", "time=08:00:00"]).time
+        '08:00:00'
+        """
+        names = [each.name for each in fields(cls)]
+        values = {}
+        for text in given:
+            name, _, value = text.partition("=")
+            if name not in names:
+                raise ValueError(f"{quoted(text)}: {suggestion(name, names)}; write it as NAME=VALUE")
+            if not _SLURM_VALUE.fullmatch(value):
+                raise ValueError(f"{quoted(text)}: the value has letters, digits and _ . : , @ + - alone")
+            values[name] = value
+        return cls(**values)
+
+    def lines(self) -> str:
+        """The lines of a script that ask for them."""
+        asked = {
+            "account": self.account,
+            "partition": self.partition,
+            "qos": self.qos,
+            "time": self.time,
+            "mem": self.memory,
+        }
+        return "".join(f"#SBATCH --{name}={value}\n" for name, value in asked.items() if value)
+
+
+_SLURM_VALUE: Final = re.compile(r"[A-Za-z0-9_.:,@+-]+")
+
+
+def slurm_script(
+    folder: Path, command: Sequence[str], shards: int, name: str, resources: SlurmResources | None = None
+) -> str:
     """Returns the script of an array job ``name`` of ``shards`` tasks, each of which runs ``command --shard I/N``."""
+    asked = (resources or SlurmResources()).lines()
     return f"""#!/bin/sh
 #SBATCH --job-name={name}
 #SBATCH --array=0-{shards - 1}
 #SBATCH --cpus-per-task=2
-#SBATCH --mem=4G
-#SBATCH --time=04:00:00
-#SBATCH --output={shlex.quote(str(folder.absolute()))}/slurm-%a.log
+{asked}#SBATCH --output={shlex.quote(str(folder.absolute()))}/slurm-%a.log
 exec {shlex.join(command)} --shard "$SLURM_ARRAY_TASK_ID/{shards}"
 """
 
@@ -207,7 +252,15 @@ def run_on_slurm(folder: Path, script_text: str, is_waiting: Callable[[], bool])
         raise ExecutorUnavailable(f"There is no sbatch here. On the cluster's front end run: sbatch {script}")
     done = subprocess.run([sbatch, "--wait", str(script)], capture_output=True, text=True, check=False)
     if done.returncode != 0 and is_waiting():
-        raise ExecutorUnavailable(f"sbatch failed: {done.stderr.strip()[:300] or done.returncode}")
+        said = done.stderr.strip()[:300]
+        if not said:
+            raise ExecutorUnavailable(
+                "The array job has ended with jobs left, as where a task was killed: run the same command to go on. What the "
+                f"tasks said: {folder}/slurm-*.log"
+            )
+        raise ExecutorUnavailable(
+            f"sbatch failed: {said}. Accounts, partitions and limits are given with --slurm; the script: {script}"
+        )
 
 
 def run_on_dask(

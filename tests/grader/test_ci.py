@@ -8,6 +8,8 @@ import re
 import shutil
 import subprocess
 import sys
+import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -17,18 +19,21 @@ import yaml
 from click.testing import CliRunner
 
 from grader.__main__ import main
-from grader.ci import WORKFLOWS, GitSource, warnings, workflow
+from grader.ci import REPOSITORY_SERVICES, GitSource, GradedWork, warnings, workflow
 from grader.reading import read_assignment
 from kit.host.sandbox import probe
 from tests.cases import every_case
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 
+ROOT = Path(__file__).parents[2]
 KIT = GitSource("https://example.org/somebody/kit", "v1")
+ONE = GradedWork("tasks-one", "controller.py", "tasks/one")
+TWO = GradedWork("tasks-two", "two/controller.py", "tasks/two")
 
 
 def made(service: str) -> tuple[str, Any]:
     """The text, and what YAML makes of it."""
-    text = workflow(service, submit="controller.py", assignment="tasks/one", kit=KIT)
+    text = workflow(service, [ONE], KIT)
     return text, yaml.safe_load(text)
 
 
@@ -38,7 +43,7 @@ def invoke(*arguments: str) -> tuple[int, str]:
     return done.exit_code, done.output
 
 
-@pytest.mark.parametrize("service", WORKFLOWS)
+@pytest.mark.parametrize("service", REPOSITORY_SERVICES)
 def test_a_workflow_is_whole_and_harmless(service: str) -> None:
     text, content = made(service)
     assert content
@@ -60,9 +65,9 @@ def test_on_github_students_code_runs_without_rights() -> None:
 def test_every_action_is_githubs_own_and_pinned_by_a_hash() -> None:
     text, content = made("github")
     used = [step["uses"] for step in content["jobs"]["grade"]["steps"] if "uses" in step]
-    assert len(used) == 3
+    assert len(used) == 5
     for each in used:
-        assert re.fullmatch(r"actions/[a-z-]+@[0-9a-f]{40}", each)
+        assert re.fullmatch(r"actions/[a-z-]+(/[a-z]+)?@[0-9a-f]{40}", each)
         assert re.search(re.escape(each) + r"  # v\d+\.\d+\.\d+\n", text), "the comment names its version"
 
 
@@ -114,9 +119,9 @@ def write_hostile_files(checkout: Path) -> None:
         (folder / "junit.xml").write_text("<testsuites forged='yes'/>")
 
 
-def steps(service: str) -> list[tuple[str, dict[str, str]]]:
+def steps(service: str, works: Sequence[GradedWork] = (ONE,)) -> list[tuple[str, dict[str, str]]]:
     """What the runner's shell is given, one text for each of its starts, with what the runner fills in."""
-    _, content = made(service)
+    content = yaml.safe_load(workflow(service, works, KIT))
     if service == "gitlab":
         return [("set -eo pipefail\n" + "\n".join(content["grade"]["script"]), {})]
     assert content["defaults"]["run"] == {"shell": "bash", "working-directory": "${{ runner.temp }}"}
@@ -127,7 +132,9 @@ def steps(service: str) -> list[tuple[str, dict[str, str]]]:
     ]
 
 
-def run_workflow(service: str, checkout: Path, folder: Path) -> subprocess.CompletedProcess[str]:
+def run_workflow(
+    service: str, checkout: Path, folder: Path, works: Sequence[GradedWork] = (ONE,)
+) -> subprocess.CompletedProcess[str]:
     """Runs a service's script as its runner does: in the checkout, or where the workflow says, with this Python as
     ``python``. Nothing is fetched: ``git clone`` makes a folder, and ``pip install`` only imports pip."""
     programs, temporary = folder / "bin", folder / "temp"
@@ -146,13 +153,16 @@ def run_workflow(service: str, checkout: Path, folder: Path) -> subprocess.Compl
         "TMPDIR": str(temporary),
         "GITHUB_WORKSPACE": str(checkout),
         "GITHUB_STEP_SUMMARY": str(folder / "summary.md"),
+        "GITHUB_OUTPUT": str(folder / "output.txt"),
+        "GITHUB_ENV": str(folder / "env.txt"),
         "RUNNER_TEMP": str(temporary),
         "CI_PROJECT_DIR": str(checkout),
         "PYTHONPYCACHEPREFIX": str(folder / "cache"),
+        "PYTHONPATH": str(ROOT),
     }
     cwd = {"github": temporary, "gitlab": checkout}[service]
     done = subprocess.CompletedProcess[str]([], 0, "", "")
-    for text, _ in steps(service):
+    for text, _ in steps(service, works):
         done = subprocess.run(
             [shutil.which("bash") or "/bin/sh", "-c", text],
             cwd=cwd,
@@ -169,7 +179,7 @@ def run_workflow(service: str, checkout: Path, folder: Path) -> subprocess.Compl
 @pytest.mark.long
 @LOCKS
 @pytest.mark.parametrize(("source", "status"), [(FORWARD, 1), (FORWARD.replace("0.3", "0.4"), 0)])
-@pytest.mark.parametrize("service", WORKFLOWS)
+@pytest.mark.parametrize("service", REPOSITORY_SERVICES)
 def test_a_workflow_grades_and_runs_nothing_of_the_students(
     tmp_path: Path, service: str, source: str, status: int
 ) -> None:
@@ -187,14 +197,15 @@ def test_a_workflow_grades_and_runs_nothing_of_the_students(
     assert done.returncode == status, done.stderr
     assert "of 6 points" in done.stdout
     results = {"github": tmp_path / "temp" / "grade", "gitlab": checkout / ".grade"}[service]
-    assert ElementTree.parse(results / "junit.xml").getroot().tag == "testsuites"
-    assert "forged" not in (results / "junit.xml").read_text()
-    assert json.loads((results / "result.json").read_text())["level"] == int(probe.highest_level())
+    assert ElementTree.parse(results / "tasks-one.xml").getroot().tag == "testsuites"
+    assert "forged" not in (results / "tasks-one.xml").read_text()
+    assert json.loads((results / "tasks-one.json").read_text())["level"] == int(probe.highest_level())
     if service == "github":
+        assert "::notice title=" in done.stdout
         assert "| Test | Outcome | Points |" in (tmp_path / "summary.md").read_text()
 
 
-@pytest.mark.parametrize("service", WORKFLOWS)
+@pytest.mark.parametrize("service", REPOSITORY_SERVICES)
 def test_a_result_that_lay_in_the_checkout_is_not_reported(tmp_path: Path, service: str) -> None:
     """The work is refused, so that this run writes none."""
     checkout = tmp_path / "checkout"
@@ -207,6 +218,88 @@ def test_a_result_that_lay_in_the_checkout_is_not_reported(tmp_path: Path, servi
     assert "points" not in done.stdout
     results = {"github": tmp_path / "temp" / "grade", "gitlab": checkout / ".grade"}[service]
     assert not results.exists() or not any(results.iterdir())
+
+
+@pytest.mark.long
+@LOCKS
+@pytest.mark.parametrize("service", REPOSITORY_SERVICES)
+def test_one_workflow_grades_all_assignments_that_are_begun(tmp_path: Path, service: str) -> None:
+    checkout = tmp_path / "checkout"
+    for name in ("one", "two", "three"):
+        write_assignment(checkout / "tasks" / name)
+    (checkout / "controller.py").write_text(FORWARD)
+    (checkout / "two").mkdir()
+    (checkout / "two" / "controller.py").write_text("1/0\n")
+    works = (ONE, TWO, GradedWork("tasks-three", "three.py", "tasks/three"))
+    done = run_workflow(service, checkout, tmp_path, works)
+    assert done.returncode == 1, done.stderr
+    results = {"github": tmp_path / "temp" / "grade", "gitlab": checkout / ".grade"}[service]
+    assert {each.name for each in results.glob("*.json")} == {"tasks-one.json", "tasks-two.json"}
+    assert "three.py is not there yet" in done.stdout
+    if service == "github":
+        assert "::error file=two/controller.py,line=1," in done.stdout
+        assert (tmp_path / "summary.md").read_text().count("| Test | Outcome | Points |") == 2
+
+
+def test_gradescope_gets_an_archive_with_everything(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_assignment(tmp_path / "task", secret="seeds: {turn: [12345678901234]}\n")
+    monkeypatch.chdir(tmp_path)
+    code, text = invoke("ci", "gradescope", "--assignment", "task", "--kit", "https://example.org/x/y@v1")
+    assert code == 0, text
+    with zipfile.ZipFile("autograder.zip") as archive:
+        names = archive.namelist()
+        assert {"setup.sh", "run_autograder", "assignment/assignment.yaml", "assignment/secret.yaml"} == set(
+            names
+        )
+        for name in ("setup.sh", "run_autograder"):
+            assert archive.getinfo(name).external_attr >> 16 & 0o111
+            script = archive.read(name).decode()
+            checked = subprocess.run(
+                ["bash", "-n"], input=script, text=True, capture_output=True, check=False
+            )
+            assert checked.returncode == 0, checked.stderr
+        assert "--secret --level highest --format gradescope" in archive.read("run_autograder").decode()
+
+
+@pytest.mark.long
+@LOCKS
+def test_classroom50s_runner_gets_its_result(tmp_path: Path) -> None:
+    """The script as the runner starts it, but for what it fetches."""
+    bundle, checkout = tmp_path / "bundle", tmp_path / "checkout"
+    write_assignment(bundle / "assignment")
+    checkout.mkdir()
+    (checkout / "controller.py").write_text(FORWARD)
+    (checkout / "result.json").write_text('{"score": 1000}')
+    script = workflow("classroom50", [GradedWork("one", "controller.py", "one")], KIT)
+    fetched = 'subprocess.run("git clone', "subprocess.run([sys.executable, *install]"
+    for each in fetched:
+        assert each in script
+        script = script.replace(each, each.replace("subprocess.run", "(lambda *_, **__: None)"))
+    (bundle / "autograder.py").write_text(script)
+    variables = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "COMMIT_URL", "RELEASE_URL")
+    done = subprocess.run(
+        [sys.executable, str(bundle / "autograder.py")],
+        cwd=checkout,
+        env={
+            **os.environ,
+            "PYTHONPATH": str(ROOT),
+            **{name: f"the-{name}" for name in variables},
+        },
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    result = json.loads((checkout / "result.json").read_text())
+    # The keys that its public contract names, and no others.
+    assert set(result) == {
+        *("schema", "classroom", "assignment", "submission", "commit", "release", "review", "datetime"),
+        *("score", "max-score", "tests"),
+    }
+    assert result["schema"] == "classroom50/result/v1"
+    assert (result["score"], result["max-score"]) == (3, 6)
+    assert sum(test["score"] for test in result["tests"]) == result["score"]
+    assert {"test-name", "passed", "score", "max-score"} == set(result["tests"][0])
 
 
 def test_the_hostile_files_would_be_run_in_the_checkout(tmp_path: Path) -> None:

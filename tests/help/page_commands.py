@@ -161,6 +161,13 @@ def _write_class(folder: Path) -> None:
     template = ROOT / "grader" / "templates" / "controller"
     shutil.copy(template / "solution.py", folder / "handed_in" / "ada.py")
     shutil.copy(template / "starter.py", folder / "handed_in" / "alan.py")
+    (folder / "class.csv").write_text(
+        "name,email,login\nAda,ada@uni.example,ada\nAlan,alan@uni.example,alan\nGrace,grace@uni.example,grace\n"
+    )
+    (folder / "times.csv").write_text("name,submitted\nada,2026-12-02T10:00:00\nalan,2026-11-30T10:00:00\n")
+    rules, marks = (block.lines for block in _blocks("teacher") if isinstance(block, Code))
+    (folder / "late.yaml").write_text("\n".join(rules) + "\n")
+    (folder / "marks.yaml").write_text("\n".join(marks) + "\n")
     (folder / "answers").mkdir()
     exported = [sys.executable, "-m", "kit", "progress", "export", "answers/ada.json"]
     subprocess.run(exported, cwd=folder, check=True, capture_output=True)

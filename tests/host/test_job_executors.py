@@ -12,6 +12,7 @@ from kit.host.job_executors import (
     MAX_TRIES,
     ExecutorUnavailable,
     JobPool,
+    SlurmResources,
     in_shard,
     read_shard,
     run_on_slurm,
@@ -79,3 +80,17 @@ def test_an_array_job_has_a_task_for_each_share(tmp_path: Path, monkeypatch: pyt
     with pytest.raises(ExecutorUnavailable, match=r"sbatch .*slurm\.sh"):
         run_on_slurm(tmp_path, text, lambda: True)
     assert (tmp_path / "slurm.sh").read_text() == text
+
+
+def test_a_script_asks_for_what_is_given() -> None:
+    given = ["account=robots", "partition=short", "qos=night", "time=08:00:00", "memory=8G"]
+    text = slurm_script(Path("/q"), ["x"], 2, "jobs", SlurmResources.read(given))
+    for line in ("account=robots", "partition=short", "qos=night", "time=08:00:00", "mem=8G"):
+        assert f"#SBATCH --{line}\n" in text
+    assert "--account" not in slurm_script(Path("/q"), ["x"], 2, "jobs")
+
+
+@pytest.mark.parametrize("given", ["acount=x", "account", "account=a b", "time=1\n#SBATCH --wrap=x", "qos="])
+def test_what_would_be_another_line_of_the_script_is_refused(given: str) -> None:
+    with pytest.raises(ValueError, match=r"NAME=VALUE|letters"):
+        SlurmResources.read([given])

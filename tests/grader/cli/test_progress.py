@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.cli.progress import shown_progress
+from grader.cli.progress import counted_progress, shown_progress
 from grader.evidence.submission_clock import DRIVE_KIND, SubmissionClock, TrainingProgressReport
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
@@ -115,3 +115,16 @@ def test_a_self_test_says_which_work_it_tries(tmp_path: Path) -> None:
     options = GradingOptions(Level.LIMITED, show_progress=shown.append)
     next(iter(try_works(read_assignment(folder), options)))
     assert shown == ["starter.py: episode 1 of 2: turn, seed 1", "starter.py: episode 2 of 2: turn, seed 2"]
+
+
+def test_a_log_gets_a_line_from_time_to_time_and_the_last(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = 0.0
+    monkeypatch.setattr("grader.cli.progress.time.monotonic", lambda: now)
+    with counted_progress(40, "graded") as count_one:
+        for _ in range(40):
+            now += 1.0
+            count_one()
+    lines = capsys.readouterr().err.splitlines()
+    assert lines == ["15 of 40 graded, 15 s", "30 of 40 graded, 30 s", "40 of 40 graded, 40 s"]

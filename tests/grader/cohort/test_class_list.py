@@ -28,6 +28,7 @@ from grader.cohort.gradebook import (
     changes,
     class_blocks,
     gradebook_rows,
+    late_text,
     read_json,
     read_submission_times,
 )
@@ -152,6 +153,17 @@ def test_lateness_says_how_late_and_what_it_costs(
     assert found.kept == pytest.approx(kept)
     assert word in found.text()
     assert bool(found.text()) == bool(word)
+
+
+def test_the_note_says_what_lateness_costs(queue: Queue) -> None:
+    policy = LatePolicy(DUE, zone=LISBON)
+    times = {"4712": SubmissionTime(DUE + timedelta(hours=25), "4712")}
+    roster = read_roster(ROSTERS / "moodle_worksheet.csv")
+    row = by_name(class_table(queue, ClassRules(policy, times, roster=roster)))["Bruno Sá"]
+    assert (row.points, row.final) == (3, 2.4)
+    assert "Late by 1 day 1 h" in late_text(row)
+    assert "costs 0.6 of 3 points" in late_text(row)
+    assert "costs 0.6 of 3 points" in as_csv([row])
 
 
 @pytest.mark.parametrize(("due", "hours"), [("2026-10-24", 24.9), ("2027-03-27", 23.5)])

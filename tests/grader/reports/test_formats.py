@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from xml.etree import ElementTree
 
 import pytest
 
 from grader.reports import FORMATS, cleaning
-from grader.reports.formats import MAX_CLASSROOM_OUTPUT
+from grader.reports.formats import MAX_CLASSROOM_OUTPUT, write_annotations, write_classroom50
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, Visibility
 from tests.cases import every_case
 
@@ -59,6 +60,9 @@ def test_what_a_student_wrote_gives_no_orders(form: str, text: str) -> None:
     report = FORMATS[form](result(text))
     report.encode("utf-8")
     for line in report.splitlines():
+        if form == "annotations":  # each line is a command of its own, and nothing in it another
+            assert re.match("::(error|warning|notice) ", line)
+            line = line[2:].replace("::", "", 1)
         assert "::" not in line
         assert "##[" not in line
         assert "##vso[" not in line
@@ -180,3 +184,37 @@ def test_points_are_shown_with_at_most_two_decimals(form: str) -> None:
     assert part.metrics == {}
     report = FORMATS[form](replace(result("no"), tests=(part,)))
     assert "1.2345" not in report
+
+
+def plain_result(*tests: CriterionResult) -> GradingResult:
+    return GradingResult("reach", "v", "abc", "0.1", "public", 1, "linux", tests)
+
+
+def test_an_annotation_holds_nothing_that_ends_or_begins_a_command() -> None:
+    test = CriterionResult(
+        "a",
+        "A,b: 100%::error::x",
+        CriterionStatus.STUDENT_ERROR,
+        0.0,
+        2.0,
+        rationale="controller.py:7: bad\n::set-output name=x::y % \r\n##[error]",
+    )
+    text = write_annotations(plain_result(test), "work/controller.py")
+    lines = text.splitlines()
+    assert len(lines) == 2
+    assert lines[0].startswith("::error file=work/controller.py,line=7,title=A%2Cb%3A 100%25")
+    assert lines[0].count("::") == 2
+    assert "\r" not in text
+    assert lines[1].startswith("::notice title=")
+
+
+def test_there_are_no_more_annotations_than_are_shown() -> None:
+    tests = [
+        CriterionResult(f"t{i}", f"t{i}", CriterionStatus.FAIL, 0.0, 1.0, rationale="no") for i in range(30)
+    ]
+    assert write_annotations(plain_result(*tests)).count("::error") == 10
+
+
+def test_a_broken_grader_gives_classroom50_no_score() -> None:
+    broken = CriterionResult("a", "a", CriterionStatus.GRADER_ERROR, 0.0, 1.0)
+    assert json.loads(write_classroom50(plain_result(broken)))["score"] is None
