@@ -235,13 +235,18 @@ class LevelsScreen(RowsScreen[None]):
         medals = self._challenge_medals
         listed = [
             *self._world_heading([medals.get(each.id, Medal.NONE) for each in self._challenges]),
-            *challenge_rows.challenge_list(self._challenges, medals, chosen.id),
+            *challenge_rows.challenge_list(self._challenges, medals, chosen.id, self._challenge_room),
         ]
         drawing = [row(), *(row((f"  {line}", "code")) for line in chosen.task.lines())]
         if len(listed) + len(drawing) <= self._rows("map").size.height:
             listed += drawing
         medal = medals.get(chosen.id, Medal.NONE)
         return listed, challenge_rows.about_challenge(chosen, medal, self.size.width)
+
+    @property
+    def _challenge_room(self) -> int:
+        """Rows for the list of challenges."""
+        return max(1, self._rows("map").size.height - ROWS_ABOVE_LEVELS)
 
     def _doing_row(self) -> Row:
         share = self._prepared.get(self._doing_level, 0.0)
@@ -315,7 +320,9 @@ class LevelsScreen(RowsScreen[None]):
         if event.rows.id != "map" or number < 0:
             return
         if self.chosen_challenge is not None:
-            if number < len(self._challenges):
+            chosen, count = self._at - len(self._found), len(self._challenges)
+            number += challenge_rows.first_shown(count, chosen, self._challenge_room)
+            if number < count:
                 self._choose_or_open(len(self._found) + number)
             return
         levels = self._in_world(self.chosen.level.world)
@@ -361,11 +368,14 @@ class LevelsScreen(RowsScreen[None]):
     async def _open_challenges(self) -> None:
         """The chosen challenge, and after it the next one as long as the player wants it."""
         from kit.tui.screens.challenge import ChallengeScreen
+        from kit.tui.screens.puzzle import PuzzleScreen
 
         while (challenge := self.chosen_challenge) is not None and self.is_active and not self._doing:
             title = next((each.title for each in self._challenges[self._at - len(self._found) + 1 :]), None)
             try:
-                screen = ChallengeScreen(self._theme, challenge, self._progress, self._workspace, title)
+                is_played = challenge.task.board("") is not None
+                kind = PuzzleScreen if is_played else ChallengeScreen
+                screen = kind(self._theme, challenge, self._progress, self._workspace, title)
             except (ProgressError, OSError) as error:
                 self.app.push_screen(MessageDialog("The challenge could not start", wrapped(str(error))))
                 return
