@@ -264,6 +264,7 @@ def replay(workspace: Path | None, level: str, driver: str | None) -> None:
     from kit.school.game.player_progress import find_playable_level
     from kit.school.game.race import DriverKind
     from kit.school.game.references import reference_recording
+    from kit.school.game.starts import film_scenario
 
     with _open_journal(workspace) as (_journal, opened_workspace):
         chosen = find_playable_level(level)
@@ -280,7 +281,7 @@ def replay(workspace: Path | None, level: str, driver: str | None) -> None:
             options.fail(f"This drive cannot be shown: {error}")
         if recording is None:
             options.fail(f"{chosen.title} has no reference drive.")
-        drive, scenario = recording, chosen.film_scenario()
+        drive, scenario = recording, film_scenario(chosen, recording.seed)
         who = name if name == "reference" else DriverKind(name).phrase
         terminal = options.terminal()
         if terminal.plain.value:

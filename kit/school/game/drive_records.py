@@ -15,6 +15,7 @@ import numpy as np
 from kit.render.encode import BrailleEncoder
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.render.world_text import scene_rows
+from kit.run.animation import AnimationSettings, export_recording
 from kit.run.recording import Recording
 from kit.school.game import leaderboard
 from kit.school.game.ghosts import best_recordings, save_ghost
@@ -36,6 +37,7 @@ from kit.school.game.player_progress import (
 )
 from kit.school.game.race import DriverKind, RaceFinish, middle_drive
 from kit.school.game.references import reference_seconds
+from kit.school.game.starts import film_scenario
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace, write_atomically
 
@@ -182,6 +184,14 @@ def card_rows(
         f"robot learning kit, {driver.phrase}",
         *scene_rows(scene, COLUMNS, ROWS, BrailleEncoder()),
     ]
+
+
+def save_film(card: Path, level: GameLevel, recording: Recording) -> Path:
+    """Writes a drive as a moving picture beside its card. Raises OSError and ExportError."""
+    file = card.with_suffix(".gif")
+    settings = AnimationSettings(speed=2.0)
+    export_recording(recording, film_scenario(level, recording.seed), file, settings, title=level.title)
+    return file
 
 
 def save_card(workspace: Workspace, level: GameLevel, driver: DriverKind, rows: list[str]) -> Path:

@@ -219,12 +219,6 @@ class GameLevel:
             scenario = replace(scenario, case=first, targets=self.goal.route(self.targets))
         return apply_conditions(scenario, self.conditions)
 
-    def film_scenario(self) -> Scenario:
-        """The scenario as a film of a drive shows it, under the level's title. Raises as ``find_scenario``."""
-        scenario = self.find_scenario()
-        case = None if scenario.case is None else replace(scenario.case, name=self.title)
-        return replace(scenario, case=case)
-
 
 def all_levels(folder: Path | None = None) -> tuple[GameLevel, ...]:
     """Reads all levels in order. Raises WorldError with all mistakes of the file."""

@@ -202,7 +202,7 @@ def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, widt
 
     >>> from kit.document.rows import row_text
     >>> row_text(ladder_bar(DriverKind.KEYS, 10.0, 15.0, 30))
-    'B━━━━━━━━━━━●──────S──────G──M'
+    'B━━━━━━━━━━━●─────S──────G──M─'
     """
     shares = SHARES[driver]
     widest = math.log(shares[Medal.BRONZE])
@@ -236,13 +236,10 @@ def ladder_words(driver: DriverKind, reference: float, seconds: float | None) ->
 
 def ladder_rows(driver: DriverKind, reference: float, seconds: float | None) -> list[Row]:
     """A ladder with the times of its rungs below it, and how far the next one is."""
-    times = [
-        (f"{MEDAL_SIGNS[medal]} {medal.title} {medal_time(medal, reference, driver):.2f}", medal)
-        for medal in RUNGS
-    ]
+    times = [f"{medal.title} {medal_time(medal, reference, driver):.2f}" for medal in RUNGS]
     rows = [
         row("   ", *ladder_bar(driver, reference, seconds, RESULT_BAR), (f"  {driver.phrase}", "dim")),
-        row(("   " + "  ".join(text for text, _ in times) + " s", "dim")),
+        row((f"   {'  '.join(times)} s", "dim")),
     ]
     rung = next_rung(driver, reference, seconds)
     if seconds is not None and rung is not None:
@@ -337,6 +334,33 @@ def medal_row(medal: Medal, *, is_new: bool) -> Row:
     """A medal that was earned. ``is_new``: whether it is better than those before."""
     better = " (new)" if is_new else ""
     return row((f"   {MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]), (f"{medal.title}{better}", "bold"))
+
+
+MEDAL_PICTURE: Final = (
+    r"  \ \   / /",
+    r"   \ \ / /",
+    r"   .-'-'-.",
+    r"  /       \ ",
+    r" |    {}    |",
+    r"  \       /",
+    r"   '-----'",
+)
+SPARK_SIGNS: Final = "*.+'"
+
+
+def medal_drawing(medal: Medal, spark: int) -> list[Row]:
+    """A medal with its letter. ``spark``: the number of a picture of joy around it, 0 for none."""
+    rows = []
+    for number, line in enumerate(MEDAL_PICTURE):
+        sparks = "".join(
+            SPARK_SIGNS[(number + column) % len(SPARK_SIGNS)]
+            if (7 * column + 5 * number + 3 * spark) % 11 < 2
+            else " "
+            for column in range(30 if spark else 0)
+        )
+        drawn = f"   {line.format(MEDAL_SIGNS[medal]):<14}"
+        rows.append(row((drawn, MEDAL_STYLES[medal]), (sparks, "warn")))
+    return [*rows, row()]
 
 
 def compared(

@@ -40,6 +40,7 @@ from kit.school.game.player_progress import (
 )
 from kit.school.game.race import DriverKind, agent_controller
 from kit.school.game.references import reference_recording, reference_seconds
+from kit.school.game.starts import film_scenario
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
@@ -520,7 +521,9 @@ class LevelsScreen(RowsScreen[None]):
         except (RecordingError, OSError) as error:
             self.app.push_screen(MessageDialog("This drive cannot be replayed", wrapped(str(error))))
             return
-        await self.app.push_screen_wait(RecordingScreen(self._theme, level.film_scenario(), recording, who))
+        await self.app.push_screen_wait(
+            RecordingScreen(self._theme, film_scenario(level, recording.seed), recording, who)
+        )
 
     def action_hall_of_fame(self) -> None:
         self.app.push_screen(LeaderboardScreen(self._progress, self._workspace))
