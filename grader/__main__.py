@@ -10,9 +10,12 @@ from typing import Final, NoReturn
 import click
 
 from kit.cli import LazyGroup, run_as_process
+from kit.extensions import PACKAGES_VARIABLE
 
 # Before numpy is imported: it starts a thread for each core otherwise, for sums that one adds up in no time.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Parts of other packages are loaded where an assignment names them, and nowhere else.
+os.environ.setdefault(PACKAGES_VARIABLE, "")
 
 
 VERBS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
@@ -22,6 +25,11 @@ VERBS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
             "Grade one submission: the result of each criterion, and what to do next.",
         ),
         "new": ("grader.cli.assignments:new", "Create an assignment from a working example."),
+        "release": (
+            "grader.cli.handout:release",
+            "Make the student's version of an assignment: a folder, a zip or a repository.",
+        ),
+        "help": ("grader.cli.handout:help_page", "Explain the assignment sheet, key by key."),
         "checks": ("grader.cli.assignments:checks", "List the checks available for each kind of submission."),
         "self-test": (
             "grader.cli.assignments:self_test",
@@ -36,8 +44,8 @@ VERBS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
         "work": ("grader.cli.cohort:work", "Grade a share of a cohort's queue on another machine."),
         "worker": ("grader.cli.cohort:worker", ""),
         "gradebook": (
-            "grader.cli.cohort:gradebook",
-            "Print a cohort's gradebook with late rules applied, or what has changed.",
+            "grader.cli.gradebook:gradebook",
+            "The grades of a class: roster, late rules, own marks; for Moodle or Canvas; pages.",
         ),
         "ladder": ("grader.cli.cohort:ladder", "Race all programs in a folder, and rank them."),
     }

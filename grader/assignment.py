@@ -10,7 +10,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, Final
 
-from grader.evidence.service_calls import ServiceCall
+from grader.driving.service_calls import ServiceCall
 from grader.scoring import Anchors
 from kit.geometry import Pose
 from kit.host.sandbox.confinement import Level
@@ -123,6 +123,8 @@ class TeacherTest:
     feedback: str = ""
     visibility: Visibility = Visibility.VISIBLE
     hints: tuple[str, ...] = ()
+    after: str | None = None
+    """Id of a criterion, or of an earlier test, that must earn everything first."""
 
     @property
     def title(self) -> str:
@@ -132,7 +134,7 @@ class TeacherTest:
 
 @dataclass(frozen=True, slots=True)
 class GridTask:
-    """The grid on which a reward's optimal behaviour is computed; see ``grader.evidence.task_model``."""
+    """The grid on which a reward's optimal behaviour is computed; see ``grader.kinds.reward.task_model``."""
 
     rows: tuple[str, ...]
     """``#`` wall, ``.`` floor, ``G`` target."""
@@ -166,10 +168,15 @@ class Assignment:
     version: str
     """Digest of the folder's files that decide a grade."""
     has_secrets: bool
+    evidence_version: str = ""
+    """Digest of what decides what is found about a submission: the same files without words, points and what else only
+    decides what that is worth."""
     secret_seeds: tuple[int, ...] = ()
     """All of its secret seeds."""
     public_version: str = ""
     """Digest of the same files without the secret one, for students: a digest of short secrets gives them away."""
+    packages: tuple[str, ...] = ()
+    """Packages whose devices, checks and kinds are loaded while its submissions are graded."""
     teacher_tests: tuple[TeacherTest, ...] = ()
     """Tests in the order of their files."""
     teacher_test_files: tuple[Path, ...] = ()
@@ -188,6 +195,9 @@ class Assignment:
     def trial(self, name: str) -> Trial:
         return next(trial for trial in self.trials if trial.name == name)
 
+
+TEACHERS_STEMS: Final = ("secret", "solution", "solutions", "wrong", "reference")
+"""Files and folders of an assignment, without their endings, that stay with the teacher."""
 
 MAX_HINTS = 3
 """The most hints a criterion may have, from the vaguest to the most specific."""

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
-from grader.assignment import Assignment
+from grader.assignment import TEACHERS_STEMS, Assignment
 from kit.host.sandbox.confinement import Level
 from kit.plain_text import join_names
 
@@ -144,9 +144,6 @@ def workflow(service: str, *, submit: str, assignment: str, kit: GitSource) -> s
 HOSTED_LEVEL: Final = Level.FILTERED
 """The highest confinement level of the services' own runners: Ubuntu 24.04's AppArmor and Docker's default profile keep
 an ordinary user from making namespaces, which level 2 needs."""
-
-TEACHERS_STEMS: Final = ("secret", "solution", "wrong", "reference")
-"""Files and folders of an assignment, without their endings, that students should not be able to read."""
 
 
 def warnings(assignment: Assignment, service: str) -> Iterator[str]:

@@ -14,14 +14,24 @@ from types import MappingProxyType
 from typing import Final
 
 from grader.assignment import MAX_HINTS, Assignment, Criterion, KnownMistake, SeedSet
+from grader.author_code import AuthorCodeError
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
+from grader.evidence.findings import (
+    Findings,
+    FindingsRecorder,
+    KeptFindings,
+    NotKept,
+    measure_of,
+    original_of,
+)
 from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.contract import find_kind
 from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
 from grader.submission import Submission
 from grader.submitted_files import YAML_ENDINGS, SubmissionRefused, reading_submission
-from grader.teacher_tests import run_teacher_tests
+from grader.teacher_tests import TestOutcome, run_teacher_tests, teacher_test_result, tests_digest
 from grader.version import grader_version
+from kit.extensions import admitting
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level, shield_this_process
 from kit.host.sandbox.probe import highest_level_up_to
@@ -33,6 +43,7 @@ from kit.school.result import (
     EpisodeSummary,
     GradingResult,
     GradingTiming,
+    GradingVerdict,
     Visibility,
 )
 
@@ -55,6 +66,8 @@ COARSE_RATIONALES: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
 )
 """The whole note on a failure with a secret seed: an error's own text could hold what the program saw."""
 
+
+NOT_ITS_TURN: Final = "Not graded: pass “{}” first."
 
 LEVEL_NOT_REACHED: Final = "This machine does not reach confinement level {}; `kit doctor` says why."
 
@@ -109,16 +122,23 @@ class Grading:
         secret: bool,
         clock: SubmissionClock,
         examples: bool = False,
+        is_recorded: bool = False,
+        kept: Findings | None = None,
     ) -> None:
+        """``is_recorded``: whether to note what is found. ``kept``: what was found before, from which ``collector`` is made."""
         self.assignment = assignment
         self.submission = submission
-        self._collector = collector
+        self.recorder = FindingsRecorder(collector) if is_recorded else None
+        self._kept = kept
+        self._collector = collector if self.recorder is None else self.recorder
         self._clock = clock
         self._secret = secret
         self._examples = examples
         self._has_run_public = not secret
         """Whether everything public was run. Nothing secret is run before: what a program says after that is not shown."""
-        self._checks = find_kind(assignment.kind).checks
+        with admitting(assignment.packages):
+            kind = find_kind(assignment.kind)
+        self._checks, self._tells_secret_runs = kind.checks, kind.tells_secret_runs
         self._scored: dict[str, tuple[_ScoredEvidence, ...]] = {}
         self._tests: dict[str, CriterionResult] = {}
         self._counterexamples: dict[str, _ScoredEvidence | None] = {}
@@ -147,16 +167,14 @@ class Grading:
     def result(self) -> GradingResult:
         """Grades all criteria and teacher tests, and returns the complete result."""
         tests = tuple(self.judge(criterion) for criterion in self.assignment.criteria)
-        tests += run_teacher_tests(
-            self,
-            self.assignment.folder,
-            self.assignment.teacher_tests,
-            self.assignment.teacher_test_files,
-            self.first_failure,
-            self._clock,
-        )
+        outcomes = self._outcomes_of_own_tests()
+        for own in self.assignment.teacher_tests:
+            tests += (self._after_its_turn(teacher_test_result(own, outcomes.get(own.id, ())), tests),)
         collected = self._collector.collected()
-        if any(each.failure is not None and each.failure.kind in OUTSIDE_SIGNALS for each in collected):
+        is_from_outside = any(
+            each.failure is not None and each.failure.kind in OUTSIDE_SIGNALS for each in collected
+        )
+        if is_from_outside and self._kept is None:
             time.sleep(SHUTDOWN_WAIT_S)
         return GradingResult(
             assignment=self.assignment.id,
@@ -174,11 +192,57 @@ class Grading:
             timing=GradingTiming(self._started, round(time.perf_counter() - self._began, 3)),
         )
 
+    def _outcomes_of_own_tests(self) -> Mapping[str, Sequence[TestOutcome]]:
+        """Runs the teacher's tests; where the evidence was kept, returns what they came to before."""
+        files = self.assignment.teacher_test_files
+        if self._kept is not None:
+            if not files:
+                return {}
+            if self._kept.own_tests != tests_digest(files):
+                raise NotKept("tests")
+            return {
+                name: [
+                    TestOutcome(CriterionStatus(status), message, uses_secrets=secret)
+                    for status, message, secret in each
+                ]
+                for name, each in self._kept.outcomes.items()
+            }
+        found = run_teacher_tests(
+            self,
+            self.assignment.folder,
+            self.assignment.teacher_tests,
+            files,
+            self.first_failure,
+            self._clock,
+            self._collector.level,
+        )
+        if self.recorder is not None and files:
+            self.recorder.findings.own_tests = tests_digest(files)
+            self.recorder.findings.outcomes = {
+                name: [[each.status.value, each.message, each.uses_secrets] for each in outcomes]
+                for name, outcomes in found.items()
+            }
+        return found
+
+    def _after_its_turn(self, test: CriterionResult, earlier: Sequence[CriterionResult]) -> CriterionResult:
+        """Returns a teacher test's result, or that it was not graded where what comes before it did not earn everything."""
+        after = next(each.after for each in self.assignment.teacher_tests if each.id == test.id)
+        before = next((each for each in earlier if each.id == after), None)
+        if before is None or before.is_passed or test.status is CriterionStatus.GRADER_ERROR:
+            return test
+        return replace(
+            CriterionResult(
+                test.id, test.title, CriterionStatus.SKIPPED, 0.0, test.max_points, test.visibility
+            ),
+            rationale=NOT_ITS_TURN.format(before.title),
+            depends_on=before.id,
+        )
+
     def evidence(self, criterion_id: str) -> Sequence[Evidence]:
         """Returns the evidence of a criterion, by its id; for teacher tests."""
         evidence = self._collector.evidence(self._criterion(criterion_id))
         self.has_given_secrets |= any(each.secret for each in evidence)
-        return evidence
+        return [original_of(each) for each in evidence]
 
     def first_failure(self) -> Failure | None:
         """Returns the first failure of the program so far, as a student may read it; None if there was none."""
@@ -226,7 +290,7 @@ class Grading:
             each.share == 1.0 for each in self._score(self._criterion(criterion.after))
         ):
             title = self._criterion(criterion.after).title
-            return replace(blank, rationale=f"Not graded: pass “{title}” first.", depends_on=criterion.after)
+            return replace(blank, rationale=NOT_ITS_TURN.format(title), depends_on=criterion.after)
         share = _share(criterion, scored)
         full = share == 1.0
         shown = self._public_evidence(criterion, scored, full=full)
@@ -258,13 +322,16 @@ class Grading:
         self, criterion: Criterion, scored: Sequence[_ScoredEvidence], *, full: bool
     ) -> Sequence[_ScoredEvidence]:
         """Returns the evidence that a student is told of: the public, or where only secret evidence lost points, a
-        counterpart that loses points too. Empty if none of these was found."""
+        counterpart that loses points too; else the secret itself, where the kind tells of it. Empty if none of these was
+        found."""
         public = [each for each in scored if not each.evidence.secret]
         if full or any(each.share < 1.0 for each in public):
             return public
         if self._looks_afterwards and criterion.id not in self._counterexamples:
             self._counterexamples[criterion.id] = self._find_counterexample(criterion)
         found = self._counterexamples.get(criterion.id)
+        if found is None and self._looks_afterwards and self._tells_secret_runs:
+            return scored
         return [] if found is None else [found]
 
     @property
@@ -279,7 +346,7 @@ class Grading:
         if self._has_run_public:
             return
         self._has_run_public = True
-        with reading_submission(self.submission.name):
+        with reading_submission(self.submission.name, AuthorCodeError):
             for criterion in self.assignment.criteria:
                 self._collector.public_evidence(criterion)
         if not self._examples or self._looks_afterwards:
@@ -321,7 +388,7 @@ class Grading:
         self._run_public()
         ready = self._ready(criterion)
         # An error in here was brought to light by this work: it must look like no fault of the grader's.
-        with reading_submission(self.submission.name):
+        with reading_submission(self.submission.name, AuthorCodeError):
             collected = self._collector.evidence(criterion)
         self._scored[criterion.id] = tuple(
             self._score_evidence(criterion, each, is_ready=ready(each)) for each in collected
@@ -332,7 +399,8 @@ class Grading:
         if evidence.failure is not None or not is_ready:
             return _ScoredEvidence(evidence, None, 0.0, evidence.failure)
         try:
-            measure = float(self._checks[criterion.check].measure(evidence, criterion.params))
+            check = self._checks[criterion.check]
+            measure = measure_of(evidence, criterion.check, criterion.params, check.measure)
         except StudentCodeError as error:  # what it returned takes longer to measure than a submission may
             return _ScoredEvidence(evidence, None, 0.0, self._clock.explain(error.failure))
         return _ScoredEvidence(evidence, measure, criterion.anchors.share(measure), evidence.failure)
@@ -466,9 +534,9 @@ def level_for_untrusted(assignment: Assignment, requested: Level | None) -> Leve
 
 @contextmanager
 def open_grading(
-    assignment: Assignment, submission: Submission, options: GradingOptions
+    assignment: Assignment, submission: Submission, options: GradingOptions, *, is_recorded: bool = False
 ) -> Iterator[Grading]:
-    """Opens a grading of one submission. Raises LevelTooLow, and SubmissionRefused for files that cannot be read.
+    """Opens a grading of one submission. ``is_recorded``: whether it notes what is found. Raises LevelTooLow, and SubmissionRefused for files that cannot be read.
 
     The level is decided here, by trying this machine with an empty program: no submission can influence it.
     """
@@ -486,6 +554,7 @@ def open_grading(
         clock = SubmissionClock(assignment.submission_limit_s, options.show_progress)
         evidence_options = EvidenceOptions(available, options.secret, clock)
         with ExitStack() as stack:
+            stack.enter_context(admitting(assignment.packages))
             with reading_submission(submission.name):
                 collector = stack.enter_context(
                     find_kind(assignment.kind).collect(assignment, file, evidence_options)
@@ -497,6 +566,7 @@ def open_grading(
                 secret=options.secret,
                 clock=clock,
                 examples=options.examples,
+                is_recorded=is_recorded,
             )
 
 
@@ -526,6 +596,41 @@ def grade(assignment: Assignment, submission: Submission, options: GradingOption
     """Grades one submission completely. Raises LevelTooLow, and SubmissionRefused for files that cannot be read."""
     with open_grading(assignment, submission, options) as grading:
         return grading.result()
+
+
+def grade_and_keep(
+    assignment: Assignment, submission: Submission, options: GradingOptions
+) -> tuple[GradingResult, Findings | None]:
+    """Grades one submission completely, and returns what was found too; None where it would not give the same result again,
+    since something of it was known only while it ran. Raises as ``grade``."""
+    with open_grading(assignment, submission, options, is_recorded=True) as grading:
+        result = grading.result()
+        assert grading.recorder is not None  # it is recorded
+        findings = grading.recorder.finish()
+    if result.verdict is GradingVerdict.BROKEN:
+        return result, None
+    again = judge_findings(assignment, submission, options, findings)
+    return result, findings if again is not None and again.tests == result.tests else None
+
+
+def judge_findings(
+    assignment: Assignment, submission: Submission, options: GradingOptions, findings: Findings
+) -> GradingResult | None:
+    """Judges a submission by what was found about it, and runs nothing; None where more would have to be known."""
+    try:
+        grading = Grading(
+            assignment,
+            submission,
+            KeptFindings(findings),
+            secret=options.secret,
+            clock=SubmissionClock(assignment.submission_limit_s),
+            examples=options.examples,
+            kept=findings,
+        )
+        result = grading.result()
+    except (NotKept, SubmissionRefused):
+        return None
+    return None if result.verdict is GradingVerdict.BROKEN else result
 
 
 def _share(criterion: Criterion, scored: Sequence[_ScoredEvidence]) -> float:

@@ -26,12 +26,13 @@ from grader.grading import (
     level_for_untrusted,
     open_grading,
 )
-from grader.reading import ASSIGNMENT_FILE, read_assignment
+from grader.reading import read_assignment
 from grader.reports.cleaning import plain
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
 from grader.teacher_tests import MARK, MARK_HELP
 from kit.host.sandbox.confinement import Level
+from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.school.result import CriterionResult, CriterionStatus, format_points
 from kit.world.problems import WorldError
 

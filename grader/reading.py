@@ -10,9 +10,12 @@ import hashlib
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Final
+
+import yaml
 
 from grader.assignment import (
     DEFAULT_SUBMISSION_LIMIT_S,
@@ -24,10 +27,11 @@ from grader.assignment import (
     TeacherTest,
     Trial,
 )
-from grader.checks.contract import Check
+from grader.check import Check
 from grader.kinds.contract import AssignmentFiles, find_kind, kind_names
 from grader.scoring import MAX_SHARE_STEPS, Anchors
 from grader.teacher_tests import read_teacher_tests
+from kit.extensions import ExtensionError, admitting, installed_extensions
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS, MIB, Limits
 from kit.plain_files import is_file_there
@@ -122,6 +126,8 @@ def budget_lines() -> Iterator[tuple[str, str]]:
     yield SUBMISSION_KEY, meaning
 
 
+YAML_LOADER: Final = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+"""The one that the kit reads with, which takes some texts that the other does not."""
 ASSIGNMENT_FILE: Final = "assignment.yaml"
 SECRET_FILE: Final = "secret.yaml"
 
@@ -132,18 +138,71 @@ def read_assignment(folder: Path) -> Assignment:
     secret_file = folder / SECRET_FILE
     secrets = documents.section(secret_file, SourceLocation(secret_file)) if secret_file.is_file() else None
     with documents.open(folder / ASSIGNMENT_FILE) as section:
-        kind = section.text("kind", "controller", choices=kind_names())
-        documents.problems.raise_if_any()  # the meaning of the other keys depends on the kind
-        return _assignment(kind, section, secrets, folder)
+        packages = section.texts("packages", ())
+        with admitting(packages):
+            _check_packages(section, packages)
+            kind = section.text("kind", "controller", choices=kind_names())
+            documents.problems.raise_if_any()  # the meaning of the other keys depends on the kind
+            try:
+                return read_sheet(kind, section, secrets, folder, packages)
+            except ExtensionError as error:
+                section.error(str(error), "packages")
+                raise documents.problems.error() from error
 
 
-def folder_digest(folder: Path, *, ignored: str = "") -> str:
-    """Returns a digest of all files in the folder that grading depends on, but for one of this name."""
+def _check_packages(section: Section, packages: tuple[str, ...]) -> None:
+    """Notes each package that brings no parts, or is not installed on this machine."""
+    known = sorted({each.package for each in installed_extensions()} if packages else ())
+    for name in packages:
+        if name not in known:
+            section.error(
+                f"no installed package {quoted(name)} brings parts of the kit: {suggestion(name, known)}. Every machine "
+                "that grades needs it",
+                "packages",
+            )
+
+
+JUDGEMENT_KEYS: Final = ("title", "id", "checks", "tests")
+"""Keys of the sheet that decide what evidence is worth and what is said of it, not what is found. What a criterion asks for
+is part of what is found about it: see ``grader.evidence.findings``."""
+
+
+def evidence_digest(folder: Path, test_files: Sequence[str], packages: tuple[str, ...] = ()) -> str:
+    """Returns a digest of what decides what is found about a submission: of the sheet only the keys and values that count,
+    however they are written, and of the other files all but the teacher's own tests."""
+    parsed = hashlib.sha256(
+        folder_digest(folder, ignored=(ASSIGNMENT_FILE, *test_files), packages=packages).encode()
+    )
+    with suppress(
+        OSError, UnicodeDecodeError, yaml.YAMLError
+    ):  # the sheet's own reader reports what is wrong with it
+        root = yaml.compose((folder / ASSIGNMENT_FILE).read_text(encoding="utf-8-sig"), Loader=YAML_LOADER)
+        if isinstance(root, yaml.MappingNode):
+            kept = [pair for pair in root.value if pair[0].value not in JUDGEMENT_KEYS]
+            parsed.update(repr(_content(yaml.MappingNode(root.tag, kept))).encode())
+    return parsed.hexdigest()[:16]
+
+
+def _content(node: yaml.Node) -> object:
+    """What a YAML node says, without how it is written."""
+    if isinstance(node, yaml.MappingNode):
+        return {_content(key): _content(value) for key, value in node.value}
+    if isinstance(node, yaml.SequenceNode):
+        return [_content(each) for each in node.value]
+    return str(node.value)
+
+
+def folder_digest(folder: Path, *, ignored: Sequence[str] = (), packages: tuple[str, ...] = ()) -> str:
+    """Returns a digest of all files in the folder that grading depends on, but for those of these names, and of the versions
+    of the packages that it needs."""
     parsed = hashlib.sha256()
+    sources = {each.source for each in installed_extensions() if each.package in packages} if packages else ()
+    for source in sorted(sources):
+        parsed.update(source.encode())
     for file in sorted(path for path in folder.rglob("*") if path.is_file()):
         name = file.relative_to(folder)
         if (
-            str(name) == ignored
+            str(name) in ignored
             or Path(name.parts[0]).name.partition(".")[0] in IGNORED_STEMS
             or TRANSLATION.fullmatch(name.as_posix())
             or any(part.startswith((".", "__")) for part in name.parts)
@@ -160,30 +219,36 @@ TRANSLATION: Final = re.compile(r"assignment\.[a-z]{2}\.yaml")
 """Words in another language, which change nothing of what is graded either."""
 
 
-def _assignment(kind: str, section: Section, secrets: Section | None, folder: Path) -> Assignment:
+def read_sheet(
+    kind: str, section: Section, secrets: Section | None, folder: Path, packages: tuple[str, ...] = ()
+) -> Assignment:
+    """Reads the sheet of an assignment of this kind in ``folder``, and its secret file; notes their mistakes."""
     kind_record = find_kind(kind)
     teacher_test_files = tuple(_teacher_test_files(section, folder))
     task = kind_record.read_settings(AssignmentFiles(folder, section, secrets))
     limits, submission_limit_s = read_budget(section.section("budget", None), task.trials)
     if secrets is not None:
         secrets.finish()
+    criteria = tuple(_criteria(section, kind_record.checks, task.trials))
     return Assignment(
         folder=folder,
         id=section.name("id", folder.resolve().name),
         title=section.name("title"),
         kind=kind,
+        packages=packages,
         submit=_file_name(section, kind_record.endings),
         level=Level(section.integer("level", int(Level.FILTERED), minimum=0, maximum=max(Level))),
         limits=limits,
         submission_limit_s=submission_limit_s,
         trials=task.trials,
-        criteria=tuple(_criteria(section, kind_record.checks, task.trials)),
+        criteria=criteria,
         task=task.task,
-        version=folder_digest(folder),
-        public_version=folder_digest(folder, ignored=SECRET_FILE),
+        version=folder_digest(folder, packages=packages),
+        public_version=folder_digest(folder, ignored=(SECRET_FILE,), packages=packages),
         has_secrets=secrets is not None,
+        evidence_version=evidence_digest(folder, [file.name for file in teacher_test_files], packages),
         secret_seeds=(*(seed for trial in task.trials for seed in trial.secret_seeds), *task.secret_seeds),
-        teacher_tests=tuple(_teacher_tests(section, teacher_test_files)),
+        teacher_tests=tuple(_teacher_tests(section, teacher_test_files, criteria)),
         teacher_test_files=teacher_test_files,
     )
 
@@ -197,8 +262,10 @@ def _teacher_test_files(section: Section, folder: Path) -> Iterator[Path]:
             yield folder / name
 
 
-def _teacher_tests(section: Section, files: tuple[Path, ...]) -> Iterator[TeacherTest]:
-    known: set[str] = set()
+def _teacher_tests(
+    section: Section, files: tuple[Path, ...], criteria: Sequence[Criterion]
+) -> Iterator[TeacherTest]:
+    known = {each.id: each.visibility for each in criteria}
     for file in files:
         try:
             found = tuple(read_teacher_tests(file))
@@ -207,9 +274,18 @@ def _teacher_tests(section: Section, files: tuple[Path, ...]) -> Iterator[Teache
             continue
         for each in found:
             if each.id in known:
-                section.error(f"two tests are called {quoted(each.id)}", "tests")
-            known.add(each.id)
-            yield each
+                section.error(f"two tests, or a test and a check, are called {quoted(each.id)}", "tests")
+            visibility = each.visibility
+            if each.after is not None and each.after not in known:
+                section.error(
+                    f"{file.name}: {each.id} comes after {quoted(each.after)}, which does not stand before it: "
+                    f"{suggestion(each.after, known)}",
+                    "tests",
+                )
+            elif each.after is not None and visibility is Visibility.VISIBLE:
+                visibility = known[each.after]  # that it was not judged would say how the one before it went
+            known[each.id] = visibility
+            yield replace(each, visibility=visibility)
 
 
 def _file_name(section: Section, endings: tuple[str, ...]) -> str:

@@ -11,17 +11,22 @@ are separated by lines that begin with ``@@``.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
-from itertools import groupby
+from enum import Enum
+from itertools import groupby, repeat
+from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
 
 from grader.assignment import Assignment, SeedSet
 from grader.grading import GradingOptions, grade
+from grader.reading import read_assignment
 from grader.scoring import required_passes, unfair_fail_probability
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
+from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict, format_points
 
 ENDING: Final = ".diff"
@@ -119,27 +124,81 @@ class UnfairFailOdds:
     """One for each of ``SUCCESS_RATES``."""
 
 
-def try_works(
-    assignment: Assignment, options: GradingOptions, solutions: Path | None = None
-) -> Iterator[WorkReport]:
-    """Tests the starter, the solution and the wrong solutions, one after the other. Raises LevelTooLow.
+class WorkRole(Enum):
+    """What a work of an assignment is there to show."""
+
+    STARTER = "starter"
+    SOLUTION = "solution"
+    WRONG = "wrong"
+
+
+@dataclass(frozen=True, slots=True)
+class TestedWork:
+    """One work that the self-test grades."""
+
+    __test__ = False  # no class of tests
+
+    role: WorkRole
+    file: Path
+    """A wrong work may be edits of the solution."""
+    solution: Path
+
+
+def works_of(assignment: Assignment, solutions: Path | None = None) -> tuple[TestedWork, ...]:
+    """Returns the starter, the solution and the wrong solutions of an assignment.
 
     ``solutions``: the folder of the solution and the wrong solutions, if it is not the assignment's.
     """
     solutions = assignment.folder if solutions is None else solutions
-    yield _try_starter(assignment, _work_path(assignment.folder, STARTER, assignment), options)
-    yield _try_solution(assignment, _work_path(solutions, SOLUTION, assignment), options)
+    solution = _work_path(solutions, SOLUTION, assignment)
     wrong = list_wrong_works(solutions / WRONG, Path(assignment.submit).suffix)
-    if not wrong:
+    return (
+        TestedWork(WorkRole.STARTER, _work_path(assignment.folder, STARTER, assignment), solution),
+        TestedWork(WorkRole.SOLUTION, solution, solution),
+        *(TestedWork(WorkRole.WRONG, each, solution) for each in wrong),
+    )
+
+
+def try_works(
+    assignment: Assignment, options: GradingOptions, solutions: Path | None = None, *, jobs: int = 1
+) -> Iterator[WorkReport]:
+    """Yields the report on the starter, the solution and each wrong solution, in this order. Raises LevelTooLow.
+
+    ``jobs``: how many are graded at once, each in a process of its own; what they are doing is shown only of one.
+    """
+    works = works_of(assignment, solutions)
+    if jobs == 1:
+        yield from (try_work(assignment, work, options) for work in works)
+    else:
+        silent = replace(options, show_progress=_show_nothing)
+        with ProcessPoolExecutor(min(jobs, len(works)), mp_context=get_context("spawn")) as pool:
+            yield from pool.map(
+                _try_work_of, repeat(assignment.folder), repeat(assignment.level), works, repeat(silent)
+            )
+    if all(work.role is not WorkRole.WRONG for work in works):
         yield WorkReport(WRONG, ("there are no wrong solutions: nothing shows that points can be lost",), "")
+
+
+def _show_nothing(text: str) -> None:
+    """Takes the place of ``show_progress`` in a process of its own."""
+
+
+def _try_work_of(folder: Path, level: Level, work: TestedWork, options: GradingOptions) -> WorkReport:
+    return try_work(replace(read_assignment(folder), level=level), work, options)
+
+
+def try_work(assignment: Assignment, work: TestedWork, options: GradingOptions) -> WorkReport:
+    """Grades one work and reports what it does not show of what it is there for. Raises LevelTooLow."""
+    if work.role is WorkRole.STARTER:
+        return _try_starter(assignment, work.file, options)
+    if work.role is WorkRole.SOLUTION:
+        return _try_solution(assignment, work.file, options)
     with TemporaryDirectory(prefix="kit-wrong-") as folder:
-        for file in wrong:
-            try:
-                work = written_out(file, _work_path(solutions, SOLUTION, assignment), Path(folder))
-            except EditsError as error:
-                yield WorkReport(f"{WRONG}/{file.name}", (str(error),), "")
-            else:
-                yield _try_wrong(assignment, work, options)
+        try:
+            file = written_out(work.file, work.solution, Path(folder))
+        except EditsError as error:
+            return WorkReport(f"{WRONG}/{work.file.name}", (str(error),), "")
+        return _try_wrong(assignment, file, options)
 
 
 def unfair_fail_odds(assignment: Assignment, *, secret: bool) -> Iterator[UnfairFailOdds]:
@@ -177,7 +236,7 @@ def _try_starter(assignment: Assignment, file: Path, options: GradingOptions) ->
         problems.append(
             f"untouched, it earns {format_points(result.points or 0.0)} of {format_points(result.max_points)} points, "
             f"more than {STARTER_SHARE:.0%}: let what it meets by doing nothing count only after the main criterion "
-            "(after: ID)"
+            '(after: ID in the sheet; after="ID" in the points mark of a test of your own)'
         )
     stopped = {
         CriterionStatus.STUDENT_ERROR,
@@ -224,9 +283,7 @@ def _try_wrong(assignment: Assignment, file: Path, options: GradingOptions) -> W
     if isinstance(result, str):
         return WorkReport(name, (result,), "")
     lost = {test.id for test in result.tests if test.status is not CriterionStatus.PASS}
-    depending = {
-        criterion.id for criterion in assignment.criteria if _depends_on(assignment, criterion.id, named)
-    }
+    depending = {each.id for each in assignment.tests if _depends_on(assignment, each.id, named)}
     problems = _grader_errors(result)
     problems += [f"it should lose {each}, and does not" for each in sorted(named - lost)]
     problems += [f"it loses {each}, which it should not" for each in sorted(lost - named - depending)]
@@ -234,7 +291,7 @@ def _try_wrong(assignment: Assignment, file: Path, options: GradingOptions) -> W
 
 
 def _depends_on(assignment: Assignment, identity: str, named: set[str]) -> bool:
-    after = {criterion.id: criterion.after for criterion in assignment.criteria}
+    after = {each.id: each.after for each in assignment.tests}
     at: str | None = identity
     while at is not None:
         if at in named:

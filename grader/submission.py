@@ -8,6 +8,7 @@ from __future__ import annotations
 import errno
 import hashlib
 import os
+import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -219,6 +220,16 @@ def _is_virtual_environment(folder: int) -> bool:
     return True
 
 
+def _is_anothers_file(file: BinaryIO, folder: Path | int) -> bool:
+    """True for a hard link that somebody else than the file's owner can have made: from a folder that others may write in, or
+    of another owner. Where a system lets anybody make one, it would have this process read whatever it may read."""
+    status = os.fstat(file.fileno())
+    if status.st_nlink < 2:
+        return False
+    place = folder.stat() if isinstance(folder, Path) else os.fstat(folder)
+    return place.st_uid != status.st_uid or bool(place.st_mode & (stat.S_IWGRP | stat.S_IWOTH))
+
+
 def _open_plain_file(path: Path | str, max_bytes: int, folder: int | None = None) -> BinaryIO:
     """Opens a plain file without following a link or blocking on a pipe. Raises SubmissionRefused."""
     shown = shown_name(Path(path).name)[1:-1]
@@ -227,6 +238,11 @@ def _open_plain_file(path: Path | str, max_bytes: int, folder: int | None = None
     except OSError as error:
         reason = "it is a link" if error.errno == errno.ELOOP else error.strerror
         raise SubmissionRefused(f"{shown} cannot be read: {reason}.") from None
+    if _is_anothers_file(file, Path(path).parent if folder is None else folder):
+        file.close()
+        raise SubmissionRefused(
+            f"{shown} is another name of a file that lies elsewhere: hand in a copy of it."
+        )
     if os.fstat(file.fileno()).st_size > max_bytes:
         file.close()
         raise SubmissionRefused(f"{shown} is larger than {max_bytes >> 20} MiB: hand in only your program.")

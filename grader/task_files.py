@@ -6,10 +6,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from kit.geometry import Pose
-from kit.learning.environment.tasks import TaskSpec, UnknownTask, task_names
-from kit.learning.tasks.learning_task import LearningTask, TaskCase
+from kit.learning.tasks.catalogue import task_names
+from kit.learning.tasks.learning_task import LearningTask, TaskCase, UnknownTask
+from kit.learning.tasks.student_reward import RewardFileError
 from kit.learning.tasks.task_reader import read_task
-from kit.learning.training.student_reward import RewardFileError
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Scenario, scenario_on_map
@@ -54,8 +55,8 @@ def problem_of_task(file: Path) -> str | None:
     except (UnknownTask, WorldError, OSError) as error:
         return str(error)
     # Only now: this loads all that worlds in batches take, and a slip in the file is told at once.
-    from kit.learning.environment.batch_map import UnsupportedWorld
-    from kit.learning.tasks.task_check import check_task
+    from kit.learning.authoring.task_check import check_task
+    from kit.learning.maps.batch_map import UnsupportedWorld
 
     try:
         check_task(found)

@@ -2,41 +2,47 @@
 
 They run under pytest, get the fixture ``grading``, and examine recordings that the grader made::
 
-    @pytest.mark.points(3, hints=["Drive on the right."])
+    @pytest.mark.points(3, after="reached", hints=["Drive on the right."])
     def test_keeps_to_the_right(grading):
         \"\"\"The robot left its side of the corridor.\"\"\"
         assert all((drive.track[:, 0] > 0.4).all() for drive in grading.evidence("runs"))
 
-The docstring is the feedback, unless the assertion has a message of its own; a test's source is never shown. Only the
-files named are imported, since a student may work in the assignment's folder.
+The docstring is the feedback, unless the assertion has a message of its own; a test's source is never shown. ``after`` names
+the criterion or earlier test that must earn everything first. Only the files named are imported, since a student may work in the assignment's folder.
 """
 
 from __future__ import annotations
 
 import ast
+import hashlib
 import os
 import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from grader.assignment import TeacherTest
+from grader.author_code import AuthorCodeError, run_author_code
 from grader.evidence.contract import EvidenceSource
 from grader.evidence.submission_clock import SHORTEST_S, SubmissionClock
 from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
 from kit.host.failure import Failure
+from kit.host.sandbox.confinement import Level
+from kit.host.wire import Json
 from kit.school.result import CriterionResult, CriterionStatus, Visibility
 
 if TYPE_CHECKING:
     import pytest
 
 MARK: Final = "points"
-MARK_HELP: Final = f"{MARK}(number, visibility='visible', hints=()): what a teacher's test is worth"
+MARK_HELP: Final = (
+    f"{MARK}(number, after=None, visibility='visible', hints=()): what a teacher's test is worth"
+)
 
 
 def read_teacher_tests(file: Path) -> Iterator[TeacherTest]:
@@ -64,14 +70,34 @@ def _read_test(node: ast.FunctionDef, mark: ast.Call | None, file: Path) -> Teac
             text,
             Visibility(keywords.pop("visibility", Visibility.VISIBLE.value)),
             tuple(map(str, keywords.pop("hints", ()))),
+            None if (after := keywords.pop("after", None)) is None else str(after),
         )
     except (ValueError, TypeError):
         keywords = {"?": None}
     if keywords or not 0.0 <= test.points <= 1e6:
         raise ValueError(
-            f"{file.name}:{mark.lineno}: {MARK} takes a number from 0 on, a visibility and hints"
+            f"{file.name}:{mark.lineno}: {MARK} takes a number from 0 on, and after, visibility and hints"
         )
     return test
+
+
+def tests_digest(files: Sequence[Path]) -> str:
+    """Returns a digest of what decides the outcomes of tests: their code, without what they are worth and what they say to
+    whom. Empty without files. Raises OSError, SyntaxError."""
+    digest = hashlib.sha256()
+    for file in files:
+        tree = ast.parse(file.read_text(encoding="utf-8"), file.name)
+        for node in tree.body:
+            if isinstance(node, ast.FunctionDef) and node.name.startswith("test_"):
+                node.decorator_list = [
+                    each
+                    for each in node.decorator_list
+                    if not (isinstance(each, ast.Call) and _is_mark(each))
+                ]
+                if ast.get_docstring(node) is not None:
+                    node.body = [*node.body[1:], ast.Pass()]
+        digest.update(ast.unparse(tree).encode())
+    return digest.hexdigest()[:32] if files else ""
 
 
 MIN_TIME_S: Final = 30.0
@@ -120,8 +146,10 @@ def _raise_time_used_up(*_: object) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class _Outcome:
+class TestOutcome:
     """The outcome of one run of a test function."""
+
+    __test__ = False  # no class of tests
 
     status: CriterionStatus
     message: str
@@ -136,12 +164,12 @@ class _Session:
     first_failure: Callable[[], Failure | None]
     """How the program failed; None if it did not."""
     deadline: TestDeadline
-    outcomes: dict[str, list[_Outcome]] = field(default_factory=dict)
+    outcomes: dict[str, list[TestOutcome]] = field(default_factory=dict)
 
     def note(self, item: Any, status: CriterionStatus, text: str) -> None:
         name = getattr(item, "originalname", None) or item.name
         # Secret evidence that an earlier test was given may be kept in a fixture.
-        outcome = _Outcome(status, text, uses_secrets=self.grading.has_given_secrets)
+        outcome = TestOutcome(status, text, uses_secrets=self.grading.has_given_secrets)
         self.outcomes.setdefault(name, []).append(outcome)
 
 
@@ -152,24 +180,51 @@ def run_teacher_tests(
     files: Sequence[Path],
     first_failure: Callable[[], Failure | None],
     clock: SubmissionClock,
-) -> tuple[CriterionResult, ...]:
-    """Runs the tests in this process. An error in a test is the teacher's and costs no student a point.
+    level: Level,
+) -> Mapping[str, Sequence[TestOutcome]]:
+    """Runs the tests apart from the grader, and returns the outcomes of each. An error in a test is the teacher's and costs
+    no student a point.
 
-    ``first_failure`` returns how the program failed: an error in a test that examines a failed program is the student's.
+    All evidence has been collected before. ``first_failure`` returns how the program failed: an error in a test that examines a
+    failed program is the student's.
     The tests together may take what is left of the submission's time by ``clock``, and ``MIN_TIME_S`` in any case.
     """
     if not tests:
-        return ()
-    session = _Session(grading, first_failure, TestDeadline(max(MIN_TIME_S, clock.left_s)))
+        return {}
+    limit_s = max(MIN_TIME_S, clock.left_s)
+    session = _Session(grading, first_failure, TestDeadline(limit_s))
+    try:
+        told = run_author_code(
+            lambda: _run_pytest(session, folder, files), folder, level, limit_s + PYTEST_START_S
+        )
+    except AuthorCodeError as error:
+        broken = TestOutcome(CriterionStatus.GRADER_ERROR, str(error), uses_secrets=True)
+        return {test.id: [broken] for test in tests}
+    return {
+        name: [TestOutcome(CriterionStatus(status), text, uses) for status, text, uses in each]
+        for name, each in told.items()
+    }
+
+
+PYTEST_START_S: Final = 60.0
+"""Wall clock granted besides to pytest itself [s]."""
+
+
+def _run_pytest(session: _Session, folder: Path, files: Sequence[Path]) -> dict[str, list[list[Json]]]:
+    """Returns the outcomes of each test: status, message, whether it may have seen secret evidence."""
     with _isolated_environment():
         import pytest
 
         options = ["-p", "no:terminal", "-p", "no:cacheprovider", "-p", "no:faulthandler", "--capture=sys"]
-        options += ["-c", os.devnull, "--rootdir", str(folder), "--import-mode=importlib"]
+        options += ["-c", os.devnull, "--rootdir", str(folder), "--confcutdir", str(folder)]
+        options += ["--import-mode=importlib"]
         options += ["--noconftest"]  # one above the assignment's folder may be a student's
         pytest.main([*options, *map(str, files)], plugins=[_plugin(session)])
     _forget_modules(files)
-    return tuple(_test(test, session.outcomes.get(test.id, [])) for test in tests)
+    return {
+        name: [[each.status.value, each.message, each.uses_secrets] for each in outcomes]
+        for name, outcomes in session.outcomes.items()
+    }
 
 
 def _forget_modules(files: Sequence[Path]) -> None:
@@ -249,7 +304,7 @@ def _assertion_message(message: str) -> str:
     return message.partition("\nassert ")[0] if not message.startswith("assert ") else ""
 
 
-def _test(test: TeacherTest, outcomes: Sequence[_Outcome]) -> CriterionResult:
+def teacher_test_result(test: TeacherTest, outcomes: Sequence[TestOutcome]) -> CriterionResult:
     """Makes the result of one test; each outcome of a parametrized test is worth its share.
 
     A test that may have seen secret evidence pays in steps, and its own message is the teacher's alone.

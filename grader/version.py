@@ -14,7 +14,7 @@ import kit
 from kit.world.catalogue import maps_folder
 
 DISTRIBUTION: Final = "robot_learning_kit"
-UNUSED_PARTS: Final = ("cli", "tui", "school", "study", "data")
+UNUSED_PARTS: Final = ("cli", "tui", "help", "school", "study", "data")
 """Parts of the kit that no grading runs through; an installation's maps in ``data`` count as maps."""
 USED_FILES: Final = ("school/result.py",)
 """What grading uses of these parts all the same."""

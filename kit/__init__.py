@@ -1,4 +1,4 @@
-"""The terminal robot-learning kit. The loop is in ``kit/run/runner.py``; ``README.md`` shows the code layout.
+"""The terminal robot-learning kit. The loop is in ``kit/run/runner.py``; `kit help design` shows the code layout.
 
 Scripts and notebooks may use the names below. Each is imported when it is first used, so that ``import kit``
 is fast. Importing the kit also registers its environments with Gymnasium.
@@ -15,7 +15,7 @@ Training with PPO on many worlds at once (``kit train`` does more):
 
 >>> from stable_baselines3 import PPO
 >>> from kit.learning.environment.sb3_vec_env import make_vec_env
->>> from kit.learning.environment.tasks import find_task
+>>> from kit.learning.tasks.catalogue import find_task
 >>> worlds = make_vec_env(find_task("turn"), 64, seed=1)
 >>> model = PPO("MlpPolicy", worlds, n_steps=32, batch_size=1024, device="cpu", seed=1)
 >>> model = model.learn(4_096)
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from kit.sim.simulation import load_world
     from kit.world.catalogue import all_maps, find_map
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "Recording",

@@ -46,6 +46,18 @@ def unpack_arrays(data: bytes, max_bytes: int) -> dict[str, NDArray[Any]]:
         return {name: stored[name] for name in stored.files}
 
 
+def check_stored(archive: zipfile.ZipFile, size: int) -> None:
+    """Checks that what is in an archive is packed as it is, and so takes no more memory than the archive's ``size`` [bytes].
+
+    Raises zipfile.BadZipFile for anything else.
+    """
+    members = archive.infolist()
+    if any(each.compress_type != zipfile.ZIP_STORED for each in members):
+        raise zipfile.BadZipFile("a part is compressed, which the kit's never are")
+    if len(members) > MAX_ARRAYS or sum(each.file_size for each in members) > size:
+        raise zipfile.BadZipFile("its parts are larger than itself")
+
+
 def check_arrays(archive: zipfile.ZipFile, max_bytes: int) -> dict[str, tuple[int, ...]]:
     """The shapes of all arrays of an ``.npz`` archive, by the names of their files, before numpy reads them.
 

@@ -105,7 +105,7 @@ def unusable_workspace_error(folder: Path, error: OSError) -> WorkspaceError:
 
 def check_writable(path: Path) -> None:
     """Raises OSError if ``path`` cannot be written, without writing it. Call it before long work."""
-    with _errors_name_file(path):
+    with errors_name_file(path):
         if path.is_dir():
             raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
         if is_special(path):
@@ -128,7 +128,7 @@ def write_atomically(path: Path, data: bytes) -> None:
     A new file has the mode that the user's umask gives, one that is replaced keeps its own. A link stays one: what it
     points to is written. So is a device or a pipe, as it is. Raises OSError.
     """
-    with _errors_name_file(path):
+    with errors_name_file(path):
         if is_special(path):
             with path.open("ab") as device:
                 device.write(data)
@@ -185,8 +185,8 @@ def open_common_folder(folder: Path) -> str:
 
 
 @contextmanager
-def _errors_name_file(path: Path) -> Iterator[None]:
-    """Makes errors name this file, not the temporary one."""
+def errors_name_file(path: Path) -> Iterator[None]:
+    """Makes errors name this file or folder, not a temporary one, or none."""
     try:
         yield
     except OSError as error:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from grader.kinds.function import load_reference
+from grader.kinds.function.kind import load_reference
 from kit.school.game.levels import GameLevel, all_levels
 from kit.school.lessons.reading import lessons_folder, read_lesson
 from kit.school.lessons.records import Lesson

@@ -265,7 +265,11 @@ class ScreenNewcomer(Newcomer):
 
     def _see_it_pass(self) -> None:
         self.wait(
-            lambda: re.search(r"^ +(Passed: |Not yet: |Not checked|The check (itself|could|did|broke))", self.user.text, re.M),
+            lambda: re.search(
+                r"^ +(Passed: |Not yet: |Not checked|The check (itself|could|did|broke))",
+                self.user.text,
+                re.M,
+            ),
             "the verdict",
         )
         assert "\n  Passed: " in self.user.text, self.user.text

@@ -18,7 +18,7 @@ from kit.learning.training.runs import TrainingRun, list_runs
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
 from kit.school.lessons.records import CommandKind, Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths
-from kit.school.quiz.schedule import AnswerChoice
+from kit.school.quiz.answers import AnswerChoice
 from tests.kit_content import kit_bank
 from tests.pasted_commands import COLUMNS, LIMIT_S, SCREEN_S, Home, ShownCommand, shown_commands
 from tests.school.quiz.item_builders import told_rows

@@ -10,15 +10,17 @@ from pathlib import Path
 import pytest
 
 from grader.grading import GradingOptions, grade
-from grader.reading import ASSIGNMENT_FILE, read_assignment
+from grader.reading import read_assignment
 from grader.self_test import STARTER, STARTER_SHARE, list_wrong_works, try_works, written_out
 from grader.submission import Submission, read_submission
 from kit.cli import VERBS
+from kit.document.markup import parse_markup
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
 from kit.school.game.challenges import all_challenges
 from kit.school.lessons.checking import check_exercise, install_exercise, read_solution, submission_path
 from kit.school.lessons.reading import (
+    ASSIGNMENT_FILE,
     lesson_names,
     lesson_number,
     lessons_folder,
@@ -40,6 +42,8 @@ NUMBER_IN_TEXT = re.compile(r"\b(?:lessons?|lição|lições)\s+[A-Z]?\d", re.IG
 RIGHT_ANSWERS = re.compile(r"\bright: \[.*\]$", re.MULTILINE)
 WITHOUT_SECRETS = ("drive", "reward")
 """A drive by hand is there once; a reward is judged on everything there is."""
+AGREEING = re.compile(r"(yes|sim|right)\b", re.IGNORECASE)
+BOLD = re.compile(r"\*\*[^*\d]+ [^*\d]+\*\*")
 OPENER_MIN = 5
 """A lesson that is this short opens the course, and has one exercise."""
 SLOWER = 3.0
@@ -69,6 +73,32 @@ def test_there_are_at_least_thirteen_each_in_one_unit_with_a_number_of_its_own()
 def test_outcomes_are_no_sentences_and_end_without_a_full_stop() -> None:
     outcomes = [each for name in NAMES for each in kit_lesson(name).outcomes]
     assert [each for each in outcomes if each.endswith(".")] == []
+
+
+def test_no_feedback_agrees_since_it_is_also_told_to_who_was_wrong() -> None:
+    """``Right.`` or ``Not this time`` stand before it."""
+    told = [
+        option.feedback
+        for name in NAMES
+        for step in kit_lesson(name).steps
+        for option in step.options
+        if AGREEING.match(option.feedback)
+    ]
+    assert told == []
+
+
+def test_no_code_has_marks_for_bold_words() -> None:
+    """Code stands as it is written."""
+    rows = [
+        row
+        for name in NAMES
+        for step in kit_lesson(name).steps
+        for block in parse_markup(step.text)
+        if block.kind == "code"
+        for row in block.lines
+        if BOLD.search(row)
+    ]
+    assert rows == []
 
 
 def test_no_text_says_a_number_that_may_change() -> None:

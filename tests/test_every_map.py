@@ -54,7 +54,7 @@ def starts(case: MapCase) -> list[Pose]:
 
 def segments(name: str) -> FloatArray:
     """(n, 4): all walls, in world coordinates."""
-    return np.concatenate([layer.walls.segments for layer in world(name).layers if layer.walls])
+    return world(name).wall_segments
 
 
 def reach(robot: Model) -> float:

@@ -12,14 +12,14 @@ import pytest
 
 from grader.__main__ import main as grader_main
 from grader.kinds.contract import kind_names
-from grader.reading import ASSIGNMENT_FILE, read_assignment
+from grader.reading import read_assignment
 from kit.cli import main as kit_main
 from kit.document.blocks import Block, Code, Marked, Text
 from kit.document.code_lines import is_command
 from kit.document.layout import Page, lines_of
-from kit.learning.environment.tasks import TASKS
+from kit.learning.tasks.catalogue import TASKS
 from kit.school.lessons.glossary import read_glossary
-from kit.school.lessons.reading import lesson_names
+from kit.school.lessons.reading import ASSIGNMENT_FILE, lesson_names
 from kit.school.lessons.records import Lesson
 from kit.school.quiz.items import read_bank
 from tests.cases import every_case

@@ -21,7 +21,7 @@ from grader.cohort.queue import Queue, grade_job, prepare_queue
 from grader.grading import GradingOptions
 from grader.reading import read_assignment
 from kit.host.sandbox.confinement import Level
-from kit.learning.environment.tasks import TaskSpec
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import RunConfig, create_run
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import make_private_folder, open_workspace, write_atomically

@@ -19,8 +19,8 @@ import pytest
 from kit.arrays import Float32Array, FloatArray
 from kit.geometry import Pose
 from kit.kernels import kernels, world_kernels
-from kit.learning.environment.batch_map import BatchMap, UnsupportedWorld, batch_geometry, batch_map_of_world
-from kit.learning.environment.obstacles import ObstacleMotions, make_obstacle_parts
+from kit.learning.maps.batch_map import BatchMap, UnsupportedWorld, batch_geometry, batch_map_of_world
+from kit.learning.maps.obstacles import ObstacleMotions, make_obstacle_parts
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.simulation import Simulation, load_world

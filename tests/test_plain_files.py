@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from grader.kinds.policy import load_submitted_policy
+from grader.kinds.policy.kind import load_submitted_policy
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
 from kit.array_archives import MAX_UNPACKED_BYTES
@@ -27,7 +27,8 @@ from kit.learning.tasks.task_reader import read_task
 from kit.learning.training.demonstrations import is_recording
 from kit.plain_files import open_plain_file, read_plain_file
 from kit.run.recording import RecordingError, load_recording
-from kit.school.progress import ProgressError, read_export
+from kit.school.progress import ProgressError
+from kit.school.progress_export import read_export
 from kit.school.report.class_data import read_roster
 from kit.world.loading import load_world
 from kit.world.problems import WorldError

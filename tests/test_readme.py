@@ -1,5 +1,5 @@
-"""What README.md and the pages of lessons/ say is so. ``python tests/test_readme.py`` writes the picture of the start screen,
-the table of lessons and the teacher's guide again."""
+"""What README.md and the pages of lessons/ say is so. ``python tests/test_readme.py`` makes the README's moving picture, the
+table of lessons and the teacher's guide again."""
 
 from __future__ import annotations
 
@@ -8,16 +8,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from textual.pilot import Pilot
 
 from kit.cli import VERBS
-from kit.controllers import prepare_workspace
+from kit.help.topics import design
 from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.teachers_guide import teachers_guide
-from kit.tui.screens.start import StartScreen
-from kit.tui.student_store import StudentStore
+from tests.cli.verbs import kit
+from tests.help.page_commands import unknown_options
 from tests.kit_content import kit_lesson
-from tests.tui.lesson_stage import ROBOT, rows, seen, stage, until
 
 README = Path(__file__).parent.parent / "README.md"
 LESSONS = Path(__file__).parent.parent / "lessons" / "README.md"
@@ -46,29 +44,50 @@ def test_the_teachers_guide_is_what_the_lessons_say() -> None:
     assert GUIDE.read_text() == teachers_guide(), "run python tests/test_readme.py"
 
 
-PICTURE = re.compile(r"(?<=^```\n)The terminal robot-learning kit .*?\n(?=```$)", re.MULTILINE | re.DOTALL)
+PICTURE = README.parent / ".github" / "drive.svg"
+DRIVER = README.parent / "tests" / "solutions" / "09-your-own-controller" / "wanderer" / "solution.py"
 
 
-def start_picture(folder: Path) -> str:
-    """The start screen that a new student sees, with the robot where it starts."""
-    shown: list[str] = []
-
-    async def scene(pilot: Pilot[None]) -> None:
-        await seen(pilot, f"0 of {len(lesson_names())} done")
-        await until(pilot, lambda: set(ROBOT) & set("".join(rows(pilot))), "a robot")
-        shown.extend(rows(pilot))
-
-    workspace = prepare_workspace(folder)
-    stage(
-        lambda theme: StartScreen(theme, StudentStore(workspace)), scene, environ={"KIT_REDUCE_MOTION": "1"}
-    )
-    # Rows for messages, between the picture and the keys, are empty.
-    return re.sub(r"\n\n+(?=.*\n$)", "\n\n", "\n".join(shown) + "\n")
+def make_picture(folder: Path) -> bytes:
+    """The README's moving picture, by the commands that it names: a drive, recorded and drawn."""
+    recording, picture = folder / "run.npz", folder / "drive.svg"
+    drive = ["run", "racetrack", "--controller", DRIVER, "--seed", 1, "--steps", 8000, "--until-reached"]
+    kit(*drive, "--record", recording)
+    kit("replay", recording, "--export", picture, "--speed", 4, "--size", "640x400")
+    return picture.read_bytes()
 
 
 @pytest.mark.long
-def test_the_picture_of_the_start_screen_is_true(tmp_path: Path) -> None:
-    assert PICTURE.findall(README.read_text()) == [start_picture(tmp_path)], "run python tests/test_readme.py"
+def test_the_moving_picture_is_a_drive_of_the_kit(tmp_path: Path) -> None:
+    assert make_picture(tmp_path) == PICTURE.read_bytes(), "run python tests/test_readme.py"
+
+
+def test_every_picture_that_it_shows_is_there() -> None:
+    shown = re.findall(r"!\[.+\]\((.+)\)", README.read_text())
+    assert shown == [".github/drive.svg"]
+    assert all((README.parent / each).is_file() for each in shown)
+
+
+def test_its_paths_have_five_lines() -> None:
+    section = README.read_text().split("## Four paths")[1].split("\n## ")[0]
+    paths = re.findall(r"^```\n(.*?)^```", section, re.M | re.S)
+    assert [len(each.splitlines()) for each in paths] == [5, 5, 5, 5]
+
+
+COMMAND = re.compile(r"^((?:kit|grader) .*?)(?:  |$)", re.M)
+
+
+def test_every_command_and_option_it_names_exists() -> None:
+    found = COMMAND.findall(README.read_text()) + re.findall(r"`((?:kit|grader) [^`]+)`", README.read_text())
+    assert len(found) > 20
+    for each in found:
+        assert unknown_options(each) == set(), each
+
+
+def test_every_benchmark_it_names_exists() -> None:
+    named = re.findall(r"`python (tests/benchmarks/\S+)`", README.read_text())
+    assert len(named) >= 4
+    assert all((README.parent / each).is_file() for each in named)
 
 
 def test_every_verb_it_names_exists() -> None:
@@ -135,7 +154,7 @@ def test_every_file_and_record_that_is_to_be_added_to_exists() -> None:
 
 
 def test_the_drawing_names_every_room() -> None:
-    drawing = README.read_text().split("## Code layout")[1].split("```")[1]
+    drawing = design.DRAWING
     rooms = {
         path.stem
         for path in (ROOT / "kit").iterdir()
@@ -147,13 +166,14 @@ def test_the_drawing_names_every_room() -> None:
 
 
 def test_the_readme_is_short() -> None:
-    assert len(README.read_text().split()) <= 1_200
+    assert (
+        len(README.read_text().split()) <= 1_400
+    )  # of which the study's tables, made from its logs, take 250
 
 
 if __name__ == "__main__":
     with TemporaryDirectory() as made:
-        picture = start_picture(Path(made))
-    README.write_text(PICTURE.sub(lambda _: picture, README.read_text()))
+        PICTURE.write_bytes(make_picture(Path(made)))
     text = LESSONS.read_text()
     head, tail = text.index(FIRST) + len(FIRST), text.index(LAST)
     LESSONS.write_text(text[:head] + table() + text[tail:])

@@ -54,6 +54,17 @@ def test_the_wheel_carries_the_data_and_no_tests(wheel: Path) -> None:
 
 
 @pytest.mark.long
+def test_a_wheel_that_a_workflow_builds_names_its_repository(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("GITHUB_SERVER_URL", "https://example.org")
+    monkeypatch.setenv("GITHUB_REPOSITORY", "somebody/kit")
+    archive = zipfile.ZipFile(build_wheel(tmp_path))
+    (metadata,) = (name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
+    assert "Project-URL: Source, https://example.org/somebody/kit\n" in archive.read(metadata).decode()
+
+
+@pytest.mark.long
 def test_the_wheel_registers_its_environments_as_a_gymnasium_plugin(wheel: Path) -> None:
     archive = zipfile.ZipFile(wheel)
     (entry_points,) = (name for name in archive.namelist() if name.endswith(".dist-info/entry_points.txt"))
@@ -133,7 +144,7 @@ print(json.dumps({
     "verbs": [*verbs(main, "kit"), *verbs(grader, "grader")],
     "kinds": [find_kind(name).__class__.__name__ + " " + name for name in kind_names()],
     "public names": [getattr(kit, name).__name__ for name in kit.__all__],
-    "processes": [find_spec(f"grader.evidence.{name}").name for name in ("posed_task_child", "world.child")],
+    "processes": [find_spec(f"grader.kinds.{name}.child").name for name in ("task", "world")],
 }))
 """
 

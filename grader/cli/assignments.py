@@ -2,59 +2,73 @@
 
 from __future__ import annotations
 
+import inspect
+import json
 import re
-import shutil
+import shlex
+import sys
 from dataclasses import fields
 from pathlib import Path
 from typing import Final
 
 import click
 
+from grader.check import Check
 from grader.ci import WORKFLOWS, GitSource, warnings, workflow
 from grader.cli import options
 from grader.cli.progress import shown_progress
 from grader.grading import GradingOptions, LevelTooLow
-from grader.kinds.contract import find_kind, kind_names
-from grader.reading import budget_lines
+from grader.kinds.contract import KINDS_PACKAGE, find_kind, kind_names
+from grader.new_assignment import example_of_exercise, example_of_kind, make_assignment
+from grader.reading import SECRET_FILE, budget_lines
 from grader.reports.cleaning import plain
-from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds
+from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds, works_of
+from kit.cli.options import describe_os_error
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
 from kit.document.layout import lines_of
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import counted, quoted, suggestion
+from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.workspace import write_atomically
-
-TEMPLATES: Final = Path(__file__).parents[1] / "templates"
 
 
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path))
+@click.option("--kind", type=click.Choice(kind_names()), help="What students submit (default: controller).")
 @click.option(
-    "--kind",
-    type=click.Choice(
-        sorted(each.name for each in TEMPLATES.iterdir() if each.is_dir() and each.name[0] != "_")
-    ),
-    default="controller",
-    show_default=True,
-    help="What students submit.",
+    "--from",
+    "exercise",
+    metavar="LESSON/EXERCISE",
+    help="Start from a lesson's exercise with its solutions: 11/your_reward.",
 )
-def new(folder: Path, kind: str) -> None:
-    """Create the assignment FOLDER: a working example with starter, solution, wrong solutions and secret seeds.
+def new(folder: Path, kind: str | None, exercise: str | None) -> None:
+    """Create the assignment FOLDER: a working example with starter, solution and wrong solutions.
+
+    \b
+    grader new hall --kind controller
+    grader new hall --from 11/your_reward
 
     Change it step by step, and run `grader self-test FOLDER` after each step.
     """
+    if kind is not None and exercise is not None:
+        options.fail("Give --kind or --from, not both: an exercise has a kind of its own.")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         options.fail(f"{folder} already exists and is not empty; choose another folder.")
     try:
-        shutil.copytree(
-            TEMPLATES / kind,
-            folder,
-            dirs_exist_ok=True,
-            ignore=shutil.ignore_patterns("__pycache__", "*.pyc"),
-        )
+        example = example_of_kind(kind or "controller") if exercise is None else example_of_exercise(exercise)
+        make_assignment(example, folder)
+        assignment = options.load_assignment(folder)
+    except LookupError as error:
+        options.fail(str(error))
     except OSError as error:
-        options.fail(f"Cannot create {folder}: {error.strerror or error}.")
-    click.echo(f"{folder}: {kind}, ready. Try it: grader self-test {folder}")
-    click.echo(f"Then edit {folder}/assignment.yaml. To list the checks: grader checks {kind}")
+        options.fail(f"Cannot create {folder}: {describe_os_error(error)}")
+    shown = shlex.quote(str(folder))
+    click.echo(f"{folder}: {assignment.kind}, ready. Try it: grader self-test {shown}")
+    if assignment.has_secrets:
+        click.echo(
+            f"{folder}/{SECRET_FILE} is that of the example, which everybody has who has the kit: write your own."
+        )
+    click.echo(f"Then edit {folder}/{ASSIGNMENT_FILE}: `grader help sheet` explains its keys,")
+    click.echo(f"`grader checks {assignment.kind}` lists the checks. For students: grader release {shown}")
 
 
 SHARE_HELP: Final = (
@@ -69,15 +83,49 @@ MISTAKES_HELP: Final = (
 )
 
 
+def _feedback(check: Check) -> str:
+    """What a check tells a student, with dots where it names what it has measured."""
+    full = check.format(check.anchors.full)
+    return check.feedback.format(actual="...", full=full, where="...", passed="...", count="...")
+
+
+def _kinds_as_json() -> str:
+    """Every kind with its checks, and the limits of programs, for pages about them."""
+    kinds = [
+        {
+            "kind": name,
+            "about": inspect.getdoc(sys.modules[f"{KINDS_PACKAGE}.{name}.kind"]),
+            "endings": find_kind(name).endings,
+            "checks": [
+                {
+                    "check": check_name,
+                    "feedback": _feedback(each),
+                    "none": each.format(each.anchors.none),
+                    "full": each.format(each.anchors.full),
+                    "with": {field.name: repr(field.default) for field in fields(each.params)},
+                }
+                for check_name, each in find_kind(name).checks.items()
+            ],
+        }
+        for name in kind_names()
+        if find_kind(name)
+    ]
+    return json.dumps({"kinds": kinds, "budget": dict(budget_lines())}, indent=1)
+
+
 @click.command()
 @click.argument("kind", required=False, default="controller")
-def checks(kind: str) -> None:
+@click.option("--json", "machine_readable", is_flag=True, help="Print all kinds and their checks as JSON.")
+def checks(kind: str, machine_readable: bool) -> None:
     """List the checks that an assignment of this KIND can use: what each measures, which values earn no points and all
     points (unless `share` sets others), and the parameters for `with`.
 
     \b
     grader checks reward
     """
+    if machine_readable:
+        click.echo(_kinds_as_json())
+        return
     if kind not in kind_names():
         options.fail(f"There is no kind {quoted(kind)}: {suggestion(kind, kind_names())}")
     rows: list[tuple[str, str]] = []
@@ -88,8 +136,7 @@ def checks(kind: str) -> None:
             f"“{none}” earns nothing, “{full}” everything" if full else "",
             f"with: {params}" if params else "",
         ]
-        text = check.feedback.format(actual="...", full=full, where="...", passed="...", count="...")
-        rows += [(name, text), ("", "; ".join(filter(None, parts)))]
+        rows += [(name, _feedback(check)), ("", "; ".join(filter(None, parts)))]
     others = ", ".join(each for each in kind_names() if each != kind)
     budget = "budget: {KEY: NUMBER, ...} sets limits for every program that runs:"
     blocks: list[Block] = [
@@ -110,7 +157,14 @@ def checks(kind: str) -> None:
     help="Folder with the solution and the wrong solutions, if not FOLDER.",
 )
 @options.level
-def self_test(folder: Path, solutions: Path | None, level: str | None) -> None:
+@click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    default=1,
+    show_default=True,
+    help="Works that are graded at once.",
+)
+def self_test(folder: Path, solutions: Path | None, level: str | None, jobs: int) -> None:
     """Test the assignment in FOLDER: the starter must run but not pass, the solution must earn all
     points, and each wrong solution must lose the criterion in its file name. Then print how likely a good submission
     is to fail by bad luck.
@@ -121,7 +175,10 @@ def self_test(folder: Path, solutions: Path | None, level: str | None) -> None:
     """
     assignment = options.load_assignment(folder)
     options.warn_of_short_seeds(assignment)
-    click.echo(f"{assignment.title}: {len(assignment.criteria)} criteria")
+    works = works_of(assignment, solutions)
+    click.echo(
+        f"{assignment.title}: {len(assignment.tests)} criteria, {counted(len(works), 'work')} to grade"
+    )
     failed = False
     try:
         with shown_progress(None) as show_progress:
@@ -131,10 +188,11 @@ def self_test(folder: Path, solutions: Path | None, level: str | None) -> None:
                 may_lower_level=not assignment.has_secrets,
                 show_progress=show_progress,
             )
-            for report in try_works(assignment, grading_options, solutions):
+            for number, report in enumerate(try_works(assignment, grading_options, solutions, jobs=jobs), 1):
                 show_progress("")
                 failed |= bool(report.problems)
-                click.echo(f"{'[no]' if report.problems else '[ok]'} {report.name:<32} {report.summary}")
+                mark = "[no]" if report.problems else "[ok]"
+                click.echo(f"{number:>2}/{len(works)} {mark} {report.name:<32} {report.summary}")
                 for problem in report.problems:
                     click.echo(f"     {plain(problem, 600)}")
     except LevelTooLow as error:

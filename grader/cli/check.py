@@ -12,8 +12,8 @@ import click
 from grader.cli import options
 
 if TYPE_CHECKING:
+    from grader.driving.drive_record import GradedDrive
     from grader.evidence.contract import Evidence
-    from grader.evidence.drive_record import GradedDrive
     from grader.grading import Grading
     from kit.school.result import GradingResult
 
@@ -150,7 +150,7 @@ def _is_drive(evidence: Evidence) -> TypeGuard[GradedDrive]:
 
     if isinstance(evidence, EvidenceRecord):
         return False  # without the next import, which brings numpy
-    from grader.evidence.drive_record import GradedDrive
+    from grader.driving.drive_record import GradedDrive
 
     return isinstance(evidence, GradedDrive)
 
@@ -168,7 +168,7 @@ def _picture_title(worst: Evidence) -> tuple[str, bool]:
 
 def _save_replay(worst: Evidence, replay: Path, grading: Grading) -> str:
     """Saves an episode; returns how to watch it."""
-    from grader.evidence.reward import RewardEvidence
+    from grader.kinds.reward.evidence import RewardEvidence
     from kit.run.recording import save_recording
     from kit.world.catalogue import map_names
 

@@ -1,4 +1,4 @@
-"""``grader cohort``, ``work``, ``gradebook`` and ``ladder``: many submissions, on this machine or several."""
+"""``grader cohort``, ``work`` and ``ladder``: many submissions, on this machine or several."""
 
 from __future__ import annotations
 
@@ -17,12 +17,8 @@ from grader.cohort.gradebook import (
     as_csv,
     as_json,
     attention_blocks,
-    changes,
-    choose_submissions,
+    class_blocks,
     gradebook_rows,
-    read_json,
-    read_policy,
-    read_submission_times,
     summary,
     unjudged_line,
 )
@@ -32,6 +28,7 @@ from grader.cohort.queue import (
     Queue,
     QueueError,
     grade_job,
+    judge_anew,
     prepare_queue,
     run_locally,
     run_on_dask,
@@ -47,7 +44,6 @@ from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
 from kit.school.game.levels import UnknownLevel, find_level
 from kit.workspace import write_atomically
-from kit.world.problems import WorldError
 
 
 @click.command()
@@ -110,8 +106,10 @@ def cohort(
     options.warn_of_unused_secrets(assignment, secret=secret)
     try:
         entries = prepare_queue(queue, submissions, assignment, grading_options)
+        judged = judge_anew(queue)
         waiting = queue.waiting()
-        click.echo(f"{len(entries)} submissions, {len(waiting)} to grade", err=True)
+        anew = f", {judged} judged anew by what was found before" if judged else ""
+        click.echo(f"{len(entries)} submissions{anew}, {len(waiting)} to grade", err=True)
         with click.progressbar(length=len(waiting), label="graded", file=sys.stderr) as bar:
             if executor == "slurm":
                 run_on_slurm(queue, jobs)
@@ -135,7 +133,7 @@ def publish(queue: Queue, *, is_graded: bool) -> int:
     if assignment.has_secrets and not queue.grading_options().secret:
         unjudged = unjudged_line(table, assignment.max_points)
         click.echo(" ".join(filter(None, ("Graded without --secret.", unjudged))))
-    if attention := attention_blocks(table):
+    if attention := [*attention_blocks(table), *class_blocks(table)]:
         click.echo("\n".join(lines_of(attention)))
     verdicts = {row.verdict for row in table}
     if is_graded and WAITING in verdicts:
@@ -184,64 +182,6 @@ def worker(folder: Path) -> None:
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     serve_jobs(partial(grade_job, Queue(folder)), sys.stdin, answers)
-
-
-@click.command()
-@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
-@click.option(
-    "--late",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="YAML file with due, zone, grace_minutes, per_day, least, latest_days.",
-)
-@click.option(
-    "--times",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="CSV file with name and submitted; also student, if some submit more than once.",
-)
-@click.option(
-    "--choose",
-    type=click.Choice(["latest", "in-time", "best"]),
-    default="latest",
-    show_default=True,
-    help="The submission that counts for each student.",
-)
-@click.option(
-    "--against",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="Print only what has changed since this gradebook.json.",
-)
-@click.option("--json", "as_json_text", is_flag=True, help="Print JSON instead of CSV.")
-def gradebook(
-    folder: Path, late: Path | None, times: Path | None, choose: str, against: Path | None, as_json_text: bool
-) -> None:
-    """Print the gradebook of the queue FOLDER. The late rules and the choice among several submissions apply only to
-    this output; they are not saved.
-
-    A date as `due` means the end of that day. Times need their offset (+01:00, Z) or a `zone` in the late rules, such as
-    Europe/Lisbon; standard error says how `due` was read.
-    """
-    try:
-        policy = None if late is None else read_policy(late)
-        zone = None if policy is None else policy.zone
-        submission_times = {} if times is None else read_submission_times(times, zone)
-        table = gradebook_rows(Queue(folder.absolute()), policy, submission_times)
-        timeless = (
-            [row.name for row in table if row.name not in submission_times] if policy is not None else []
-        )
-        table = choose_submissions(table, submission_times, choose)
-        before = None if against is None else read_json(against.read_text(encoding="utf-8"))
-    except (WorldError, QueueError, ValueError, OSError) as error:
-        options.fail(describe_error(error))
-    if policy is not None:
-        click.echo(policy.due_text, err=True)
-    if timeless:
-        named = ", ".join(map(clean_line, timeless[:5])) + (", ..." if len(timeless) > 5 else "")
-        click.echo(f"{len(timeless)} without a time count as in time: {named}", err=True)
-    if before is not None:
-        lines = list(changes(before, table))
-        click.echo("\n".join(lines) if lines else "nothing has changed")
-    else:
-        click.echo(as_json(table) if as_json_text else as_csv(table), nl=False)
 
 
 DEFAULT_LEVELS = ("left-turn", "right-turn", "parking", "roundabout", "about-turn")

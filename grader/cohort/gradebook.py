@@ -8,79 +8,20 @@ import json
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
-from datetime import UTC, datetime, tzinfo
+from dataclasses import asdict, dataclass, field, replace
+from datetime import datetime, tzinfo
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
-from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
+from grader.cohort.lateness import EXAMPLE, Lateness, LatePolicy, parse_time
 from grader.cohort.queue import Queue, QueueEntry, UnreadableWork
+from grader.cohort.roster import Student, WorkOwners, look
 from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.document.blocks import Block, Text
+from kit.field_types import check_field_types
+from kit.plain_text import counted, join_names
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict, format_points
-from kit.world.documents import open_document
-
-DAY = 86400.0
-"""s"""
-
-
-@dataclass(frozen=True, slots=True)
-class LatePolicy:
-    """How many points lateness costs."""
-
-    due: datetime
-    grace_s: float = 0.0
-    per_day: float = 0.1
-    """Share of the points lost for each day begun."""
-    least: float = 0.0
-    """Share that is always kept, until ``latest_days``."""
-    latest_days: float | None = None
-    """Days after which nothing counts; None for no such limit."""
-    zone: tzinfo | None = None
-    """In which times are read that name none."""
-
-    @property
-    def due_text(self) -> str:
-        """How the due date was read."""
-        zone = "" if self.zone is None else f" {self.zone}"
-        return f"due {self.due.isoformat(sep=' ')}{zone}"
-
-    def kept(self, submitted: datetime) -> float:
-        """Returns the share of its points that a submission keeps."""
-        # In one zone Python subtracts what clocks show, and they skip or repeat an hour twice a year.
-        late = (submitted.astimezone(UTC) - self.due.astimezone(UTC)).total_seconds() - self.grace_s
-        if late <= 0:
-            return 1.0
-        if self.latest_days is not None and late > self.latest_days * DAY:
-            return 0.0
-        return max(self.least, 1.0 - self.per_day * math.ceil(late / DAY), 0.0)
-
-
-def read_policy(file: Path) -> LatePolicy:
-    """Reads ``due``, ``zone``, ``grace_minutes``, ``per_day``, ``least`` and ``latest_days`` from a YAML file.
-
-    ``due`` is a time with its offset, or in ``zone``; a date alone means the end of that day. Raises WorldError.
-    """
-    with open_document(file) as section:
-        zone = None
-        if section.has("zone"):
-            zone = find_zone(section.name("zone"))
-            if zone is None:
-                section.error("must be a time zone such as Europe/Lisbon, or UTC", "zone")
-        due = None
-        try:
-            due = parse_time(section.name("due"), zone, whole_day=True)
-        except ValueError as problem:
-            section.error(str(problem), "due")
-        return LatePolicy(
-            due or datetime.now(UTC),
-            60 * section.number("grace_minutes", 0.0, minimum=0),
-            section.number("per_day", 0.1, minimum=0, maximum=1),
-            section.number("least", 0.0, minimum=0, maximum=1),
-            section.number("latest_days", minimum=0) if section.has("latest_days") else None,
-            zone,
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,18 +34,28 @@ class SubmissionTime:
 
 
 def read_submission_times(file: Path, zone: tzinfo | None = None) -> Mapping[str, SubmissionTime]:
-    """Reads a CSV file with the columns ``name`` and ``submitted``, and ``student`` if some submit more than once.
+    """Reads a CSV file with the columns ``name`` and ``submitted``, and ``student`` if some submit more than once; or Moodle's
+    grading worksheet, by its participants.
 
     ``zone``: of times that name none. Raises ValueError, OSError.
     """
-    arrivals = {}
+    arrivals: dict[str, SubmissionTime] = {}
     with file.open(newline="", encoding="utf-8-sig") as opened:
-        for number, row in enumerate(csv.DictReader(opened), 2):
-            name = row.get("name") or ""
+        reader = csv.DictReader(opened)
+        of_moodle = MOODLE_SUBMITTED in (reader.fieldnames or ())
+        for number, row in enumerate(reader, 2):
+            name = (
+                (row.get("Identifier") or "").removeprefix("Participant ")
+                if of_moodle
+                else row.get("name") or ""
+            )
+            submitted = (row.get(MOODLE_SUBMITTED if of_moodle else "submitted") or "").strip()
+            if of_moodle and submitted in ("", "-"):
+                continue  # who handed in nothing
             if not name:
                 raise ValueError(f"{file}:{number}: a row needs a name, and a time such as {EXAMPLE}")
             try:
-                at = parse_time(row.get("submitted") or "", zone)
+                at = parse_time(submitted, zone)
             except ValueError as problem:
                 raise ValueError(f"{file}:{number}: submitted {problem}") from None
             if name in arrivals:
@@ -113,52 +64,14 @@ def read_submission_times(file: Path, zone: tzinfo | None = None) -> Mapping[str
     return arrivals
 
 
-EXAMPLE: Final = "2026-11-30T23:59:00+01:00"
-
-
-def find_zone(name: str) -> tzinfo | None:
-    """The time zone of a name of the IANA's; None for a name of none, or one that this machine does not know."""
-    if name == "UTC":
-        return UTC
-    try:
-        return ZoneInfo(name)
-    except (ZoneInfoNotFoundError, ValueError, OSError):
-        return None
-
-
-def parse_time(text: str, zone: tzinfo | None = None, *, whole_day: bool = False) -> datetime:
-    """Parses a date and time with its offset, or in ``zone``. ``whole_day``: a date alone is the end of that day.
-
-    Raises ValueError for anything else, also for a time that can be read in two ways: in no zone, of a day alone, or in
-    the hour that clocks skip or repeat. The message begins with a verb.
-    """
-    text = text.strip()
-    try:
-        at = datetime.fromisoformat(text)
-    except ValueError:
-        raise ValueError(f"must be a date and time such as {EXAMPLE}") from None
-    is_day = ":" not in text and "T" not in text.upper()
-    if is_day and not whole_day:
-        raise ValueError(f"names a day and no time ({text}): write when, such as {EXAMPLE}")
-    if is_day:
-        at = at.replace(hour=23, minute=59, second=59)
-    if at.tzinfo is not None:
-        return at
-    if zone is None:
-        raise ValueError(
-            f"names no time zone ({text}): write it, such as {at.isoformat()}+01:00 or {at.isoformat()}Z, "
-            "or give the late rules a zone, such as `zone: Europe/Lisbon`"
-        )
-    first, second = (at.replace(tzinfo=zone, fold=fold) for fold in (0, 1))
-    if first.utcoffset() != second.utcoffset():
-        kind = "twice" if first.utcoffset() > second.utcoffset() else "never"  # type: ignore[operator]  # both have one
-        raise ValueError(f"comes {kind} in {zone} on that day ({text}): write its offset, such as {EXAMPLE}")
-    return first
+MOODLE_SUBMITTED: Final = "Last modified (submission)"
 
 
 UNREADABLE: Final = "unreadable"
 """What was handed in cannot be read: no grade, not 0, until the teacher has decided."""
 WAITING: Final = "waiting"
+MISSING: Final = "missing"
+"""A student of the roster has handed in nothing: no grade either."""
 SAME_ERRORS: Final = 3
 """If this many submissions of a class cannot be read for the same internal error, the grader is at fault."""
 MAX_LISTED: Final = 40
@@ -171,7 +84,7 @@ class GradebookRow:
 
     name: str
     verdict: str
-    """``pass``, ``fail``, ``broken``, ``unreadable`` or ``waiting``."""
+    """``pass``, ``fail``, ``broken``, ``unreadable``, ``waiting`` or ``missing``."""
     points: float | None
     """Before lateness; None where there is no grade."""
     max_points: float
@@ -185,6 +98,22 @@ class GradebookRow:
     submission: str
     level: int | None = None
     """The confinement level of the program; None without a result."""
+    work: str = ""
+    """The submission's own name, where the row is under its student's; empty for one who has handed in nothing."""
+    student: Student | None = None
+    """As the roster has it; None without a roster, and for a work that fits nobody."""
+    feedback: str = ""
+    """The first reason for lost points that the student may see."""
+    late: str = ""
+    """How late it was and what that cost; empty if it was in time."""
+    maxima: Mapping[str, float] = field(default_factory=dict)
+    """The most points of each criterion in ``tests``."""
+    marked: tuple[str, ...] = ()
+    """The criteria whose points a teacher has set."""
+    comments: Mapping[str, str] = field(default_factory=dict)
+    """A teacher's comments by criterion; that on the whole has an empty name."""
+    extra: float = 0.0
+    """Points that a teacher has given on top."""
     error: str = ""
     """The internal error for which the submission cannot be read; empty for a known reason."""
 
@@ -193,9 +122,11 @@ def gradebook_rows(
     queue: Queue,
     policy: LatePolicy | None = None,
     submission_times: Mapping[str, SubmissionTime] | None = None,
+    owners: WorkOwners | None = None,
 ) -> tuple[GradebookRow, ...]:
-    """Returns one row per submission, sorted by name."""
-    rows = sorted(_rows(queue, policy, submission_times or {}), key=lambda row: row.name)
+    """Returns one row per submission, sorted by name. ``owners``: whose each is, by a roster."""
+    students = {} if owners is None else owners.students
+    rows = sorted(_rows(queue, policy, submission_times or {}, students), key=lambda row: row.name)
     errors = Counter(row.error for row in rows if row.error)
     return tuple(
         _as_grader_fault(row, errors[row.error]) if errors[row.error] >= SAME_ERRORS else row for row in rows
@@ -210,16 +141,48 @@ def _as_grader_fault(row: GradebookRow, count: int) -> GradebookRow:
     return replace(row, verdict=GradingVerdict.BROKEN.value, note=note)
 
 
+def time_of(
+    work: str, students: Sequence[Student], submission_times: Mapping[str, SubmissionTime]
+) -> SubmissionTime | None:
+    """Returns when a work was handed in: by its own name, or else by anything by which its students are known."""
+    if work in submission_times or not students:
+        return submission_times.get(work)
+    known = {look(name): submitted for name, submitted in submission_times.items()}
+    keys = (look(key) for each in students for key in each.keys)
+    return next((known[key] for key in keys if key in known), None)
+
+
 def _rows(
-    queue: Queue, policy: LatePolicy | None, submission_times: Mapping[str, SubmissionTime]
+    queue: Queue,
+    policy: LatePolicy | None,
+    submission_times: Mapping[str, SubmissionTime],
+    owners: Mapping[str, tuple[Student, ...]],
 ) -> Iterator[GradebookRow]:
     assignment = queue.assignment()
     most = round(assignment.max_points, 6)
     without_secrets = assignment.has_secrets and not queue.grading_options().secret
     for entry in queue.entries():
-        submitted = submission_times.get(entry.name)
-        kept = policy.kept(submitted.at) if policy is not None and submitted is not None else 1.0
-        blank = GradebookRow(entry.name, WAITING, None, most, kept, None, {}, {}, "", "")
+        students = owners.get(entry.name, ())
+        submitted = time_of(entry.name, students, submission_times)
+        lateness = Lateness()
+        if policy is not None and submitted is not None:
+            names = [entry.name, submitted.student]
+            names += [key for each in students for key in (*each.keys, each.group) if key]
+            lateness = policy.lateness(submitted.at, policy.extension_of(names))
+        blank = GradebookRow(
+            entry.name,
+            WAITING,
+            None,
+            most,
+            lateness.kept,
+            None,
+            {},
+            {},
+            "",
+            "",
+            work=entry.name,
+            late=lateness.text(),
+        )
         result = None if entry.key is None else queue.result(entry.key)
         if result is not None:
             yield _graded_row(blank, entry, result, without_secrets=without_secrets)
@@ -251,8 +214,17 @@ def _graded_row(
         max_points=round(math.fsum(test.max_points for test in judged), 6),
         final=None if points is None else round(points * blank.kept, 6),
         tests={test.id: test.points for test in judged},
+        maxima={test.id: test.max_points for test in judged},
         statuses={test.id: test.status.value for test in result.tests},
         note=" ".join(filter(None, (clean_line(lost), clean_line(entry.note)))),
+        feedback=next(
+            (
+                clean_line(test.rationale, 600)
+                for test in result.for_student().tests
+                if not test.is_passed and test.rationale
+            ),
+            "",
+        ),
         submission=result.submission,
         level=result.level,
     )
@@ -262,25 +234,42 @@ def as_json(table: Sequence[GradebookRow]) -> str:
     return json.dumps([asdict(row) for row in table], indent=1, sort_keys=True, allow_nan=False) + "\n"
 
 
-def as_csv(table: Sequence[GradebookRow]) -> str:
-    """Formats the rows for a spreadsheet, without formulas."""
+def as_csv(table: Sequence[GradebookRow], *, decimal_comma: bool = False) -> str:
+    """Formats the rows for a spreadsheet, without formulas. ``decimal_comma``: as spreadsheets expect it where numbers have
+    one, with semicolons between columns."""
     criteria = sorted({identity for row in table for identity in row.tests})
+    has_students = any(row.student is not None for row in table)
+    of_student = ("email", "id", "login", "group") if has_students else ()
     out = io.StringIO()
     # In quotes, a cell stays one cell where another sign than the comma separates them.
-    writer = csv.writer(out, lineterminator="\n", quoting=csv.QUOTE_ALL)
+    writer = csv.writer(
+        out, delimiter=";" if decimal_comma else ",", lineterminator="\n", quoting=csv.QUOTE_ALL
+    )
+
+    def number(points: float | None) -> str:
+        return _number(points).replace(".", ",") if decimal_comma else _number(points)
+
     writer.writerow(
-        ["name", "verdict", "final", "points", "max_points", "kept", *map(spreadsheet_cell, criteria), "note"]
+        [
+            "name",
+            *of_student,
+            *("verdict", "final", "points", "max_points", "kept", "extra"),
+            *map(spreadsheet_cell, criteria),
+            *("late", "comment", "note"),
+        ]
     )
     for row in table:
-        tests = [_number(row.tests.get(identity)) for identity in criteria]
-        sums = [
-            _number(row.final),
-            _number(row.points),
-            format_points(row.max_points),
-            format_points(row.kept),
-        ]
-        writer.writerow([spreadsheet_cell(row.name), row.verdict, *sums, *tests, spreadsheet_cell(row.note)])
+        tests = [number(row.tests.get(identity)) for identity in criteria]
+        sums = [number(each) for each in (row.final, row.points, row.max_points, row.kept, row.extra or None)]
+        known = [spreadsheet_cell(getattr(row.student, each, "")) for each in of_student]
+        told = map(spreadsheet_cell, (row.late, comment_text(row), row.note))
+        writer.writerow([spreadsheet_cell(row.name), *known, row.verdict, *sums, *tests, *told])
     return out.getvalue()
+
+
+def comment_text(row: GradebookRow) -> str:
+    """Returns a teacher's comments in one text."""
+    return " ".join(f"{each}: {text}" if each else text for each, text in row.comments.items())
 
 
 def _number(points: float | None) -> str:
@@ -290,26 +279,52 @@ def _number(points: float | None) -> str:
 def read_json(text: str) -> tuple[GradebookRow, ...]:
     """Reads what ``as_json`` wrote. Raises ValueError for anything else."""
     try:
-        return tuple(GradebookRow(**each) for each in json.loads(text))
-    except (TypeError, ValueError):
+        return tuple(map(_row_from_json, json.loads(text)))
+    except (TypeError, KeyError, ValueError):
         raise ValueError("not a gradebook in JSON") from None
 
 
+def _row_from_json(content: Mapping[str, Any]) -> GradebookRow:
+    student = None if content["student"] is None else Student(**content["student"])
+    read = {**content, "student": student, "marked": tuple(content["marked"])}
+    check_field_types(GradebookRow, read)
+    return GradebookRow(**read)
+
+
 def changes(before: Sequence[GradebookRow], after: Sequence[GradebookRow]) -> Iterator[str]:
-    """Yields a line for each difference between two gradebooks, to be read before the new one is published."""
+    """Yields a line for each difference between two gradebooks, criterion by criterion, to be read before the new one is
+    published. What is not graded yet is no difference: its number is said last."""
     old, new = {row.name: row for row in before}, {row.name: row for row in after}
+    unfinished = 0
     for name in sorted(old.keys() | new.keys()):
         was, now = old.get(name), new.get(name)
         if was is None or now is None:
             yield f"{clean_line(name)}: {'new' if was is None else 'gone'}"
-        elif (was.final, was.verdict, dict(was.statuses)) != (now.final, now.verdict, dict(now.statuses)):
-            tests = [
-                f"{each} {was.statuses.get(each, '-')} -> {now.statuses.get(each, '-')}"
-                for each in sorted(was.statuses.keys() | now.statuses.keys())
-                if was.statuses.get(each) != now.statuses.get(each)
-            ]
-            detail = f" ({', '.join(tests)})" if tests else ""
-            yield f"{clean_line(name)}: {_number(was.final) or 'none'} -> {_number(now.final) or 'none'}{detail}"
+        elif now.verdict == WAITING:
+            unfinished += was.verdict != WAITING
+        elif (was.final, was.verdict, dict(was.statuses), dict(was.tests)) != (
+            now.final,
+            now.verdict,
+            dict(now.statuses),
+            dict(now.tests),
+        ):
+            detail = ", ".join(_criterion_changes(was, now))
+            finals = f"{_number(was.final) or 'none'} -> {_number(now.final) or 'none'}"
+            yield f"{clean_line(name)}: {finals}{f' ({detail})' if detail else ''}"
+    if unfinished:
+        yield f"{counted(unfinished, 'submission')} not graded again yet: run the same `grader cohort` to go on"
+
+
+def _criterion_changes(was: GradebookRow, now: GradebookRow) -> Iterator[str]:
+    """Yields each criterion whose points or status differ, in the present order."""
+    for each in (*now.statuses, *(id_ for id_ in was.statuses if id_ not in now.statuses)):
+        points = _number(was.tests.get(each)) or "-", _number(now.tests.get(each)) or "-"
+        status = was.statuses.get(each, "-"), now.statuses.get(each, "-")
+        if points[0] != points[1]:
+            word = "" if status[0] == status[1] else f", {status[0]} -> {status[1]}"
+            yield f"{clean_line(each)} {points[0]} -> {points[1]}{word}"
+        elif status[0] != status[1]:
+            yield f"{clean_line(each)} {status[0]} -> {status[1]}"
 
 
 def summary(table: Sequence[GradebookRow]) -> str:
@@ -320,6 +335,7 @@ def summary(table: Sequence[GradebookRow]) -> str:
         GradingVerdict.BROKEN.value,
         UNREADABLE,
         WAITING,
+        MISSING,
     ]
     counts: dict[str, Any] = {kind: sum(row.verdict == kind for row in table) for kind in kinds}
     text = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count) or "nobody"
@@ -346,6 +362,32 @@ def attention_blocks(table: Sequence[GradebookRow]) -> list[Block]:
         Text(f"{len(rows)} {verbs[0]} no grade and {verbs[1]} your attention:"),
         *(Text(each, indent=2, hang=2, is_tight=True) for each in told),
     ]
+
+
+def equal_works(table: Sequence[GradebookRow]) -> tuple[tuple[GradebookRow, ...], ...]:
+    """Returns the rows whose works are the same to the byte, together; those of one group's work are no finding."""
+    by_digest: dict[str, dict[str, GradebookRow]] = {}
+    for row in table:
+        if row.submission:
+            by_digest.setdefault(row.submission, {}).setdefault(row.work, row)
+    return tuple(tuple(works.values()) for works in by_digest.values() if len(works) > 1)
+
+
+def class_blocks(table: Sequence[GradebookRow]) -> list[Block]:
+    """Who needs a look besides those without a grade: equal works, works that fit nobody, and who has handed in nothing."""
+    strangers = [row.name for row in table if row.student is None]
+    has_roster = len(strangers) < len(table)
+    missing = [row.name for row in table if row.verdict == MISSING]
+    told = [
+        f"The same work to the byte: {join_names(tuple(clean_line(row.name) for row in rows), 8)}."
+        for rows in equal_works(table)
+    ]
+    if has_roster and strangers:
+        shown = join_names(tuple(map(clean_line, strangers)), 8)
+        told.append(f"{counted(len(strangers), 'work')} of nobody in the roster: {shown}.")
+    if missing:
+        told.append(f"{len(missing)} handed in nothing: {join_names(tuple(map(clean_line, missing)), 12)}.")
+    return [Text(each, is_tight=True) for each in told]
 
 
 def unjudged_line(table: Sequence[GradebookRow], max_points: float) -> str:
@@ -388,11 +430,9 @@ def choose_submissions(
 ) -> tuple[GradebookRow, ...]:
     """Returns one row per student, under the student's name. A submission without a time counts as a student of its own.
 
-    Raises KeyError for an unknown rule, ValueError for a time that belongs to no submission.
+    A time that belongs to no submission changes nothing. Raises KeyError for an unknown rule, ValueError for a student's name
+    that is also that of a submission without a time.
     """
-    unknown = sorted(submission_times.keys() - {row.name for row in table})
-    if unknown:
-        raise ValueError(f"no submission is named {unknown[0]}; there are {len(table)} in the queue")
     return tuple(sorted(_chosen(table, submission_times, rule), key=lambda row: row.name))
 
 

@@ -1,4 +1,5 @@
-"""The queue of a cohort in a folder, and its workers: ``manifest.json``, ``assignment/``, ``jobs/KEY.json``, ``results/KEY.json``.
+"""The queue of a cohort in a folder, and its workers: ``manifest.json``, ``assignment/``, ``jobs/KEY.json``, ``results/KEY.json``,
+``findings/KEY.json``.
 
 Jobs are graded one at a time in this process, or many in worker processes that may die without harm: local ones, those
 of a SLURM job array, or of a Dask cluster.
@@ -11,7 +12,6 @@ import hashlib
 import json
 import shutil
 import sys
-import unicodedata
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cache, partial
@@ -20,7 +20,9 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.assignment import Assignment
-from grader.grading import GradingOptions, grade, level_for_untrusted
+from grader.cohort.roster import look
+from grader.evidence.findings import Findings
+from grader.grading import GradingOptions, grade_and_keep, judge_findings, level_for_untrusted
 from grader.reading import read_assignment
 from grader.submission import Submission, read_submission, submission_name
 from grader.submitted_files import IGNORED_NAMES, SubmissionRefused, SubmissionUnreadable
@@ -86,6 +88,10 @@ class Queue:
 
     def job(self, key: str) -> Path:
         return self.folder / "jobs" / f"{key}.json"
+
+    def findings_file(self, key: str) -> Path:
+        """Where what was found about a submission is kept; see ``findings_key``."""
+        return self.folder / "findings" / f"{key}.json"
 
     def result_file(self, key: str) -> Path:
         return self.folder / "results" / f"{key}.json"
@@ -199,6 +205,36 @@ def job_key(submission: Submission, assignment: Assignment, options: GradingOpti
     )
 
 
+def findings_key(submission: Submission, assignment: Assignment, options: GradingOptions) -> str:
+    """Returns one name for everything that decides what is found about a submission, whatever that is worth."""
+    return _key_of(
+        submission.digest,
+        assignment.evidence_version,
+        grader_version(),
+        is_secret=options.secret,
+        has_examples=options.examples,
+        level=int(level_for_untrusted(assignment, options.level)),
+    )
+
+
+def judge_anew(queue: Queue) -> int:
+    """Judges the waiting jobs about whose works everything is known already, and returns how many: after a change of points
+    or words no program is run again."""
+    assignment, options, judged = queue.assignment(), queue.grading_options(), 0
+    for key in queue.waiting():
+        submission = queue.submission(key)
+        try:
+            content = read_result(queue.findings_file(findings_key(submission, assignment, options)))
+            findings = Findings.from_dict(content)
+        except (OSError, KeyError, TypeError, ValueError):
+            continue
+        result = judge_findings(assignment, submission, options, findings)
+        if result is not None:
+            queue.save_result(key, result)
+            judged += 1
+    return judged
+
+
 def _key_of(
     submission: str, assignment: str, grader: str, *, is_secret: bool, has_examples: bool, level: int
 ) -> str:
@@ -213,7 +249,7 @@ def prepare_queue(
 
     Raises QueueError, OSError.
     """
-    for folder in (queue.folder, queue.folder / "jobs", queue.folder / "results"):
+    for folder in (queue.folder, *(queue.folder / name for name in ("jobs", "results", "findings"))):
         make_private_folder(folder)
     _copy_assignment(queue, assignment)
     entries = tuple(_entries(queue, cohort, assignment, options))
@@ -239,7 +275,7 @@ def _entries(
         if path.name.startswith(".") or path.name.lower() in IGNORED_NAMES:
             continue
         name = _unlike(names, submission_name(path), path.name)
-        names.add(_look(name))
+        names.add(look(name))
         try:
             submission = read_submission(path, assignment.submit)
         except SubmissionUnreadable as unreadable:
@@ -259,17 +295,9 @@ def _entries(
 def _unlike(looks: set[str], name: str, file_name: str) -> str:
     """Returns a submission's name, or its file's, if that looks like no other; else one with a number."""
     for candidate in (name, file_name):
-        if _look(candidate) not in looks:
+        if look(candidate) not in looks:
             return candidate
-    return next(each for number in count(2) if _look(each := f"{file_name} ({number})") not in looks)
-
-
-def _look(name: str) -> str:
-    """Returns what a reader takes a name for: without double blanks, letters of other widths, and what cannot be seen."""
-    shown = "".join(
-        sign for sign in unicodedata.normalize("NFKC", name) if sign.isprintable() or sign.isspace()
-    )
-    return " ".join(shown.split()).casefold()
+    return next(each for number in count(2) if look(each := f"{file_name} ({number})") not in looks)
 
 
 def _copy_assignment(queue: Queue, assignment: Assignment) -> None:
@@ -307,11 +335,14 @@ def _grade_job(queue: Queue, key: str) -> GradingResult:
     manifest = queue.manifest()
     assignment = _assignment(queue.folder, manifest["assignment_version"])
     submission, options = queue.submission(key), queue.grading_options()
-    result = grade(assignment, submission, options)
+    result, findings = grade_and_keep(assignment, submission, options)
     for _ in range(MAX_TRIES - 1):  # a failure of the student's program is never retried
         if result.verdict is not GradingVerdict.BROKEN:
             break
-        result = grade(assignment, submission, options)
+        result, findings = grade_and_keep(assignment, submission, options)
+    if findings is not None:
+        file = queue.findings_file(findings_key(submission, assignment, options))
+        write_atomically(file, (json.dumps(findings.as_dict()) + "\n").encode())
     queue.save_result(key, result)
     return result
 

@@ -1,21 +1,18 @@
-"""Processes of the grader that read a world or a task that was handed in, and are ended when they take too long."""
+"""A process of the grader that reads what was handed in, and is ended when it takes too long."""
 
 from __future__ import annotations
 
 import contextlib
 import json
-import math
 import os
 import select
 import signal
 import subprocess
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
-from grader.evidence.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.submitted_files import SubmissionUnreadable
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.private_folder import make_private_folder
@@ -23,20 +20,23 @@ from kit.host.python_command import python_command
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import GIB
 from kit.host.sandbox.reaper import remove_folder
-from kit.host.wire import printable
 
 if TYPE_CHECKING:
-    from grader.evidence.submission_clock import SubmissionClock
-    from grader.evidence.training_results import PosedTaskPlan
+    pass
+
 
 _CONFINED: Final = "confined"
 """The word on the process's command line that has it confine itself."""
+
 MEMORY_LIMIT: Final = 4 * GIB
 """Bytes of address space, most of which the simulator only reserves."""
+
 MAX_ANSWER_BYTES: Final = 64_000_000
 """Bytes of one answer."""
+
 MAX_ERROR: Final = 200
 """Characters of an error's text for the teacher."""
+
 PROGRESS: Final = "progress"
 """The key of a line that is no answer, but says what the time is used for."""
 
@@ -155,110 +155,3 @@ class ReaderProcess:
             f"{self._advice}, and hand it in again.",
             f"the process that reads and runs it: {last[0][:MAX_ERROR]}",
         )
-
-
-LONGEST_S: Final = 24 * 3600.0
-"""Seconds for one answer where a submission has no limit."""
-
-
-@dataclass(frozen=True, slots=True)
-class PosedMeasure:
-    """The measured value of one check."""
-
-    value: float
-    explanation: str = ""
-    """For the student; may be empty."""
-    picture: str = ""
-    """Picture in plain characters; may be empty."""
-
-
-class PosedTaskProcess(ReaderProcess):
-    """One task in a process of its own. What a check measures is worked out when it is first asked for."""
-
-    def __init__(
-        self,
-        file: Path,
-        plan: PosedTaskPlan,
-        seed: int,
-        level: Level,
-        clock: SubmissionClock,
-        memory: int = MEMORY_LIMIT,
-    ) -> None:
-        super().__init__(
-            "grader.evidence.posed_task_child",
-            file,
-            subject="task or its world",
-            advice="Look at it with the kit (`kit task check`)",
-            memory=memory,
-            level=level,
-        )
-        self._clock = clock
-        self._found: dict[tuple[str, tuple[str, ...]], PosedMeasure] = {}
-        self._send({"plan": asdict(plan), "seed": seed})
-
-    def read_task(self) -> str:
-        """Returns what is wrong with the task; empty if nothing is. To be called first, and once."""
-        self._clock.show_progress("reading the task and its world")
-        return printable(str(self._answer()["problem"]))
-
-    def measure(self, check: str, params: Mapping[str, str]) -> PosedMeasure:
-        """Measures what a check asks for, by its name and parameters."""
-        key = check, tuple(params.values())
-        if key not in self._found:
-            self._send({"check": check, "params": dict(params)})
-            answer = self._answer()
-            pictured = "\n".join(map(printable, str(answer["picture"]).split("\n")))
-            value = float(answer["value"])
-            self._found[key] = PosedMeasure(value, printable(str(answer["explanation"])), pictured)
-        return self._found[key]
-
-    def _answer(self) -> Mapping[str, Any]:
-        seconds = LONGEST_S if math.isinf(self._clock.left_s) else self._clock.left_s
-        slow = self._clock.used_up_failure()
-        try:
-            return self._await_answer(seconds, slow, self._clock.show_progress)
-        except StudentCodeError:
-            self.close()
-            raise
-
-
-READ_TIMEOUT_S: Final = 30.0
-"""Seconds to read a world, including the start on a busy machine."""
-
-
-class WorldProcess(ReaderProcess):
-    """One world in a process of its own."""
-
-    def __init__(
-        self,
-        file: Path,
-        memory: int = MEMORY_LIMIT,
-        level: Level = INTERACTIVE_LEVEL,
-        drivers: Iterable[str] = (),
-    ) -> None:
-        """``drivers``: the files of the assignment's programs that will drive in it."""
-        super().__init__(
-            "grader.evidence.world.child",
-            file,
-            subject="world",
-            advice="Open it with the kit (`kit world check`)",
-            memory=memory,
-            level=level,
-            words=sorted(set(drivers) - {""}),
-        )
-
-    def read_world(self, seconds: float = READ_TIMEOUT_S) -> WorldFacts:
-        """Returns what was read; to be called first, and once."""
-        return WorldFacts.from_json(
-            self._await_answer(seconds, _too_slow("The world takes too long to read"))
-        )
-
-    def run(self, spec: WorldRunSpec, seconds: float) -> RunFacts:
-        """Makes one run within this many seconds of wall clock."""
-        self._send(asdict(spec))
-        slow = f"{spec.time_s:g} simulated seconds of this world take longer than {seconds:g} s"
-        return RunFacts.from_json(self._await_answer(seconds, _too_slow(slow)))
-
-
-def _too_slow(text: str) -> Failure:
-    return Failure(FailureKind.TIMEOUT, f"{text}: it has too many walls, rays or bodies.")

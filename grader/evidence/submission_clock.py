@@ -136,6 +136,10 @@ class TrainingProgressReport:
         """Shows that the training is over, and its policy tested."""
         self.clock.show_progress(f"{self._title}: exam{self._curve}")
 
+    def add_exam(self, success: float) -> None:
+        """Shows what the exam found, 0 to 1: the figure that is judged, which a lesson shows beside the curve of the tests."""
+        self.clock.show_progress(f"{self._title}, exam: {100 * success:.0f} %")
+
     @property
     def _title(self) -> str:
         return f"training {self.number} of {self._count}"

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.confidence_intervals import lower_bound
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.presets import LinearSchedule
 from kit.learning.training.stopping_rules import CaseCount, CaseCounts, success_rate
 

@@ -8,12 +8,14 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
 from grader.assignment import Assignment, Trial
-from grader.checks.contract import Check
+from grader.check import Check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, SingleEvidence
 from grader.submitted_files import reading_submission
+from kit.extensions import Extension, ExtensionError, extensions, load
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.world.documents import open_document
@@ -22,8 +24,9 @@ from kit.world.yaml_section import Section
 
 Parsed = TypeVar("Parsed")
 
+Part = TypeVar("Part")
+
 KINDS_PACKAGE: Final = "grader.kinds"
-NON_KIND_MODULES: Final = ("contract",)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,22 +64,45 @@ class Kind:
     """Notes mistakes in the sections; need not finish these."""
     collect: Callable[[Assignment, Path, EvidenceOptions], AbstractContextManager[EvidenceCollector]]
     """(assignment, the main submitted file, options) -> the collector of its evidence."""
+    tells_secret_runs: bool = False
+    """Whether a student's own check at level 0 says what it found with secret seeds where no public run shows the same:
+    trainings, of which no program of the student's is a part, and whose curves were shown while they ran."""
+
+
+def _own_kinds() -> tuple[str, ...]:
+    package = import_module(KINDS_PACKAGE)
+    return tuple(sorted(each.name for each in pkgutil.iter_modules(package.__path__) if each.ispkg))
 
 
 def kind_names() -> tuple[str, ...]:
-    """Returns the names of all kinds."""
-    package = import_module(KINDS_PACKAGE)
-    return tuple(
-        sorted(
-            each.name for each in pkgutil.iter_modules(package.__path__) if each.name not in NON_KIND_MODULES
-        )
-    )
+    """Returns the names of all kinds, those of admitted packages last."""
+    return (*_own_kinds(), *extensions("kinds", _own_kinds()))
 
 
 def find_kind(kind: str) -> Kind:
-    """Returns a kind's record; imports its module on first use."""
-    kind_record: Kind = import_module(f"{KINDS_PACKAGE}.{kind}").KIND
-    return kind_record
+    """Returns a kind's record, ``KIND`` of the module ``kind`` in its folder, with the checks that admitted packages add to
+    it; imports its module on first use. Raises ExtensionError if a package's part cannot be used."""
+    if kind in _own_kinds():
+        found: Kind = import_module(f"{KINDS_PACKAGE}.{kind}.kind").KIND
+    else:
+        found = _loaded(extensions("kinds")[kind], Kind)
+    prefix = f"{kind}."
+    own = [f"{prefix}{name}" for name in found.checks]
+    added = {
+        name.removeprefix(prefix): _loaded(each, Check)
+        for name, each in extensions("checks", own).items()
+        if name.startswith(prefix)
+    }
+    return replace(found, checks=MappingProxyType({**found.checks, **added})) if added else found
+
+
+def _loaded(extension: Extension, kind: type[Part]) -> Part:
+    found = load(extension)
+    if not isinstance(found, kind):
+        raise ExtensionError(
+            f"The part {extension.name} of {extension.source} is no {kind.__name__}, but a {type(found).__name__}."
+        )
+    return found
 
 
 def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed | Failure:

@@ -57,9 +57,9 @@ def fenced_block(text: str) -> str:
     return f"{fence}text\n{content}\n{fence}"
 
 
-def spreadsheet_cell(text: str) -> str:
+def spreadsheet_cell(text: str, limit: int = 300) -> str:
     """Returns one cell of a table that no spreadsheet takes for a formula."""
-    shown = clean_line(text)
+    shown = clean_line(text, limit)
     return f"'{shown}" if shown.startswith(_FORMULA) else shown
 
 

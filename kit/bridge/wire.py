@@ -11,12 +11,11 @@ from enum import Enum
 from importlib.util import find_spec
 from typing import Final, Protocol
 
+from kit.installation import install_command
 from kit.ros.exceptions import NameValidationException
 from kit.ros.graph.naming import validate_full_topic_name
 from kit.ros.node.qos import QoSProfile
 
-INSTALL_COMMAND: Final = "pip install -c constraints.txt -e '.[robot]'"
-"""Command to run in the kit's folder."""
 MAX_MESSAGE_BYTES: Final = 32_000_000
 """Bytes of one message, request or answer that is taken from the robot: more than a picture of 4K has."""
 MAX_ENDPOINTS: Final = 10_000
@@ -118,8 +117,8 @@ def require_package(module: str, package: str) -> None:
     """Raises BridgeError, which says how to install it, where a package of the extra ``robot`` is missing."""
     if find_spec(module) is None:
         raise BridgeError(
-            f"This needs the package {package}, which is not installed. In the kit's folder, run:\n"
-            f"  {INSTALL_COMMAND}"
+            f"This needs the package {package}, which is not installed. To have it, type:\n"
+            f"  {install_command('robot')}"
         )
 
 

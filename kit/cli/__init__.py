@@ -13,8 +13,11 @@ from types import MappingProxyType
 from typing import Any, Final, NoReturn
 
 import click
+from click.shell_completion import CompletionItem
 
 import kit
+from kit.extensions import Extension, ExtensionError, extensions, load
+from kit.installation import foreign_distributions, overwritten_text
 from kit.interruption import ended_by_signals, write_out
 
 VERBS: Final[dict[str, tuple[str, str]]] = {
@@ -85,6 +88,8 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
         "Explain a term used in the lessons.",
     ),
     "progress": ("kit.cli.progress", "Show your progress; export or import it."),
+    "help": ("kit.cli.help", "Show a page: how-to, formats, environments, Python, reasons."),
+    "completion": ("kit.cli.completion", "Print a script that lets your shell complete commands."),
     "keys": ("kit.cli.doctor:keys_command", "Press keys and see what this terminal sends."),
     "doctor": (
         "kit.cli.doctor",
@@ -109,6 +114,10 @@ def describe_no_room(error: OSError) -> str:
     return (
         f"{where} cannot be written: {error.strerror}. Free some space, or write elsewhere, and run it again."
     )
+
+
+VERSION: Final[str] = getattr(kit, "__version__", "unknown")
+"""Unknown where another package has written over the kit's files, which ``run_as_process`` says."""
 
 
 BAD_INPUT: Final = 2
@@ -172,20 +181,30 @@ class LazyGroup(click.Group):
         *arguments: Any,
         verbs: Verbs = VERBS,
         absent: Mapping[str, str] = MappingProxyType({}),
+        has_others: bool = False,
         **options: Any,
     ) -> None:
         """``verbs``: by name ``module`` or ``module:command``, and its line in ``--help``; none for a verb that is not for
-        people. ``absent``: verbs that somebody may look for and why they are not there."""
+        people. ``absent``: verbs that somebody may look for and why they are not there. ``has_others``: whether verbs and
+        dialogues of other packages are verbs of it."""
         super().__init__(*arguments, **options)
         self._verbs = verbs
+        self._has_others = has_others
         self._absent = absent
 
+    def _others(self) -> dict[str, Extension]:
+        """The verbs and dialogues of other packages, by the names that the kit itself does not use."""
+        if not self._has_others:
+            return {}
+        return {**extensions("dialogues", list(self._verbs)), **extensions("verbs", list(self._verbs))}
+
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return list(self._verbs)
+        return [*self._verbs, *self._others()]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in self._verbs:
-            return None
+            other = self._others().get(cmd_name)
+            return None if other is None else _prepared(_command_of(other))
         module, _, name = self._verbs[cmd_name][0].partition(":")
         return _prepared(getattr(import_module(module), name or "command"))
 
@@ -202,24 +221,54 @@ class LazyGroup(click.Group):
                 raise click.UsageError(
                     f"There is no `{path} {args[0]}`: {self._absent[args[0]]}", ctx
                 ) from None
-            near = nearest_name(args[0], self._verbs)
+            near = nearest_name(args[0], self.list_commands(ctx))
             hint = f" Did you mean `{path} {near}`?" if near else ""
             raise click.UsageError(
                 f"There is no `{path} {args[0]}`.{hint} `{path} --help` lists the commands.", ctx
             ) from None
 
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """The verbs that begin so, without importing any, and the options."""
+        verbs = (
+            CompletionItem(name, help=text)
+            for name, (_, text) in self._verbs.items()
+            if text and name.startswith(incomplete)
+        )
+        others = (CompletionItem(name) for name in self._others() if name.startswith(incomplete))
+        return [*verbs, *others, *click.Command.shell_complete(self, ctx, incomplete)]
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):
             formatter.write_dl([(name, text) for name, (_, text) in self._verbs.items() if text])
+        others = self._others()
+        if others:
+            with formatter.section("Commands of other packages"):
+                formatter.write_dl([(name, f"From {each.source}.") for name, each in others.items()])
+
+
+def _command_of(extension: Extension) -> click.Command:
+    """The verb, or the verb that opens a dialogue, of another package; one that cannot be used ends with a sentence."""
+    try:
+        found = load(extension)
+    except ExtensionError as error:
+        raise click.UsageError(str(error)) from None
+    if extension.group == "dialogues":
+        from kit.cli.dialogue import dialogue_command
+
+        return dialogue_command(extension.name, found)
+    if isinstance(found, click.Command):
+        return found
+    raise click.UsageError(f"The verb {extension.name} of {extension.source} is no click command.")
 
 
 @click.group(
     cls=LazyGroup,
+    has_others=True,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="`kit COMMAND --help` explains a command. Ctrl-C leaves any screen.",
+    epilog="`kit COMMAND --help` explains a command, `kit help` lists pages to read. Ctrl-C leaves any screen.",
 )
-@click.version_option(kit.__version__, prog_name="kit")
+@click.version_option(VERSION, prog_name="kit")
 @click.pass_context
 def main(ctx: click.Context) -> None:
     """The terminal robot-learning kit: drive a robot, program it, train it.
@@ -248,6 +297,9 @@ def run_as_process(command: click.Command, name: str) -> NoReturn:
     process ends once its output is written. The screen has given the terminal back and removed what it made; the exit
     handlers of libraries do not run, which would take compiled code away from threads that are still in it.
     """
+    for foreign in foreign_distributions(only_named=True):
+        click.echo(f"{name}: {overwritten_text(*foreign)}", err=True)
+        raise SystemExit(BAD_INPUT)
     try:
         with ended_by_signals():
             try:

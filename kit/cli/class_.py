@@ -9,13 +9,13 @@ import click
 
 from kit.cli import options, report_output
 from kit.plain_text import escape_controls, suggestion
+from kit.school.form_reading import read_form
 from kit.school.lessons.reading import UnknownLesson, find_lesson
 from kit.school.lessons.teachers_guide import teachers_guide
 from kit.school.quiz.items import read_bank
 from kit.school.report.class_data import build_class_data, read_roster
 from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
 from kit.school.report.measures import ReportItem
-from kit.school.survey import read_form
 
 DIVISION_METHODS = ("mean", "half", "scale")
 

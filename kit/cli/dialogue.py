@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import inspect
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
 
 import click
 
 from kit.cli import options
+from kit.cli.full_screen import show_dialogue
 from kit.cli.plain import InputBuffer, InputLines
 from kit.dialogue.dialogue import Action, Dialogue, Turn
 from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show, Tell, Type, Work
@@ -41,6 +44,25 @@ def run_dialogue(
         _Conversation(dialogue, lines, buffer, ways).run()
     finally:
         lines.close()
+
+
+def dialogue_command(name: str, make: Any) -> click.Command:
+    """A verb that opens a dialogue of another package, on the screen or line by line. ``make``: of a Workspace."""
+
+    @click.command(name, help=inspect.getdoc(make))
+    @options.workspace
+    @click.option("--plain", is_flag=True, help="Ask line by line instead of on a full screen.")
+    @options.glyphs
+    @options.color
+    def command(workspace: Path | None, plain: bool, glyphs: str | None, color: str | None) -> None:
+        terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+        dialogue = make(options.open_existing_workspace(workspace))
+        if terminal.plain.value:
+            run_dialogue(dialogue)
+        else:
+            show_dialogue(dialogue, terminal)
+
+    return command
 
 
 class _Conversation:

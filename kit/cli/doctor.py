@@ -5,12 +5,10 @@ from __future__ import annotations
 import json
 import os
 import platform
-import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from importlib.metadata import PackageNotFoundError, requires, version
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import click
 
@@ -19,9 +17,18 @@ from kit.cli import options
 from kit.cli.full_screen import show_screen
 from kit.document.blocks import labelled_table
 from kit.document.layout import lines_of
+from kit.extensions import GROUPS, checked, installed_extensions, name_conflicts
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe_levels
 from kit.host.sandbox.promises import promises_since
+from kit.installation import (
+    DISTRIBUTION,
+    foreign_distributions,
+    install_command,
+    installed_version,
+    overwritten_text,
+    requirements,
+)
 from kit.tui.input.protocol import ask_keyboard
 from kit.tui.terminal import TerminalDecision, TerminalFacts, decide_terminal
 from kit.workspace import open_workspace
@@ -29,10 +36,6 @@ from kit.workspace import open_workspace
 if TYPE_CHECKING:
     from kit.tui.app import KitApp
     from kit.tui.screens.key_test import KeyTestScreen
-
-
-_DISTRIBUTION: Final = "robot-learning-kit"
-_REQUIREMENT: Final = re.compile(r"""(?P<name>[\w.-]+)[^;]*(;.*extra == ['"](?P<extra>\w+)['"])?""")
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,20 +118,18 @@ def _keyboard(decision: TerminalDecision) -> Finding:
 
 def _packages() -> Iterator[Finding]:
     """Finds which of the declared packages are installed. Imports none of them: torch alone takes seconds."""
-    try:
-        declared = [match for line in requires(_DISTRIBUTION) or () if (match := _REQUIREMENT.match(line))]
-    except PackageNotFoundError:
+    for name, its_version in foreign_distributions():
+        yield Finding("Packages", name, its_version, overwritten_text(name, its_version))
+    declared = requirements()
+    if not declared:
         yield Finding(
-            "Packages", _DISTRIBUTION, "not installed", "The kit runs from a folder: pip install -e FOLDER."
+            "Packages", DISTRIBUTION, "not installed", "The kit runs from a folder: pip install -e FOLDER."
         )
         return
-    for match in declared:
-        if match["extra"] is None:
-            found = _version(match["name"])
-            yield Finding(
-                "Packages", match["name"], found or "missing", "" if found else "Install the kit again."
-            )
-    learning = {match["name"]: _version(match["name"]) for match in declared if match["extra"] == "learn"}
+    for name in declared:
+        found = installed_version(name)
+        yield Finding("Packages", name, found or "missing", "" if found else "Install the kit again.")
+    learning = {name: installed_version(name) for name in requirements("learn")}
     for name, found in learning.items():
         yield Finding("Learning", name, found or "missing")
     if None in learning.values():
@@ -137,16 +138,28 @@ def _packages() -> Iterator[Finding]:
             "in all",
             "incomplete",
             "Driving, controllers, worlds, layers and grading work; training does not. "
-            "To have it, in the kit's folder: pip install -c constraints.txt -e '.[learn]' --extra-index-url "
-            "https://download.pytorch.org/whl/cpu",
+            f"To have it, type: {install_command('learn')}",
         )
 
 
-def _version(package: str) -> str | None:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return None
+def _extensions() -> Iterator[Finding]:
+    """Finds the parts that other packages bring, and tries each."""
+    own = own_names()
+    left_out = {each: why for group in GROUPS for each, why in name_conflicts(group, own[group])}
+    for each in installed_extensions():
+        name = f"{each.group.removesuffix('s')} {each.name}"
+        problem = f"Left out: {left_out[each]}." if each in left_out else checked(each)
+        yield Finding("Parts of other packages", name, each.source, problem or "Works.")
+
+
+def own_names() -> dict[str, tuple[str, ...]]:
+    """The names in each group that the kit itself uses, which no other part may have."""
+    from kit.cli import VERBS
+    from kit.sim.plugins import plugin_types, world_plugin_types
+
+    verbs = tuple(VERBS)
+    devices = (*plugin_types, *world_plugin_types)
+    return {**dict.fromkeys(GROUPS, ()), "verbs": verbs, "dialogues": verbs, "devices": devices}
 
 
 def _confinement() -> Iterator[Finding]:
@@ -183,7 +196,7 @@ def findings() -> list[Finding]:
     facts = TerminalFacts.here()
     # `kit doctor > file` asks about the terminal as `kit` would find it, not about the file.
     decision = decide_terminal(os.environ, replace(facts, stdout_tty=facts.stderr_tty))
-    return [*_machine(), *_terminal(decision), *_packages(), *_confinement(), _workspace()]
+    return [*_machine(), *_terminal(decision), *_packages(), *_extensions(), *_confinement(), _workspace()]
 
 
 def as_text(report: list[Finding]) -> str:
@@ -208,17 +221,10 @@ def as_json(report: list[Finding]) -> str:
 
 @click.command
 @click.option("--json", "machine_readable", is_flag=True, help="Print the report as JSON.")
-@click.option(
-    "-r",
-    "--report",
-    "-rf",
-    "--report-failed",
-    "everything",
-    is_flag=True,
-    help="The same: the report is always printed.",
-)
-def command(machine_readable: bool, everything: bool) -> None:
+def command(machine_readable: bool) -> None:
     """Report what the kit found on this machine and terminal, what it decided, and why.
+
+    The running world and the packages are the subject of `kit ros doctor`.
 
     The output contains no secrets: paste it when you ask for help.
     """

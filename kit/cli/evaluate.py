@@ -12,12 +12,12 @@ import click
 
 from kit.cli import learning_options, options
 from kit.document.layout import Page, lines_of
-from kit.learning.environment.disturbances import UniformRange
-from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.evaluation import Evaluator, build_paths_scene, derive_seed, record_paths
 from kit.learning.policies.policies import Policy
 from kit.learning.policies.policy_node import create_policy_package, format_policy_node
 from kit.learning.policies.sweep import PolicySweep, find_kinds, sweep_blocks, sweep_csv
+from kit.learning.tasks.disturbances import UniformRange
+from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.training.run_text import comparison_tables
 from kit.learning.training.run_upkeep import draw_test_curves
 from kit.learning.training.runs import find_run

@@ -13,10 +13,12 @@ from kit.cli.dialogue import run_dialogue
 from kit.cli.full_screen import show_dialogue
 from kit.document.blocks import Block, Text
 from kit.document.layout import lines_of
+from kit.school.form_answers import FormAnswers, asked_questions
 from kit.school.form_dialogue import FormDialogue, shown_answer
+from kit.school.form_reading import read_form
 from kit.school.form_session import FormSession, current_phase
 from kit.school.progress import ProgressError
-from kit.school.survey import FormAnswers, SurveyForm, SurveyPhase, asked_questions, read_form
+from kit.school.survey import SurveyForm, SurveyPhase
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError
 

@@ -15,19 +15,14 @@ import click
 from kit.cli import options
 from kit.controllers import find_controller
 from kit.host.failure import StudentCodeError
-from kit.learning.environment.batch_map import UnsupportedWorld
-from kit.learning.environment.disturbances import (
-    DISTURBANCE_KINDS,
-    DisturbanceError,
-    DisturbanceKind,
-    UniformRange,
-)
-from kit.learning.environment.tasks import LearningTask, UnknownTask
+from kit.learning.maps.batch_map import UnsupportedWorld
 from kit.learning.policies.policies import Policy, PolicyError, load_policy
+from kit.learning.tasks.disturbances import DISTURBANCE_KINDS, DisturbanceError, DisturbanceKind, UniformRange
+from kit.learning.tasks.learning_task import LearningTask, UnknownTask
+from kit.learning.tasks.student_reward import RewardFileError
 from kit.learning.training.algorithms import LearnExtraMissing, UnknownAlgorithm, UnsuitableAlgorithm
 from kit.learning.training.demonstrations import DemonstrationError
-from kit.learning.training.runs import RunError, find_run
-from kit.learning.training.student_reward import RewardFileError
+from kit.learning.training.runs import NO_LIMIT, RunError, find_run
 from kit.run.recording import RecordingError
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError
@@ -110,12 +105,17 @@ def _read_settings(
         if name in found:
             raise click.BadParameter(f"{name} is given more than once.")
         try:
-            found[name] = tuple(dict.fromkeys(float(number) for number in numbers.split(",")))
+            found[name] = tuple(dict.fromkeys(map(_read_setting, numbers.split(","))))
         except ValueError:
             raise click.BadParameter(f"{text}: give NAME=NUMBER, such as gamma=0.98.") from None
-        if not all(map(math.isfinite, found[name])):
-            raise click.BadParameter(f"{text}: the number must be finite.")
+        if any(map(math.isnan, found[name])):
+            raise click.BadParameter(f"{text}: that is not a number.")
     return found
+
+
+def _read_setting(text: str) -> float:
+    """ValueError for anything but a number, or ``none`` for a limit that there is not."""
+    return math.inf if text.strip() == NO_LIMIT else float(text)
 
 
 def settings_option(metavar: str, more: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:

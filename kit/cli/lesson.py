@@ -15,8 +15,9 @@ from kit.cli.dialogue import Way, run_dialogue
 from kit.cli.full_screen import show_lesson, show_lessons
 from kit.cli.plain import HEIGHT, WIDTH, InputBuffer, PlainSession, run_plain_session
 from kit.controllers import find_controller, prepare_workspace
-from kit.document.blocks import Block, Text, Tone
+from kit.document.blocks import Block, Text, Tone, labelled_table
 from kit.document.layout import lines_of
+from kit.extensions import folders
 from kit.plain_text import counted, escape_controls, quoted, suggestion
 from kit.render.world_text import describe_scene, scene_rows
 from kit.run.episode import run_until, when_failed
@@ -118,7 +119,7 @@ def command(
                     show_lessons(opened_workspace, terminal)
                 _print_lessons(journal)
                 return
-            lesson = find_lesson(name) if folder is None else _foreign_lesson(folder, name)
+            lesson = _lesson(name) if folder is None else _foreign_lesson(folder, name)
             session = LessonSession(lesson, journal, opened_workspace, as_class=as_class)
             if not terminal.plain.value:
                 show_lesson(session, opened_workspace, terminal)
@@ -165,6 +166,17 @@ def _only_lesson(folder: Path) -> str | None:
     return None
 
 
+def _lesson(name: str) -> Lesson:
+    """The kit's lesson of that name, or that of another package. Raises UnknownLesson and WorldError."""
+    try:
+        return find_lesson(name)
+    except UnknownLesson:
+        for _, folder in folders("lessons"):
+            if name in (each.name for each in lesson_folders(folder)):
+                return _foreign_lesson(folder, name)
+        raise
+
+
 def _foreign_lesson(folder: Path, name: str) -> Lesson:
     """The lesson of that name in a folder of somebody else's. Raises UnknownLesson and WorldError."""
     found = {each.name: each for each in lesson_folders(folder)}
@@ -187,6 +199,13 @@ def _print_lessons(journal: ProgressJournal) -> None:
         tail = f"  {lesson.minutes} min{mark}"
         blocks.append(Text(lesson.title, Tone.BOLD, lead=f"{each.number:<3}", tail=tail))
         blocks.append(Text(lesson.summary, indent=4, is_tight=True))
+    others = [
+        (each.name, f"from {part.source}")
+        for part, folder in folders("lessons")
+        for each in lesson_folders(folder)
+    ]
+    if others:
+        blocks.append(labelled_table(others, "Of other packages:", indent=2))
     click.echo("\n".join(lines_of([*blocks, Text("`kit lesson NUMBER` opens one.")])))
 
 

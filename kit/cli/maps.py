@@ -32,7 +32,7 @@ from kit.world.problems import WorldError
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-    from kit.mapmaking.new_map import NewMap
+    from kit.mapmaking.new_map import NewMap, WallPlan
     from kit.mapmaking.pixels import Corners
     from kit.tui.app import KitApp
     from kit.tui.screens.map_drawing import MapDrawingScreen
@@ -179,7 +179,8 @@ def new(
 
     Without S or T, the kit chooses two places far apart. The robot must be able to drive from S to T.
     """
-    from kit.mapmaking.new_map import DrawingError, MapExists, check_name, read_drawing, write_map
+    from kit.mapmaking.map_drawing import DrawingError, read_drawing
+    from kit.mapmaking.new_map import MapExists, check_name, write_map
     from kit.mapmaking.route import NoRoute
 
     try:
@@ -190,13 +191,14 @@ def new(
         text = sys.stdin.read() if str(drawing) == "-" else drawing.read_text(encoding="utf-8")
         plan = read_drawing(text, cell=cell, name="the drawing" if str(drawing) == "-" else str(drawing))
         made = write_map(folder, plan, title=_title(name), source="drawn in characters")
+        scale = _drawing_scale(plan, cell)
     except UnicodeDecodeError:
         options.fail(f"{drawing} is not text. To read a photograph, use `kit maps from-photo {drawing}`.")
     except OSError as error:
         options.fail(options.describe_os_error(error))
     except (MapExists, DrawingError, NoRoute, WorkspaceError) as error:
         options.fail(str(error))
-    _report(made, glyphs)
+    _report(made, scale, glyphs)
 
 
 def _title(name: str) -> str:
@@ -205,7 +207,9 @@ def _title(name: str) -> str:
 
 def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str | None) -> None:
     """Opens the sheet, and tells what was made of it. The drawing is kept beside the map, to be changed later."""
-    from kit.mapmaking.new_map import MapSketch, read_drawing, write_map
+    from kit.mapmaking.map_drawing import read_drawing
+    from kit.mapmaking.map_sketch import MapSketch
+    from kit.mapmaking.new_map import write_map
     from kit.mapmaking.sketch_draft import SketchDraft
 
     terminal = options.full_screen(
@@ -223,13 +227,13 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
     draft = SketchDraft(folder)
     sketch, note = (sketch, "") if draft.found is None else (draft.found, "as you left it, not saved")
 
+    scale = ""
+
     def save(drawn: MapSketch) -> NewMap:
-        made = write_map(
-            folder,
-            read_drawing(drawn.text, cell=drawn.cell),
-            title=_title(folder.name),
-            source="drawn on the screen",
-        )
+        nonlocal scale
+        plan = read_drawing(drawn.text, cell=drawn.cell)
+        scale = _drawing_scale(plan, drawn.cell)
+        made = write_map(folder, plan, title=_title(folder.name), source="drawn on the screen")
         (folder / "drawing.txt").write_text(drawn.text)
         return made
 
@@ -242,7 +246,7 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
     keeps = screen.saved is None and not screen.is_given_up
     draft.close(keeps=keeps)
     if screen.saved is not None:
-        _report(screen.saved, glyphs)
+        _report(screen.saved, scale, glyphs)
     elif keeps and (note or screen.sketch != sketch):
         click.echo(f"The map is not saved yet. `kit maps new {folder.name}` shows your drawing again.")
     else:
@@ -335,7 +339,14 @@ def from_photo(
         options.fail(options.describe_os_error(error))
     except (MapExists, PhotoError, NoRoute, WorkspaceError) as error:
         options.fail(str(error))
-    _report(made, glyphs)
+    width_m, height_m = plan.size
+    _report(
+        made,
+        f"Scale: the sheet is {width_m:.3g} m by {height_m:.3g} m, its outer walls {found.walls_width:.3g} m apart: "
+        f"{'--width' if width is not None else '--walls-width'} was read as the width of the "
+        f"{'whole sheet' if width is not None else 'walls'}.",
+        glyphs,
+    )
 
 
 def _clicked(photo: Image, name: str, glyphs: str | None, color: str | None) -> Corners:
@@ -382,10 +393,17 @@ def _corners(text: str | None, photo: Image) -> Corners | None:
     return points[0], points[1], points[2], points[3]
 
 
-def _report(made: NewMap, glyphs: str | None) -> None:
+def _drawing_scale(plan: WallPlan, cell: float) -> str:
+    width, height = plan.size
+    return f"Scale: each character is a square of {cell:g} m; the drawing is {width:.3g} m by {height:.3g} m."
+
+
+def _report(made: NewMap, scale: str, glyphs: str | None) -> None:
+    """Draws a map that was made, and tells at which ``scale`` its drawing was read."""
     card = own_card(made.folder / WORLD_FILE)
     assert card is not None  # just written
     _show_card(card, glyphs)
+    options.say(scale)
     x, y = made.route.narrowest
     options.say(
         f"The path from start to target is {made.route.length:.1f} m long; its narrowest passage, {made.route.width:.2f} m wide, "

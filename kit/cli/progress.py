@@ -15,7 +15,8 @@ from kit.document.rows import row_text
 from kit.plain_text import counted
 from kit.school.game.challenges import game_summary
 from kit.school.lessons.catalogue import LessonEntry, list_lessons
-from kit.school.progress import EventKind, ProgressError, ProgressJournal, read_export
+from kit.school.progress import EventKind, ProgressError, ProgressJournal
+from kit.school.progress_export import read_export
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError
 

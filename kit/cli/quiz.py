@@ -12,6 +12,7 @@ from kit.cli.full_screen import show_dialogue
 from kit.document.blocks import Text
 from kit.document.layout import lines_of
 from kit.school.progress import FILE, ProgressError, ProgressEvent, ProgressJournal
+from kit.school.quiz.answers import answers_from_events
 from kit.school.quiz.items import LessonWithoutQuestions, QuestionBank, read_bank
 from kit.school.quiz.quiz_dialogue import QuizDialogue
 from kit.school.quiz.quiz_session import (
@@ -31,7 +32,7 @@ from kit.school.quiz.quiz_text import (
     scores_blocks,
     today_line,
 )
-from kit.school.quiz.schedule import answers_from_events, build_schedule
+from kit.school.quiz.schedule import build_schedule
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError
 

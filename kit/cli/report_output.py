@@ -100,9 +100,11 @@ def write_outputs(made: Document, outputs: ReportOutputs, *, printed: Document |
 
     ``printed``: what is printed instead of the whole.
     """
-    from kit.document.files import document_to_html, document_to_json, plot_to_svg, table_to_csv
+    from kit.document.data_files import document_to_json, table_to_csv
     from kit.document.glyphs import ASCII_GLYPHS, BLOCK_GLYPHS
+    from kit.document.html import document_to_html
     from kit.document.layout import document_lines
+    from kit.document.svg import plot_to_svg
 
     html_file, json_file = outputs.html_file, outputs.json_file
     to_terminal = json_file is not None and str(json_file) == "-"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Final
 
 import click
 
@@ -14,8 +15,8 @@ from kit.host.job_executors import ExecutorUnavailable
 from kit.learning.training.algorithms import require_learn_extra
 from kit.learning.training.runs import RunError
 from kit.study import study_document
-from kit.study.printed_tables import printed_table, study_chapters
-from kit.study.recorded_results import RecordedResultError, StudyVariant, source_number
+from kit.study.printed_tables import study_chapters
+from kit.study.recorded_results import VARIANT_OPTIONS, RecordedResultError, StudyVariant
 from kit.study.study_document import DOCUMENT, check_document
 from kit.study.study_report import duration_text
 from kit.study.study_runs import StudyRun
@@ -26,6 +27,11 @@ from kit.workspace import Workspace
 @click.argument("number", nargs=-1, metavar="[[table|figure] NUMBER]")
 @click.option("--again", is_flag=True, help="Train and test the table's agents again, with its settings.")
 @click.option("--kit", "by_kit", is_flag=True, help="With --again: use the kit's own preset instead.")
+@click.option(
+    "--no-limit",
+    is_flag=True,
+    help="With --again: the dissertation's settings without its limit of values (`kit study clip`).",
+)
 @click.option("--whole", is_flag=True, help="Print everything in the list, not only the list.")
 @click.option(
     "--check", is_flag=True, help="Recompute the document that comes with the kit, and print the differences."
@@ -51,6 +57,7 @@ def command(
     number: tuple[str, ...],
     again: bool,
     by_kit: bool,
+    no_limit: bool,
     whole: bool,
     check: bool,
     seeds: int,
@@ -69,6 +76,9 @@ def command(
     kit study 5                   a chapter's list; --whole prints all of it
     kit study 3.5 --again         train its agents again; prints the time first
     kit study 3.5 --again --kit   the same with the kit's own preset
+    kit study 4.1 --again --no-limit   without his library's limit of values
+    kit study clip                values with and without that limit; --again
+                                  makes both again, in about five minutes
     kit study --html FOLDER       everything on one page; --csv for tables
     kit study --check             check that the document follows from the logs
 
@@ -91,17 +101,20 @@ def command(
                 return
             kind, wanted = _read_number(number)
             if again:
-                variant: StudyVariant = "kit" if by_kit else "seed"
-                _run_again(
-                    f"figure-{wanted}" if kind == "figure" else wanted,
-                    opened,
-                    variant,
-                    seeds,
-                    steps,
-                    jobs,
-                    executor,
-                    cluster,
-                )
+                if by_kit and no_limit:
+                    options.fail("--kit and --no-limit are two ways to train: give one of them.")
+                variant: StudyVariant = "kit" if by_kit else "no-limit" if no_limit else "seed"
+                for each in _variants(wanted, variant):
+                    _run_again(
+                        f"figure-{wanted}" if kind == "figure" or wanted in FIGURES_ALONE else wanted,
+                        opened,
+                        each,
+                        seeds,
+                        steps,
+                        jobs,
+                        executor,
+                        cluster,
+                    )
             to_files = outputs.has_files
             listed, everything = study_document.chapters(
                 kind, wanted, opened, to_files=to_files or whole, with_class=whole
@@ -113,6 +126,17 @@ def command(
             outputs,
             printed=Document(study_document.TITLE, listed) if listed and not whole else None,
         )
+
+
+FIGURES_ALONE: Final = tuple(
+    figure.id for chapter in study_chapters() for figure in chapter.figures if figure.sessions == "values"
+)
+"""Figures that are none of the dissertation's: their names need no word before them."""
+
+
+def _variants(wanted: str, variant: StudyVariant) -> tuple[StudyVariant, ...]:
+    """How a number is trained again: a figure that compares is trained both ways."""
+    return ("seed", "no-limit") if wanted in FIGURES_ALONE else (variant,)
 
 
 def _read_number(words: tuple[str, ...]) -> tuple[str, str]:
@@ -152,14 +176,11 @@ def _run_again(
     tables = {each.id: each for chapter in study_chapters() for each in chapter.tables}
     trainings = (figure.training for chapter in study_chapters() for figure in chapter.figures)
     tables |= {each.id: each for each in trainings if each is not None}
-    studies = {
-        each.id: StudyRun.of(printed_table(source_number(each)), workspace, variant, steps)
-        for each in tables.values()
-    }
+    studies = {each.id: StudyRun.of(each, workspace, variant, steps) for each in tables.values()}
     able = {name: run for name, run in studies.items() if run.groups or run.has_fields}
     run = able.get(number)
     if run is None:
-        words = " --kit" if variant == "kit" else ""
+        words = VARIANT_OPTIONS[variant]
         options.fail(f"--again{words} cannot reproduce that; it can reproduce {', '.join(able)}.")
     if run.groups:
         require_learn_extra()

@@ -17,7 +17,7 @@ from kit.cli import learning_options, options
 from kit.document.layout import lines_of
 from kit.host import job_executors
 from kit.host.job_executors import ExecutorUnavailable
-from kit.learning.environment.tasks import TaskSpec
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.crosstable import (
     case_groups,
     check_crosstable,

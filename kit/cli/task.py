@@ -12,18 +12,19 @@ import click
 from kit.cli import learning_options, options
 from kit.document.blocks import Text, labelled_table
 from kit.document.layout import Page, lines_of
-from kit.learning.environment.tasks import all_tasks, find_task
-from kit.learning.tasks.own_files import own_task_files, workspace_folders, workspace_task_file
-from kit.learning.tasks.task_check import check_task
-from kit.learning.tasks.task_reader import read_task, task_name
-from kit.learning.tasks.task_template import (
-    NewTaskError,
-    TaskArchiveError,
-    new_task_file,
-    pack_task,
-    unpack_task,
+from kit.learning.authoring.new_task import NewTaskError, new_task_file
+from kit.learning.authoring.task_archive import TaskArchiveError, pack_task, unpack_task
+from kit.learning.authoring.task_check import check_task
+from kit.learning.authoring.task_text import (
+    build_case_scene,
+    describe_case,
+    key_tables,
+    task_blocks,
+    tasks_table,
 )
-from kit.learning.tasks.task_text import build_case_scene, describe_case, key_tables, task_blocks, tasks_table
+from kit.learning.tasks.catalogue import all_tasks, find_task
+from kit.learning.tasks.own_files import own_task_files, workspace_folders, workspace_task_file
+from kit.learning.tasks.task_reader import read_task, task_name
 from kit.learning.training.run_check import check_reward
 from kit.plain_text import counted, wrap
 from kit.render.encode import ENCODERS

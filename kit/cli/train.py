@@ -15,9 +15,10 @@ from kit.cli import learning_options, options
 from kit.cli.full_screen import run_screen
 from kit.cli.shared_game import join_shared_game
 from kit.document.layout import lines_of
-from kit.learning.environment.disturbances import UniformRange
-from kit.learning.environment.rewards import REWARDS
-from kit.learning.environment.tasks import TaskSpec, all_tasks
+from kit.learning.tasks.catalogue import all_tasks
+from kit.learning.tasks.disturbances import UniformRange
+from kit.learning.tasks.rewards import REWARDS
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import (
     ALGORITHMS,
     IMITATION_ALGORITHMS,
@@ -38,6 +39,7 @@ from kit.learning.training.runs import (
     TrainingRun,
     create_run,
     find_run,
+    format_setting,
     list_runs,
 )
 from kit.learning.training.training import resolve_preset
@@ -400,6 +402,8 @@ def _list_settings(task: str, algo: str, preset: PresetName) -> list[str]:
     for name in found.setting_types(algorithm):
         number = found.learning_rate if name == LEARNING_RATE else getattr(found.settings, name)
         own = f"{algorithm.own_defaults().get(name)} (the library's)"
+        if isinstance(number, int | float):
+            number = format_setting(number)
         lines.append(f"  {name:24} {own if number is None else number}")
     return lines
 

@@ -6,6 +6,7 @@ import ast
 from dataclasses import dataclass
 from pathlib import Path
 
+from kit.extensions import folders
 from kit.plain_text import nearest_name
 from kit.workspace import Workspace, expand_home, open_workspace, unusable_workspace_error, write_atomically
 
@@ -32,9 +33,12 @@ def controller_title(file: Path) -> str:
 
 
 def kit_controllers() -> tuple[ControllerFile, ...]:
-    """The kit's own controllers, the two that the kit opens with first, then the worked examples."""
+    """The kit's own controllers, the two that the kit opens with first, then the worked examples, then those of others'
+    packages."""
     own = (FOLDER / f"{name}.py" for name in ("random_walk", "teleop", "teleop_pair", "fields", "abreast"))
+    of_others = (file for _, folder in folders("controllers") for file in sorted(folder.glob("[!._]*.py")))
     names = [*own, *sorted((FOLDER / "examples").glob("*.py"))]
+    names += [file for file in of_others if file.stem not in {each.stem for each in names}]
     return tuple(ControllerFile(file.stem, file, controller_title(file)) for file in names)
 
 

@@ -68,6 +68,11 @@ class Text:
     is_tight: bool = False
     """Whether it follows the block before it without an empty row."""
 
+    @property
+    def whole_text(self) -> str:
+        """The text with its lead and its tail."""
+        return f"{self.lead} {self.text}".strip() + self.tail
+
 
 @dataclass(frozen=True, slots=True)
 class Marked:

@@ -120,7 +120,7 @@ def _share_first_cells(table: Table, cells: list[list[str]], width: int) -> None
 def _placed_rows(
     cells: Sequence[str], widths: Sequence[int], columns: Sequence[Column], tones: Sequence[Tone]
 ) -> Iterator[Row]:
-    parts = [wrap(cell, width) for cell, width in zip(cells, widths, strict=True)]
+    parts = [wrap(cell, max(1, width)) for cell, width in zip(cells, widths, strict=True)]
     for level in range(max(map(len, parts))):
         words = [part[level] if level < len(part) else "" for part in parts]
         last = max((number for number, word in enumerate(words) if word), default=0)

@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Final
 
-from kit.fields.charges import derive_charges, layout_differences
+from kit.fields.charge_derivation import derive_charges, layout_differences
 from kit.fields.layout import ChargeLayout, derived_layout, load_layout, read_layout
 from kit.fields.minima import ForceFlow
 from kit.fields.occupancy_grid import OccupancyGrid, load_occupancy_grid

@@ -24,15 +24,8 @@ from typing import Final
 from numpy.typing import ArrayLike
 
 from kit.arrays import FloatArray
-from kit.fields.charges import (
-    Charge,
-    ChargeField,
-    CompositeCharge,
-    Handover,
-    LineCharge,
-    PointCharge,
-    derive_charges,
-)
+from kit.fields.charge_derivation import derive_charges
+from kit.fields.charges import Charge, ChargeField, CompositeCharge, Handover, LineCharge, PointCharge
 from kit.fields.occupancy_grid import OccupancyGrid, wall_depth
 from kit.world.documents import open_document
 from kit.world.yaml_section import Section

@@ -217,11 +217,11 @@ def load_occupancy_grid(world_file: Path) -> tuple[World, OccupancyGrid]:
 
 def occupancy_grid_of(world: World, max_cells: int = MAX_CELLS) -> OccupancyGrid:
     """The world's floor, of at most about ``max_cells`` cells. Raises ValueError if the world has no walls."""
-    walls = [layer.walls.segments for layer in world.layers if layer.walls is not None]
-    if not walls or not sum(map(len, walls)):
+    walls = world.wall_segments
+    if not len(walls):
         raise ValueError(f"{world.file}: the world has no walls, so it has no floor to drive on.")
     return OccupancyGrid.from_walls(
-        np.concatenate(walls), [(model.pose.x, model.pose.y) for model in world.models], max_cells
+        walls, [(model.pose.x, model.pose.y) for model in world.models], max_cells
     )
 
 

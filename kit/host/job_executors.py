@@ -19,6 +19,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any, Final, NoReturn
 
+from kit.installation import install_command
 from kit.plain_files import read_plain_file
 from kit.plain_text import quoted
 from kit.workspace import write_atomically
@@ -29,7 +30,6 @@ MAX_TRIES: Final = 2
 MAX_RESULT_BYTES: Final = 16_000_000
 """Bytes of a result's file, many times those of the longest."""
 SLURM_SCRIPT: Final = "slurm.sh"
-CLUSTER_INSTALLATION: Final = "pip install -c constraints.txt -e '.[cluster]'"
 
 
 class ExecutorUnavailable(Exception):
@@ -229,7 +229,7 @@ def run_on_dask(
         from distributed import Client, KilledWorker, wait
     except ImportError:
         raise ExecutorUnavailable(
-            f"Dask is not installed. In the kit's folder: {CLUSTER_INSTALLATION}"
+            f"Dask is not installed. To have it, type: {install_command('cluster')}"
         ) from None
     if not address:
         raise ExecutorUnavailable("Give the address of the Dask scheduler: --cluster tcp://HOST:8786")

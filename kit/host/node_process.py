@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Self
 
 from kit.host.failure import (
-    Failure,
     StudentCodeError,
     protocol_violation,
     reserved_name,
@@ -20,10 +19,9 @@ from kit.host.failure import (
     too_much_kept,
 )
 from kit.host.graph_bridge import KeptLimitError, MessageLimitError, ParentBridge
-from kit.host.output import ProgramOutput
-from kit.host.process import PackageProgram, StudentProcess
+from kit.host.process import HostedFile, PackageProgram, StudentProcess
 from kit.host.program_terminal import ProgramStreams
-from kit.host.protocol import Ended, Frame, Reply
+from kit.host.protocol import HOLD_NS, Ended, Frame, Reply
 from kit.host.proxy_nodes import ReservedNameError
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
@@ -31,7 +29,7 @@ from kit.host.wire import ProtocolError
 from kit.ros.graph.graph import Graph
 
 
-class NodeProcess:
+class NodeProcess(HostedFile):
     """The nodes of one student's file: proxies here, the real ones in a process of their own.
 
     The process starts at once; ``wait_until_started`` (or ``is_started``, which does not wait) and then
@@ -82,8 +80,8 @@ class NodeProcess:
         start = {"args": list(args), "seed": seed, "now": self._now_ns, "events": events}
         if replaces is not None:
             start["replaced"] = sorted(replaces.node_names)
-        self._process = StudentProcess(
-            "node", file, start, limits=limits, level=level, package=package, streams=streams
+        super().__init__(
+            StudentProcess("node", file, start, limits=limits, level=level, package=package, streams=streams)
         )
 
     @property
@@ -112,27 +110,6 @@ class NodeProcess:
         process.join()
         return process
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    @property
-    def failure(self) -> Failure | None:
-        """Why the student's code has failed; None while it runs, and when it has ended by itself."""
-        return self._process.failure
-
-    @property
-    def pid(self) -> int:
-        """Process id of the process above the student's, which ends with it."""
-        return self._process.pid
-
-    @property
-    def level(self) -> Level:
-        """Confinement level of the process."""
-        return self._process.level
-
     @property
     def wake_ns(self) -> int | None:
         """When the program must run again [ns of simulated time]; None: not before an event."""
@@ -141,10 +118,6 @@ class NodeProcess:
     @property
     def is_running(self) -> bool:
         return self._is_joined and self.failure is None and not self.has_ended
-
-    def take_output(self) -> ProgramOutput:
-        """Removes and returns what the program has printed since the last call, including its log."""
-        return self._process.take_output()
 
     def wait_until_started(self) -> None:
         """Waits until the program waits for the first time. Raises StudentCodeError if it fails before."""
@@ -199,7 +172,7 @@ class NodeProcess:
         """Removes the nodes from the graph and ends the process. May be called twice."""
         self._is_joined = False
         self._bridge.clear()
-        self._process.close()
+        super().close()
 
     def _apply_answer(self, answer: Callable[[], Frame | None]) -> None:
         """Applies an answer. A wrong or missing one ends the process."""
@@ -207,6 +180,8 @@ class NodeProcess:
             frame = answer()
             if not isinstance(frame, (Reply, Ended)):
                 raise ProtocolError("another kind of answer")
+            if isinstance(frame, Reply) and frame.wake_ns == HOLD_NS:
+                raise ProtocolError("time to stand still")
             began = time.monotonic()
             try:
                 self._bridge.apply_events(frame.events)

@@ -30,8 +30,13 @@ def make_private_folder() -> str:
     if parent not in _swept_folders:
         _swept_folders.add(parent)
         remove_abandoned_folders(parent)
+    return tempfile.mkdtemp(prefix=owned_name(), dir=parent)
+
+
+def owned_name() -> str:
+    """Returns how a name begins that says that this process owns what bears it; see ``is_abandoned``."""
     pid = os.getpid()
-    return tempfile.mkdtemp(prefix=f"{PREFIX}{_MACHINE}-{pid}-{_start_of_process(pid) or 0}-", dir=parent)
+    return f"{PREFIX}{_MACHINE}-{pid}-{_start_of_process(pid) or 0}-"
 
 
 @contextmanager
@@ -47,12 +52,13 @@ def private_folder() -> Iterator[Path]:
 def remove_abandoned_folders(parent: str) -> None:
     """Removes the private folders in ``parent`` that belong to this user and whose process no longer lives."""
     with suppress(OSError), os.scandir(parent) as entries:
-        abandoned = [entry.path for entry in entries if _is_abandoned(entry)]
+        abandoned = [entry.path for entry in entries if is_abandoned(entry)]
         for folder in abandoned:
             remove_folder(folder)
 
 
-def _is_abandoned(entry: os.DirEntry[str]) -> bool:
+def is_abandoned(entry: os.DirEntry[str]) -> bool:
+    """Returns whether this user's process that owned it, by its name, no longer lives."""
     named = _NAME.match(entry.name)
     if named is None or named["machine"] != _MACHINE:
         return False

@@ -28,6 +28,7 @@ from typing import Final, Literal, NoReturn, Self, TypeAlias
 from kit.host.failure import (
     Budget,
     Failure,
+    FailureKind,
     StudentCodeError,
     add_limits,
     confinement_unavailable,
@@ -52,6 +53,7 @@ from kit.host.protocol import (
 )
 from kit.host.sandbox import bubblewrap
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level, SandboxConfig
+from kit.host.sandbox.control_groups import ControlGroup, return_group, take_group
 from kit.host.sandbox.grants import ReadGrants, find_grants, library_folders, loader_folders
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, KIB, Limits
 from kit.host.sandbox.reaper import descendants, end_descendants, remove_folder
@@ -171,8 +173,19 @@ class StudentProcess:
         self._folder = make_private_folder()
         granted = _read_grants(level, self._file, package)
         in_bubblewrap = level == Level.SEPARATE and bubblewrap.is_needed()
+        # From inside bubblewrap no group can be joined.
+        self._group: ControlGroup | None = (
+            take_group(limits) if level >= Level.FILTERED and not in_bubblewrap else None
+        )
         config = SandboxConfig(
-            level, limits, self._folder, granted.readable, granted.listed, granted.hidden, in_bubblewrap
+            level,
+            limits,
+            self._folder,
+            granted.readable,
+            granted.listed,
+            granted.hidden,
+            in_bubblewrap,
+            () if self._group is None else self._group.member_files,
         )
         for folder in (config.scratch, config.root):
             Path(folder).mkdir()
@@ -195,6 +208,7 @@ class StudentProcess:
         except BaseException:  # Ctrl-C too: the process must not outlive it; raised again
             self._pipe.close()
             remove_folder(self._folder)
+            self._leave_group()
             raise
         finally:
             theirs.close()
@@ -362,6 +376,12 @@ class StudentProcess:
             if stream is not None:
                 stream.close()
         remove_folder(self._folder)
+        self._leave_group()
+
+    def _leave_group(self) -> None:
+        if self._group is not None:
+            return_group(self._group)
+            self._group = None
 
     def _receive(self, deadline: float) -> Frame | None:
         """Returns the next frame; None if it is not complete at the deadline."""
@@ -401,6 +421,8 @@ class StudentProcess:
             status = self._process.wait(SHUTDOWN_S)
         except subprocess.TimeoutExpired:
             return protocol_violation("an end of the conversation in the middle of the program")
+        if self._group is not None and self._group.has_run_out_of_memory():
+            return add_limits(Failure(FailureKind.MEMORY, ""), self._limits)
         return process_ended(status, self._last_position(), self._limits)
 
     def _last_position(self) -> StackPosition | None:
@@ -544,3 +566,39 @@ def _read_grants(level: Level, file: Path, package: PackageProgram | None) -> Re
         return ReadGrants()
     more = () if package is None else (package.folder, *package.imports, *package.interfaces.values())
     return find_grants((file.parent, *more))
+
+
+class HostedFile:
+    """A student's file that runs in a process of its own. Use it as a context manager, or ``close`` it."""
+
+    def __init__(self, process: StudentProcess) -> None:
+        self._process = process
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def failure(self) -> Failure | None:
+        """Why the student's code has failed; None while it runs, and when it has ended by itself."""
+        return self._process.failure
+
+    @property
+    def pid(self) -> int:
+        """Process id of the process above the student's, which ends with it."""
+        return self._process.pid
+
+    @property
+    def level(self) -> Level:
+        """Confinement level of the process."""
+        return self._process.level
+
+    def take_output(self) -> ProgramOutput:
+        """Removes and returns what the file has printed since the last call, including its log."""
+        return self._process.take_output()
+
+    def close(self) -> None:
+        """Ends the process. May be called twice."""
+        self._process.close()

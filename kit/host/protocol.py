@@ -67,9 +67,14 @@ class GraphEvent:
     fields: list[Json]
 
 
+HOLD_NS: Final = -1
+"""In place of a time to run again: at once, and simulated time is to stand still until the answer. Only another terminal
+asks for that."""
+
+
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """All nodes wait. ``wake_ns``: when the first of them must run again [ns]; None: not before an event."""
+    """All nodes wait. ``wake_ns``: when the first of them must run again [ns], or HOLD_NS; None: not before an event."""
 
     seq: int
     wake_ns: int | None
@@ -171,7 +176,9 @@ def _refused(reason: Json) -> ConfinementRefused:
 
 
 def _reply(seq: Json, wake_ns: Json, events: Json) -> Reply:
-    return Reply(integer(seq), None if wake_ns is None else integer(wake_ns, 0, 2**63 - 1), _events(events))
+    return Reply(
+        integer(seq), None if wake_ns is None else integer(wake_ns, HOLD_NS, 2**63 - 1), _events(events)
+    )
 
 
 def _function_names(seq: Json, names: Json) -> FunctionNames:

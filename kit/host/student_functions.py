@@ -6,11 +6,10 @@ from array import array
 from collections.abc import Mapping, Sequence
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 from kit.host.failure import Failure, FailureKind, StudentCodeError, protocol_violation
-from kit.host.output import ProgramOutput
-from kit.host.process import StudentProcess
+from kit.host.process import HostedFile, StudentProcess
 from kit.host.protocol import BatchResult, FunctionNames, JsonResult
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
@@ -21,11 +20,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class StudentFunctions:
+class StudentFunctions(HostedFile):
     """The functions that a student's file defines, in a process of their own.
 
-    The constructor waits until the file is loaded. Use it as a context manager, or ``close`` it. Every method raises
-    StudentCodeError when the student's code fails; the process has ended by then.
+    The constructor waits until the file is loaded. Every method raises StudentCodeError when the student's code fails;
+    the process has ended by then.
     """
 
     def __init__(
@@ -37,7 +36,7 @@ class StudentFunctions:
         level: Level = INTERACTIVE_LEVEL,
     ) -> None:
         self.file = file
-        self._process = StudentProcess("functions", file, {"seed": seed}, limits=limits, level=level)
+        super().__init__(StudentProcess("functions", file, {"seed": seed}, limits=limits, level=level))
         try:
             answer = self._process.wait_started()
             if not isinstance(answer, FunctionNames):
@@ -47,20 +46,6 @@ class StudentFunctions:
             raise
         self.names = answer.names
         """Names of the public functions that the file defines itself."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    @property
-    def failure(self) -> Failure | None:
-        return self._process.failure
-
-    @property
-    def level(self) -> Level:
-        return self._process.level
 
     def call_batch(self, name: str, batch: Sequence[Mapping[str, Json]]) -> list[float]:
         """Returns ``name(**record)`` for each record, in order: finite numbers.
@@ -106,14 +91,6 @@ class StudentFunctions:
         if not isinstance(answer, BatchResult) or len(answer.values) != count:
             raise self._process.fail(protocol_violation(f"something else than {count} numbers"))
         return answer.values
-
-    def take_output(self) -> ProgramOutput:
-        """Removes and returns what the functions have printed since the last call."""
-        return self._process.take_output()
-
-    def close(self) -> None:
-        """Ends the process. May be called twice."""
-        self._process.close()
 
     def _missing_function(self, name: str) -> Failure:
         near = nearest_name(name, self.names)

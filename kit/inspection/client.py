@@ -13,6 +13,7 @@ from typing import Any, Final, Self
 
 import kit
 from kit.host.graph_bridge import ChildBridge
+from kit.host.protocol import HOLD_NS
 from kit.host.waiter import SingleThreadWaiter
 from kit.host.wire import Json, ProtocolError
 from kit.inspection.sockets import FramedSocket, RunningWorld, connect
@@ -139,6 +140,10 @@ class InspectionClient:
                     executor.spin_once(check_interval_s)
                 else:
                     executor.spin_once_until_future_complete(future, check_interval_s)
+
+    def hold_time(self) -> None:
+        """Waits for the world's present time. The world stands still then until ``graph`` is waited in again."""
+        self._bridge.next_tick(HOLD_NS)
 
     def wait_for_tick(self) -> None:
         """Waits for the world's next tick, so that ``graph`` has the present time, not that of the last message."""

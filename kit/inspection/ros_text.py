@@ -20,9 +20,10 @@ from kit.msg.message import Message, Service, type_name
 from kit.msg.rcl_interfaces import FloatingPointRange, IntegerRange, ParameterDescriptor, ParameterValue
 from kit.plain_text import counted, format_size
 from kit.ros.bags import Bag
+from kit.ros.graph.action_names import NamesAndTypes, called_actions, served_actions
 from kit.ros.graph.directory import NodeEntry
 from kit.ros.graph.graph import Graph
-from kit.ros.graph.naming import NamesAndTypes, called_actions, served_actions, topic_or_service_is_hidden
+from kit.ros.graph.naming import topic_or_service_is_hidden
 from kit.ros.node.endpoint import TopicEndpointInfo, TopicEndpointTypeEnum
 from kit.ros.node.qos import HistoryPolicy, LivelinessPolicy
 from kit.ros.node.time import Duration

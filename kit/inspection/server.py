@@ -1,27 +1,38 @@
 """The inspection server: a socket in the workspace to which other terminals of the user connect.
 
-Each connection sends its client the graph's changes and messages, without ever waiting for it.
+Each connection sends its client the graph's changes and messages. The world waits for a client only where it asks for that
+(``HOLD_NS``): a program from another terminal enters the graph at one instant, on any machine, under any load.
 """
 
 from __future__ import annotations
 
 import os
 import threading
+import time
+from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from queue import SimpleQueue
+from queue import Empty, SimpleQueue
 from typing import Final, Self
 
 import kit
 from kit.host.graph_bridge import ParentBridge
-from kit.host.protocol import Ended, Reply, parse
+from kit.host.protocol import HOLD_NS, Ended, Reply, parse
 from kit.host.wire import Json, ProtocolError
 from kit.inspection.sockets import FramedSocket, connect, listen
 from kit.ros.graph.graph import Graph
 
 MAX_BACKLOG: Final = 20_000
 """Messages that may wait for a client. One that is farther behind no longer reads and is disconnected."""
+
+
+MAX_LATE_TICKS: Final = 25
+"""How many ticks a client may be late and still be woken at the time at which it was to be."""
+HOLD_S: Final = 10.0
+"""How long the world stands still for a client at most, by the wall clock [s]."""
+LOOK_S: Final = 0.05
+"""After so long it looks whether it has ended meanwhile [s]."""
 
 
 class ClientConnection:
@@ -45,9 +56,13 @@ class ClientConnection:
         self._seq = 0
         self._sent_ns = graph.now_ns
         self._wake_ns: int | None = None
+        self._ticks: deque[int] = deque(maxlen=MAX_LATE_TICKS)
+        """The times of the world's last ticks [ns]."""
         self._is_waiting = False
         self._is_asked = True
         """Whether an answer is still to come."""
+        self._holds = False
+        """Whether the world is to stand still while the next question is answered."""
         self.is_closed = False
         start = {
             "version": kit.__version__,
@@ -63,6 +78,23 @@ class ClientConnection:
         """Whether it has been sent something that it has not answered yet, or is about to be."""
         return self._is_asked or self._bridge.has_pending
 
+    @property
+    def is_waited_for(self) -> bool:
+        """Whether time stands still until it has answered."""
+        return self._holds and self._is_asked
+
+    def wait_for_answer(self) -> bool:
+        """Waits for the answer for which time stands still, and applies it; True if the client sent something.
+
+        At most ``HOLD_S``: from then on it is like any other client. Raises ProtocolError.
+        """
+        end = time.monotonic() + HOLD_S
+        while not self.is_closed and time.monotonic() < end:
+            with suppress(Empty):
+                return self._apply_answer(self._answers.get(timeout=LOOK_S))
+        self._holds = False
+        return False
+
     def exchange(self) -> bool:
         """Applies the client's answer if one has come, and sends what is new. True if the client sent something.
 
@@ -70,7 +102,15 @@ class ClientConnection:
         """
         has_sent = not self._answers.empty() and self._apply_answer(self._answers.get())
         now = self._graph.now_ns
-        has_woken = self._wake_ns is not None and self._wake_ns <= now and now != self._sent_ns
+        if not self._ticks or self._ticks[-1] != now:
+            if self._ticks and now < self._ticks[-1]:
+                self._ticks.clear()
+            self._ticks.append(now)
+        has_woken = (
+            self._wake_ns is not None
+            and self._wake_ns <= now
+            and (now != self._sent_ns or self._wake_ns == HOLD_NS)
+        )
         if self._is_waiting and (self._bridge.has_pending or has_woken or now < self._sent_ns):
             self._send_news()
         if len(self._bridge.pending) > MAX_BACKLOG:
@@ -95,7 +135,7 @@ class ClientConnection:
         self._connection.close()
 
     def _apply_answer(self, answer: Reply | Ended | Exception) -> bool:
-        self._is_asked = False
+        self._is_asked = self._holds = False
         if isinstance(answer, ProtocolError):
             raise answer
         if isinstance(answer, Exception):  # it has disconnected
@@ -112,13 +152,19 @@ class ClientConnection:
             return True
         self._is_waiting = True
         self._wake_ns = answer.wake_ns
+        self._holds = answer.wake_ns == HOLD_NS
         return bool(answer.events)
 
     def _send_news(self) -> None:
         """Sends the oldest messages, all of one instant, so that the client knows their time."""
-        pending = self._bridge.pending
-        time_ns = pending[0].time_ns if pending else self._graph.now_ns
-        count = next((i for i, entry in enumerate(pending) if entry.time_ns != time_ns), len(pending))
+        pending, now = self._bridge.pending, self._graph.now_ns
+        time_ns = pending[0].time_ns if pending and not self._holds else now
+        if self._holds:
+            count = len(pending)
+        elif (woken_ns := self._woken_ns()) < time_ns <= now:
+            time_ns, count = woken_ns, 0
+        else:
+            count = next((i for i, entry in enumerate(pending) if entry.time_ns != time_ns), len(pending))
         events = [*self._bridge.take_changes(), *(entry.event for entry in pending[:count])]
         del pending[:count]
         self._seq += 1
@@ -126,6 +172,14 @@ class ClientConnection:
         self._is_waiting = False
         self._is_asked = True
         self._questions.put(["tick", self._seq, time_ns, events])
+
+    def _woken_ns(self) -> int:
+        """The latest tick's time, or that of the tick in which it was to wake and could not, because it had not answered yet:
+        so its timers keep their instants on a busy machine, as long as it is not too far behind [ns]."""
+        now, wake = self._graph.now_ns, self._wake_ns
+        if wake is None or now < self._sent_ns:
+            return now
+        return next((each for each in self._ticks if each >= wake and each > self._sent_ns), now)
 
     def _serve(self) -> None:
         """Sends questions and receives answers, in the client's own thread."""
@@ -199,8 +253,9 @@ class InspectionServer:
         return {client.pid: client.owes_answer for client in self._clients if client.pid is not None}
 
     def exchange(self) -> bool:
-        """Adds new clients and exchanges messages with all of them, without waiting. True if any client sent
-        something."""
+        """Adds new clients and exchanges messages with all of them. True if any client sent something.
+
+        Waits for none but a program that enters the graph: so its timers begin at the instant that its clock shows."""
         if not self._clients and self._accepted.empty():
             return False
         while not self._accepted.empty():
@@ -209,6 +264,8 @@ class InspectionServer:
         for client in self._clients:
             try:
                 has_sent |= client.exchange()
+                if client.is_waited_for:
+                    has_sent |= client.wait_for_answer()
             except ProtocolError as problem:
                 self._graph.log.warning(LOGGER_NAME, f"a terminal was disconnected because it sent {problem}")
                 client.refuse(str(problem))

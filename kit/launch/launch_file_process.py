@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.host.failure import protocol_violation
-from kit.host.output import ProgramOutput
-from kit.host.process import PackageProgram, StudentProcess
+from kit.host.process import HostedFile, PackageProgram, StudentProcess
 from kit.host.protocol import Ended, Frame, Reply
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, MIB
 from kit.host.wire import Json, ProtocolError
@@ -31,7 +30,7 @@ def declared_arguments(
     return [request for request in requests if isinstance(request, DeclaredArgument)]
 
 
-class LaunchFileProcess:
+class LaunchFileProcess(HostedFile):
     """One run of a launch file; the process starts with the constructor. All failures are raised as StudentCodeError."""
 
     def __init__(
@@ -42,7 +41,7 @@ class LaunchFileProcess:
         arguments: Mapping[str, str],
         bounds: LaunchBounds = INTERACTIVE_BOUNDS,
     ) -> None:
-        self._process = _start_child(file, folder, search, arguments, bounds, only_arguments=False)
+        super().__init__(_start_child(file, folder, search, arguments, bounds, only_arguments=False))
         self.wake_ns: int | None = None
         """When its next timer is due [ns of the launch's time]; None without timers."""
 
@@ -53,13 +52,6 @@ class LaunchFileProcess:
     def advance(self, now_ns: int, events: list[Json]) -> list[Request]:
         """Sends events at a time of the launch; returns the requests that follow."""
         return self._read_requests(self._process.request("tick", now_ns, events))
-
-    def take_output(self) -> ProgramOutput:
-        """Removes and returns what the launch file itself has printed."""
-        return self._process.take_output()
-
-    def close(self) -> None:
-        self._process.close()
 
     def _read_requests(self, frame: Frame | None) -> list[Request]:
         requests = _parse_requests(self._process, frame, Reply)

@@ -7,7 +7,7 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Final, Literal, NamedTuple, Protocol
@@ -128,8 +128,10 @@ class NodeProgramProcess:
 
     is_builtin = False
 
-    def __init__(self, node_process: NodeProcess) -> None:
+    def __init__(self, node_process: NodeProcess, on_loaded: Callable[[], object] | None = None) -> None:
+        """``on_loaded``: called before a program that ``loads_first`` goes on into the graph."""
         self._node_process = node_process
+        self._on_loaded = on_loaded
         self._has_joined = False
         self._failure: Failure | None = None
         self.pid = node_process.pid
@@ -150,6 +152,9 @@ class NodeProgramProcess:
         if not self._has_joined and self._failure is None:
             try:
                 self._node_process.wait_until_started()
+                if self._on_loaded is not None:
+                    self._on_loaded()
+                    self._node_process.enter_graph()
                 self._join()
             except StudentCodeError as error:
                 self._failure = error.failure

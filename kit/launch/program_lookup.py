@@ -173,6 +173,8 @@ class StartContext:
     bounds: LaunchBounds = INTERACTIVE_BOUNDS
     streams: ProgramStreams | None = None
     """What a program that is run by hand reads and writes."""
+    on_loaded: Callable[[], object] | None = None
+    """Called when a program has been loaded, before it goes on into the graph; None: it need not wait for that."""
     add_to_scene: Callable[[SceneAddition], None] = lambda addition: None
     """Has something drawn with the world."""
 
@@ -318,8 +320,9 @@ def _start_node_program(
         level=context.bounds.level,
         package=package_program,
         streams=context.streams,
+        loads_first=context.on_loaded is not None,
     )
-    return NodeProgramProcess(node_process)
+    return NodeProgramProcess(node_process, context.on_loaded)
 
 
 def _environment(request: StartRequest, context: StartContext) -> dict[str, str]:

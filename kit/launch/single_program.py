@@ -38,7 +38,7 @@ class SingleProgram:
 
     def run_beside(self, client: InspectionClient, on_output: OutputCallback) -> ProcessExit:
         """Runs it until it ends, in the graph and time of another terminal's world. Raises ProcessStartError, WorldDisconnected."""
-        process, graph = self._started(client.graph), client.graph
+        process, graph = self._started(client.graph, client.hold_time), client.graph
         try:
             while (ended := self._poll(process, on_output)) is None:
                 seen = graph.change_count
@@ -74,7 +74,7 @@ class SingleProgram:
                 self._print(process, on_output)
                 process.close()
 
-    def _started(self, graph: Graph) -> Process:
+    def _started(self, graph: Graph, on_loaded: Callable[[], object] | None = None) -> Process:
         if is_builtin(self._request) and self._request.package != "tf2_ros":
             raise ProcessStartError(
                 f"{self._request.executable} cannot be started by itself here: `kit play` and `kit launch` start "
@@ -90,6 +90,7 @@ class SingleProgram:
             self._workspace,
             "",
             streams=piped_streams() if self._terminal is None else self._terminal.streams,
+            on_loaded=on_loaded,
         )
         process = start_process(self._request, context)
         if self._terminal is not None:

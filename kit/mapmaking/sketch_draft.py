@@ -6,7 +6,8 @@ import json
 from contextlib import suppress
 from pathlib import Path
 
-from kit.mapmaking.new_map import MAX_SIDE, MIN_SIDE, MapSketch
+from kit.mapmaking.map_drawing import MAX_SIDE
+from kit.mapmaking.map_sketch import MIN_SIDE, MapSketch
 from kit.part_file import lock_part, part_path
 
 

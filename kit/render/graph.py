@@ -13,7 +13,7 @@ look alike: traffic, not a flicker.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import Final, Literal, NamedTuple
@@ -21,17 +21,18 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 
 from kit.render.encode import Frame
-from kit.render.graph_layout import GraphData, GraphItem, GraphLayout
+from kit.render.graph_data import GraphData, GraphItem
+from kit.render.graph_glyphs import EAST, HORIZONTAL, NORTH, SOUTH, UNICODE_LINES, VERTICAL, WEST, LineGlyphs
+from kit.render.graph_layout import GraphLayout
 from kit.render.roles import Role
-from kit.ros.graph.snapshot import FlowStats, MessageFlow
 
 ColumnName = Literal["sender", "item", "receiver"]
-
 LINE_ROLE: Final = Role.WALL
 NAME_ROLE: Final = Role.WALL
 SELECTED_ROLE: Final = Role.ROBOT
 MESSAGE_ROLE: Final = Role.HIT
 MISMATCH_ROLE: Final = Role.CONTACT
+
 RATE_ROLE: Final = Role.TRAIL
 """Roles of the world's palette as used for the graph."""
 
@@ -87,6 +88,7 @@ class ColumnLayout:
 
 RATE_WIDTH: Final = 8
 ARROW_WIDTH: Final = 2
+
 MIN_LANE_WIDTHS: Final = (5, 8)
 """Characters kept for lanes, left and right, so that the columns stay where they are when one joins."""
 MIN_NAME_WIDTH: Final = 8
@@ -109,59 +111,6 @@ def fit_columns(width: int, layout: GraphLayout) -> ColumnLayout:
         right + ARROW_WIDTH,
         (pitches[0], pitches[1]),
     )
-
-
-EAST, NORTH, WEST, SOUTH = 1, 2, 4, 8
-HORIZONTAL, VERTICAL = EAST | WEST, NORTH | SOUTH
-
-
-@dataclass(frozen=True, slots=True)
-class LineGlyphs:
-    """The characters of lines, by where they lead; and the other signs."""
-
-    light: Mapping[int, str]
-    heavy: Mapping[int, str]
-    dashed: Mapping[int, str]
-    arrow: str
-    message: str
-    mismatch: str
-    ellipsis: str
-    """Stands for the beginning of a name that is too long."""
-
-
-def _line_table(level: str, upright: str, corners: str) -> Mapping[int, str]:
-    joints = (EAST | SOUTH, WEST | SOUTH, NORTH | EAST, NORTH | WEST, VERTICAL | EAST, VERTICAL | WEST)
-    tees = (*joints, HORIZONTAL | SOUTH, HORIZONTAL | NORTH, HORIZONTAL | VERTICAL)
-    straight = {
-        EAST: level,
-        WEST: level,
-        HORIZONTAL: level,
-        NORTH: upright,
-        SOUTH: upright,
-        VERTICAL: upright,
-    }
-    return MappingProxyType({**straight, **dict(zip(tees, corners, strict=True))})
-
-
-_LIGHT = "┌┐└┘├┤┬┴┼"
-UNICODE_LINES: Final = LineGlyphs(
-    _line_table("─", "│", _LIGHT),
-    _line_table("━", "┃", "┏┓┗┛┣┫┳┻╋"),
-    _line_table("╌", "│", _LIGHT),
-    arrow="▶",
-    message="●",
-    mismatch="✗",
-    ellipsis="…",
-)
-ASCII_LINES: Final = LineGlyphs(
-    _line_table("-", "|", "+" * 9),
-    _line_table("=", "|", "#" * 9),
-    _line_table(".", "|", "+" * 9),
-    arrow=">",
-    message="o",
-    mismatch="X",
-    ellipsis="~",
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -401,149 +350,3 @@ def _shorten_name(name: str, width: int, mark: str) -> str:
         return name
     kept = max(0, width - len(mark))
     return mark + name[len(name) - kept :]
-
-
-_COLUMNS: tuple[ColumnName, ...] = ("sender", "item", "receiver")
-
-
-def initial_selection(drawing: GraphDrawing) -> GraphElement | None:
-    """Returns the first selection: an item with a mismatch, else the topmost topic, else a node."""
-    mismatched = [GraphElement("item", item.label) for item in drawing.graph.items if item.undelivered]
-    rows = drawing.element_rows()
-    return min(
-        mismatched or rows, key=lambda element: (element.column != "item", rows[element]), default=None
-    )
-
-
-def kept_selection(drawing: GraphDrawing, selected: GraphElement | None, row: int) -> GraphElement | None:
-    """Returns the same element, or the one nearest to its row if it is gone."""
-    rows = drawing.element_rows()
-    if selected is None or not rows:
-        return initial_selection(drawing)
-    if selected in rows:
-        return selected
-    return min(rows, key=lambda other: (other.column != selected.column, abs(rows[other] - row)))
-
-
-def move_vertically(drawing: GraphDrawing, selected: GraphElement, steps: int) -> GraphElement:
-    """Returns the element ``steps`` further down its column, or up."""
-    rows = drawing.element_rows()
-    column = sorted(
-        (other for other in rows if other.column == selected.column), key=lambda other: rows[other]
-    )
-    return column[min(max(column.index(selected) + steps, 0), len(column) - 1)]
-
-
-def move_horizontally(drawing: GraphDrawing, selected: GraphElement, steps: int) -> GraphElement:
-    """One column to the right, or left: along a line if there is one, to the nearest row."""
-    number = _COLUMNS.index(selected.column) + steps
-    if not 0 <= number < len(_COLUMNS):
-        return selected
-    rows = drawing.element_rows()
-    beside = [other for other in rows if other.column == _COLUMNS[number]]
-    if not beside:
-        return selected
-    return min(
-        beside,
-        key=lambda other: (not _are_linked(drawing, selected, other), abs(rows[other] - rows[selected])),
-    )
-
-
-def _are_linked(drawing: GraphDrawing, one: GraphElement, other: GraphElement) -> bool:
-    node, item = (other, one) if one.column == "item" else (one, other)
-    return GraphLink(node.name, item.name, is_sender=node.column == "sender") in drawing.routes
-
-
-FRAMES_PER_LEG: Final = 6
-"""Frames that a dot takes from a node to a topic, and from there to the next node."""
-
-MAX_DOTS: Final = 16
-"""Dots that are under way at once; of more flows than that some have to wait."""
-
-
-@dataclass(frozen=True, slots=True)
-class _MovingDot:
-    flow: MessageFlow
-    legs: tuple[tuple[GraphLink, ...], tuple[GraphLink, ...]]
-    """First one line, or none where the sender's is not drawn, then all that lead on."""
-    is_response: bool
-    """An answer: from the server to the client."""
-    frame: int = 0
-
-    @property
-    def links(self) -> tuple[GraphLink, ...]:
-        return self.legs[self.frame // FRAMES_PER_LEG]
-
-
-class MessageAnimation:
-    """The moving dots. Call ``advance`` at a steady rate while it ``is_active`` or message counts change."""
-
-    def __init__(self) -> None:
-        self._counts: dict[MessageFlow, int] | None = None
-        self._waiting: dict[MessageFlow, None] = {}
-        self._dots: list[_MovingDot] = []
-
-    @property
-    def is_active(self) -> bool:
-        return bool(self._dots or self._waiting)
-
-    def update_counts(self, flow_stats: Mapping[MessageFlow, FlowStats]) -> None:
-        """Updates the message counts; those of the first call are the baseline."""
-        counts = {flow: heard.count for flow, heard in flow_stats.items()}
-        if self._counts is not None:
-            news = (flow for flow, number in counts.items() if number != self._counts.get(flow))
-            self._waiting |= dict.fromkeys(news)
-        self._counts = counts
-
-    def advance(self, graph: GraphData) -> None:
-        """Moves each dot on, and lets new ones leave where the line is free."""
-        moved = (replace(dot, frame=dot.frame + 1) for dot in self._dots)
-        self._dots = [dot for dot in moved if dot.frame < 2 * FRAMES_PER_LEG and dot.links]
-        items = {(item.name, item.is_service): item for item in graph.items}
-        departing = {dot.flow for dot in self._dots if dot.frame < FRAMES_PER_LEG}
-        waiting, self._waiting = self._waiting, {}
-        for flow in waiting:
-            item = items.get((flow.name, flow.is_service))
-            if item is None:
-                continue
-            if flow in departing or len(self._dots) >= MAX_DOTS:
-                self._waiting[flow] = None
-            elif (dot := _new_dot(flow, item)) is not None:
-                self._dots.append(dot)
-
-    def cells(self, drawing: GraphDrawing) -> frozenset[GraphCell]:
-        """Returns the cells of the dots."""
-        return frozenset(
-            cell
-            for dot in self._dots
-            for link in dot.links
-            if (cell := _cell_of(dot, link, drawing)) is not None
-        )
-
-
-def _new_dot(flow: MessageFlow, item: GraphItem) -> _MovingDot | None:
-    """Returns a dot for a new message; None if its sender is no longer linked."""
-    if flow.response_to is not None:
-        if flow.node not in item.receivers or flow.response_to not in item.senders:
-            return None
-        first, then = (
-            GraphLink(flow.node, item.label, is_sender=False),
-            GraphLink(flow.response_to, item.label, is_sender=True),
-        )
-        return _MovingDot(flow, ((first,), (then,)), is_response=True)
-    if flow.node not in item.senders:
-        return None
-    heard = tuple(
-        GraphLink(node, item.label, is_sender=False)
-        for node in item.receivers
-        if (flow.node, node) not in item.undelivered
-    )
-    return _MovingDot(flow, ((GraphLink(flow.node, item.label, is_sender=True),), heard), is_response=False)
-
-
-def _cell_of(dot: _MovingDot, link: GraphLink, drawing: GraphDrawing) -> GraphCell | None:
-    if link not in drawing.routes:  # it has left meanwhile
-        return None
-    cells = drawing.link_cells(link)
-    position = (2 * (dot.frame % FRAMES_PER_LEG) + 1) * len(cells) // (2 * FRAMES_PER_LEG)
-    return cells[-1 - position if dot.is_response else position]

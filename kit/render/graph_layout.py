@@ -1,195 +1,12 @@
-"""The data of a graph drawing, filtered, and its layout: senders on the left, items in the middle, receivers on the right."""
+"""The layout of a graph drawing: senders on the left, items in the middle, receivers on the right."""
 
 from __future__ import annotations
 
-import json
-import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
-from typing import Any, Final, NamedTuple
 
-from kit.msg.conversion import to_dict
-from kit.msg.message import Message
-from kit.plain_text import wrap
-from kit.ros.graph.snapshot import GraphState, ServiceState, TopicState
-
-
-@dataclass(frozen=True, slots=True)
-class GraphItem:
-    """A topic, from publishers to subscriptions, or a service, from clients to servers."""
-
-    label: str
-    """Its name; a service's ends with ``()``, so that no two items have the same."""
-    name: str
-    senders: tuple[str, ...]
-    receivers: tuple[str, ...]
-    """Full names of nodes."""
-    undelivered: frozenset[tuple[str, str]] = frozenset()
-    """Sender and receiver between whom nothing is delivered."""
-
-    @property
-    def is_service(self) -> bool:
-        return self.label != self.name
-
-
-@dataclass(frozen=True, slots=True)
-class GraphData:
-    """Nodes and items to draw, and the number left out."""
-
-    nodes: tuple[str, ...]
-    items: tuple[GraphItem, ...]
-    hidden_count: int = 0
-    """Topics and services left out as plumbing, or because they are unused; not those that the filter removed."""
-
-    def items_sent_by(self, node: str) -> tuple[GraphItem, ...]:
-        return tuple(item for item in self.items if node in item.senders)
-
-    def items_received_by(self, node: str) -> tuple[GraphItem, ...]:
-        return tuple(item for item in self.items if node in item.receivers)
-
-
-def build_graph_data(state: GraphState, *, show_all: bool = False, name_filter: str = "") -> GraphData:
-    """Collects the nodes and items to draw. ``show_all``: also ROS's own (parameter services,
-    ``/rosout``, ``/tf``) and services without clients. ``name_filter``: only what has this text in its name, and
-    whatever is joined to that."""
-    items = [_topic_item(topic) for topic in state.topics if show_all or not topic.is_infrastructure]
-    items += [_service_item(service) for service in state.services if show_all or _is_used(service)]
-    hidden = len(state.topics) + len(state.services) - len(items)
-    needle = name_filter.casefold()
-    shown = tuple(item for item in items if any(needle in name.casefold() for name in _names(item)))
-    linked_nodes = {node for item in shown for node in (*item.senders, *item.receivers)}
-    nodes = tuple(node for node in state.nodes if node in linked_nodes or needle in node.casefold())
-    return GraphData(nodes, shown, hidden)
-
-
-def _is_used(service: ServiceState) -> bool:
-    return bool(service.clients) and not service.is_infrastructure
-
-
-def _names(item: GraphItem) -> Iterator[str]:
-    yield item.label
-    yield from item.senders
-    yield from item.receivers
-
-
-def _topic_item(topic: TopicState) -> GraphItem:
-    return GraphItem(
-        topic.name,
-        topic.name,
-        tuple(dict.fromkeys(end.node for end in topic.publishers)),
-        tuple(dict.fromkeys(end.node for end in topic.subscriptions)),
-        frozenset((mismatch.publisher, mismatch.subscription) for mismatch in topic.mismatches),
-    )
-
-
-def _service_item(service: ServiceState) -> GraphItem:
-    return GraphItem(f"{service.name}()", service.name, service.clients, service.servers)
-
-
-INDENT: Final = "  "
-MAX_NUMBER_ROWS: Final = 4
-
-_PLAIN: Final = re.compile(r"[^\W\d_][\w ./-]*")
-_RESERVED_WORDS: Final = frozenset({"true", "false", "yes", "no", "on", "off", "null", "y", "n"})
-"""Words that YAML does not read as text."""
-
-
-class MessageRow(NamedTuple):
-    """One row of a message as text."""
-
-    path: str
-    """Of the field, such as ``pose.position.x`` or ``poses[0].x``; empty on a row that is no single value or list."""
-    text: str
-
-
-def message_rows(message: Message, width: int, *, compact: bool = False) -> list[str]:
-    """Rows of at most ``width`` characters. ``compact``: what fits on one row stands on one, in braces.
-
-    Long lists of numbers are cut off after a few rows, with their length.
-    """
-    return [row.text for row in message_field_rows(message, width, compact=compact)]
-
-
-def message_field_rows(message: Message, width: int, *, compact: bool = False) -> list[MessageRow]:
-    """The rows of ``message_rows``, each with the field that it shows."""
-    return [
-        MessageRow(path, text[:width]) for path, text in _field_rows(to_dict(message), width, "", compact, "")
-    ]
-
-
-def _field_rows(
-    data: Mapping[str, Any], width: int, indent: str, compact: bool, prefix: str
-) -> Iterator[MessageRow]:
-    if not data:
-        yield MessageRow("", f"{indent}{{}}")
-    for name, value in data.items():
-        yield from _value_rows(f"{indent}{name}:", value, width, indent, compact, f"{prefix}{name}")
-
-
-def _value_rows(
-    head: str, value: Any, width: int, indent: str, compact: bool, path: str
-) -> Iterator[MessageRow]:
-    if isinstance(value, Mapping):
-        line = f"{head} {_inline(value)}"
-        if compact and len(line) <= width:
-            yield MessageRow("", line)
-        else:
-            yield MessageRow("", head)
-            yield from _field_rows(value, width, indent + INDENT, compact, f"{path}.")
-    elif isinstance(value, list) and value and isinstance(value[0], Mapping):
-        yield MessageRow("", head)
-        for number, entry in enumerate(value):
-            first, *rest = _field_rows(entry, width, indent + INDENT, compact, f"{path}[{number}].")
-            yield first._replace(text=f"{indent}- {first.text.lstrip()}")
-            yield from rest
-    elif isinstance(value, list):
-        yield from (MessageRow(path, text) for text in _numbers(head, value, width, indent))
-    else:
-        yield MessageRow(path, f"{head} {_scalar(value)}")
-
-
-def _numbers(head: str, values: list[Any], width: int, indent: str) -> Iterator[str]:
-    text = f"{head} {_inline(values)}"
-    blanks = " " * (len(text) - len(text.lstrip()))
-    rows = wrap(text, width, blanks, indent + INDENT)
-    if len(rows) > MAX_NUMBER_ROWS:
-        note = f" ... {len(values)} in all]"
-        rows = rows[:MAX_NUMBER_ROWS]
-        rows[-1] = rows[-1][: width - len(note)].rpartition(",")[0] + "," + note
-    yield from rows
-
-
-def _inline(value: Any) -> str:
-    if isinstance(value, Mapping):
-        return f"{{{', '.join(f'{name}: {_inline(entry)}' for name, entry in value.items())}}}"
-    if isinstance(value, list):
-        return f"[{', '.join(_inline(entry) for entry in value)}]"
-    return _scalar(value)
-
-
-def _scalar(value: Any) -> str:
-    """A number or a text as YAML has it; a float in no more than six digits after the point."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, float):
-        return _float(value)
-    return _text(value) if isinstance(value, str) else str(value)
-
-
-def _float(value: float) -> str:
-    if value != value or value in (float("inf"), float("-inf")):
-        return ".nan" if value != value else ".inf" if value > 0 else "-.inf"
-    short = repr(round(value, 6))
-    return short if float(short) or not value else repr(value)
-
-
-def _text(value: str) -> str:
-    """Quotes a text unless it can only be a text."""
-    if _PLAIN.fullmatch(value) and value.lower() not in _RESERVED_WORDS:
-        return value
-    return json.dumps(value, ensure_ascii=False) if value else "''"
-
+from kit.render.graph_data import GraphData, GraphItem
 
 RowNumbers = Mapping[str, int]
 
@@ -236,9 +53,6 @@ def arrange_graph(graph: GraphData, before: GraphLayout | None = None) -> GraphL
         LayoutSide(senders, _assign_lanes(sent, rows, senders, before.senders.lanes)),
         LayoutSide(receivers, _assign_lanes(received, rows, receivers, before.receivers.lanes)),
     )
-
-
-# Rows of topics and services
 
 
 def _initial_layout(
@@ -354,9 +168,6 @@ def _nearest_free_row(row: int, taken: set[int]) -> int:
     return next(r for step in count() for r in (row + step, row - step) if r >= 0 and r not in taken)
 
 
-# Rows of nodes
-
-
 def _assign_rows(used: Mapping[str, Sequence[GraphItem]], rows: RowNumbers, before: RowNumbers) -> RowNumbers:
     """Assigns a row to each node, by the items it uses (rules 1 and 2)."""
     labels = {row: label for label, row in rows.items()}
@@ -419,9 +230,6 @@ def _is_reachable(pairs: Sequence[tuple[str, str]], start: str, end: str) -> boo
                 seen.add(second)
                 frontier.append(second)
     return end in seen
-
-
-# Lanes
 
 
 def _assign_lanes(

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import threading
 from bisect import bisect_right
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from kit.msg.geometry_msgs import Quaternion, Transform, TransformStamped, Vector3
 from kit.msg.tf2_msgs import TFMessage
 from kit.ros.execution.callback_groups import ReentrantCallbackGroup
+from kit.ros.execution.context import get_default_context
+from kit.ros.execution.executors import ExternalShutdownException, SingleThreadedExecutor
 from kit.ros.execution.task import Future
 from kit.ros.node.qos import DurabilityPolicy, QoSProfile
 from kit.ros.node.time import S_TO_NS, ClockType, Duration, Time
@@ -16,6 +20,7 @@ from kit.ros.rotations import quaternion_inverse, quaternion_multiply, quaternio
 from kit.ros.tf_conversion import BufferInterface
 
 if TYPE_CHECKING:
+    from kit.ros.graph.graph import Graph
     from kit.ros.node.node import Node
 
 _DYNAMIC = QoSProfile(depth=100)
@@ -147,6 +152,10 @@ class Buffer(BufferInterface):
         self._keep_ns = (cache_time or Duration(seconds=10)).nanoseconds
         self._node = node
         self._frames: dict[str, _Frame] = {}
+        self._lock = threading.Lock()
+        """Held while frames are changed or looked up: the thread of a listener may add some meanwhile."""
+        self._waited_in: Graph | None = None
+        """The graph in which other threads may wait for transforms."""
         self._awaited: list[tuple[Future[bool], Callable[[], bool]]] = []
 
     def set_transform(self, transform: TransformStamped, authority: str) -> None:
@@ -264,11 +273,16 @@ class Buffer(BufferInterface):
             raise InvalidArgumentException(
                 f"a transform from '{parent}' to '{child}': two different names are needed"
             )
-        frame = self._frames.get(child)
-        if frame is None or frame.parent != parent or frame.is_static != is_static:
-            frame = self._frames[child] = _Frame(parent, is_static=is_static)
         stamp = Time.from_msg(transform.header.stamp).nanoseconds
-        frame.add(stamp, Rigid.from_msg(transform.transform), self._keep_ns)
+        with self._lock:
+            frame = self._frames.get(child)
+            if frame is None or frame.parent != parent or frame.is_static != is_static:
+                frame = self._frames[child] = _Frame(parent, is_static=is_static)
+            frame.add(stamp, Rigid.from_msg(transform.transform), self._keep_ns)
+        if (
+            self._waited_in is not None
+        ):  # without the lock: who waits looks for the transform with the graph's
+            self._waited_in.notify()
         if self._awaited:
             self._finish_awaited()
 
@@ -280,16 +294,19 @@ class Buffer(BufferInterface):
             future.set_result(True)
 
     def _wait_for(self, target: str, source: str, time: Time, timeout: Duration) -> None:
-        if self._node is None:
-            return
-        graph = self._node.handle.graph
+        graph = get_default_context().graph if self._node is None else self._node.handle.graph
         work = graph.thread_state.work
         if work is not None and work[0].is_exclusive:
             return
         until = graph.now_ns + timeout.nanoseconds
+        self._waited_in = graph
         graph.wait(lambda: self.can_transform(target, source, time) is True, until, what="lookup_transform()")
 
     def _lookup(self, target: str, source: str, time: Time) -> TransformStamped:
+        with self._lock:
+            return self._combined(target, source, time)
+
+    def _combined(self, target: str, source: str, time: Time) -> TransformStamped:
         up, down = self._paths(target, source)
         wanted = time.nanoseconds
         if wanted == 0:
@@ -367,9 +384,22 @@ class TransformListener:
             static if static_qos is None else static_qos,
             callback_group=self.group,
         )
+        if spin_thread:
+            self.executor = SingleThreadedExecutor(context=node.context)
+            self.dedicated_listener_thread = threading.Thread(target=self._spin, name="tf-listener")
+            self.dedicated_listener_thread.start()
+
+    def _spin(self) -> None:
+        """Spins the node, so that another thread may wait for transforms, until the context is shut down."""
+        with suppress(ExternalShutdownException):
+            self.executor.add_node(self.node)
+            self.executor.spin()
+            self.executor.remove_node(self.node)
 
     def unregister(self) -> None:
-        """Destroys the subscriptions."""
+        """Stops spinning and destroys the subscriptions."""
+        if hasattr(self, "executor"):
+            self.executor.shutdown()
         self.node.destroy_subscription(self.tf_sub)
         self.node.destroy_subscription(self.tf_static_sub)
 

@@ -125,9 +125,9 @@ class LaserMapper(Observer):
 
 def world_bounds(world: World) -> SceneBounds:
     """The rectangle around a world's walls; where it has none, 10 m around its models."""
-    walls = [layer.walls.segments for layer in world.layers if layer.walls is not None]
-    if sum(map(len, walls)):
-        points = np.concatenate(walls).reshape(-1, 2)
+    walls = world.wall_segments
+    if len(walls):
+        points = walls.reshape(-1, 2)
         around = 0.0
     else:
         points, around = np.array([model.pose[:2] for model in world.models] or [(0.0, 0.0)]), 10.0

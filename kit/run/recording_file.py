@@ -61,8 +61,13 @@ class RecordingFile:
         self.close()
 
     def begin(self, first: Recording) -> None:
-        """Starts anew: what was recorded before is given up."""
+        """Starts anew: what was recorded before is given up, unless it is complete."""
         self._written, self._failure = NOTHING, None
+        if self._part is None and not is_special(self.file):
+            try:
+                self._part = lock_part(part_path(self.file), self.file)
+            except OSError as error:  # the run goes on, and is written at its end
+                self._failure = error
         if self._part is not None:
             self._part.truncate(0)
             self._write(recording_header(first))
@@ -102,7 +107,8 @@ class RecordingFile:
             with suppress(OSError):
                 if not self._written.ticks:
                     part_path(self.file).unlink()
-            self._part.close()
+            with suppress(OSError):  # of what could not be written, and was said
+                self._part.close()
             self._part = None
 
     def _write(self, line: dict[str, Any]) -> None:

@@ -64,6 +64,8 @@ class Runner:
         self._publishers: dict[str, Callable[[Any], None]] = {}
         WorldServices(self._node, self, HIDDEN_NAMESPACE if is_hidden else "")
         self._connect_devices()
+        for remark in simulation.world.remarks:
+            graph.log.warning(WORLD_NODE_NAME, str(remark))
 
     @property
     def node(self) -> Node:

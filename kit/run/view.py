@@ -14,9 +14,10 @@ from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.msg.sensor_msgs import LaserScan
 from kit.plain_text import format_clock
-from kit.render.scene import Disc, Scene, SceneBody, Trail
+from kit.render.scene import Disc, Scene, Trail
 from kit.ros.log import LogRecord
 from kit.run.metrics import DriveMetrics
+from kit.run.scene_bodies import scene_bodies
 from kit.sim.state import BodyState, FootprintOutline, LatestScan, SimulationState
 
 if TYPE_CHECKING:
@@ -79,12 +80,7 @@ class ViewBuilder:
     def __init__(self, session: Session, *, messages: int = 8) -> None:
         self._session = session
         self._messages = messages
-        self._walls: FloatArray = np.concatenate(
-            [
-                np.empty((0, 4)),
-                *(layer.walls.segments for layer in session.scenario.world.layers if layer.walls),
-            ]
-        )
+        self._walls = session.scenario.world.wall_segments
         ends = (
             ()
             if session.scenario.robot is None
@@ -132,11 +128,13 @@ class ViewBuilder:
         )
 
     def _scene(self, snapshot: _Snapshot) -> Scene:
-        case = self._session.scenario.case
+        case, drivers = self._session.scenario.case, self._session.scenario.drivers
+        models = dict.fromkeys((*drivers, *(outline.model for outline in snapshot.outlines)))  # drivers first
+        poses = {model: snapshot.state.pose(model) for model in models}
         return Scene(
             walls=self._walls,
             bodies=(
-                *_bodies(snapshot, self._session.scenario.drivers),
+                *scene_bodies(snapshot.outlines, poses, drivers),
                 *(body for addition in self._session.additions for body in addition.bodies),
             ),
             strokes=tuple(stroke for addition in self._session.additions for stroke in addition.strokes),
@@ -150,25 +148,6 @@ class ViewBuilder:
                 [point for contact in snapshot.state.contacts for point in contact.points]
             ).reshape(-1, 2),
         )
-
-
-def _bodies(snapshot: _Snapshot, drivers: tuple[str, ...]) -> tuple[SceneBody, ...]:
-    """One body to draw per model: its footprints, and the pose of its first body."""
-    shapes: dict[str, list[FootprintOutline]] = {}
-    for outline in snapshot.outlines:
-        shapes.setdefault(outline.model, []).append(outline)
-    order = (*drivers, *(model for model in shapes if model not in drivers))
-    return tuple(
-        SceneBody(
-            model,
-            snapshot.state.pose(model),
-            tuple(np.array(outline.points) for outline in shapes[model] if not outline.radius),
-            tuple(Disc(*outline.points[0], outline.radius) for outline in shapes[model] if outline.radius),
-            is_robot=model in drivers,
-        )
-        for model in order
-        if model in shapes
-    )
 
 
 def _beams(scan: LatestScan) -> FloatArray:

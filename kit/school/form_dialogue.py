@@ -11,10 +11,11 @@ from kit.dialogue.dialogue import Action, Dialogue, Refused, help_action, leave_
 from kit.dialogue.effects import Effect, Leave, Type
 from kit.document.blocks import Block, Choice, Choices, Scale, Text, Tone
 from kit.plain_text import counted, printable_text
+from kit.school.form_answers import InvalidAnswer, parse_answer
 from kit.school.form_session import PHASE_LABELS, FormSession
 from kit.school.lessons.glossary import glossary_action
 from kit.school.progress import ProgressError
-from kit.school.survey import AnswerShape, AnswerValue, InvalidAnswer, SurveyQuestion, parse_answer
+from kit.school.survey import AnswerShape, AnswerValue, SurveyQuestion
 
 KEPT: Final = (
     ("what is kept", "an answer, when you go on, back or leave"),

@@ -7,17 +7,10 @@ from datetime import datetime
 from types import MappingProxyType
 from typing import Final
 
+from kit.school.form_answers import FormAnswers, asked_questions, open_questions
 from kit.school.progress import EventKind, ProgressJournal
-from kit.school.quiz.schedule import AnswerOccasion, answers_from_events
-from kit.school.survey import (
-    AnswerValue,
-    FormAnswers,
-    SurveyForm,
-    SurveyPhase,
-    SurveyQuestion,
-    asked_questions,
-    open_questions,
-)
+from kit.school.quiz.answers import AnswerOccasion, answers_from_events
+from kit.school.survey import AnswerValue, SurveyForm, SurveyPhase, SurveyQuestion
 
 PHASE_LABELS: Final = MappingProxyType(
     {

@@ -11,6 +11,7 @@ import json
 import math
 import os
 import sqlite3
+import threading
 import uuid
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, suppress
@@ -20,14 +21,15 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, Final, Self
 
-from kit.plain_files import read_plain_file
 from kit.workspace import write_atomically
 
 FILE: Final = "progress.db"
 FORMAT: Final = "robot-learning-kit progress"
 VERSION: Final = 1
+
 LOCK_TIMEOUT_S: Final = 10.0
 """Seconds to wait for another process of the same student that is writing."""
+
 MAX_CONTENT_LENGTH: Final = 64 * 1024
 """Characters of one event's content: a student's answer fits, a file that was read by mistake does not."""
 
@@ -41,8 +43,6 @@ CREATE TABLE IF NOT EXISTS events (
     content TEXT NOT NULL
 )
 """
-
-
 _ALL: Final = "SELECT uid, at, kind, subject, content FROM events"
 _Row = tuple[str, str, str, str, str]
 
@@ -110,6 +110,8 @@ class ProgressJournal:
 
     def __init__(self, folder: Path) -> None:
         self._file = folder / FILE
+        self._using = threading.Lock()
+        """Held while the connection is used: SQLite crashes if it is closed meanwhile, and a transaction is one thread's."""
         self.notice = ""
         """Message for the student about a damaged file found at opening; else empty."""
         try:
@@ -127,7 +129,9 @@ class ProgressJournal:
         self.close()
 
     def close(self) -> None:
-        self._connection.close()
+        """Closes the file; waits for the threads that use it. What they do afterwards raises ProgressError."""
+        with self._using:
+            self._connection.close()
 
     def add(
         self,
@@ -155,9 +159,10 @@ class ProgressJournal:
         conditions = " AND ".join(f"{column} = ?" for column, value in filters if value is not None)
         query = f"{_ALL} WHERE {conditions}" if conditions else _ALL
         try:
-            rows = self._connection.execute(
-                f"{query} ORDER BY at, number", [str(value) for _, value in filters if value is not None]
-            )
+            with self._using:
+                rows = self._connection.execute(
+                    f"{query} ORDER BY at, number", [str(value) for _, value in filters if value is not None]
+                ).fetchall()
             return [event for row in rows if (event := _event_from_row(row)) is not None]
         except sqlite3.Error as error:
             raise self._unusable_error(error) from None
@@ -199,13 +204,14 @@ class ProgressJournal:
                 f"{too_long[3]}: {len(too_long[4])} characters are too many; {MAX_CONTENT_LENGTH} fit."
             )
         try:
-            try:
-                return _insert_rows(self._connection, rows)
-            except sqlite3.OperationalError:
-                if not self._has_moved():
-                    raise
-                self._restore_file()
-                return _insert_rows(self._connection, rows)
+            with self._using:
+                try:
+                    return _insert_rows(self._connection, rows)
+                except sqlite3.OperationalError:
+                    if not self._has_moved():
+                        raise
+                    self._restore_file()
+                    return _insert_rows(self._connection, rows)
         except sqlite3.Error as error:
             raise self._unusable_error(error) from None
 
@@ -277,7 +283,7 @@ def _open_connection(file: Path) -> sqlite3.Connection:
     with suppress(OSError):  # SQLite says what is wrong
         os.close(os.open(file, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600))
         file.chmod(0o600)
-    # Several threads of a screen may use it; SQLite serialises them itself.
+    # Several threads of a screen may use it, one at a time.
     connection = sqlite3.connect(file, timeout=LOCK_TIMEOUT_S, check_same_thread=False)
     try:
         # Not the write-ahead log: it needs shared memory, which network homes do not have.
@@ -318,57 +324,6 @@ def _keep_as(file: Path, backup: Path) -> None:
     for ending in ("-journal", "-wal", "-shm"):
         with suppress(FileNotFoundError):
             os.replace(f"{file}{ending}", f"{backup}{ending}")  # noqa: PTH105 - the names are text with an ending
-
-
-MAX_EXPORT_BYTES: Final = 5_000_000
-"""Bytes of an exported file: many times what a student does in a year; reading takes ten times as much memory."""
-
-
-def read_export(file: Path) -> list[ProgressEvent]:
-    """Reads the events of an exported file. Raises ProgressError if it is malformed."""
-    try:
-        content = json.loads(read_plain_file(file, MAX_EXPORT_BYTES).decode())
-    except OSError as error:
-        raise ProgressError(f"{file}: cannot be read ({error.strerror}).") from None
-    except (ValueError, RecursionError) as error:
-        raise ProgressError(f"{file}: is not an export of progress, or is cut off ({error}).") from None
-    if (
-        not isinstance(content, dict)
-        or content.get("format") != FORMAT
-        or not isinstance(content.get("events"), list)
-    ):
-        raise ProgressError(f"{file}: is not an export of progress; `kit progress export FILE` makes one.")
-    if content.get("version") != VERSION:
-        raise ProgressError(
-            f"{file}: is of version {content.get('version')}; this kit reads version {VERSION}."
-        )
-    return [_event_from_export(each, index, file) for index, each in enumerate(content["events"], 1)]
-
-
-def _event_from_export(content: Any, index: int, file: Path) -> ProgressEvent:
-    try:
-        event = ProgressEvent(
-            str(content["uid"]),
-            _to_utc_text(str(content["at"])),
-            EventKind(content["kind"]),
-            str(content["subject"]),
-            dict(content["content"]),
-        )
-    except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise ProgressError(f"{file}: entry {index} cannot be understood ({error!r}).") from None
-    return event
-
-
-def _to_utc_text(at: str) -> str:
-    """Converts a time to the journal's format, in which texts sort like times."""
-    time = datetime.fromisoformat(at)
-    if time.tzinfo is None:
-        raise ValueError("a time without its zone")
-    if (
-        time.year not in YEARS
-    ):  # what is computed from it, such as when a question is due again, must be a time too
-        raise ValueError("a time of another century")
-    return time.astimezone(UTC).isoformat(timespec="microseconds")
 
 
 def _row_from_event(event: ProgressEvent) -> _Row:

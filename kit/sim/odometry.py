@@ -16,18 +16,14 @@ from kit.msg import geometry_msgs, nav_msgs
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
 from kit.sim.bodies import BodyTwist, PhysicalBody
-from kit.sim.plugin import (
+from kit.sim.plugin import OutgoingMessage, PluginContext, PluginPublisher
+from kit.sim.plugin_clock import RandomStream, UpdateTimer, stream_key
+from kit.sim.plugin_messages import (
     TF_TOPIC,
-    OutgoingMessage,
-    PluginContext,
-    PluginPublisher,
-    RandomStream,
-    UpdateTimer,
     pose_message,
     read_rate,
     read_topic,
     read_variances,
-    stream_key,
     tf_message,
     transform_message,
     twist_message,
@@ -115,6 +111,26 @@ class Odometry:
 
     Poses are those before the step, twists those just commanded, in the body's own frame: Flatland's ROS 2 port
     gives them in the world frame, against the definition of nav_msgs/Odometry.
+
+    ===================== =================================================================================
+    odom_pub              topic of the odometry, a nav_msgs/Odometry
+    ground_truth_pub      topic of the same without noise
+    twist_pub             topic of the odometry's twist, a geometry_msgs/TwistStamped
+    odom_frame_id         frame of the odometry
+    ground_truth_frame_id frame of the ground truth; by default that of the odometry
+    pub_rate              reports per second [Hz]; .inf: at every step
+    enable_odom_pub       whether to publish odometry and ground truth
+    enable_twist_pub      whether to publish the twist
+    enable_odom_tf_pub    whether to publish the odometry's transform on /tf
+    odom_pose_noise       variances of x, y [m^2] and yaw [rad^2]
+    odom_twist_noise      variances of forward, lateral [m^2/s^2] and turn [rad^2/s^2]
+    odom_pose_covariance  6 x 6, row by row, in the messages; by default the noise's
+    odom_twist_covariance likewise
+    odometry              ``ideal``, or ``encoders`` for an estimate that drifts
+    wheel_separation      distance of the two wheels with encoders [m]
+    wheel_error           standard deviation of a wheel's radius, as a fraction
+    wheel_slip            standard deviation of a wheel's measured distance, per square root of a metre [m]
+    ===================== =================================================================================
     """
 
     def __init__(

@@ -19,11 +19,10 @@ from kit.sim.plugin import (
     PluginContext,
     PluginParams,
     TopicEndpoint,
-    WorldClock,
     WorldPluginContext,
     WorldPluginParams,
-    stream_key,
 )
+from kit.sim.plugin_clock import WorldClock, stream_key
 from kit.sim.plugins import plugin_readers, world_plugin_readers
 from kit.sim.state import BodyState, FootprintOutline, LatestScan, SimulationState
 from kit.world import loading

@@ -24,7 +24,7 @@ from kit.document.blocks import (
     Text,
 )
 from kit.plain_text import join_with_and, quoted
-from kit.school.quiz.schedule import AnswerOutcome
+from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.chapters import people, quiz, relations
 from kit.school.report.chapters.context import ReportContext
 from kit.school.report.class_data import ClassData

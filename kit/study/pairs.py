@@ -185,8 +185,7 @@ class _PairObserver(Observer):
         assert scenario.case is not None
         self._metrics = MetricsRecorder.for_scenario(scenario)
         self._names = scenario.partners
-        walls = [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
-        self._walls = np.concatenate([np.empty((0, 4)), *walls])
+        self._walls = scenario.world.wall_segments
         self._poses: list[list[Pose]] = []
         self._sides: list[tuple[bool, bool, float]] = []
         self._nearest = math.inf

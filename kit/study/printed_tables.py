@@ -26,7 +26,9 @@ WITH_TARGET: Final = "target"
 """Stands for the group of agents that are trained on all cases and told distance and rotation to the target (section 3.2.2)."""
 FIGURE: Final = "figure-"
 """Begins the number of a figure's own training."""
-SESSION_PLOTS: Final = ("outcomes", "reward", "adjacency")
+SESSION_PLOTS: Final = ("outcomes", "reward", "adjacency", "values")
+SOURCES: Final = ("code", "text")
+"""Where the settings of a training come from: the dissertation's code, or its text."""
 SUMMARY_ROWS: Final = ("mean", "SD")
 _GROUP_LETTERS: Final[Mapping[str, float]] = {"B": 0.0, "E": 1.0}
 
@@ -73,6 +75,12 @@ class PrintedTable:
     """The command whose results stand against it; empty if there is none."""
     missing: str = ""
     """What that command does not give."""
+    seeds: int = 0
+    """How many trainings by its settings are planned, from the seeds 0, 1, ...; 0: no plan."""
+    settings_of: str = ""
+    """One of ``SOURCES``."""
+    prints_best_test: bool = False
+    """Whether the print is the best test of one training: then seeds stand against it by their best tests."""
 
     def cell(self, row: str, column: str) -> float:
         """KeyError or ValueError if there is none."""
@@ -209,6 +217,17 @@ def printed_table(number: str) -> PrintedTable:
     raise LookupError(f"There is no Table {number} among the printed ones.")
 
 
+def parts_of(number: str) -> tuple[PrintedTable, ...]:
+    """The tables whose agents are some of those of another one.
+
+    >>> [table.id for table in parts_of("4.6")]
+    ['4.4', '4.5']
+    """
+    return tuple(
+        table for chapter in study_chapters() for table in chapter.tables if table.results_of == number
+    )
+
+
 def path_figures(table: str) -> tuple[PrintedFigure, ...]:
     """The pictures of ways that agents or controllers of a table drove.
 
@@ -302,6 +321,9 @@ def read_printed_table(section: Section, *, allow_empty: bool = False) -> Printe
         section.text("steps_table", ""),
         section.text("run", ""),
         section.text("missing", ""),
+        section.integer("seeds", 0, minimum=0),
+        section.text("settings_of", "", choices=SOURCES) if section.has("settings_of") else "",
+        section.flag("prints_best_test", False),
     )
     section.finish()
     return made

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from statistics import fmean, pstdev, stdev
@@ -12,6 +12,10 @@ from typing import Any, Final, Literal, NamedTuple
 
 from kit.document.blocks import Cell, CellStyle, Column, Table
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
+from kit.learning.tasks.catalogue import find_task
+from kit.learning.training.algorithms import find_algorithm
+from kit.learning.training.presets import find_preset
+from kit.learning.training.runs import PresetName
 from kit.school.report.inference import t_quantile
 from kit.study.printed_tables import (
     ADJACENCY,
@@ -23,11 +27,19 @@ from kit.study.printed_tables import (
 )
 from kit.workspace import Workspace
 
-StudyVariant = Literal["seed", "kit"]
-"""Whose settings agents are trained by: the dissertation's, or the kit's own presets."""
-VARIANTS: Final[tuple[StudyVariant, ...]] = ("seed", "kit")
+StudyVariant = Literal["seed", "no-limit", "kit"]
+"""Whose settings agents are trained by: the dissertation's, the same without the limit of values, or the kit's own presets."""
+VARIANTS: Final[tuple[StudyVariant, ...]] = ("seed", "no-limit", "kit")
 CONTROLLERS: Final[Mapping[StudyVariant, str]] = {"seed": "fields", "kit": "abreast"}
 """Who drives where the dissertation has potential fields: its own controller, or the kit's planner."""
+VARIANT_NAMES: Final[Mapping[StudyVariant, str]] = {
+    "seed": "ours",
+    "no-limit": "no limit",
+    "kit": "kit",
+}
+"""The words of a table's rows: agents trained by the dissertation's settings, and by the kit's."""
+VARIANT_OPTIONS: Final[Mapping[StudyVariant, str]] = {"seed": "", "no-limit": " --no-limit", "kit": " --kit"}
+"""What follows ``kit study NUMBER --again``."""
 SHIPPED_FOLDER: Final = Path(__file__).with_name("results")
 """The logs that come with the kit."""
 
@@ -54,6 +66,16 @@ class RecordedSettings:
     """That made the log."""
     commit: str = ""
     """Commit of the kit; empty if it was installed from a package."""
+    changed: str = ""
+    """Settings of the algorithm that differ from the preset's, as ``--set`` takes them."""
+
+    @property
+    def most_steps(self) -> int:
+        """Most steps of each training."""
+        if self.steps is not None:
+            return self.steps
+        preset: PresetName = self.preset  # type: ignore[assignment]  # a log of another kit's: refused below
+        return find_preset(preset, find_algorithm(self.algorithm), find_task(self.task).preset).steps
 
 
 class TrainingSession(NamedTuple):
@@ -67,6 +89,22 @@ class TrainingSession(NamedTuple):
     """Mean sum over an episode."""
     adjacency: float | None
     """Mean share of steps side by side; None for one robot."""
+    value_max: float | None = None
+    """The largest value of the observations before the test; None where the learner has none."""
+
+    @property
+    def share(self) -> float:
+        """Of the episodes that reached the target."""
+        return self.reached / max(1, self.reached + self.collided + self.timed_out)
+
+
+class SideShare(NamedTuple):
+    """The share of an episode's steps in which two robots were side by side."""
+
+    mean: float
+    sd: float
+    """Sample standard deviation over the episodes; NaN if unknown."""
+    episodes: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +122,7 @@ class RecordedTest:
     reached: Mapping[str, int]
     """Episodes that reached the target, by case."""
     adjacency: Mapping[str, float]
-    """Share of steps in which two robots were side by side by their rays, by case. Empty for one robot."""
+    """Share of steps in which two robots were side by side by their rays, by case, over all episodes. Empty for one robot."""
     own_cases: tuple[str, ...] = ()
     """The names of the cases that it was trained on."""
     sessions: tuple[TrainingSession, ...] = ()
@@ -92,7 +130,40 @@ class RecordedTest:
     adjacency_sd: Mapping[str, float] = field(default_factory=dict)
     """Sample standard deviation of that share over the episodes, by case."""
     by_poses: Mapping[str, float] = field(default_factory=dict)
-    """Share of the time in which a controller's two robots were side by side by their poses, by case."""
+    """Share of the time in which a controller's two robots were side by side by their poses, by case, over all runs."""
+    reached_by_rays: Mapping[str, float] = field(default_factory=dict)
+    """The share by rays over the episodes that reached the target alone, by case."""
+    reached_by_rays_sd: Mapping[str, float] = field(default_factory=dict)
+    """Its sample standard deviation over those episodes."""
+    reached_by_poses: Mapping[str, float] = field(default_factory=dict)
+    """The share by poses over the episodes that reached the target alone, by case."""
+
+    @property
+    def best_session(self) -> TrainingSession | None:
+        """The test during training in which most episodes reached the target, the first of several; None without tests."""
+        return max(self.sessions, key=lambda session: session.share, default=None)
+
+    @property
+    def largest_value(self) -> float | None:
+        """Of all tests during training; None where the learner has no values."""
+        known = [session.value_max for session in self.sessions if session.value_max is not None]
+        return max(known, default=None)
+
+    def beside(self, case: str, measure: str) -> SideShare | None:
+        """How long two robots were side by side in the episodes of a case that reached the target, by a measure of adjacency.
+        None if none did, or if it was recorded of all episodes together and some of them did not."""
+        reached = self.reached.get(case, 0)
+        of_all = self.adjacency if measure == ADJACENCY else self.by_poses
+        of_reached = self.reached_by_rays if measure == ADJACENCY else self.reached_by_poses
+        if not reached:
+            return None
+        if case in of_reached:
+            sd = self.reached_by_rays_sd.get(case, math.nan) if measure == ADJACENCY else math.nan
+            return SideShare(of_reached[case], sd, reached)
+        if case in of_all and reached == self.episodes:
+            sd = self.adjacency_sd.get(case, math.nan) if measure == ADJACENCY else math.nan
+            return SideShare(of_all[case], sd, reached)
+        return None
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,6 +197,8 @@ class RecordedCell:
     interval: ConfidenceInterval | None
     """The 95 % interval over episodes: Wilson's of a share of successes, Student's of a mean adjacency; None for others."""
     measure: str = SUCCESS
+    episodes: int | None = None
+    """Of an adjacency: over how many episodes, all of which reached the target."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +226,12 @@ class RecordedResult:
         return sum(each.steps for each in self.tests) / seconds if seconds else None
 
     def cells(self, table: PrintedTable) -> dict[tuple[str, str], RecordedCell]:
-        """The numbers that stand against those of ``table``, by row and column: cases, and the rows mean and SD."""
+        """The numbers that stand against those of ``table``, by row and column: cases, and the rows mean and SD.
+
+        None do against the best test of one training: see ``TrainedSeeds``.
+        """
+        if table.prints_best_test:
+            return {}
         return self._case_cells(table) if table.cases else self._training_cells(table)
 
     def _case_cells(self, table: PrintedTable) -> dict[tuple[str, str], RecordedCell]:
@@ -163,7 +241,7 @@ class RecordedResult:
             tests = self.tests_of(group)
             own = {}
             for row, (_, case) in zip(table.rows, table.cases, strict=False):
-                if (cell := _pooled_cell(tests, measure, [case])) is not None:
+                if (cell := pooled_cell(tests, measure, [case])) is not None:
                     own[row] = cell
             if len(own) == len(table.cases):
                 own |= _mean_and_spread(list(own.values()))
@@ -180,7 +258,7 @@ class RecordedResult:
                 tests = self.tests_of(group) if group else ()
                 if table.seed_rows:
                     tests = tuple(each for each in tests if each.seed == number)
-                if (cell := _pooled_cell(tests, table.measures[place])) is not None:
+                if (cell := pooled_cell(tests, table.measures[place])) is not None:
                     own[row] = cell
             if table.seed_rows and own and len(own) == table.attempts:
                 own |= {"mean": _mean_and_spread(list(own.values()))["mean"]}
@@ -196,47 +274,85 @@ def _mean_and_spread(cells: list[RecordedCell]) -> dict[str, RecordedCell]:
     }
 
 
-ADJACENCY_MIN_SUCCESS: Final = 0.8
-"""The adjacency of an agent is told where it reached the target in this share of the episodes, which the dissertation trains
-to. Agents that crash a few steps after the start are side by side only because they began so."""
-
-
-def _pooled_cell(
-    tests: tuple[RecordedTest, ...], measure: str, cases: list[str] | None = None
+def pooled_cell(
+    tests: Sequence[RecordedTest], measure: str, cases: list[str] | None = None
 ) -> RecordedCell | None:
     """Returns the cell of all seeds together, on ``cases`` or those that each was trained on; None if it was not
-    measured, or is the adjacency of agents that rarely reached the target."""
+    measured, or is the adjacency of agents that never reached the target: those that crash a few steps after the start are side
+    by side only because they began so."""
     if measure == STEPS:
         return RecordedCell(fmean(each.steps for each in tests), None, measure) if tests else None
     pairs = [(each, case) for each in tests for case in (each.own_cases if cases is None else cases)]
-    if measure == ADJACENCY_BY_POSES:
-        shares = [test.by_poses[case] for test, case in pairs if case in test.by_poses]
-        return RecordedCell(fmean(shares), None, measure) if shares else None
+    if measure in (ADJACENCY, ADJACENCY_BY_POSES):
+        return _adjacency_cell([test.beside(case, measure) for test, case in pairs], measure)
     tested = [(test, case) for test, case in pairs if case in test.reached]
     episodes = sum(test.episodes for test, _ in tested)
     if not episodes:
         return None
-    reached = sum(test.reached[case] for test, case in tested)
-    if measure == ADJACENCY:
-        is_successful = reached / episodes >= ADJACENCY_MIN_SUCCESS
-        beside = [(test, case) for test, case in tested if case in test.adjacency]
-        return _adjacency_cell(beside) if is_successful else None
     assert measure == SUCCESS
+    reached = sum(test.reached[case] for test, case in tested)
     return RecordedCell(reached / episodes, wilson_interval(reached, episodes), measure)
 
 
-def _adjacency_cell(tested: list[tuple[RecordedTest, str]]) -> RecordedCell | None:
-    """The mean of cases and seeds; its interval where each tells how its episodes differ."""
-    if not tested:
+def _adjacency_cell(told: list[SideShare | None], measure: str) -> RecordedCell | None:
+    """The mean over the episodes of all cases and seeds that reached the target; its interval where each tells how its episodes
+    differ."""
+    known = [each for each in told if each is not None]
+    episodes = sum(each.episodes for each in known)
+    if not episodes:
         return None
-    mean = fmean(test.adjacency[case] for test, case in tested)
-    spreads = [(test.adjacency_sd.get(case, math.nan), test.episodes) for test, case in tested]
-    episodes = sum(count for _, count in spreads)
-    if any(math.isnan(sd) for sd, _ in spreads) or episodes <= len(spreads):
-        return RecordedCell(mean, None, ADJACENCY)
-    error = math.sqrt(sum(sd * sd / count for sd, count in spreads)) / len(spreads)
-    half = t_quantile(0.975, episodes - len(spreads)) * error
-    return RecordedCell(mean, ConfidenceInterval(max(0.0, mean - half), min(1.0, mean + half)), ADJACENCY)
+    mean = sum(each.mean * each.episodes for each in known) / episodes
+    if any(math.isnan(each.sd) for each in known) or episodes <= len(known):
+        return RecordedCell(mean, None, measure, episodes)
+    error = math.sqrt(sum(each.sd**2 * each.episodes for each in known)) / episodes
+    half = t_quantile(0.975, episodes - len(known)) * error
+    interval = ConfidenceInterval(max(0.0, mean - half), min(1.0, mean + half))
+    return RecordedCell(mean, interval, measure, episodes)
+
+
+ACCURACY_GOAL: Final = 0.8
+"""To this share of successes in a test the dissertation trains."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrainedSeeds:
+    """What trainings of one kind from several seeds came to."""
+
+    tests: tuple[RecordedTest, ...]
+    planned: int
+    """How many there are to be; at least as many as there are."""
+
+    @classmethod
+    def of(cls, table: PrintedTable, result: RecordedResult | None, group: str) -> TrainedSeeds:
+        """``result``: None where nothing has been recorded yet."""
+        tests = () if result is None else result.tests_of(group)
+        return cls(tests, max(len(tests), table.seeds))
+
+    @property
+    def reached(self) -> int:
+        """How many had a test of ``ACCURACY_GOAL`` or more."""
+        return sum(session.share >= ACCURACY_GOAL for session in self.best_sessions)
+
+    @property
+    def best_sessions(self) -> tuple[TrainingSession, ...]:
+        """The best test of each seed."""
+        return tuple(each.best_session for each in self.tests if each.best_session is not None)
+
+    @property
+    def steps_to_goal(self) -> tuple[int, ...]:
+        """After how many steps each seed that reached the goal did, in rising order."""
+        first = (
+            next((each.steps for each in test.sessions if each.share >= ACCURACY_GOAL), None)
+            for test in self.tests
+        )
+        return tuple(sorted(steps for steps in first if steps is not None))
+
+    @property
+    def largest_value(self) -> float | None:
+        """Of all seeds."""
+        return max(
+            (each.largest_value for each in self.tests if each.largest_value is not None), default=None
+        )
 
 
 def log_name(table: str, variant: StudyVariant = "seed") -> str:
@@ -312,6 +428,8 @@ def _read_line(file: Path, number: int, line: str) -> Event:
             *test.adjacency.values(),
             *test.adjacency_sd.values(),
             *test.by_poses.values(),
+            *test.reached_by_rays.values(),
+            *test.reached_by_poses.values(),
         ]
         if event != "tested" or not all(type(each) is int and each >= 0 for each in counts):
             raise ValueError("a count is wrong")
@@ -421,8 +539,8 @@ def spread_table(table: PrintedTable, result: RecordedResult, variant: StudyVari
         Column("in SD", CellStyle.TEXT),
         Column("between", CellStyle.TEXT),
     )
-    identity = f"table-{table.id.replace('.', '-')}-seeds" + ("-kit" if variant == "kit" else "")
-    title = f"Means over the cases, printed and by seed: {'kit' if variant == 'kit' else 'ours'}"
+    identity = f"table-{log_name(table.id, variant).replace('.', '-')}-means"
+    title = f"Means over the cases, printed and by seed: {VARIANT_NAMES[variant]}"
     return Table(identity, title, columns, tuple(rows), note=SPREAD_NOTE)
 
 

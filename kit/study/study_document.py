@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from itertools import zip_longest
 from pathlib import Path
@@ -20,8 +21,10 @@ from kit.document.blocks import (
     Table,
     Text,
 )
-from kit.document.files import document_to_markdown, table_to_markdown
+from kit.document.markdown import document_to_markdown, table_to_markdown
+from kit.learning.tasks.catalogue import find_task
 from kit.plain_text import suggestion
+from kit.study.author_agents import author_agents_table, read_author_agents
 from kit.study.evaluation import (
     EvaluationData,
     evaluation_chapters,
@@ -30,9 +33,12 @@ from kit.study.evaluation import (
     read_evaluation_data,
 )
 from kit.study.printed_tables import (
+    ADJACENCY,
+    ADJACENCY_BY_POSES,
     POTENTIAL_FIELDS,
     STEPS,
     SUCCESS,
+    SUMMARY_ROWS,
     PrintedFigure,
     PrintedTable,
     StudyChapter,
@@ -41,17 +47,18 @@ from kit.study.printed_tables import (
 )
 from kit.study.recorded_results import (
     SHIPPED_FOLDER,
+    VARIANT_NAMES,
     VARIANTS,
     RecordedResult,
     StudyVariant,
+    TrainedSeeds,
     cells_below,
     find_recorded_result,
     seed_means,
-    source_number,
 )
 from kit.study.study_report import (
-    VARIANT_NAMES,
     Durations,
+    RecordedCells,
     Results,
     figure_chapter,
     overview_chapter,
@@ -59,16 +66,18 @@ from kit.study.study_report import (
     session_plot,
     table_chapter,
     table_status,
+    value_blocks,
 )
+from kit.study.task_comparison import test_differences
 from kit.workspace import Workspace
 
+AUTHOR: Final = "author"
+"""Stands for the chapter on the author's own agents."""
 TITLE: Final = "The dissertation's tables and figures"
 DOCUMENT: Final = SHIPPED_FOLDER / "STUDY.md"
 """The document that comes with the kit."""
 README: Final = Path(__file__).parents[2] / "README.md"
 """There only where the kit runs from its source."""
-SUMMARY_TABLES: Final = ("3.3", "3.5", "4.1", "4.2", "4.6", "5.2")
-"""Those that README tells the means of."""
 
 
 class UnknownStudyNumber(LookupError):
@@ -106,7 +115,10 @@ def chapters(
         ]
         failures = _failures(chosen, workspace)
         return lists, (*lists, *failures, *tables, *_evaluation_chapters(chosen, with_class), *figures)
-    numbers = {number for each in known for number in _table_numbers(each)}
+    if wanted == AUTHOR and not kind:
+        text = "What the author's own published agents reach in this simulator."
+        return (), (Chapter(AUTHOR, "The author's agents", (Text(text), author_agents_table())),)
+    numbers = {AUTHOR, *(number for each in known for number in _table_numbers(each))}
     pictures = {figure.id: figure for each in known for figure in each.figures}
     allowed = {"table": numbers, "figure": set(pictures)}.get(kind, numbers | set(pictures))
     if wanted not in allowed:
@@ -158,21 +170,27 @@ FAILURES_NOTE: Final = (
 def recorded_study_document() -> str:
     """The document as it follows from the printed cells and the logs that come with the kit."""
     _, whole = chapters("", "", None, to_files=True, with_plots=False)
-    head = Chapter("summary", "Summary", (Text(SUMMARY_NOTE), summary_table()))
-    return document_to_markdown(Document(TITLE, (head, *whole)))
+    return document_to_markdown(Document(TITLE, (summary_chapter(), *whole)))
 
 
-SUMMARY_NOTE: Final = (
-    "Means over all cases. Ours are agents trained by the dissertation's settings, the kit's by its own preset, each on "
-    "its own group of cases only; in brackets the lowest and the highest of several seeds. A printed number is of one "
-    "training, in 4.1 and 4.2 its best test. APF: potential fields; the kit's is its planner `abreast`. There is no number "
-    "where the kit trained for another task, and no adjacency of agents that rarely reached the target. `kit study --check` "
-    "computes every number of this document again from the logs beside it."
+def summary_chapter() -> Chapter:
+    """What README tells, too: three tables, the finding, and the command under each."""
+    blocks: list[Block] = []
+    for table, command in summary_tables():
+        blocks += [table, Text(command)]
+    return Chapter("summary", "Summary", (*blocks, Text(FINDING)))
+
+
+FINDING: Final = (
+    "Why 4.1 and 4.2 rarely come out: the author's library takes values above 500 for equal. Side by side pays 10 a step, so good "
+    "actions soon pass 500; then it explores by chance, and the values feed on each other without end. The prints are the best "
+    "of up to 100 tests; printed adjacency largely measures how late ROS delivered commands."
 )
 
 
 def check_document() -> list[str]:
-    """What differs between the document that comes with the kit, with README's table, and what the logs give; a line each."""
+    """What differs between the document that comes with the kit, with README's tables, and what the logs give; and rows that
+    compare what cannot be compared; a line each."""
     told = DOCUMENT.read_text(encoding="utf-8") if DOCUMENT.exists() else ""
     found = [
         f"{DOCUMENT.name}, line {number}: {there or 'nothing'!r}, computed {computed or 'nothing'!r}"
@@ -184,53 +202,222 @@ def check_document() -> list[str]:
     if README.exists():
         lines = set(README.read_text(encoding="utf-8").splitlines())
         found += [f"README.md lacks {line!r}" for line in summary_lines() if line and line not in lines]
+    for chapter in study_chapters():
+        for table in chapter.tables:
+            found += incomparable_rows(table, _results(table, None))
+    return found
+
+
+def incomparable_rows(table: PrintedTable, results: Results) -> list[str]:
+    """What is wrong with a table's comparisons: agents that were tested on another task than the printed ones, and adjacency
+    without an episode that reached the target."""
+    found = []
+    for variant, result in results.items():
+        name = f"Table {table.id}, {VARIANT_NAMES[variant]}"
+        cells = result.cells(table)
+        shown = bool(cells) or (table.prints_best_test and variant != "kit")
+        if shown and variant != "kit" and result.settings.task != table.repeat_task:
+            found.append(
+                f"{name}: {result.file.name} is of {result.settings.task}, not of {table.repeat_task}"
+            )
+        elif shown and result.settings.task and table.repeat_task:
+            differences = test_differences(find_task(result.settings.task), find_task(table.repeat_task))
+            found += [
+                f"{name}: {result.file.name} is of another task than the print; {each}"
+                for each in differences
+            ]
+        found += [
+            f"{name}: an adjacency in {row}, {column} is of no episode that reached the target"
+            for (row, column), cell in cells.items()
+            if cell.measure in (ADJACENCY, ADJACENCY_BY_POSES)
+            and row not in SUMMARY_ROWS
+            and not cell.episodes
+        ]
     return found
 
 
 def summary_lines() -> list[str]:
-    """README's table, as Markdown."""
-    return [
-        line.replace(" | ", "|").replace("| ", "|").replace(" |", "|")
-        for line in table_to_markdown(summary_table())
+    """What README tells of the study, as Markdown: tables, a sentence below each, and the finding."""
+    lines: list[str] = []
+    for table, sentence in summary_tables():
+        rows = table_to_markdown(replace(table, note=""))
+        lines += [line.replace(" | ", "|").replace("| ", "|").replace(" |", "|") for line in rows]
+        lines += ["", sentence, ""]
+    return [*lines, FINDING]
+
+
+def summary_tables() -> tuple[tuple[Table, str], ...]:
+    """Each with the sentence below it."""
+    return (
+        (
+            _author_summary(),
+            (
+                "Recorded outside the kit, from his published networks; adjacency: share of steps side by side by rays. All: "
+                "`kit study author`."
+            ),
+        ),
+        (
+            trained_again_table(),
+            (
+                "Seeds 0, 1, ...; each ends with a test of 0.8. Again: `kit study 4.1 --again --seeds 5`, or with `--no-limit`; values: "
+                "`kit study clip`."
+            ),
+        ),
+        (
+            compared_means_table(),
+            (
+                "Means over cases (lowest-highest seed); adjacency of successful episodes. Again: `kit study 4.6 --again --kit`; all "
+                "numbers checked: `kit study --check`."
+            ),
+        ),
+    )
+
+
+def _author_summary() -> Table:
+    """What the published agents reach in the kit's own simulator."""
+    titles = ("jitter [s]", "printed", "here", "adjacency", "here")
+    columns = (
+        Column("The author's agents", CellStyle.TEXT),
+        *(Column(title, decimals=2) for title in titles),
+    )
+    rows: list[tuple[Cell, ...]] = [
+        (
+            f"{each.table}, {each.agent.partition(' (')[0].replace('_', ' ')}",
+            *(each.jitter_s, each.printed_success, each.success, each.printed_adjacency, each.adjacency),
+        )
+        for each in read_author_agents()
+        if each.where.startswith("full simulator")
     ]
+    return Table("author-summary", "", columns, tuple(rows))
 
 
-def summary_table() -> Table:
-    """What the dissertation reports, what agents by its settings reach here, and by the kit's own preset; where there are any."""
+def trained_again_table() -> Table:
+    """For each kind of training: how many seeds reached an accuracy of 0.8, beside the printed one."""
+    columns = (
+        Column("Trained again by", CellStyle.TEXT),
+        Column("settings", CellStyle.TEXT),
+        *(
+            Column(title)
+            for title in ("printed", "seeds at 0.8", "best tests", "steps", "at most", "without limit")
+        ),
+    )
     rows: list[tuple[Cell, ...]] = []
-    for number in SUMMARY_TABLES:
+    for number in TRAINED_AGAIN:
         table = printed_table(number)
         results = _results(table, None)
+        for label, group, printed in _trainings(table):
+            ours, other = (
+                TrainedSeeds.of(table, results.get(variant), group) for variant in ("seed", "no-limit")
+            )
+            if not ours.planned:
+                continue
+            bests = [session.share for session in ours.best_sessions]
+            rows.append(
+                (
+                    f"{number}{label}",
+                    table.settings_of,
+                    f"{printed:.2f}",
+                    _seeds_text(ours),
+                    _range_text(bests, "{:.2f}"),
+                    _range_text(ours.steps_to_goal, "{:,}"),
+                    f"{results['seed'].settings.most_steps:,}" if ours.tests else None,
+                    _seeds_text(other, with_steps=True) if other.tests else None,
+                )
+            )
+    return Table("trained-again", "", columns, tuple(rows))
+
+
+TRAINED_AGAIN: Final = ("3.3", "4.1", "4.2", "4.5", "5.2")
+"""Tables that print accuracies of trainings; 4.5 repeats 4.4."""
+
+
+def _trainings(table: PrintedTable) -> Iterator[tuple[str, str, float]]:
+    """Each kind of training that a table prints: what it is called there, the group of cases, the printed accuracy."""
+    for place, (column, measure) in enumerate(zip(table.columns, table.measures, strict=True)):
+        if measure != SUCCESS:
+            continue
+        if table.row_groups:
+            for row, group in zip(table.rows, table.row_groups, strict=False):
+                yield (f", {row}" if len(table.row_groups) > 1 else ""), group, table.cell(row, column)
+        else:
+            rows = [table.cell(row, column) for row in _own_rows(table)]
+            name = column.removesuffix("acc").strip()
+            yield (f", {name}" if name else ""), table.groups[place], sum(rows) / len(rows)
+
+
+def _seeds_text(seeds: TrainedSeeds, *, with_steps: bool = False) -> str:
+    """``2 of 5``, with the steps that these took; and how many are still to be trained."""
+    missing = seeds.planned - len(seeds.tests)
+    told = f"{seeds.reached} of {len(seeds.tests)}"
+    if with_steps and seeds.steps_to_goal:
+        told += f" ({_range_text(seeds.steps_to_goal, '{:,}')})"
+    return f"{told}, {missing} unfinished" if missing else told
+
+
+def _range_text(values: Sequence[float], form: str) -> str | None:
+    """The lowest and the highest."""
+    if not values:
+        return None
+    low, high = form.format(min(values)), form.format(max(values))
+    return low if low == high else f"{low}-{high}"
+
+
+def compared_means_table() -> Table:
+    """Means over cases: printed, by agents of the dissertation's settings, and by the kit's own preset; where there are any."""
+    rows: list[tuple[Cell, ...]] = []
+    for number in COMPARED_MEANS:
+        table = printed_table(number)
+        results = {name: result for name, result in _results(table, None).items() if name != "no-limit"}
+        cells = {name: result.cells(table) for name, result in results.items()}
         for column, measure in zip(table.columns, table.measures, strict=True):
             if measure == STEPS:
                 continue
-            printed = _column_mean({row: table.cell(row, column) for row in _own_rows(table)})
-            cells = {variant: result.cells(table) for variant, result in results.items()}
-            ours: list[Cell] = [
-                _mean_text(table, results.get(variant), column)
-                or _column_mean(
-                    {
-                        row: cell.value
-                        for row in _own_rows(table)
-                        if (cell := cells.get(variant, {}).get((row, column))) is not None
-                    },
-                    {row: table.cell(row, column) for row in _own_rows(table)},
-                )
-                for variant in VARIANTS
+            printed = {row: table.cell(row, column) for row in _own_rows(table)}
+            label = f"{number}, {_measured(column, measure)}".rstrip(", ")
+            if measure != SUCCESS:
+                told = [
+                    row for row in printed if cells and all((row, column) in each for each in cells.values())
+                ]
+                label += f", {len(told)} of {len(printed)} cases" if len(told) < len(printed) else ""
+                printed = {row: printed[row] for row in told}
+            ours = [
+                _mean_cell(table, results.get(name), cells.get(name, {}), column, printed)
+                for name in ("seed", "kit")
             ]
             if any(cell is not None for cell in ours):
-                rows.append((f"{number}, {_measured(column, measure)}".rstrip(", "), printed, *ours))
+                rows.append((label, _column_mean(printed), *ours))
     columns = (
-        Column("Success rate", CellStyle.TEXT),
+        Column("Compared", CellStyle.TEXT),
         *(Column(title) for title in ("dissertation", "its settings", "the kit's")),
     )
-    return Table("summary", "", columns, tuple(rows))
+    return Table("compared-means", "", columns, tuple(rows))
+
+
+COMPARED_MEANS: Final = ("3.5", "4.6", "5.2")
+"""The tables of agents on fresh episodes."""
+
+
+def _mean_cell(
+    table: PrintedTable,
+    result: RecordedResult | None,
+    cells: RecordedCells,
+    column: str,
+    printed: dict[str, float],
+) -> Cell:
+    """The mean of several seeds with the lowest and the highest; or of one; of an adjacency with its episodes."""
+    if (text := _mean_text(table, result, column)) is not None:
+        return text
+    own = {row: cell for row in printed if (cell := cells.get((row, column))) is not None}
+    mean = _column_mean({row: cell.value for row, cell in own.items()}, printed)
+    episodes = sum(cell.episodes or 0 for cell in own.values())
+    return mean if mean is None or not episodes else f"{mean:.2f} ({episodes:,} episodes)"
 
 
 def _measured(column: str, measure: str) -> str:
     """A column's title with the measure, if it is not success, in full."""
     title = column.removesuffix("acc").removesuffix("adj").strip()
-    return title if measure == SUCCESS else f"{title} {measure}".strip()
+    by_rays = "adjacency by rays" if measure == ADJACENCY else measure
+    return title if measure == SUCCESS else f"{title} {by_rays}".strip()
 
 
 def _mean_text(table: PrintedTable, result: RecordedResult | None, column: str) -> str | None:
@@ -252,8 +439,7 @@ def _column_mean(values: dict[str, float], printed: dict[str, float] | None = No
     numbers = [values[row] for row in expected if row in values]
     if not numbers or len(numbers) < len(expected):
         return None
-    mean = sum(numbers) / len(numbers)
-    return round(mean) if mean > 1 else mean
+    return sum(numbers) / len(numbers)
 
 
 def _table_numbers(chapter: StudyChapter) -> Iterator[str]:
@@ -284,7 +470,8 @@ def _overview(chapter: StudyChapter, workspace: Workspace | None) -> Chapter:
         if figure.results_of:
             is_recorded = _is_recorded(figure, workspace)
             status = "recorded" if is_recorded else f"none; {figure.results_of.replace('-', ' ')} --again"
-        items.append((f"Figure {figure.id}", figure.title, status))
+        name = figure.id if figure.sessions == "values" else f"Figure {figure.id}"
+        items.append((name, figure.title, status))
     names = "; ".join(f"{VARIANT_NAMES[each]}: {_VARIANT_WORDS[each]}" for each in VARIANTS)
     notes = [f"Recorded agents, {names}. `kit study NUMBER` shows one."]
     if chapter.number == 5:
@@ -317,7 +504,11 @@ def _is_recorded(figure: PrintedFigure, workspace: Workspace | None) -> bool:
     return recorded is not None and any(recorded.paths_of(figure.group, case) for _, case in figure.paths)
 
 
-_VARIANT_WORDS: Final = {"seed": "by the dissertation's settings", "kit": "by the kit's own preset"}
+_VARIANT_WORDS: Final[Mapping[StudyVariant, str]] = {
+    "seed": "by the dissertation's settings",
+    "no-limit": "by the same without their limit of values",
+    "kit": "by the kit's own preset",
+}
 
 
 def _table(number: str, workspace: Workspace | None) -> Chapter:
@@ -338,8 +529,9 @@ def _durations(table: PrintedTable, workspace: Workspace | None, results: Result
 
     found: dict[StudyVariant, tuple[float, float]] = {}
     for variant in VARIANTS:
-        source = printed_table(source_number(table))
-        run = StudyRun.of(source, workspace or Workspace(Path()), variant)
+        run = StudyRun.of(table, workspace or Workspace(Path()), variant)
+        if variant == "no-limit" and not table.prints_best_test:
+            continue
         if variant not in results and (run.groups or run.has_fields):
             cores = 1 if workspace is None else os.cpu_count() or 1
             found[variant] = run.expected_seconds(1, cores)
@@ -381,10 +573,13 @@ FIRST_RUN: Final = (
 
 def _figure_plots(
     figure: PrintedFigure, workspace: Workspace | None
-) -> tuple[list[Plot], RecordedResult | None]:
+) -> tuple[list[Block], RecordedResult | None]:
     """Makes the plots of a figure from the raw answers, or from the first agent of its group that was recorded."""
     if not figure.results_of:
         return [_evaluation_plots()[name] for name in figure.plots], None
+    if figure.sessions == "values":
+        results = _results(printed_table(figure.results_of), workspace)
+        return value_blocks(figure, results), results.get("seed")
     recorded = find_recorded_result(workspace, printed_table(figure.results_of))
     tests = recorded.tests_of(figure.group) if recorded else ()
     plots = [session_plot(figure, test) for test in tests[:1]]

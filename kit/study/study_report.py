@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from statistics import fmean
 from typing import Final
 
@@ -19,8 +19,10 @@ from kit.document.blocks import (
     Table,
     Text,
 )
+from kit.learning.training.measures import format_measure
 from kit.learning.training.run_upkeep import format_seconds
 from kit.study.printed_tables import (
+    ADJACENCY,
     ADJACENCY_BY_POSES,
     POTENTIAL_FIELDS,
     STEPS,
@@ -30,16 +32,19 @@ from kit.study.printed_tables import (
     StudyChapter,
 )
 from kit.study.recorded_results import (
-    ADJACENCY_MIN_SUCCESS,
     CONTROLLERS,
+    VARIANT_NAMES,
+    VARIANT_OPTIONS,
     RecordedCell,
     RecordedPath,
     RecordedResult,
     RecordedTest,
     StudyVariant,
+    TrainedSeeds,
     TrainingSession,
     cells_below,
-    source_number,
+    log_name,
+    pooled_cell,
     spread_table,
 )
 
@@ -47,10 +52,9 @@ RecordedCells = Mapping[tuple[str, str], RecordedCell]
 """Cells by row and column of a printed table."""
 Results = Mapping[StudyVariant, RecordedResult]
 """Those that there are."""
-VARIANT_NAMES: Final[Mapping[StudyVariant, str]] = {"seed": "ours", "kit": "kit"}
-"""The words of a table's rows: agents trained by the dissertation's settings, and by the kit's."""
 VARIANT_TITLES: Final[Mapping[StudyVariant, str]] = {
     "seed": "ours, by the dissertation's settings",
+    "no-limit": "no limit, by the dissertation's settings without its limit of values",
     "kit": "kit, by the kit's own preset",
 }
 Durations = Mapping[StudyVariant, tuple[float, float]]
@@ -84,10 +88,13 @@ def table_chapter(
     cells = {variant: result.cells(table) for variant, result in results.items()}
     blocks: list[Block] = [Text(text) for text in (f"Section {table.section}.", *table.settings)]
     blocks.append(_comparison_table(table, cells))
+    if table.prints_best_test:
+        blocks.append(_seeds_table(table, results))
     for variant, result in results.items():
         blocks += _recorded_blocks(table, variant, result, cells[variant])
     if any(cells.values()):
         blocks.append(_picture(table, cells))
+    blocks += [Text(note) for note in _notes(table, cells)]
     blocks += [Text(f"Slip: {each.why}{_right_values(each)}") for each in misprints]
     blocks += [Text(text) for text in _how_to_run(table, missing)]
     return Chapter(f"table-{table.id}", f"Table {table.id}. {table.title}", tuple(blocks))
@@ -104,7 +111,8 @@ def figure_chapter(
         blocks.append(Text(f"No recorded result; run it with `{figure.run}`."))
     if figure.missing:
         blocks.append(Text(f"Missing: {figure.missing}"))
-    return Chapter(f"figure-{figure.id}", f"Figure {figure.id}. {figure.title}", tuple(blocks))
+    title = figure.title if figure.sessions == "values" else f"Figure {figure.id}. {figure.title}"
+    return Chapter(f"figure-{figure.id}", title, tuple(blocks))
 
 
 def paths_title(figure: PrintedFigure, case: str, ways: Sequence[RecordedPath]) -> str:
@@ -134,6 +142,45 @@ def session_plot(figure: PrintedFigure, test: RecordedTest) -> Plot | None:
     low, high = min(0.0, *(value for _, value in values)), max(1.0, *(value for _, value in values))
     rows = tuple((f"{steps:,} steps", (value,)) for steps, value in values)
     return BarChart(name, title, (figure.sessions,), rows, low, high)
+
+
+def value_blocks(figure: PrintedFigure, results: Results) -> list[Block]:
+    """The largest value and the success of each test, with and without the limit of values; none where there are none."""
+    tests = {name: result.tests_of(figure.group)[:1] for name, result in results.items()}
+    sessions = {
+        name: {each.steps: each for each in found[0].sessions} for name, found in tests.items() if found
+    }
+    steps = sorted({number for found in sessions.values() for number in found})
+    if not steps:
+        return []
+    columns = [Column("steps")]
+    for name in sessions:
+        columns += [Column(f"{VALUE_TITLES[name]}: value"), Column("success", decimals=2)]
+    rows, bars = [], []
+    for number in steps:
+        here = [found.get(number) for found in sessions.values()]
+        cells: list[Cell] = [f"{number:,}"]
+        for each in here:
+            known = each is not None and each.value_max is not None
+            cells += [format_measure(each.value_max) if known else None, each.share if each else None]  # type: ignore[union-attr, arg-type]  # known
+        rows.append(tuple(cells))
+        heights = tuple(
+            math.log10(max(1.0, each.value_max))
+            if each is not None and each.value_max is not None
+            else math.nan
+            for each in here
+        )
+        bars.append((f"{number:,} steps", heights))
+    high = max(height for _, heights in bars for height in heights if not math.isnan(height))
+    names = tuple(VALUE_TITLES[name] for name in sessions)
+    title = f"{figure.title}: the largest value of the last 1,000 observations, seed 0"
+    return [
+        Table(f"figure-{figure.id}-values", title, tuple(columns), tuple(rows)),
+        BarChart(f"figure-{figure.id}", "Its decimal logarithm", names, tuple(bars), 0.0, math.ceil(high)),
+    ]
+
+
+VALUE_TITLES: Final[Mapping[StudyVariant, str]] = {"seed": "limit 500", "no-limit": "no limit", "kit": "kit"}
 
 
 def _outcome_shares(session: TrainingSession) -> tuple[float, ...]:
@@ -176,8 +223,66 @@ def _comparison_table(table: PrintedTable, cells: Mapping[StudyVariant, Recorded
         "As printed, and ours",
         (label, label, *columns),
         tuple(lines),
-        note="at least, at most: the 95 % interval of the line above. differs: from the printed number.",
+        note="at least, at most: the 95 % interval of the line above. episodes: over which an adjacency is taken, all of which "
+        "reached the target. differs: from the printed number.",
         grouped=True,
+    )
+
+
+def _seeds_table(table: PrintedTable, results: Results) -> Table:
+    """One row for each seed: the best of its tests, as the print is one, and its best agent on fresh episodes."""
+    rows: list[tuple[Cell, ...]] = []
+    for variant in ("seed", "no-limit"):  # the kit's are trained for another end: for every case, or longer
+        result = results.get(variant)
+        settings = table.settings_of + (", no limit" if variant == "no-limit" else "")
+        for row, group in zip(table.rows, table.row_groups, strict=False):
+            seeds = TrainedSeeds.of(table, result, group)
+            if result is not None:
+                rows += [(row, settings, *_seed_cells(result, test)) for test in seeds.tests]
+            missing = seeds.planned - len(seeds.tests)
+            if missing:
+                rows.append((row, settings, f"{missing} of {seeds.planned}: not trained yet", *[None] * 8))
+    columns = (
+        Column("", CellStyle.TEXT),
+        Column("settings", CellStyle.TEXT),
+        Column("seed", CellStyle.TEXT),
+        *(Column(title) for title in ("at most", "steps")),
+        Column("best test", decimals=2),
+        Column("value"),
+        Column("fresh", decimals=2),
+        Column("rays", decimals=2),
+        Column("poses", decimals=2),
+        Column("of"),
+    )
+    return Table(
+        f"table-{table.id.replace('.', '-')}-seeds",
+        "Trained again: the best test of each seed, as the print is the best of up to 100 tests of one",
+        columns,
+        tuple(rows),
+        note=SEEDS_NOTE,
+    )
+
+
+SEEDS_NOTE: Final = (
+    "at most, steps: of training, which ends with a test of 0.8 or more. best test: 100 episodes. value: the largest in any test. "
+    "fresh: success of that agent on fresh episodes. rays, poses: its adjacency, the share of steps side by side by rays "
+    "(equations 4.7 to 4.9) and by poses (4.2 to 4.6), over the fresh episodes that reached the target; of: how many these are."
+)
+
+
+def _seed_cells(result: RecordedResult, test: RecordedTest) -> tuple[Cell, ...]:
+    episodes = test.episodes * len(test.own_cases)
+    sides = [pooled_cell((test,), measure) for measure in (ADJACENCY, ADJACENCY_BY_POSES)]
+    best = test.best_session
+    return (
+        f"{test.seed}",
+        f"{result.settings.most_steps:,}",
+        f"{test.steps:,}",
+        None if best is None else best.share,
+        None if test.largest_value is None else format_measure(test.largest_value),
+        sum(test.reached[case] for case in test.own_cases) / max(1, episodes),
+        *(None if side is None else side.value for side in sides),
+        None if sides[0] is None else f"{sides[0].episodes}",
     )
 
 
@@ -191,6 +296,9 @@ def _recorded_lines(table: PrintedTable, row: str, name: str, cells: RecordedCel
     if any(intervals):
         lines.append((row, "at least", *(each.low if each else None for each in intervals)))
         lines.append((row, "at most", *(each.high if each else None for each in intervals)))
+    counts = [each.episodes if each else None for each in ours]
+    if any(counts):
+        lines.append((row, "episodes", *counts))
     differences = [
         _cell_number(each, printed) if each and not math.isnan(printed) else None
         for each, printed in zip(ours, table.rows[row], strict=True)
@@ -249,14 +357,11 @@ def _recorded_blocks(
     """How ours were made, and every cell whose interval lies below the printed number."""
     name = VARIANT_NAMES[variant]
     blocks: list[Block] = [Text(f"{VARIANT_TITLES[variant]}: {_origin(recorded)}")]
-    if any(cell.interval is not None for cell in cells.values()):
-        blocks.append(Text(INTERVALS_NOTE))
-    for group in dict.fromkeys(
-        table.groups if table.has_fields else (*table.trained_groups, *table.row_groups)
-    ):
+    groups = table.groups if table.has_fields else (*table.trained_groups, *table.row_groups)
+    for group in () if table.prints_best_test and variant != "kit" else dict.fromkeys(groups):
         told = [_test_text(each) for each in recorded.tests_of(group)]
         blocks.append(Text(f"{name}, {group}: {'; '.join(told) or 'no agent yet'}."))
-    if table.has_fields:
+    if table.has_fields and variant in CONTROLLERS:
         blocks.append(Text(f"{name}: where the print has potential fields, `{CONTROLLERS[variant]}` drives."))
         if (sides := _sides_table(table, recorded, variant)) is not None:
             blocks.append(sides)
@@ -276,9 +381,17 @@ def _recorded_blocks(
     return blocks
 
 
+def _notes(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> Iterator[str]:
+    """What the recorded numbers of a table mean, once for all of them."""
+    if any(cell.interval is not None for found in cells.values() for cell in found.values()):
+        yield INTERVALS_NOTE
+    if any(cells.values()) and {ADJACENCY, ADJACENCY_BY_POSES} & set(table.measures):
+        yield ADJACENCY_NOTE
+
+
 ADJACENCY_NOTE: Final = (
-    f"Adjacency of agents is by rays, equations 4.7 to 4.9, and shown where they reached the target in {ADJACENCY_MIN_SUCCESS} "
-    "of the episodes or more; that of controllers is by poses, 4.2 to 4.6, repaired."
+    "Adjacency of agents is by rays, equations 4.7 to 4.9, over the episodes that reached the target; that of controllers is by "
+    "poses, 4.2 to 4.6, repaired."
 )
 INTERVALS_NOTE: Final = (
     "Intervals hold 95 % over the episodes of all seeds together (Wilson's of shares of success, Student's of adjacency): how "
@@ -303,7 +416,7 @@ def _sides_table(table: PrintedTable, recorded: RecordedResult, variant: StudyVa
         Column("", CellStyle.TEXT),
         *(Column(title) for title in ("printed", "by rays", "by poses")),
     )
-    identity = f"table-{table.id.replace('.', '-')}-sides" + ("-kit" if variant == "kit" else "")
+    identity = f"table-{log_name(table.id, variant).replace('.', '-')}-sides"
     note = (
         "By rays: equations 4.7 to 4.9, the dissertation's own four rays. By poses: 4.2 to 4.6, repaired. Of potential "
         "fields it does not say which it prints."
@@ -319,13 +432,14 @@ def _test_text(test: RecordedTest) -> str:
 
 
 def _origin(recorded: RecordedResult) -> str:
-    """How a result was made: command, commit, settings, versions."""
+    """How a result was made: command, commit, settings; the log has the versions of packages."""
     settings = recorded.settings
-    versions = ", ".join(f"{name} {number}" for name, number in settings.versions.items())
     commit = f" at commit {settings.commit}" if settings.commit else ""
     how = (
         f"{settings.task}, {settings.algorithm}, preset {settings.preset}" if settings.task else "no training"
     )
+    if settings.changed:
+        how += f", {settings.changed}"
     if settings.steps is not None:
         how += f", at most {settings.steps:,} steps"
     how += (
@@ -333,7 +447,7 @@ def _origin(recorded: RecordedResult) -> str:
         if settings.task
         else ", runs of each case as named with their time"
     )
-    return f"`{settings.command}`{commit}: {how}. {ADJACENCY_NOTE} {versions}. Log: {recorded.file.name}."
+    return f"`{settings.command}`{commit}: {how}. Log, with the versions of packages: {recorded.file.name}."
 
 
 def _right_values(misprint: Misprint) -> str:
@@ -353,8 +467,7 @@ def _how_to_run(table: PrintedTable, missing: Durations) -> list[str]:
     """Names the command that makes a result where none is recorded."""
     found = []
     for variant, seconds in missing.items():
-        option = " --kit" if variant == "kit" else ""
-        command = f"kit study {source_number(table)} --again{option}"
+        command = f"kit study {table.id} --again{VARIANT_OPTIONS[variant]}"
         found.append(
             f"No recorded result for {VARIANT_TITLES[variant]}. `{command}` makes one: for one seed {duration_text(seconds)}."
         )

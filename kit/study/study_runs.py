@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import subprocess
 import time
 from collections.abc import Callable, Iterable
@@ -14,19 +15,21 @@ import numpy as np
 from kit.controllers import find_controller
 from kit.document.blocks import ScenePlot
 from kit.learning.environment.episode_stats import EpisodeOutcome
-from kit.learning.environment.tasks import find_task
 from kit.learning.policies.evaluation import (
     EpisodePath,
+    EpisodeShare,
     Evaluator,
     build_paths_scene,
     derive_seed,
     record_paths,
 )
 from kit.learning.policies.policies import Policy
+from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.training.algorithms import versions
 from kit.learning.training.events import Evaluated, EventReader
-from kit.learning.training.runs import PresetName, RunConfig, RunError, TrainingRun
+from kit.learning.training.measures import VALUE_MAX
+from kit.learning.training.runs import PresetName, RunConfig, RunError, TrainingRun, format_settings
 from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_sweep import SweepEntry, TrainingSweep, combine
 from kit.render.scene import Scene
@@ -39,12 +42,14 @@ from kit.study.printed_tables import (
     WITH_TARGET,
     PrintedFigure,
     PrintedTable,
+    parts_of,
     path_figures,
     printed_table,
 )
 from kit.study.recorded_results import (
     CONTROLLERS,
     SHIPPED_FOLDER,
+    VARIANT_OPTIONS,
     RecordedPath,
     RecordedResult,
     RecordedSettings,
@@ -55,6 +60,7 @@ from kit.study.recorded_results import (
     log_name,
     read_recorded_result,
     recorded_result_file,
+    source_number,
 )
 from kit.study.study_report import paths_title
 from kit.workspace import Workspace
@@ -183,6 +189,8 @@ class StudyRun:
     """Episodes per case in a test, as in the dissertation."""
     steps: int | None = None
     """Most steps of each training; None: the preset's."""
+    only: tuple[str, ...] = ()
+    """Some of the groups; all where empty."""
 
     @classmethod
     def of(
@@ -192,11 +200,21 @@ class StudyRun:
         variant: StudyVariant = "seed",
         steps: int | None = None,
     ) -> StudyRun:
-        """Makes a run with the dissertation's settings, or with the kit's own preset."""
-        steps = steps or table.keep_training or None
+        """Makes a run with the dissertation's settings, with all of them but the limit of values, or with the kit's own preset.
+
+        The agents of a table may be some of those of another one.
+        """
+        source = printed_table(source_number(table))
+        only = table.row_groups if table.results_of else ()
+        steps = steps or source.keep_training or None
         if variant == "kit":
-            return cls(table, workspace, "ppo", "kit", variant, steps=steps)
-        return cls(table, workspace, table.algorithm, "seed", variant, steps=steps)
+            return cls(source, workspace, "ppo", "kit", variant, steps=steps, only=only)
+        return cls(source, workspace, source.algorithm, "seed", variant, steps=steps, only=only)
+
+    @property
+    def changed(self) -> tuple[tuple[str, float], ...]:
+        """Settings of the algorithm that differ from the preset's."""
+        return (("value_limit", math.inf),) if self.variant == "no-limit" else ()
 
     @property
     def task(self) -> str:
@@ -205,15 +223,25 @@ class StudyRun:
     @property
     def groups(self) -> tuple[str, ...]:
         """The groups of cases that agents are trained on; none where potential fields alone drive."""
-        return self.table.trained_groups if self.task else ()
+        if not self.task or not self._can_be_varied:
+            return ()
+        known, parts = self.table.trained_groups, parts_of(self.table.id)
+        # What another table shows alone comes first: a sweep of it may grow to this one.
+        ordered = dict.fromkeys((*(group for part in parts for group in part.row_groups), *known))
+        return tuple(group for group in ordered if group in (self.only or known))
+
+    @property
+    def _can_be_varied(self) -> bool:
+        """Whether there is a limit of values that can be taken away, if it is to be."""
+        return self.variant != "no-limit" or self.algorithm == "boltzmann-dqn"
 
     @property
     def has_fields(self) -> bool:
-        return self.table.has_fields
+        return self.table.has_fields and self.variant in CONTROLLERS and not self.only
 
     @property
     def settings(self) -> RecordedSettings:
-        option = " --kit" if self.variant == "kit" else ""
+        option = VARIANT_OPTIONS[self.variant]
         option += "" if self.steps is None else f" --steps {self.steps}"
         return RecordedSettings(
             self.table.id,
@@ -225,6 +253,7 @@ class StudyRun:
             versions(),
             f"kit study {self.table.id.replace(FIGURE, 'figure ')} --again{option}",
             kit_commit(),
+            format_settings(self.changed),
         )
 
     @property
@@ -241,7 +270,7 @@ class StudyRun:
     def sweep(self, seed: int) -> TrainingSweep:
         """The trainings from one seed; makes their folder. Raises RunError and OSError."""
         folder = self.workspace.folder / "study" / log_name(self.table.id, self.variant) / f"seed-{seed}"
-        return TrainingSweep.prepare(folder, self.configs(seed), self.episodes)
+        return TrainingSweep.prepare(folder, self.configs(seed), self.episodes, grows=True)
 
     def configs(self, seed: int) -> tuple[RunConfig, ...]:
         """One for each group of cases."""
@@ -254,6 +283,7 @@ class StudyRun:
                 presets=(self.preset,),
                 seeds=(seed,),
                 steps=self.steps,
+                settings={name: (number,) for name, number in self.changed},
             )
             config = replace(config, keep_training=bool(self.table.keep_training))
             if group == WITH_TARGET:
@@ -312,7 +342,7 @@ class StudyRun:
         """
         found = self._begin_log()
         problems = []
-        for group, entry in zip(self.groups, sweep.entries(), strict=True):
+        for group, entry in zip(self.groups, sweep.entries(), strict=False):
             if found is not None and found.has_test(group, seed):
                 continue
             result = sweep.result(entry.key)
@@ -346,6 +376,9 @@ class StudyRun:
                 on_run(case, number)
             reached = {case: sum(each.end == "reached" for each in outcomes)}
             shares = [each.by_rays for each in outcomes]
+            arrived = [each for each in outcomes if each.end == "reached"]
+            by_rays = EpisodeShare.of([each.by_rays for each in arrived])
+            by_poses = EpisodeShare.of([each.by_geometry for each in arrived])
             spread = {case: round(float(np.std(shares, ddof=1)), 4)} if runs > 1 else {}
             test = RecordedTest(
                 POTENTIAL_FIELDS,
@@ -357,6 +390,9 @@ class StudyRun:
                 {case: round(float(np.mean(shares)), 4)},
                 adjacency_sd=spread,
                 by_poses={case: round(float(np.mean([each.by_geometry for each in outcomes])), 4)},
+                reached_by_rays=_known({case: by_rays.mean}),
+                reached_by_rays_sd=_known({case: by_rays.sd}),
+                reached_by_poses=_known({case: by_poses.mean}),
             )
             append_event(self.log, test)
 
@@ -479,7 +515,15 @@ def _test_agent(group: str, sweep: TrainingSweep, entry: SweepEntry, episodes: i
         tuple(case.name for _, case in config.choice.resolve().map_cases()),
         _sessions(run),
         {case.case: round(case.adjacency_sd, 4) for case in found.cases if not np.isnan(case.adjacency_sd)},
+        reached_by_rays=_known({case.case: case.reached_by_rays.mean for case in found.cases}),
+        reached_by_rays_sd=_known({case.case: case.reached_by_rays.sd for case in found.cases}),
+        reached_by_poses=_known({case.case: case.reached_by_poses.mean for case in found.cases}),
     )
+
+
+def _known(shares: dict[str, float]) -> dict[str, float]:
+    """Those that are numbers, rounded."""
+    return {case: round(share, 4) for case, share in shares.items() if not np.isnan(share)}
 
 
 def _sessions(run: TrainingRun) -> tuple[TrainingSession, ...]:
@@ -490,5 +534,7 @@ def _sessions(run: TrainingRun) -> tuple[TrainingSession, ...]:
             reached, collided, timed_out = np.array(list(event.cases.values())).sum(axis=0).tolist()
             reward = None if event.reward is None else round(event.reward, 1)
             adjacency = None if event.adjacency is None else round(event.adjacency, 3)
-            found.append(TrainingSession(event.steps, reached, collided, timed_out, reward, adjacency))
+            largest = event.measures.get(VALUE_MAX)
+            value = None if largest is None else round(largest, 1)
+            found.append(TrainingSession(event.steps, reached, collided, timed_out, reward, adjacency, value))
     return tuple(found)

@@ -13,8 +13,8 @@ from textual.screen import Screen
 
 from kit.render.roles import COLOR_SCHEMES
 from kit.tui.input.driver import KeyDriver
+from kit.tui.late_timers import fire_late_timers
 from kit.tui.terminal import TerminalDecision
-from kit.tui.textual_patches import fire_late_timers
 from kit.tui.theme import Theme, text_colors, textual_theme
 from kit.tui.widgets.text_rows import ASCII_ONLY
 

@@ -8,6 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from kit.extensions import folders
 from kit.geometry import Pose
 from kit.plain_text import quoted, suggestion
 from kit.world.documents import open_document
@@ -107,8 +108,7 @@ def all_maps(folder: Path | None = None) -> tuple[MapCard, ...]:
     >>> "maze" in [card.name for card in kit.all_maps()]
     True
     """
-    folder = maps_folder() if folder is None else folder
-    return tuple(_read_card(folder / name) for name in map_names(folder))
+    return tuple(_read_card(_map_folder(name, folder)) for name in map_names(folder))
 
 
 def find_map(name: str, folder: Path | None = None) -> MapCard:
@@ -120,11 +120,10 @@ def find_map(name: str, folder: Path | None = None) -> MapCard:
     >>> card.robot, card.partner, [case.name for case in card.cases]
     ('left', 'right', ['pair_straight'])
     """
-    folder = maps_folder() if folder is None else folder
     names = map_names(folder)
     if name not in names:
         raise UnknownMap(f"there is no map {quoted(name)}: {suggestion(name, names)}")
-    return _read_card(folder / name)
+    return _read_card(_map_folder(name, folder))
 
 
 def own_card(world_file: Path) -> MapCard | None:
@@ -136,9 +135,24 @@ def own_card(world_file: Path) -> MapCard | None:
 
 
 def map_names(folder: Path | None = None) -> tuple[str, ...]:
-    """The names of all maps, without reading them: every folder with a card is one."""
-    folder = maps_folder() if folder is None else folder
-    return tuple(sorted(card.parent.name for card in folder.glob(f"*/{CARD_FILE}")))
+    """The names of all maps, without reading them: every folder with a card is one. Without ``folder`` those of others'
+    packages too."""
+    places = [maps_folder(), *_folders_of_others()] if folder is None else [folder]
+    return tuple(sorted({card.parent.name for place in places for card in place.glob(f"*/{CARD_FILE}")}))
+
+
+def _folders_of_others() -> list[Path]:
+    return [folder for _, folder in folders("maps")]
+
+
+def _map_folder(name: str, folder: Path | None) -> Path:
+    """The folder of a map that there is; the kit's own go before those of others."""
+    if folder is not None:
+        return folder / name
+    for place in (maps_folder(), *_folders_of_others()):
+        if (place / name / CARD_FILE).is_file():
+            return place / name
+    raise UnknownMap(f"there is no map {quoted(name)}")
 
 
 def _read_card(folder: Path) -> MapCard:

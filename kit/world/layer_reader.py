@@ -10,19 +10,19 @@ from __future__ import annotations
 import io
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
-from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import Literal
+from typing import Final
 
 import numpy as np
 from PIL import Image
 
 from kit.arrays import BoolArray, FloatArray, IndexArray, Uint8Array
-from kit.plain_text import quoted
+from kit.plain_text import counted, join_with_and, quoted
 from kit.world.documents import UnusableFile, WorldDocuments, read_bytes
+from kit.world.map_server import FREE_THRESH, MODES, MapServerKeys, count_read_otherwise
 from kit.world.problems import ProblemCollector
-from kit.world.records import MAX_LAYERS, Color, Layer, SourceLocation, Walls
+from kit.world.records import MAX_LAYERS, Color, Layer, Remark, SourceLocation, Walls
 from kit.world.yaml_section import MAX_NUMBER, Section
 from kit.world.yaml_tree import parse_number
 
@@ -41,37 +41,18 @@ _LUMA = np.array([9798, 19235, 3735], dtype=np.uint32)
 _LUMA_SHIFT = 15
 
 
-MapMode = Literal["trinary", "scale", "raw"]
-NEGATE: Mapping[str, bool] = MappingProxyType({"0": False, "1": True, "false": False, "true": True})
-MODES: Mapping[str, MapMode] = MappingProxyType({"trinary": "trinary", "scale": "scale", "raw": "raw"})
-
-
-def walls_from_image(
-    file: Path, *, resolution: float, occupied_thresh: float, negate: bool = False, mode: MapMode = "trinary"
-) -> FloatArray:
+def walls_from_image(file: Path, *, resolution: float, occupied_thresh: float) -> FloatArray:
     """The walls (n, 4) ``x1 y1 x2 y2`` [m] of a picture whose lower left corner is the origin.
 
-    ``resolution``: metres per pixel; ``occupied_thresh``: a pixel is dark below this share of white, as Flatland has it.
-    ``negate`` and ``mode`` as ROS's map_server has them: light pixels are walls; "raw": a grey level is an occupancy
-    in percent, and above 100 nothing is known; "scale": where a picture is transparent nothing is known, which is no wall.
-    Raises Unusable.
+    ``resolution``: metres per pixel; ``occupied_thresh``: a pixel is dark below this share of white. Raises Unusable.
     """
-    grey, opaque = _read_image(file)
-    is_wall = wall_pixels(grey, occupied_thresh, negate=negate, mode=mode)
-    return trace_edges(is_wall if mode != "scale" or opaque is None else is_wall & opaque, resolution)
+    return trace_edges(dark_pixels(read_grey_image(file), occupied_thresh), resolution)
 
 
-def wall_pixels(
-    grey: Uint8Array, occupied_thresh: float, *, negate: bool = False, mode: MapMode = "trinary"
-) -> BoolArray:
-    """Which pixels of (rows, columns) grey levels are walls; see ``walls_from_image``."""
-    levels = np.arange(256)
-    if mode == "raw":
-        is_wall = (levels <= 100) & (levels > 100 * occupied_thresh)
-    else:
-        shades = ((255 - levels if negate else levels) * (1 / 255)).astype(np.float32)
-        is_wall = ~((shades >= np.float32(occupied_thresh)) & (shades <= 1))
-    found: BoolArray = is_wall[grey]
+def dark_pixels(grey: Uint8Array, occupied_thresh: float) -> BoolArray:
+    """Which pixels of (rows, columns) grey levels are dark: not between ``occupied_thresh`` and 1 of white."""
+    shades = (np.arange(256) * (1 / 255)).astype(np.float32)
+    found: BoolArray = ~((shades >= np.float32(occupied_thresh)) & (shades <= 1))[grey]
     return found
 
 
@@ -80,8 +61,8 @@ def read_grey_image(file: Path) -> Uint8Array:
     return _read_image(file)[0]
 
 
-def _read_image(file: Path) -> tuple[Uint8Array, BoolArray | None]:
-    """Grey levels, and which pixels are opaque; None where all are. Raises Unusable."""
+def _read_image(file: Path) -> tuple[Uint8Array, Uint8Array | None]:
+    """Grey levels, and the opacity of the pixels; None if the picture has none. Raises Unusable."""
     content = read_bytes(file, MAX_IMAGE_BYTES)
     try:
         with warnings.catch_warnings():
@@ -93,10 +74,10 @@ def _read_image(file: Path) -> tuple[Uint8Array, BoolArray | None]:
                         f"the picture has {image.width} x {image.height} pixels, "
                         f"but at most {MAX_PIXELS} are read: reduce its resolution"
                     )
-                opaque = None
+                alpha = None
                 if image.has_transparency_data:
-                    opaque = np.asarray(image.convert("RGBA"))[..., 3] == 255
-                return _grey_levels(image), opaque
+                    alpha = np.asarray(image.convert("RGBA"))[..., 3]
+                return _grey_levels(image), alpha
     except UnusableFile:
         raise
     except Image.DecompressionBombError as error:
@@ -189,6 +170,9 @@ def _parse_segment(line: str) -> tuple[float, ...] | None:
     return found if len(found) == 4 else None
 
 
+NEGATED: Final = ("1", "true", "yes", "on")
+"""What ``negate`` may be, as text, for map_server to take light pixels as occupied."""
+
 WHITE: Color = (1.0, 1.0, 1.0, 1.0)
 
 DRAWING_KEYS: Mapping[str, str] = MappingProxyType(
@@ -259,7 +243,7 @@ class LayerReader:
             return None  # there are too many layers, which is reported; further images would only cost time
         if file not in self._maps:
             found = self._documents.section(file, section.location_of("map"))
-            self._maps[file] = None if found is None else self._read_map(found, file)
+            self._maps[file] = None if found is None else self.read_map(found, file)
         return self._maps[file]
 
     def _read_threshold(self, section: Section) -> float:
@@ -270,29 +254,74 @@ class LayerReader:
             )
         return threshold
 
-    def _read_map(self, section: Section, file: Path) -> Walls | None:
+    def read_map(self, section: Section, file: Path) -> Walls | None:
+        """The walls that a layer's map file describes. What is wrong is noted.
+
+        =============== ===============================================================================
+        origin          where the drawing's lower left corner lies in the world [m, m, rad]
+        type            ``line_segments`` for a file of lines; anything else, or nothing, for a picture
+        image           the picture, relative to this file
+        resolution      size of a pixel [m]
+        occupied_thresh how dark a wall is at least, 0 white to 1 black
+        free_thresh     how dark the floor is at most; read for others, of no effect here
+        negate          1: walls are bright
+        mode            how grey becomes darkness, as map_server has it
+        data            file of lines ``x1 y1 x2 y2``, relative to this file
+        scale           length of the file's unit [m]
+        =============== ===============================================================================
+        """
         origin = section.pose("origin")
+        resolution, keys = 0.0, None
         if section.text("type", "") == "line_segments":
-            key = "data"
-            read = partial(walls_from_lines, scale=section.number("scale"), problems=self._documents.problems)
+            key, scale = "data", section.number("scale")
         else:
             key = "image"
-            read = partial(
-                walls_from_image,
-                resolution=section.number("resolution", above=0),
-                occupied_thresh=self._read_threshold(section),
-                negate=section.choice("negate", NEGATE, "0"),
-                mode=section.choice("mode", MODES, "trinary"),
-            )
-            section.text("free_thresh", "")  # what is not a wall is free here
+            resolution = section.number("resolution", above=0)
+            keys = self._read_keys(section)
         source = self._documents.referenced_file(section, key)
         section.finish(ignore_unknown=True)
         if source is None:
             return None
+        reading = None
         try:
-            local = read(source)
+            if keys is None:
+                local = walls_from_lines(source, scale, self._documents.problems)
+            else:
+                grey, alpha = _read_image(source)
+                dark = dark_pixels(grey, keys.occupied_thresh)
+                local = trace_edges(dark, resolution)
+                reading = _reading(section, dark, grey, alpha, keys)
         except UnusableFile as error:
             section.error(f"cannot read {quoted(str(source), 200)}: {error}", key)
             return None
         local.setflags(write=False)
-        return Walls(local_segments=local, origin=origin, file=file, drawing_file=source)
+        return Walls(local_segments=local, origin=origin, file=file, drawing_file=source, reading=reading)
+
+    def _read_keys(self, section: Section) -> MapServerKeys:
+        """The keys of ROS's map_server. Flatland uses the first alone, so what it does not use may be anything."""
+        threshold = self._read_threshold(section)
+        free = parse_number(section.text("free_thresh", "") or "")
+        return MapServerKeys(
+            threshold,
+            FREE_THRESH if free is None else free,
+            section.text("negate", "0").lower() in NEGATED,
+            MODES.get(section.text("mode", "trinary").lower(), "trinary"),
+        )
+
+
+def _reading(
+    section: Section, dark: BoolArray, grey: Uint8Array, alpha: Uint8Array | None, keys: MapServerKeys
+) -> Remark | None:
+    """How the picture was read, if ROS's map_server reads it otherwise."""
+    count = count_read_otherwise(dark, grey, alpha, keys)
+    if not count:
+        return None
+    unused = [
+        name for name, is_used in (("negate", keys.negate), ("mode", keys.mode != "trinary")) if is_used
+    ]
+    whatever = f", without regard to {join_with_and(unused)}" if unused else ""
+    return Remark(
+        section.location_of(unused[0] if unused else "occupied_thresh"),
+        f"read as Flatland reads it: walls are what is darker than {keys.occupied_thresh:g} of white{whatever}. "
+        f"ROS's map_server takes {counted(count, 'pixel')} of {grey.size} otherwise.",
+    )

@@ -5,6 +5,7 @@ Field for field Flatland's format (world, layer and model YAML). Lengths in metr
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -38,6 +39,17 @@ class SourceLocation:
         return f"{self.file}:{self.line}:{self.column}"
 
 
+@dataclass(frozen=True, slots=True, order=True)
+class Remark:
+    """How a value was read that others may read otherwise: no mistake, but to be said once."""
+
+    location: SourceLocation
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.location}: {self.message}"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Walls:
     """The zero-thickness, two-sided wall segments of one map, all in one static body.
@@ -52,6 +64,8 @@ class Walls:
     """The map YAML."""
     drawing_file: Path
     """The image or .dat file it names."""
+    reading: Remark | None = None
+    """How the picture was read, if others read it otherwise."""
 
     @property
     def segments(self) -> FloatArray:
@@ -218,3 +232,26 @@ class World:
     position_iterations: int = 10
     layer_bits: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     """Every layer name and its bit."""
+
+    @property
+    def remarks(self) -> tuple[Remark, ...]:
+        """How values were read that others may read otherwise, each once, in the order of the files."""
+        readings = {layer.walls.reading for layer in self.layers if layer.walls is not None} - {None}
+        turns = (
+            Remark(
+                model.location,
+                f"the heading {model.pose.theta:g} of {model.name} was read as radians: {math.degrees(model.pose.theta):g} "
+                f"degrees. {model.pose.theta:g} degrees are {math.radians(model.pose.theta):.4g}.",
+            )
+            for model in self.models
+            if abs(model.pose.theta) > math.tau
+        )
+        return (*sorted(filter(None, readings)), *turns)
+
+    @property
+    def wall_segments(self) -> FloatArray:
+        """(n, 4) float64 ``x1 y1 x2 y2`` [m] of all its maps in world coordinates, those of a map once."""
+        import numpy as np  # as above
+
+        maps = {layer.walls.file: layer.walls for layer in self.layers if layer.walls is not None}
+        return np.concatenate([np.empty((0, 4)), *(walls.segments for walls in maps.values())])

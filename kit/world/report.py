@@ -30,6 +30,7 @@ def world_report(world: World) -> str:
     names, plugins = len(world.layer_bits), [(plugin.name, plugin.type) for plugin in world.plugins]
     sections = (
         (f"World {world.file}", [f"size: {_size_text(world)}"]),
+        ("How it was read", [line for each in world.remarks for line in textwrap.wrap(str(each), inner)]),
         (f"Layers ({names} of {MAX_LAYERS} names)", table([*map(_layer_row, world.layers)], inner)),
         (f"Models ({len(world.models)})", table([*map(_model_row, _models_by_file(world))], inner)),
         (f"Plugins of the world ({len(plugins)})", table(plugins, inner)),
@@ -49,6 +50,7 @@ def world_report_data(world: World) -> dict[str, object]:
     return {
         "file": str(world.file),
         "size": _wall_extent(world),
+        "remarks": [str(each) for each in world.remarks],
         "layers": [
             {
                 "names": layer.names,

@@ -1,6 +1,6 @@
 """How large and how tangled the code is, with the figures of the first build beside each: ``python tests/benchmarks/house.py``.
 
-Counts modules, lines, import circles and repeated class names.
+Counts modules, lines, import circles, seams, functions that only forward and repeated class names.
 ``--tests`` also times the README's test command (minutes). The figures are no quota: they tell whether it got simpler.
 """
 
@@ -112,6 +112,55 @@ def circles(edges: set[tuple[str, str]]) -> str:
     return ", ".join(map(str, sizes)) or "none"
 
 
+def circle_members(edges: set[tuple[str, str]]) -> list[str]:
+    """The modules of each such group, as one line."""
+    groups = networkx.strongly_connected_components(networkx.DiGraph(sorted(edges)))
+    return sorted(" <-> ".join(sorted(group)) for group in groups if len(group) > 1)
+
+
+def seams(tree: ast.Module) -> int:
+    """How often constants follow a definition: a sign that a module was put together from several.
+
+    A constant that names what is defined above it (a table of functions, the type of a class) belongs there.
+    """
+    found = 0
+    was_definition = False
+    defined: set[str] = set()
+    for node in tree.body:
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            was_definition = True
+            defined.add(node.name)
+        elif isinstance(node, (ast.Assign, ast.AnnAssign)) and node.value is not None:
+            names = {each.id for each in ast.walk(node) if isinstance(each, ast.Name)}
+            if was_definition and not names & defined:
+                found += 1
+                was_definition = False
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            defined |= (
+                {each.id for each in targets if isinstance(each, ast.Name)} if names & defined else set()
+            )
+    return found
+
+
+def forwards(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+    """Whether a function only calls one of another object with its own arguments, in their order."""
+    body = [
+        node
+        for node in function.body
+        if not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant))
+    ]
+    if len(body) != 1 or not isinstance(body[0], (ast.Return, ast.Expr)) or function.decorator_list:
+        return False
+    call = body[0].value
+    call = call.value if isinstance(call, ast.Await) else call
+    if not isinstance(call, ast.Call) or not isinstance(call.func, ast.Attribute) or call.keywords:
+        return False
+    parts = call.func.value
+    own = [each.arg for each in function.args.args if each.arg not in ("self", "cls")]
+    given = [each.id if isinstance(each, ast.Name) else "" for each in call.args]
+    return isinstance(parts, ast.Attribute) and own == given
+
+
 def functions(tree: ast.AST) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
     return (node for node in ast.walk(tree) if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)))
 
@@ -136,7 +185,7 @@ def typing_blocks(tree: ast.Module) -> int:
 
 
 def header_lines(tree: ast.Module) -> int:
-    """InputLines before the first definition: docstring, imports, blank lines."""
+    """Lines before the first definition: docstring, imports, blank lines."""
     for node in tree.body:
         if isinstance(node, (ast.ImportFrom, ast.Import)) or (
             isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
@@ -161,7 +210,8 @@ def repeated_classes(trees: dict[str, ast.Module]) -> list[str]:
 
 
 def figures() -> tuple[list[Figure], list[str]]:
-    """Every figure that reading the code gives, and the class names that are defined twice."""
+    """Every figure that reading the code gives; and the names behind them: circles, modules with two seams or more,
+    functions that forward, class names that are defined twice."""
     paths = sources()
     texts = {module_name(path): path.read_text(encoding="utf-8") for path in paths}
     trees = {module: ast.parse(text) for module, text in texts.items()}
@@ -182,22 +232,35 @@ def figures() -> tuple[list[Figure], list[str]]:
     children = [path for path in (ROOT / "kit").iterdir() if not path.name.startswith(("_", "."))]
     repeated = repeated_classes(trees)
     product = {module: tree for module, tree in trees.items() if not FIXED_BY_ROS & set(module.split("."))}
+    everything = at_run_time | edges["typing"]
+    sewn = [f"seams: {seams(tree)} {module}" for module, tree in product.items() if seams(tree) > 1]
+    forwarding = [
+        f"forwards: {module}:{node.lineno} {node.name}"
+        for module, tree in product.items()
+        for node in functions(tree)
+        if forwards(node)
+    ]
+    tests = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in (ROOT / "tests").rglob("*.py"))
     rows = [
         Figure("imports inside functions", str(sum(map(late_imports, product.values()))), "374"),
         Figure("blocks for type checkers alone", str(sum(map(typing_blocks, product.values()))), "101"),
         Figure("import circles at import time", circles(at_import), "none"),
         Figure("import circles at run time", circles(at_run_time), "4, 4, 2"),
-        Figure("import circles with typing", circles(at_run_time | edges["typing"]), "27, 7, 4"),
+        Figure("import circles with typing", circles(everything), "27, 7, 4"),
         Figure("children of kit/, and grader", str(len(children) + 1), "36"),
         Figure("layers of the import contract", str(len(layers)), "13"),
         Figure("modules", str(len(paths)), "716"),
         Figure("product lines", f"{sum(lines.values()):,}", "78,956"),
+        Figure("test lines", f"{tests:,}", ""),
+        Figure("modules with two seams or more", str(len(sewn)), ""),
+        Figure("functions that only forward", str(len(forwarding)), ""),
         Figure("class names defined twice, ROS's aside", str(len(repeated)), "115"),
         Figure("lines of the median module", f"{statistics.median(lines.values()):.0f}", "96"),
         Figure("lines of the median function", f"{statistics.median(lengths):.0f}", "5"),
         Figure("share of header lines", f"{headers / sum(lines.values()):.1%}", "13.9%"),
     ]
-    return rows, repeated
+    circular = [f"circle: {each}" for each in circle_members(everything)]
+    return rows, [*circular, *sewn, *forwarding, *(f"twice: {each}" for each in repeated)]
 
 
 def test_seconds() -> Figure:
@@ -211,8 +274,8 @@ def test_seconds() -> Figure:
 
 
 def main(arguments: list[str]) -> int:
-    """Prints the report; ``--names`` also lists the class names that are defined twice."""
-    rows, repeated = figures()
+    """Prints the report; ``--names`` also lists what is counted: circles, seams, functions that forward, class names."""
+    rows, names = figures()
     if "--tests" in arguments:
         rows.append(test_seconds())
     width = max(len(row.name) for row in rows)
@@ -220,7 +283,7 @@ def main(arguments: list[str]) -> int:
     for row in rows:
         print(f"{row.name:{width}}  {row.now:>10}  {row.first_build}")
     if "--names" in arguments:
-        print(*repeated, sep="\n")
+        print(*names, sep="\n")
     return 0
 
 

@@ -24,9 +24,10 @@ from tempfile import TemporaryDirectory, gettempdir
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from kit.learning.environment.tasks import TASKS, TaskSpec, all_tasks, find_task
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.policies.evaluation import Evaluator
+from kit.learning.tasks.catalogue import TASKS, all_tasks, find_task
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import RunConfig, create_run
 from kit.learning.training.training import train
 

@@ -24,15 +24,15 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from kit.document.layout import lines_of
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.evaluation import EvaluationResult, Evaluator
+from kit.learning.tasks.student_reward import StudentReward
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import ALGORITHMS
 from kit.learning.training.crosstable import case_groups, crosstable_columns, crosstable_tables
 from kit.learning.training.events import Evaluated, TrainingEnded
 from kit.learning.training.presets import KIT_PPO_HALLWAY, KIT_PPO_TURN
 from kit.learning.training.run_text import success_shares
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run
-from kit.learning.training.student_reward import StudentReward
 from kit.learning.training.sweep_worker import make_pool
 from kit.learning.training.training import make_learner, train
 from kit.learning.training.training_sweep import TrainingSweep, combine

@@ -23,11 +23,12 @@ import numpy as np
 
 from kit.arrays import FloatArray, IntArray
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import load_batch_map
 from kit.learning.environment.env import TaskEnv
-from kit.learning.environment.rewards import PROGRESS
-from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, LearningTask, StartVariation
-from kit.learning.environment.transition import Array, Transition
+from kit.learning.maps.batch_map import load_batch_map
+from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS
+from kit.learning.tasks.learning_task import LearningTask, StartVariation
+from kit.learning.tasks.rewards import PROGRESS
+from kit.learning.tasks.transition import Array, Transition
 from kit.world.catalogue import find_map
 
 REPEATS = 12

@@ -32,9 +32,9 @@ from typing import Final, NamedTuple
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from grader.assignment import Assignment
-from grader.evidence.environment import EnvironmentTask
 from grader.evidence.training_results import TrainingBudget
 from grader.grading import GradingOptions, grade
+from grader.kinds.environment.examination import EnvironmentTask
 from grader.reading import read_assignment
 from grader.submission import read_submission
 from kit.host.sandbox.confinement import Level

@@ -24,7 +24,7 @@ from learning_engine import best, irsim_step
 
 from kit.geometry import Pose
 from kit.kernels import kernels
-from kit.learning.environment.batch_map import load_batch_map
+from kit.learning.maps.batch_map import load_batch_map
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.sensor_msgs import LaserScan
 from kit.ros.graph.graph import Graph

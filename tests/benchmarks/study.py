@@ -1,9 +1,9 @@
 """Makes the recorded results that come with the kit, and its document: ``python tests/benchmarks/study.py TABLE ...``.
 
-A table is its number, such as 5.2, or 5.2-kit for the kit's own preset, or figure-3.5; without one, only the document is written anew
+A table is its number, such as 5.2, or 5.2-kit for the kit's own preset, 4.1-no-limit, or figure-3.5; without one, only the document is written anew
 from the logs that are there. ``--seeds N``, ``--steps N`` and ``--jobs N`` are passed on to ``kit study TABLE --again``.
 Results are made in ``--workspace`` (by default ``~/.cache/kit-study``) by the command itself and copied to
-``kit/study/results``: interrupt it as you like, the same line goes on. The lines of README's table are printed last.
+``kit/study/results``: interrupt it as you like, the same line goes on. README's section is written anew, too.
 """
 
 from __future__ import annotations
@@ -16,16 +16,25 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from kit.study.recorded_results import SHIPPED_FOLDER, StudyVariant, recorded_result_file
-from kit.study.study_document import DOCUMENT, recorded_study_document, summary_lines
+from kit.study.recorded_results import (
+    SHIPPED_FOLDER,
+    VARIANT_OPTIONS,
+    VARIANTS,
+    StudyVariant,
+    recorded_result_file,
+)
+from kit.study.study_document import DOCUMENT, README, recorded_study_document, summary_lines
 from kit.workspace import Workspace
+
+HEADING = "## The dissertation, reproduced\n"
+"""Of the section of README that follows from the logs."""
 
 
 def make(table: str, workspace: Path, options: list[str]) -> bool:
     """Runs ``kit study TABLE --again`` and copies its log. Returns whether it ended well."""
-    number = table.removesuffix("-kit")
-    variant: StudyVariant = "seed" if number == table else "kit"
-    words = ["study", *number.split("-"), "--again", *(["--kit"] if variant == "kit" else []), *options]
+    variant: StudyVariant = next((each for each in VARIANTS if table.endswith(f"-{each}")), "seed")
+    number = table.removesuffix(f"-{variant}")
+    words = ["study", *number.split("-"), "--again", *VARIANT_OPTIONS[variant].split(), *options]
     command = [sys.executable, "-m", "kit", *words, "--workspace", str(workspace)]
     ended = subprocess.run(command, stdout=subprocess.DEVNULL, check=False).returncode
     log = recorded_result_file(Workspace(workspace), number, variant)
@@ -50,7 +59,10 @@ def main(arguments: list[str]) -> int:
     ]
     failed = [table for table in given.tables if not make(table, given.workspace, options)]
     DOCUMENT.write_text(recorded_study_document(), encoding="utf-8")
-    print("\n".join(summary_lines()))
+    text = README.read_text(encoding="utf-8")
+    first = text.index(HEADING) + len(HEADING)
+    last = text.index("\n## ", first)
+    README.write_text("\n".join((text[:first], *summary_lines(), text[last:])), encoding="utf-8")
     if failed:
         print(f"not whole: {', '.join(failed)}", file=sys.stderr)
     return 1 if failed else 0

@@ -16,6 +16,7 @@ from click.testing import CliRunner
 
 from kit.cli import doctor
 from kit.cli.doctor import command
+from kit.installation import install_command
 
 
 def report(*arguments: str, **environ: str) -> str:
@@ -60,23 +61,23 @@ def test_no_tip_about_ssh_without_ssh() -> None:
 
 
 def test_what_is_missing_of_the_extra_is_named_with_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    real = doctor.version
+    real = doctor.installed_version
 
-    def without_torch(name: str) -> str:
+    def without_torch(name: str) -> str | None:
         if name in ("torch", "pymunk"):
-            raise doctor.PackageNotFoundError(name)
+            return None
         return "1.0" if name in ("stable-baselines3", "sb3-contrib", "tensorboard") else real(name)
 
-    monkeypatch.setattr(doctor, "version", without_torch)
+    monkeypatch.setattr(doctor, "installed_version", without_torch)
     sections = json.loads(report("--json"))
     assert sections["Learning"]["torch"]["value"] == "missing"
     assert sections["Learning"]["tensorboard"]["value"] == "1.0"
-    assert "-e '.[learn]'" in sections["Learning"]["in all"]["meaning"]
+    assert install_command("learn") in sections["Learning"]["in all"]["meaning"]
     assert sections["Packages"]["pymunk"] == {"value": "missing", "meaning": "Install the kit again."}
 
 
 def test_with_the_whole_extra_nothing_is_said_to_be_missing(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(doctor, "version", lambda name: "1.0")
+    monkeypatch.setattr(doctor, "installed_version", lambda name: "1.0")
     learning = json.loads(report("--json"))["Learning"]
     assert {entry["value"] for entry in learning.values()} == {"1.0"}
 

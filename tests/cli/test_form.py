@@ -12,8 +12,10 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
+from kit.school.form_answers import FormAnswers
+from kit.school.form_reading import read_form
 from kit.school.progress import EventKind, ProgressJournal
-from kit.school.survey import AnswerShape, FormAnswers, QuestionPurpose, SurveyPhase, read_form
+from kit.school.survey import AnswerShape, QuestionPurpose, SurveyPhase
 
 
 def answer(workspace: Path, *arguments: str, lines: str = "") -> str:

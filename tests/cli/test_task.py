@@ -10,11 +10,12 @@ from pathlib import Path
 import pytest
 
 from kit.layers.case_sources import open_task
-from kit.learning.environment.rewards import TERMS
-from kit.learning.environment.tasks import find_task, task_names
-from kit.learning.environment.transition import TRANSITION_FIELDS
 from kit.learning.policies.policies import load_policy
-from kit.mapmaking.new_map import read_drawing, write_map
+from kit.learning.tasks.catalogue import find_task, task_names
+from kit.learning.tasks.rewards import TERMS
+from kit.learning.tasks.transition import TRANSITION_FIELDS
+from kit.mapmaking.map_drawing import read_drawing
+from kit.mapmaking.new_map import write_map
 from kit.run.scenario import case_names
 from kit.workspace import open_workspace
 from kit.world.catalogue import maps_folder

@@ -22,6 +22,7 @@ from kit.dialogue.dialogue import SIGNS, Action, Dialogue, Turn
 from kit.dialogue.effects import Effect, Leave, Tell
 from kit.document.layout import lines_of
 from kit.school.form_dialogue import FormDialogue
+from kit.school.form_reading import read_form
 from kit.school.form_session import FormSession
 from kit.school.lessons.defence import Defence, DefenceQuestion
 from kit.school.lessons.defence_dialogue import DefenceDialogue
@@ -31,7 +32,7 @@ from kit.school.lessons.reading import read_lesson
 from kit.school.progress import ProgressJournal
 from kit.school.quiz.quiz_dialogue import QuizDialogue
 from kit.school.quiz.quiz_session import QuizSession, quiz_plan
-from kit.school.survey import SurveyPhase, read_form
+from kit.school.survey import SurveyPhase
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.theme import Theme

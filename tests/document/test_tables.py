@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from kit.document.blocks import CellStyle, Column, Table, Tone
+from kit.document.blocks import CellStyle, Column, Table, Tone, labelled_table
+from kit.document.layout import lines_of
 from kit.document.rows import Row, row_text
 from kit.document.tables import list_rows
 
@@ -45,3 +46,8 @@ def test_no_entry_is_chosen_where_there_is_none() -> None:
     assert [row_text(each) for each in list_rows(table(()), 40, 5, 0)] == ["   run  steps  time"]
     grouped = Table("none", "", (Column("", CellStyle.TEXT),), (), grouped=True)
     assert list_rows(grouped, 40, 5, 0) == []
+
+
+def test_a_column_in_which_nothing_stands_takes_no_room() -> None:
+    labelled = labelled_table([("Perception", "", "0 of 3"), ("Action", "", "1 of 2")])
+    assert lines_of([labelled]) == ["Perception    0 of 3", "Action        1 of 2"]

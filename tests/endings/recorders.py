@@ -20,7 +20,7 @@ from types import MappingProxyType
 from typing import ClassVar, Final
 
 from kit.inspection.sockets import running_worlds, sockets_folder
-from kit.learning.environment.tasks import TaskSpec
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run
 from kit.mapmaking.sketch_draft import SketchDraft
 from kit.part_file import part_path, parts_in

@@ -7,14 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.fields.charges import (
-    CompositeCharge,
-    LineCharge,
-    PointCharge,
-    derive_charges,
-    iter_members,
-    layout_differences,
-)
+from kit.fields.charge_derivation import derive_charges, layout_differences
+from kit.fields.charges import CompositeCharge, LineCharge, PointCharge, iter_members
 from kit.fields.layout import LAYOUT_FILE, Intensities, derived_layout, load_layout, read_layout
 from kit.fields.occupancy_grid import OccupancyGrid, load_occupancy_grid
 from kit.world.problems import WorldError

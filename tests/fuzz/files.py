@@ -24,16 +24,17 @@ from PIL import Image
 
 from grader.assignment import Assignment
 from grader.evidence.contract import EvidenceOptions
-from grader.evidence.world.world_reading import read_world_facts
-from grader.kinds import drive, training
 from grader.kinds.contract import find_kind, read_submitted_yaml
+from grader.kinds.drive import kind as drive
+from grader.kinds.training import kind as training
+from grader.kinds.world.world_reading import read_world_facts
 from grader.reading import read_assignment
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused, SubmissionUnreadable
 from kit.host.failure import Failure
 from kit.host.sandbox.confinement import Level
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import PolicyError
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run, list_runs
 from kit.learning.training.training import train
 from kit.run.recording import RecordingError, load_recording, rerun, save_recording

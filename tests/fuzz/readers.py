@@ -17,27 +17,27 @@ import numpy as np
 from grader.cohort.gradebook import as_csv, as_json, gradebook_rows
 from grader.cohort.queue import Queue, prepare_queue, record_incident
 from grader.grading import GradingOptions
-from grader.kinds.policy import load_submitted_policy
+from grader.kinds.policy.kind import load_submitted_policy
 from grader.reading import read_assignment
 from grader.reports import FORMATS
 from kit.bridge.channels import WireCodec
-from kit.document.files import document_to_markdown
+from kit.document.markdown import document_to_markdown
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox.confinement import Level
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import Policy, PolicyError, load_policy, policy_bytes
 from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.tasks.task_reader import read_task
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.msg.interfaces import find_interface, interface_names
 from kit.msg.message import Message
 from kit.msg.std_msgs import String
 from kit.ros.bags import BagError, BagRecorder, Storage, read_bag, read_messages
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
+from kit.school.form_reading import read_form
 from kit.school.report.class_data import build_class_data, read_roster
 from kit.school.report.class_report import build_report, prepare_report
-from kit.school.survey import read_form
 from kit.world.problems import WorldError
 from tests.fuzz.damage import Files, damage_bytes, damage_files, damage_json, nudge_json
 from tests.fuzz.files import ROOT, clear, damaged_archive, members_of

@@ -156,7 +156,7 @@ WORKED_ONCE: Mapping[str, tuple[str, ...]] = MappingProxyType(
             "grader/test_ci.py::test_a_workflow_grades_and_runs_nothing_of_the_students",
         ),
         "a reward so large that the iteration over it never ends": (
-            "grader/kinds/test_reward.py::test_the_iteration_ends_whatever_the_rewards_are",
+            "grader/kinds/reward/test_kind.py::test_the_iteration_ends_whatever_the_rewards_are",
         ),
         "folders without end": ("grader/test_submission.py::test_folders_without_end_are_not_entered",),
         "headers of archives as large as the memory": (
@@ -167,15 +167,15 @@ WORKED_ONCE: Mapping[str, tuple[str, ...]] = MappingProxyType(
             "grader/cohort/test_unreadable.py::test_a_large_source_of_a_reward_is_not_parsed",
         ),
         "an environment that forges what its examiner says": (
-            "grader/kinds/test_environment_forgery.py::test_a_forged_examination_earns_what_an_empty_environment_earns",
-            "grader/kinds/test_environment_forgery.py::test_forged_spaces_earn_what_spaces_of_an_empty_environment_earn",
+            "grader/kinds/environment/test_forgery.py::test_a_forged_examination_earns_what_an_empty_environment_earns",
+            "grader/kinds/environment/test_forgery.py::test_forged_spaces_earn_what_spaces_of_an_empty_environment_earn",
         ),
         "a node with the name of the world's": (
-            "grader/evidence/test_episodes.py::test_the_name_of_the_worlds_node_is_refused",
-            "grader/evidence/test_episodes.py::test_what_is_sent_under_the_worlds_name_counts",
+            "grader/driving/test_episodes.py::test_the_name_of_the_worlds_node_is_refused",
+            "grader/driving/test_episodes.py::test_what_is_sent_under_the_worlds_name_counts",
         ),
         "the true state of the world": (
-            "grader/evidence/test_episodes.py::test_the_true_state_of_the_world_is_not_offered",
+            "grader/driving/test_episodes.py::test_the_true_state_of_the_world_is_not_offered",
             "grader/kinds/test_launch.py::test_truths_of_the_world_are_offered_only_where_a_program_of_the_package_names_them",
         ),
         "a disk full of small files": (
@@ -184,7 +184,7 @@ WORKED_ONCE: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "every episode as slow as it may be, floods of messages, trainings that test for ever": (
             "grader/test_submission_clock.py::test_it_binds_every_kind",
             "grader/test_submission_clock.py::test_after_two_that_took_too_long_no_other_is_run_and_points_so_far_stay",
-            "grader/evidence/test_episodes.py::test_a_flood_of_commands_ends_the_episode_as_the_programs_failure",
+            "grader/driving/test_episodes.py::test_a_flood_of_commands_ends_the_episode_as_the_programs_failure",
         ),
         "a recording whose header is a program": (
             "grader/cohort/test_unreadable.py::test_a_recording_with_a_broken_header_is_the_students",
@@ -248,7 +248,7 @@ THIRD_ROUND: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingProx
         ),
         "rewards whose sums are infinite": (
             (
-                "grader/kinds/test_reward.py::test_the_iteration_ends_whatever_the_rewards_are",
+                "grader/kinds/reward/test_kind.py::test_the_iteration_ends_whatever_the_rewards_are",
                 "grader/test_returned_numbers.py::test_whatever_a_reward_returns",
             ),
             ("grader/test_returned_numbers.py::test_a_calculation_ends_with_the_submissions_time",),
@@ -308,20 +308,20 @@ THIRD_ROUND: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingProx
             ("host/sandbox/test_promises.py::test_the_kits_environment_is_inherited_where_it_is_not_replaced",),
         ),
         "an environment that moves its robot and never drives": (
-            ("grader/checks/test_drives.py::test_an_environment_moves_its_robot_only_where_an_episode_begins",),
-            ("grader/kinds/test_environment.py::test_a_good_one_earns_everything_locked_in",),
+            ("grader/driving/test_checks.py::test_an_environment_moves_its_robot_only_where_an_episode_begins",),
+            ("grader/kinds/environment/test_kind.py::test_a_good_one_earns_everything_locked_in",),
         ),
         "a program that drives the other robot": (
-            ("grader/checks/test_drives.py::test_a_program_drives_no_other_robot",),
-            ("grader/checks/test_drives.py::test_a_program_drives_no_other_robot",),
+            ("grader/driving/test_checks.py::test_a_program_drives_no_other_robot",),
+            ("grader/driving/test_checks.py::test_a_program_drives_no_other_robot",),
         ),
         "slow near walls by the clock, a training of nothing": (
             ("test_every_lesson.py::test_every_work_loses_what_it_was_written_for",),
-            ("grader/checks/test_drives.py::test_the_speed_must_follow_what_the_laser_measures",),
+            ("grader/driving/test_checks.py::test_the_speed_must_follow_what_the_laser_measures",),
         ),
         "all messages in the first tick": (
-            ("grader/checks/test_drives.py::test_all_messages_and_lines_in_the_first_tick_are_no_rate",),
-            ("grader/checks/test_drives.py::test_a_rate_is_kept_all_the_time",),
+            ("grader/driving/test_checks.py::test_all_messages_and_lines_in_the_first_tick_are_no_rate",),
+            ("grader/driving/test_checks.py::test_a_rate_is_kept_all_the_time",),
         ),
         "names that look alike": (
             ("grader/cohort/test_cohort.py::test_no_two_names_of_a_class_look_alike",),

@@ -31,8 +31,8 @@ from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GIB, GRADER_LIMITS
 from kit.host.wire import OVER_DISK_LIMIT
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import FLOOR_CELL
-from kit.learning.environment.tasks import TaskSpec
+from kit.learning.maps.batch_map import FLOOR_CELL
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.render import raster
 from kit.school.result import GradingVerdict
 from tests.grader.attack import (

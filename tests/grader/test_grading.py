@@ -13,12 +13,13 @@ from xml.etree import ElementTree
 import pytest
 from click.testing import CliRunner
 
+import grader.check as contract
 from grader.__main__ import VERBS, main
 from grader.assignment import Assignment
-from grader.checks import contract, drives
+from grader.driving import checks as drives
 from grader.grading import GradingOptions, LevelTooLow, grade, open_grading
-from grader.kinds import controller
 from grader.kinds.contract import find_kind, kind_names
+from grader.kinds.controller import kind as controller
 from grader.reading import BUDGET_KEYS, read_assignment
 from grader.self_test import try_works, unfair_fail_odds
 from grader.submission import Submission
@@ -400,7 +401,7 @@ def test_the_plugin_tells_failed_from_skipped(tmp_path: Path) -> None:
 def test_the_plugin_calls_a_broken_grader_an_error(tmp_path: Path) -> None:
     folder = write_assignment(tmp_path / "q")
     (folder / "conftest.py").write_text(
-        "import dataclasses\nfrom grader.checks import drives\n"
+        "import dataclasses\nfrom grader.driving import checks as drives\n"
         "def broken(drive, params): raise KeyError('ours')\n"
         "drives.CHECKS = {k: dataclasses.replace(v, measure=broken) for k, v in drives.CHECKS.items()}\n"
     )

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from grader.evidence.world.facts import WorldFacts
-from grader.evidence.world.world_reading import read_world_facts
-from grader.kinds.answers import AnswerKey, AnswersTask
+from grader.kinds.answers.kind import AnswerKey, AnswersTask
+from grader.kinds.world.facts import WorldFacts
+from grader.kinds.world.world_reading import read_world_facts
 from grader.reading import read_assignment
 
 LESSONS = Path(__file__).parents[2] / "lessons"

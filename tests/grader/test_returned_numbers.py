@@ -12,13 +12,15 @@ import numpy as np
 import pytest
 
 from grader.evidence.submission_clock import SubmissionClock
-from grader.evidence.task_model import build_model, compare_behaviours, compare_loops, value_iteration
 from grader.grading import GradingOptions, grade
+from grader.kinds.reward.behaviours import compare_behaviours, compare_loops
+from grader.kinds.reward.optimal_policy import value_iteration
+from grader.kinds.reward.task_model import build_model
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox.confinement import Level
-from kit.learning.training.student_reward import LARGEST_REWARD
+from kit.learning.tasks.student_reward import LARGEST_REWARD
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.cases import every_case
 from tests.grader.attack import REWARD_SHEET
@@ -127,7 +129,7 @@ def test_what_takes_too_long_to_measure_is_the_submissions_timeout(
         property(lambda clock: bool(used_up) or is_used_up(clock)),  # type: ignore[misc]  # a property has it
     )
     monkeypatch.setattr(
-        "grader.evidence.reward.RewardEvidence.is_pure",
+        "grader.kinds.reward.evidence.RewardEvidence.is_pure",
         property(lambda evidence: used_up.append(True) or True),
     )
     result = judged(folder, "def reward(reached): return 1.0 * reached\n")

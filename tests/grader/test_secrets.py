@@ -16,9 +16,9 @@ from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, counterpa
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord, FixedEvidence
 from grader.evidence.submission_clock import SubmissionClock
 from grader.grading import Grading, GradingOptions, grade
-from grader.kinds import environment
 from grader.kinds.contract import find_kind
-from grader.kinds.function import CaseDifference, FunctionComparison
+from grader.kinds.environment import kind as environment
+from grader.kinds.function.kind import CaseDifference, FunctionComparison
 from grader.reading import read_assignment
 from grader.reports import FORMATS
 from grader.reports.formats import write_text

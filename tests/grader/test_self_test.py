@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import difflib
+import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from grader.self_test import ENDING, EditsError, apply_edits, list_wrong_works, written_out
+from grader.grading import GradingOptions
+from grader.reading import read_assignment
+from grader.self_test import ENDING, EditsError, apply_edits, list_wrong_works, try_works, written_out
+from kit.host.sandbox.confinement import Level
+from tests.grader.conftest import TEMPLATES
 
 SOLUTION = "import math\n\n\ndef turn(angle):\n    speed = 2.0 * angle\n    return speed\n\n\ndef stop():\n    return 0.0\n"
 ROOT = Path(__file__).parents[2]
@@ -83,3 +89,11 @@ def test_wrong_works_do_not_repeat_their_solution() -> None:
             None, solution.read_text().splitlines(), lines, autojunk=False
         ).get_matching_blocks()
         assert sum(block.size for block in blocks) < 0.9 * len(lines), f"{work}: write it as edits"
+
+
+def test_works_are_graded_side_by_side_with_the_same_reports(tmp_path: Path) -> None:
+    folder = tmp_path / "plan"
+    shutil.copytree(TEMPLATES / "plan", folder)
+    options = GradingOptions(Level.LIMITED)
+    assignment = replace(read_assignment(folder), level=Level.LIMITED)
+    assert list(try_works(assignment, options, jobs=2)) == list(try_works(assignment, options))

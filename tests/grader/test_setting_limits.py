@@ -10,7 +10,15 @@ from typing import NamedTuple
 import pytest
 
 from grader.assignment import MAX_HINTS, MAX_SEED
-from grader.kinds import controller, drive, environment, launch, policy, reward, task, training, world
+from grader.kinds.controller import kind as controller
+from grader.kinds.drive import kind as drive
+from grader.kinds.environment import kind as environment
+from grader.kinds.launch import kind as launch
+from grader.kinds.policy import kind as policy
+from grader.kinds.reward import kind as reward
+from grader.kinds.task import kind as task
+from grader.kinds.training import kind as training
+from grader.kinds.world import kind as world
 from grader.reading import MAX_SUBMISSION_LIMIT_S, read_assignment
 from grader.scoring import MAX_SHARE_STEPS
 from kit.school.lessons.reading import lessons_folder

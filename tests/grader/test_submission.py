@@ -470,3 +470,33 @@ def test_records_of_extended_headers_are_read_where_they_lie() -> None:
     for wrong in (b"5 a=\n9 b", b" 5a=\n", b"-5 a=\n", b"999999999999 a=\n", b"0 a\n", b"2 \n", b"x"):
         with pytest.raises(ValueError, match=r"."):
             _pax_values(wrong, None)
+
+
+@pytest.mark.parametrize("in_folder", [False, True])
+@pytest.mark.parametrize("mode", [0o755, 0o777])
+def test_a_hard_link_that_another_can_have_made_is_not_read(
+    mode: int, in_folder: bool, tmp_path: Path
+) -> None:
+    """In a folder where others may write, its second name can be a stranger's; in one's own it is a copy that saves room."""
+    (tmp_path / "secret.yaml").write_text("seeds: {turn: [40302]}")
+    folder = tmp_path / "in"
+    folder.mkdir()
+    os.link(tmp_path / "secret.yaml", folder / "ada.py")
+    folder.chmod(mode)
+    work = folder if in_folder else folder / "ada.py"
+    if mode == 0o755:
+        assert b"40302" in read_submission(work, "ada.py").files["ada.py"]
+    else:
+        with pytest.raises(SubmissionRefused, match="another name of a file"):
+            read_submission(work, "ada.py")
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="needs files of two users")
+def test_a_hard_link_in_a_folder_of_another_user_is_not_read(tmp_path: Path) -> None:
+    (tmp_path / "secret.yaml").write_text("seeds: {turn: [40302]}")
+    folder = tmp_path / "ada"
+    folder.mkdir()
+    os.link(tmp_path / "secret.yaml", folder / "ada.py")
+    os.chown(folder, 65_534, 65_534)
+    with pytest.raises(SubmissionRefused, match="another name of a file"):
+        read_submission(folder, "ada.py")

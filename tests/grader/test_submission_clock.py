@@ -6,6 +6,8 @@ import shutil
 from pathlib import Path
 
 import pytest
+from tests.grader.kinds.environment.kind import test_kind as test_environment
+from tests.grader.kinds.reward.kind import test_kind as test_reward
 
 from grader.grading import GradingOptions, grade
 from grader.reading import default_submission_limit_s, read_assignment
@@ -16,11 +18,9 @@ from kit.learning.policies.policies import policy_bytes
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.grader.conftest import FORWARD, TEMPLATES, write_assignment
 from tests.grader.kinds import (
-    test_environment,
     test_field,
     test_function,
     test_policy,
-    test_reward,
     test_training,
 )
 

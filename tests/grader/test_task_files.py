@@ -7,14 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from grader.evidence.environment import EnvironmentTask
-from grader.evidence.reward import RewardTrainingParams, mean_success
 from grader.evidence.submission_clock import SubmissionClock
-from grader.evidence.training import TrainingBudget
+from grader.kinds.environment.examination import EnvironmentTask
+from grader.kinds.reward.reward_training import RewardTrainingParams, mean_success
+from grader.kinds.training.trainings import TrainingBudget
 from grader.reading import read_assignment
 from grader.task_files import assignment_task, task_scenario
-from kit.learning.environment.tasks import UnknownTask, find_task
-from kit.mapmaking.new_map import read_drawing, write_map
+from kit.learning.tasks.catalogue import find_task
+from kit.learning.tasks.learning_task import UnknownTask
+from kit.mapmaking.map_drawing import read_drawing
+from kit.mapmaking.new_map import write_map
 from kit.world.problems import WorldError
 
 DRAWING = "########\n#S    T#\n#      #\n########"

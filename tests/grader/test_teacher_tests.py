@@ -245,3 +245,27 @@ def test_tests_have_a_clock_and_what_makes_them_slow_is_not_taken_for_a_fault_of
     late = [tests[f"test_{name}"] for name in ("looks_at_it_for_ever", "prepares_for_ever", "comes_too_late")]
     assert [(test.status, test.points) for test in late] == [(CriterionStatus.TIMEOUT, 0.0)] * 3
     assert result.verdict is not GradingVerdict.BROKEN
+
+
+def test_a_test_comes_after_what_it_names(tmp_path: Path) -> None:
+    folder = write_assignment(tmp_path / "own", QUICK + "tests: [test_own.py]\n")
+    (folder / "test_own.py").write_text(
+        "import pytest\n\n"
+        '@pytest.mark.points(1, after="reached")\ndef test_late(grading):\n    """Late."""\n\n'
+        '@pytest.mark.points(1, after="moves")\ndef test_moved(grading):\n    """Moved."""\n\n'
+        '@pytest.mark.points(1, after="test_late")\ndef test_later(grading):\n    """Later."""\n'
+    )
+    submission = Submission("ada", "controller.py", {"controller.py": FORWARD.encode()})
+    tests = {each.id: each for each in grade(read_assignment(folder), submission, DESK).tests}
+    assert tests["test_moved"].status is CriterionStatus.PASS
+    assert (tests["test_late"].status, tests["test_late"].depends_on) == (CriterionStatus.SKIPPED, "reached")
+    assert tests["test_later"].depends_on == "test_late"
+
+
+def test_a_test_after_nothing_is_a_mistake_of_the_sheet(tmp_path: Path) -> None:
+    folder = write_assignment(tmp_path / "own", QUICK + "tests: [test_own.py]\n")
+    (folder / "test_own.py").write_text(
+        'import pytest\n\n@pytest.mark.points(1, after="reachd")\ndef test_late(grading):\n    """Late."""\n'
+    )
+    with pytest.raises(WorldError, match="reached"):
+        read_assignment(folder)

@@ -16,7 +16,8 @@ from tests.host.conftest import QUICK, Student
 TICK_NS = 10_000_000
 
 PROGRAM = """
-import asyncio, datetime, queue, threading, time
+import asyncio, datetime, queue, sched, threading, time
+from concurrent import futures
 import rclpy
 from rclpy.node import Node
 from rclpy.time import Duration
@@ -63,6 +64,23 @@ WAITS = {
     "datetime and sleep": "end = datetime.datetime.now() + datetime.timedelta(seconds=1)\nwhile datetime.datetime.now() < end:\n    time.sleep(0.1)",
     "asyncio": "asyncio.run(asyncio.sleep(1))",
     "event": "threading.Event().wait(1)",
+    "event without a limit": "done = threading.Event()\nthreading.Timer(1, done.set).start()\ndone.wait()",
+    "queue": "try:\n    queue.Queue().get(timeout=1)\nexcept queue.Empty:\n    pass",
+    "simple queue": "try:\n    queue.SimpleQueue().get(timeout=1)\nexcept queue.Empty:\n    pass",
+    "filled queue": "q = queue.Queue(maxsize=1)\nthreading.Timer(1, q.put, (1,)).start()\nq.get()",
+    "condition": "condition = threading.Condition()\nwith condition:\n    condition.wait(1)",
+    "condition for": "condition = threading.Condition()\nwith condition:\n    condition.wait_for(lambda: False, timeout=1)",
+    "lock": "lock = threading.Lock()\nlock.acquire()\nlock.acquire(timeout=1)",
+    "semaphore": "threading.Semaphore(0).acquire(timeout=1)",
+    "barrier": "try:\n    threading.Barrier(2).wait(1)\nexcept threading.BrokenBarrierError:\n    pass",
+    "join": "thread = threading.Thread(target=time.sleep, args=(5,), daemon=True)\nthread.start()\nthread.join(timeout=1)",
+    "join to the end": "thread = threading.Thread(target=time.sleep, args=(1,))\nthread.start()\nthread.join()",
+    "held lock": "lock = threading.Lock()\ndef hold():\n    with lock:\n        time.sleep(1)\nthreading.Thread(target=hold).start()\ntime.sleep(0.01)\nwith lock:\n    pass",
+    "held reentrant lock": "lock = threading.RLock()\ndef hold():\n    with lock, lock:\n        time.sleep(1)\nthreading.Thread(target=hold).start()\ntime.sleep(0.01)\nwith lock:\n    pass",
+    "pool": "with futures.ThreadPoolExecutor(2) as pool:\n    pool.submit(time.sleep, 1).result()",
+    "pool's result in time": "pool = futures.ThreadPoolExecutor(2)\ntry:\n    pool.submit(time.sleep, 1.5).result(timeout=1)\nexcept futures.TimeoutError:\n    pass",
+    "sched": "s = sched.scheduler(time.monotonic, time.sleep)\ns.enter(0.3, 1, lambda: s.enter(0.7, 1, print))\ns.run()",
+    "asyncio's thread": "async def main():\n    await asyncio.wait_for(asyncio.to_thread(time.sleep, 1), 2)\nasyncio.run(main())",
     "timer": "done = threading.Event()\nthreading.Timer(1, done.set).start()\nwhile not done.wait(0.05):\n    pass",
 }
 CASES = [(wait, use) for wait in WAITS for use in USES]
@@ -177,3 +195,75 @@ def test_what_a_program_published_before_it_failed_arrives(student: Student) -> 
         assert process.failure.status == 3
         graph.run_due()
     assert heard == ["stop"]
+
+
+ENDING = """
+import atexit, threading, time
+from concurrent.futures import ThreadPoolExecutor
+import rclpy
+from std_msgs.msg import String
+
+def main():
+    rclpy.init()
+    node = rclpy.create_node("ending")
+    says = node.create_publisher(String, "said", 10)
+    say = lambda text: says.publish(String(data=f"{text} {node.get_clock().now().nanoseconds / 1e9:.2f}"))
+    atexit.register(say, "first registered")
+    atexit.register(say, "second registered")
+    pool = ThreadPoolExecutor(2)
+    pool.submit(say, "pool").result()
+    threading.Thread(target=lambda: (time.sleep(0.5), say("thread"))).start()
+    say("main")
+    {ending}
+"""
+
+
+@pytest.mark.parametrize("ending", ["pass", "raise SystemExit(0)", "raise SystemExit(3)"])
+def test_a_program_ends_as_in_python(student: Student, ending: str) -> None:
+    """Idle pools do not keep it; its threads do; then what it has registered is called, the last first."""
+    graph, heard = Graph(log_sink=lambda record: None), []
+    node = create_graph_node(graph, "listener")
+    node.create_subscription(String, "said", lambda message: heard.append(message.data), 100)
+    with NodeProcess.start(graph, student(ENDING.replace("{ending}", ending)), limits=QUICK) as process:
+        while process.is_running and graph.now_ns < 3e9:
+            exchange_until_idle(graph, [process])
+            graph.advance(graph.now_ns + TICK_NS)
+        assert not process.is_running
+        graph.run_due()
+    assert [text.rpartition(" ")[0] for text in heard] == [
+        "pool",
+        "main",
+        "thread",
+        "second registered",
+        "first registered",
+    ]
+    assert float(heard[-1].split()[-1]) >= 0.5
+
+
+def test_a_listener_that_spins_by_itself_fills_the_buffer(student: Student) -> None:
+    file = student(
+        """
+        import threading
+        import rclpy
+        from geometry_msgs.msg import TransformStamped
+        from rclpy.duration import Duration
+        from rclpy.time import Time
+        from std_msgs.msg import String
+        from tf2_ros import Buffer, TransformBroadcaster, TransformListener
+
+        def main():
+            rclpy.init()
+            node = rclpy.create_node("looker")
+            says = node.create_publisher(String, "said", 10)
+            buffer = Buffer()
+            TransformListener(buffer, node, spin_thread=True)
+            broadcaster = TransformBroadcaster(node)
+            transform = TransformStamped(child_frame_id="b")
+            transform.header.frame_id = "a"
+            threading.Timer(0.5, broadcaster.sendTransform, (transform,)).start()
+            buffer.lookup_transform("a", "b", Time(), timeout=Duration(seconds=2))
+            says.publish(String(data=f"{node.get_clock().now().nanoseconds / 1e9:.1f}"))
+            rclpy.shutdown()
+        """
+    )
+    assert run(file, 1.5) == ["0.5"]

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from kit.inspection.ros_text import CommentOptions, definition_text
+from kit.msg.definition_writer import is_shipped
 from kit.msg.interfaces import find_interface, interface_names, register_packages
 from tests.inspection.conftest import runner_for
 
@@ -62,11 +63,22 @@ def test_an_action_and_its_parts() -> None:
     )
 
 
-def test_every_shipped_interface_is_shown() -> None:
-    for name in interface_names():
-        if not name.startswith("shown_msgs"):
-            text = definition_text(find_interface(name))
-            assert "# added in" not in text
+def test_every_shipped_interface_is_shown_with_a_sentence_about_it() -> None:
+    for name in filter(is_shipped, interface_names()):
+        text = definition_text(find_interface(name))
+        assert "# added in" not in text
+        first = text.splitlines()[0]
+        assert first.startswith("# "), name
+        assert first.endswith("."), name
+
+
+def test_fields_of_shipped_interfaces_say_their_units() -> None:
+    twist = definition_text(find_interface("geometry_msgs/msg/Twist"))
+    assert "[m/s]" in twist
+    assert "[rad/s]" in twist
+    assert "#" not in "".join(line for line in twist.splitlines() if line.startswith("\t"))
+    nested = definition_text(find_interface("nav_msgs/msg/Odometry"), CommentOptions(nested=True))
+    assert any(line.startswith("\t") and "#" in line for line in nested.splitlines())
 
 
 def test_options_of_the_verb(tmp_path: Path) -> None:

@@ -307,3 +307,42 @@ def test_a_service_that_never_answers_is_not_waited_for_for_ever(
         pytest.raises(ServiceTimeout, match="/silent"),
     ):
         client.call(Trigger, "/silent", Trigger.Request(), timeout_s=0.1)
+
+
+def test_time_stands_still_while_a_program_enters_the_graph(
+    begin: Callable[..., Ticking], tmp_path: Path
+) -> None:
+    """However long that takes: what it makes then begins at the instant that its clock shows."""
+    world = begin()
+    fired: list[int] = []
+    with InspectionClient(find_world(sockets_folder(tmp_path))) as client:
+        client.hold_time()
+        began = client.graph.now_ns
+        time.sleep(0.1)  # two hundred ticks of this world
+        assert world.graph.now_ns == began
+        client.node.create_timer(0.05, lambda: fired.append(client.graph.now_ns - began))
+        client.spin(client.node, lambda: len(fired) == 3)
+        wait_until(lambda: world.graph.now_ns > began + 1_000_000_000)
+    assert fired[0] == 50_000_000
+
+
+def test_time_stands_still_for_no_client_for_ever(
+    begin: Callable[..., Ticking], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(server_module, "HOLD_S", 0.2)
+    world = begin()
+    with InspectionClient(find_world(sockets_folder(tmp_path))) as client:
+        client.hold_time()
+        began = client.graph.now_ns
+        wait_until(lambda: world.graph.now_ns > began + 100 * TICK_NS)
+
+
+def test_a_client_that_vanishes_while_time_stands_still_lets_it_go_on(
+    begin: Callable[..., Ticking], tmp_path: Path
+) -> None:
+    world = begin()
+    client = InspectionClient(find_world(sockets_folder(tmp_path)))
+    client.hold_time()
+    began = client.graph.now_ns
+    client._connection.close()
+    wait_until(lambda: world.graph.now_ns > began + 100 * TICK_NS)

@@ -10,7 +10,7 @@ import pytest
 from kit.kernels import kernels
 from kit.kernels.arrays import LANES
 from kit.kernels.lidar_index import CELL_SIZE, make_beams, make_visibility_cells, make_wall_blocks
-from kit.learning.environment.batch_map import FEW_WALLS, load_batch_map
+from kit.learning.maps.batch_map import FEW_WALLS, load_batch_map
 from kit.world.catalogue import find_map
 from tests.cases import every_case
 from tests.kernels import scans

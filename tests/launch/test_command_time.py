@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
 import pytest
 
+from kit.inspection.sockets import running_worlds, sockets_folder
 from tests.launch.conftest import Launched
+from tests.waiting import wait_until
 
+REPOSITORY = str(Path(__file__).parents[2])
 WORLD = Path(__file__).parents[1] / "ros" / "outside_programs" / "room" / "world.yaml"
 
 DRIVE = """
@@ -113,6 +117,47 @@ def test_the_same_launch_is_the_same_run_idle_and_under_load(tmp_path: Path, lau
     with load():
         assert printed(launch, file) == idle
     assert sum("TICK" in line for line in idle) == 3
+
+
+@pytest.fixture
+def room(tmp_path: Path) -> Iterator[dict[str, str]]:
+    """A world that runs in real time in another process; the environment of a second terminal."""
+    environment = {**os.environ, "KIT_WORKSPACE": str(tmp_path / "home"), "PYTHONPATH": REPOSITORY}
+    words = [sys.executable, "-m", "kit", "run", str(WORLD), "--serve", "--steps", "100000000"]
+    quiet = subprocess.DEVNULL
+    with subprocess.Popen(words, env=environment, stdin=quiet, stdout=quiet, stderr=quiet) as world:
+        try:
+            wait_until(lambda: bool(running_worlds(sockets_folder(tmp_path / "home"))), limit_s=60)
+            yield environment
+        finally:
+            world.kill()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("is_busy", [False, True], ids=["idle", "under-load"])
+def test_a_node_from_a_second_terminal_ticks_from_the_instant_at_which_it_was_due(
+    tmp_path: Path, room: dict[str, str], is_busy: bool
+) -> None:
+    file = tmp_path / "drive.py"
+    file.write_text(
+        DRIVE.replace("self.ticks += 1", "self.ticks += 1\n        if self.ticks == 4: raise SystemExit")
+    )
+    words = [sys.executable, "-m", "kit", "ros", "run", str(file)]
+    with load() if is_busy else nullcontext():
+        done = subprocess.run(
+            words,
+            env=room,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+    assert done.returncode == 0, done.stderr
+    (start,) = re.findall(r"START (\d+)", done.stdout)
+    (first,) = re.findall(r"TICK 1 (\d+)", done.stdout)
+    assert int(start) > 0
+    assert int(first) == int(start) + 100_000_000
 
 
 COMMANDS = """

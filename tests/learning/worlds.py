@@ -9,12 +9,13 @@ from functools import cache
 import numpy as np
 
 from kit.arrays import IntArray
-from kit.learning.environment.actions import Move
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.grid_world import GridWorld
-from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, WHEELCHAIRS_SEED, LearningTask
-from kit.learning.environment.transition import COMMON_FIELDS, Transition
+from kit.learning.tasks.actions import Move
+from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS, WHEELCHAIRS_SEED
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.transition import COMMON_FIELDS, Transition
 from kit.learning.training.grid_learner import GridLearner, GridLearnerSettings
 
 TASKS = {"turn": TURN, "hallway": HALLWAY, "wheelchairs": WHEELCHAIRS}

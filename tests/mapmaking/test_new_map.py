@@ -11,7 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kit.cli import main
-from kit.mapmaking.new_map import SCALES, DrawingError, MapSketch, read_drawing, squares_between, write_map
+from kit.mapmaking.map_drawing import DrawingError, read_drawing
+from kit.mapmaking.map_sketch import SCALES, MapSketch, squares_between
+from kit.mapmaking.new_map import write_map
 from kit.mapmaking.route import NoRoute
 from kit.run.scenario import find_scenario
 from tests.cases import every_case

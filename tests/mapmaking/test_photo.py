@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,8 @@ from click.testing import CliRunner
 from PIL import Image, ImageDraw
 
 from kit.cli import main
-from kit.mapmaking.photo import PhotoError, Scale, find_sheet, open_photo, plan_from_photo
+from kit.mapmaking.photo import PhotoError, Scale, open_photo, plan_from_photo
+from kit.mapmaking.sheet import find_sheet
 from kit.run.scenario import find_scenario
 from tests.mapmaking.judging import judge
 from tests.mapmaking.photos import SHEET, draw_photo
@@ -176,3 +178,24 @@ def test_a_scan_is_the_whole_picture(tmp_path: Path) -> None:
     )
     assert ends[:, ::2].min() == pytest.approx(100 / 1240 * 5, abs=0.04)
     assert ends[:, ::2].max() == pytest.approx(1100 / 1240 * 5, abs=0.04)
+
+
+@pytest.mark.parametrize(("option", "sheet", "walls"), [("--width", 7.0, 5.68), ("--walls-width", 4.92, 4.0)])
+def test_the_scale_is_told_as_it_was_read(tmp_path: Path, option: str, sheet: float, walls: float) -> None:
+    """The sheet is 701 pixels wide, the walls on it 569."""
+    flat().save(tmp_path / "plan.png")
+    given = f"{sheet:g}" if option == "--width" else f"{walls:g}"
+    words = ["maps", "from-photo", str(tmp_path / "plan.png"), option, given, "--workspace", str(tmp_path)]
+    output = CliRunner().invoke(main, words).output
+    (line,) = " ".join(output.split()).split("Scale: ")[1:]
+    told = re.findall(r"[\d.]*\d", line.partition("apart")[0])
+    assert float(told[0]) == pytest.approx(sheet, rel=0.02)
+    assert float(told[2]) == pytest.approx(walls, rel=0.02)
+    assert option in line
+
+
+def test_the_scale_of_a_drawing_in_characters_is_told(tmp_path: Path) -> None:
+    words = ["maps", "new", "hall", "--from", "-", "--cell", "0.4", "--workspace", str(tmp_path)]
+    drawing = "\n".join(["#" * 12, *["#" + " " * 10 + "#"] * 6, "#" * 12])
+    output = CliRunner().invoke(main, words, input=drawing).output
+    assert "0.4 m; the drawing is 4.8 m by 3.2 m" in " ".join(output.split())

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from kit.mapmaking.new_map import read_drawing, write_map
+from kit.mapmaking.map_drawing import read_drawing
+from kit.mapmaking.new_map import write_map
 from kit.mapmaking.route import NoRoute
 
 CELL = 0.5

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.mapmaking.new_map import MapSketch
+from kit.mapmaking.map_sketch import MapSketch
 from kit.mapmaking.sketch_draft import SketchDraft
 from kit.part_file import BeingWrittenError, part_path
 

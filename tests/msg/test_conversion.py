@@ -29,7 +29,7 @@ from kit.msg.message import Message
 from kit.msg.nav_msgs import Odometry, Path
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import Bool, Byte, ByteMultiArray, Float32MultiArray, String, UInt8MultiArray
-from kit.render.graph_layout import message_field_rows
+from kit.render.message_rows import message_field_rows
 from tests.cases import every_case
 
 MESSAGES = [cls for package in PACKAGES for cls in interfaces(package) if issubclass(cls, Message)]

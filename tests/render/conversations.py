@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kit.render.graph_layout import GraphData, GraphItem
+from kit.render.graph_data import GraphData, GraphItem
 
 WORLD = "/flatland_server"
 

@@ -8,9 +8,6 @@ import pytest
 
 from kit.render.encode import Frame
 from kit.render.graph import (
-    ASCII_LINES,
-    FRAMES_PER_LEG,
-    MAX_DOTS,
     MESSAGE_ROLE,
     MISMATCH_ROLE,
     SELECTED_ROLE,
@@ -19,12 +16,14 @@ from kit.render.graph import (
     GraphElement,
     GraphLink,
     GraphView,
-    MessageAnimation,
     draw_graph,
     rate_text,
 )
-from kit.render.graph_layout import GraphData, arrange_graph
-from kit.ros.graph.snapshot import FlowStats, MessageFlow
+from kit.render.graph_data import GraphData
+from kit.render.graph_glyphs import ASCII_LINES
+from kit.render.graph_layout import arrange_graph
+from kit.render.message_animation import FRAMES_PER_LEG, MAX_DOTS, MessageAnimation
+from kit.ros.graph.topic_statistics import FlowStats, MessageFlow
 from tests.cases import every_case
 from tests.render.conversations import DOZEN, MAZE, WORLD, item, talk
 

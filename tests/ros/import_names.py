@@ -26,6 +26,8 @@ from kit.ros.late_names import ABSENT
 
 TABLE: Final = Path(__file__).with_name("import_names.csv")
 LINE_LENGTH: Final = 110
+TYPE_VARIABLES: Final = "kit.ros.type_support"
+"""The module of type variables, to which type checkers let nothing be assigned."""
 KINDS: Final = ("", "unlisted", "late", "absent")
 
 
@@ -60,7 +62,10 @@ def read_table(file: Path = TABLE) -> dict[str, list[ImportName]]:
                 f"{file.name}: {row.module}.{row.name} is there twice, or is of no kind of {KINDS}"
             )
         modules[row.module].append(row)
-    return {module: list(_with_stars(names, modules)) for module, names in modules.items()}
+    return {
+        module: list({row.name: row for row in _with_stars(names, modules)}.values())
+        for module, names in modules.items()
+    }
 
 
 def _with_stars(names: Sequence[ImportName], modules: Mapping[str, list[ImportName]]) -> Iterator[ImportName]:
@@ -109,7 +114,7 @@ _LATE_FUNCTION: Final = ImportName("", "import_late_name", "kit.ros.late_names:i
 
 def _is_alias(row: ImportName) -> bool:
     """Whether type checkers would take an import under another name for a private one."""
-    return row.kind != "" and row.name != row.home_name
+    return row.kind != "" and row.name != row.home_name and row.home != TYPE_VARIABLES
 
 
 def _import_lines(names: Sequence[ImportName]) -> Iterator[str]:

@@ -11,11 +11,11 @@ from typing import cast
 import pytest
 
 from grader.assignment import Assignment, Shift, Trial
+from grader.driving.episodes import run_episode
 from grader.evidence.contract import EpisodeSpec
-from grader.evidence.environment import EnvironmentTask, examine_environment
-from grader.evidence.episodes import run_episode
-from grader.evidence.world.facts import WorldRunSpec
-from grader.evidence.world.world_run import run_world
+from grader.kinds.environment.examination import EnvironmentTask, examine_environment
+from grader.kinds.world.facts import WorldRunSpec
+from grader.kinds.world.world_run import run_world
 from grader.task_files import task_scenario
 from kit.controllers import ControllerFile, find_controller
 from kit.geometry import Pose
@@ -23,7 +23,7 @@ from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
-from kit.learning.environment.tasks import find_task
+from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.learning_task import PatrolGoal
 from kit.ros.execution.arguments import parse_ros_arguments
 from kit.run.episode import (

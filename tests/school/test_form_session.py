@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from kit.school.form_answers import FormAnswers
+from kit.school.form_reading import read_form
 from kit.school.form_session import FormSession, current_phase
 from kit.school.progress import EventKind, ProgressJournal
-from kit.school.survey import AnswerShape, FormAnswers, SurveyPhase, read_form
+from kit.school.survey import AnswerShape, SurveyPhase
 
 FORM = read_form()
 BEFORE = [each.id for each in FORM.questions_in_phase(SurveyPhase.BEFORE)]

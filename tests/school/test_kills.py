@@ -15,7 +15,8 @@ from typing import NamedTuple
 
 import pytest
 
-from kit.school.progress import EventKind, ProgressEvent, ProgressJournal, read_export
+from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
+from kit.school.progress_export import read_export
 
 KILLS = 20
 ENTRIES = 20_000

@@ -9,15 +9,17 @@ from itertools import count
 
 import pytest
 
+from kit.school.form_answers import FormAnswers
+from kit.school.form_reading import read_form
 from kit.school.game.levels import GameLevel, all_levels
 from kit.school.game.player_progress import level_progress
 from kit.school.lessons.catalogue import lesson_progress_from_events
 from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressEvent
+from kit.school.quiz.answers import answers_from_events
 from kit.school.quiz.items import QuestionBank, read_bank
-from kit.school.quiz.schedule import answers_from_events, build_schedule
+from kit.school.quiz.schedule import build_schedule
 from kit.school.report.class_data import student_work
-from kit.school.survey import FormAnswers, read_form
 
 ODD = {
     "none": None,

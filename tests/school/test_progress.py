@@ -14,7 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.progress import FILE, EventKind, ProgressError, ProgressEvent, ProgressJournal, read_export
+from kit.school.progress import FILE, EventKind, ProgressError, ProgressEvent, ProgressJournal
+from kit.school.progress_export import read_export
 
 
 def test_events_come_back_in_the_order_of_their_time(tmp_path: Path) -> None:

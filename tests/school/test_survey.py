@@ -7,23 +7,24 @@ from typing import Any
 
 import pytest
 
-from kit.school.lessons.reading import lessons_folder
-from kit.school.progress import EventKind, ProgressEvent
-from kit.school.survey import (
-    FORM_FILE,
-    AnswerShape,
-    AskCondition,
+from kit.school.form_answers import (
     FormAnswers,
     InvalidAnswer,
-    QuestionPurpose,
-    SurveyForm,
-    SurveyPhase,
-    SurveyQuestion,
     asked_questions,
     is_asked,
     open_questions,
     parse_answer,
-    read_form,
+)
+from kit.school.form_reading import FORM_FILE, read_form
+from kit.school.lessons.reading import lessons_folder
+from kit.school.progress import EventKind, ProgressEvent
+from kit.school.survey import (
+    AnswerShape,
+    AskCondition,
+    QuestionPurpose,
+    SurveyForm,
+    SurveyPhase,
+    SurveyQuestion,
 )
 from kit.world.problems import WorldError
 from tests.cases import every_case

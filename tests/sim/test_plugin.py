@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from kit.sim.plugin import RandomStream, UpdateTimer, WorldClock, stream_key
+from kit.sim.plugin_clock import RandomStream, UpdateTimer, WorldClock, stream_key
 from tests.cases import every_case
 
 

@@ -13,7 +13,7 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.document.blocks import Document, Table
-from kit.school.quiz.schedule import AnswerOutcome
+from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.chapters import relations
 from kit.school.report.chapters.context import ReportContext
 from kit.school.report.expertise import difference_sensitivity

@@ -10,15 +10,19 @@ import pytest
 
 from kit.controllers import ControllerFile
 from kit.learning.training.runs import RunError
+from kit.learning.training.training import resolve_preset
 from kit.run.scenario import Scenario
 from kit.study import study_runs
 from kit.study.pairs import PairRunResult
-from kit.study.printed_tables import SUCCESS, PrintedTable, printed_table
+from kit.study.printed_tables import ADJACENCY_BY_POSES, SUCCESS, PrintedTable, printed_table
 from kit.study.recorded_results import (
     RecordedResult,
     RecordedResultError,
     RecordedSettings,
     RecordedTest,
+    SideShare,
+    TrainedSeeds,
+    TrainingSession,
     append_event,
     read_recorded_result,
     recorded_result_file,
@@ -75,34 +79,90 @@ def test_cells_pool_the_seeds_and_know_their_interval(tmp_path: Path) -> None:
 def test_adjacency_stands_in_its_own_columns(tmp_path: Path) -> None:
     file = tmp_path / "4.6.jsonl"
     append_event(file, replace(SETTINGS, table="4.6", task="wheelchairs-seed"))
-    append_event(file, agent("90_turns", 0, 90, adjacency=0.25, table="4.6"))
+    append_event(file, agent("90_turns", 0, 100, adjacency=0.25, table="4.6"))
     found = read_recorded_result(file)
     assert found is not None
     cells = found.cells(printed_table("4.6"))
     assert {column for _, column in cells} == {"90 acc", "90 adj"}
-    assert cells["straight", "90 adj"].value == 0.25
+    assert (cells["straight", "90 adj"].value, cells["straight", "90 adj"].episodes) == (0.25, 100)
     assert cells["straight", "90 adj"].interval is None
 
 
-def test_the_adjacency_of_agents_that_rarely_reach_the_target_is_not_told(tmp_path: Path) -> None:
-    """They crash soon after the start, and were side by side there."""
-    test = agent("pair_straight", 0, 79, adjacency=0.97, table="4.6")
-    for table, name in (("4.6", "straight adj"), ("4.4", "adj")):
-        test = replace(test, own_cases=("pair_straight",))
-        found = RecordedResult(tmp_path, SETTINGS, (test,)).cells(printed_table(table))
-        assert ("straight", name) not in found
-        assert found["straight", name.replace("adj", "acc")].value == 0.79
-        better = replace(test, reached=dict.fromkeys(test.reached, 80))
-        found = RecordedResult(tmp_path, SETTINGS, (better,)).cells(printed_table(table))
-        assert found["straight", name].value == pytest.approx(0.97)
+def test_adjacency_is_of_episodes_that_reached_the_target_and_says_how_many(tmp_path: Path) -> None:
+    """Agents that crash soon after the start were side by side there."""
+    table, of_all = printed_table("4.6"), agent("pair_straight", 0, 2, adjacency=0.97, table="4.6")
+    for test in (of_all, replace(of_all, reached=dict.fromkeys(of_all.reached, 0))):
+        cells = RecordedResult(tmp_path, SETTINGS, (test,)).cells(table)
+        assert ("straight", "straight adj") not in cells  # of which two it is was not recorded
+        assert ("straight", "straight acc") in cells
+    known = replace(of_all, reached_by_rays={"pair_straight": 0.3}, reached_by_rays_sd={"pair_straight": 0.1})
+    other = replace(known, seed=1, reached={"pair_straight": 6}, reached_by_rays={"pair_straight": 0.5})
+    cell = RecordedResult(tmp_path, SETTINGS, (known, other)).cells(table)["straight", "straight adj"]
+    assert cell.value == pytest.approx((2 * 0.3 + 6 * 0.5) / 8)
+    assert cell.episodes == 8
+    assert cell.interval is not None
 
 
 def test_the_adjacency_of_potential_fields_is_by_poses(tmp_path: Path) -> None:
-    test = replace(agent("fields", 0, 0, adjacency=0.1, table="4.6"), by_poses={"pair_straight": 0.9})
+    test = replace(
+        agent("fields", 0, 20, adjacency=0.1, table="4.6"), episodes=20, by_poses={"pair_straight": 0.9}
+    )
     cells = RecordedResult(tmp_path, SETTINGS, (test,)).cells(printed_table("4.6"))
     assert {place: cell.value for place, cell in cells.items() if place[1] == "APF adj"} == {
         ("straight", "APF adj"): 0.9
     }
+    assert test.beside("pair_straight", ADJACENCY_BY_POSES) == SideShare(
+        0.9, pytest.approx(math.nan, nan_ok=True), 20
+    )
+
+
+def session(steps: int, reached: int, value: float | None = None) -> TrainingSession:
+    return TrainingSession(steps, reached, 100 - reached, 0, 1.0, 0.5, value)
+
+
+def test_seeds_stand_against_a_best_test_by_their_best_tests(tmp_path: Path) -> None:
+    table = printed_table("4.1")
+    assert (table.prints_best_test, table.seeds) == (True, 5)
+    tests = (
+        replace(agent("pair_straight", 0, 7), sessions=(session(10_000, 30, 600.0), session(20_000, 0, 1e6))),
+        replace(
+            agent("pair_straight", 1, 90), sessions=(session(10_000, 0, 90.0), session(20_000, 91, 300.0))
+        ),
+    )
+    result = RecordedResult(tmp_path, SETTINGS, tests)
+    assert result.cells(table) == {}
+    seeds = TrainedSeeds.of(table, result, "pair_straight")
+    assert (len(seeds.tests), seeds.planned, seeds.reached) == (2, 5, 1)
+    assert [each.share for each in seeds.best_sessions] == [0.3, 0.91]
+    assert (seeds.steps_to_goal, seeds.largest_value) == ((20_000,), 1e6)
+    nothing = TrainedSeeds.of(table, None, "pair_straight")
+    assert (nothing.tests, nothing.planned, nothing.reached, nothing.largest_value) == ((), 5, 0, None)
+
+
+def test_the_agents_of_a_part_are_those_of_the_whole(tmp_path: Path) -> None:
+    part, whole = (StudyRun.of(printed_table(number), Workspace(tmp_path)) for number in ("4.4", "4.6"))
+    assert (part.log, part.groups) == (whole.log, ("pair_straight",))
+    assert whole.groups == ("pair_straight", "90_turns")
+    assert part.configs(3) == whole.configs(3)[:1]
+    assert part.sweep(3).folder == whole.sweep(3).folder
+    assert [entry.config for entry in part.sweep(3).entries()] == list(
+        whole.configs(3)
+    )  # the longer one stays
+    assert not part.has_fields
+    assert whole.has_fields
+
+
+def test_without_the_limit_nothing_else_differs(tmp_path: Path) -> None:
+    limited, free = (
+        StudyRun.of(printed_table("4.1"), Workspace(tmp_path), variant) for variant in ("seed", "no-limit")
+    )
+    (one,), (other,) = limited.configs(0), free.configs(0)
+    assert replace(other, settings=()) == one
+    presets = [resolve_preset(config).settings for config in (one, other)]
+    assert [each.value_limit for each in presets] == [500.0, math.inf]  # type: ignore[union-attr]  # deep Q-networks
+    assert free.settings.changed == "value_limit=none"
+    assert free.log != limited.log
+    assert not StudyRun.of(printed_table("5.2"), Workspace(tmp_path), "no-limit").groups  # PPO has none
 
 
 @pytest.mark.parametrize(

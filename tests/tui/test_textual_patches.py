@@ -26,6 +26,7 @@ from textual.strip import Strip
 from textual.timer import Timer
 
 from kit.tui import textual_patches
+from kit.tui.late_timers import fire_late_timers
 from kit.tui.textual_patches import (
     ASK_CURSOR,
     KNOWN_TEXTUAL,
@@ -34,7 +35,6 @@ from kit.tui.textual_patches import (
     PlacedRun,
     ask_cursor,
     crop_left,
-    fire_late_timers,
     write_runs,
 )
 from tests.cases import every_case

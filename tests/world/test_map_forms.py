@@ -1,8 +1,8 @@
-"""Maps as people have them: what ROS's map_server says of a grey level, and what the kit makes of it.
+"""Maps as people have them: what ROS's map_server makes of a picture, what the kit makes of it, and that a difference is said.
 
-Sources: nav2_map_server's ``map_io.cpp`` (loadMapFromFile) and its README; wiki.ros.org/map_server, "Value Interpretation".
-The kit's threshold is Flatland's: a pixel is a wall below ``occupied_thresh`` of white. Both agree wherever map_server
-says occupied or free, and a level that it calls unknown may be either.
+Sources of the table: nav2_map_server's ``map_io.cpp`` (loadMapYaml, loadMapFromFile) and wiki.ros.org/map_server. The kit
+reads as Flatland does: a pixel is a wall below ``occupied_thresh`` of white; ``free_thresh``, ``negate`` and ``mode`` are
+read by nobody there.
 """
 
 from __future__ import annotations
@@ -13,62 +13,83 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from kit.world.layer_reader import MODES, wall_pixels
+from kit.world.layer_reader import dark_pixels
 from kit.world.loading import load_world
+from kit.world.map_server import (
+    FREE,
+    MODES,
+    OCCUPIED,
+    UNKNOWN,
+    MapServerKeys,
+    count_read_otherwise,
+    occupancy,
+)
 from kit.world.problems import WorldError
+from kit.world.records import World
 from tests.cases import every_case
 
-OCCUPIED, FREE, UNKNOWN = 100, 0, -1
-
 FACTS = [
-    # mode, negate, occupied_thresh, free_thresh, grey level, what map_server publishes
-    ("trinary", 0, 0.65, 0.196, 0, OCCUPIED),
-    ("trinary", 0, 0.65, 0.196, 89, OCCUPIED),
-    ("trinary", 0, 0.65, 0.196, 90, UNKNOWN),
-    ("trinary", 0, 0.65, 0.196, 205, UNKNOWN),
-    ("trinary", 0, 0.65, 0.196, 206, FREE),
-    ("trinary", 0, 0.65, 0.25, 192, FREE),
-    ("trinary", 0, 0.65, 0.196, 254, FREE),
-    ("trinary", 0, 0.9, 0.1, 25, OCCUPIED),
-    ("trinary", 0, 0.9, 0.1, 230, FREE),
-    ("trinary", 1, 0.65, 0.196, 255, OCCUPIED),
-    ("trinary", 1, 0.65, 0.196, 166, OCCUPIED),
-    ("trinary", 1, 0.65, 0.196, 165, UNKNOWN),
-    ("trinary", 1, 0.65, 0.196, 49, FREE),
-    ("trinary", 1, 0.65, 0.196, 0, FREE),
-    ("scale", 0, 0.65, 0.196, 89, OCCUPIED),
-    ("scale", 0, 0.65, 0.196, 206, FREE),
-    ("scale", 0, 0.65, 0.196, 128, 66),
-    ("scale", 1, 0.65, 0.196, 200, OCCUPIED),
-    ("raw", 0, 0.65, 0.196, 0, FREE),
-    ("raw", 0, 0.65, 0.196, 40, 40),
-    ("raw", 0, 0.65, 0.196, 100, OCCUPIED),
-    ("raw", 0, 0.65, 0.196, 101, UNKNOWN),
-    ("raw", 0, 0.65, 0.196, 255, UNKNOWN),
+    # mode, negate, occupied_thresh, free_thresh, grey level, opacity (None: the picture has none), the cell, a wall in Flatland
+    ("trinary", 0, 0.65, 0.196, 0, None, OCCUPIED, True),
+    ("trinary", 0, 0.65, 0.196, 89, None, OCCUPIED, True),
+    ("trinary", 0, 0.65, 0.196, 90, None, UNKNOWN, True),
+    ("trinary", 0, 0.65, 0.196, 165, None, UNKNOWN, True),
+    ("trinary", 0, 0.65, 0.196, 166, None, UNKNOWN, False),
+    ("trinary", 0, 0.65, 0.196, 205, None, UNKNOWN, False),
+    ("trinary", 0, 0.65, 0.196, 206, None, FREE, False),
+    ("trinary", 0, 0.65, 0.25, 192, None, FREE, False),
+    ("trinary", 0, 0.65, 0.196, 254, None, FREE, False),
+    # at a threshold exactly: neither occupied nor free
+    ("trinary", 0, 0.8, 0.2, 51, None, UNKNOWN, True),
+    ("trinary", 1, 0.8, 0.2, 51, None, UNKNOWN, True),
+    # pairs for which the two readings contradict each other
+    ("trinary", 0, 0.4, 0.3, 120, None, OCCUPIED, False),
+    ("trinary", 0, 0.1, 0.05, 200, None, OCCUPIED, False),
+    ("trinary", 0, 0.9, 0.8, 100, None, FREE, True),
+    ("trinary", 0, 0.65, 0.5, 150, None, FREE, True),
+    ("trinary", 0, 1.0, 0.25, 0, None, UNKNOWN, True),
+    ("trinary", 1, 0.65, 0.196, 255, None, OCCUPIED, False),
+    ("trinary", 1, 0.65, 0.196, 166, None, OCCUPIED, False),
+    ("trinary", 1, 0.65, 0.196, 165, None, UNKNOWN, True),
+    ("trinary", 1, 0.65, 0.196, 49, None, FREE, True),
+    ("trinary", 1, 0.65, 0.196, 0, None, FREE, True),
+    # opacity counts as a fourth colour
+    ("trinary", 0, 0.65, 0.196, 0, 255, OCCUPIED, True),
+    ("trinary", 0, 0.8, 0.196, 0, 255, UNKNOWN, True),
+    ("trinary", 0, 0.65, 0.196, 255, 0, UNKNOWN, False),
+    ("scale", 0, 0.65, 0.196, 89, None, OCCUPIED, True),
+    ("scale", 0, 0.65, 0.196, 206, None, FREE, False),
+    ("scale", 0, 0.65, 0.196, 128, None, 67, True),
+    ("scale", 1, 0.65, 0.196, 200, None, OCCUPIED, False),
+    ("scale", 0, 0.65, 0.196, 0, 254, UNKNOWN, True),
+    ("scale", 0, 0.65, 0.196, 0, 255, OCCUPIED, True),
+    ("raw", 0, 0.65, 0.196, 0, None, FREE, True),
+    ("raw", 0, 0.65, 0.196, 40, None, 40, True),
+    ("raw", 0, 0.65, 0.196, 100, None, OCCUPIED, True),
+    ("raw", 0, 0.65, 0.196, 101, None, UNKNOWN, True),
+    ("raw", 1, 0.65, 0.196, 255, None, UNKNOWN, False),
 ]
 
 
-def published(mode: str, negate: int, occupied: float, free: float, level: int) -> int:
-    """The documented formula."""
-    if mode == "raw":
-        return level if level <= 100 else UNKNOWN
-    share = level / 255 if negate else (255 - level) / 255
-    if share > occupied:
-        return OCCUPIED
-    if share < free:
-        return FREE
-    return UNKNOWN if mode == "trinary" else round(99 * (share - free) / (occupied - free))
-
-
-@every_case(("mode", "negate", "occupied", "free", "level", "value"), FACTS)
-def test_what_is_occupied_is_a_wall_and_what_is_free_is_none(
-    mode: str, negate: int, occupied: float, free: float, level: int, value: int
+@every_case(("mode", "negate", "occupied", "free", "level", "opacity", "cell", "is_wall"), FACTS)
+def test_each_fact(
+    mode: str,
+    negate: int,
+    occupied: float,
+    free: float,
+    level: int,
+    opacity: int | None,
+    cell: int,
+    is_wall: bool,
 ) -> None:
-    assert published(mode, negate, occupied, free, level) == value
     grey = np.array([[level]], dtype=np.uint8)
-    is_wall = bool(wall_pixels(grey, occupied, negate=bool(negate), mode=MODES[mode])[0, 0])
-    if value in (OCCUPIED, FREE) or mode == "raw":
-        assert is_wall == (value > 100 * occupied)
+    alpha = None if opacity is None else np.array([[opacity]], dtype=np.uint8)
+    keys = MapServerKeys(occupied, free, bool(negate), MODES[mode])
+    assert occupancy(grey, alpha, keys)[0, 0] == cell
+    dark = dark_pixels(grey, occupied)
+    assert bool(dark[0, 0]) == is_wall
+    contradict = (cell == OCCUPIED and not is_wall) or (cell == FREE and is_wall)
+    assert count_read_otherwise(dark, grey, alpha, keys) == contradict
 
 
 def world(folder: Path, map_text: str, *, name: str = "rgb.png", alpha: int = 255) -> Path:
@@ -81,28 +102,47 @@ def world(folder: Path, map_text: str, *, name: str = "rgb.png", alpha: int = 25
     return folder / "world.yaml"
 
 
-def segments(file: Path) -> int:
-    (layer,) = load_world(file).layers
+def loaded(file: Path) -> tuple[World, int]:
+    """The world, and how many walls it has."""
+    world = load_world(file)
+    (layer,) = world.layers
     assert layer.walls is not None
-    return len(layer.walls.segments)
+    return world, len(layer.walls.segments)
 
 
 @every_case(
-    ("keys", "alpha", "count"),
+    ("keys", "alpha", "line"),
     [
-        ("", 255, 4),
-        ("mode: trinary", 0, 4),  # transparency is ignored
-        ("mode: scale", 255, 4),
-        ("mode: scale", 0, 0),  # nothing is known there
-        ("negate: 1", 255, 8),  # the light rim, outside and inside
-        ("negate: true", 255, 8),
-        ("negate: 0\nfree_thresh: 0.196", 255, 4),
-        ("mode: raw", 255, 0),  # 0 is free, 255 unknown
+        ("occupied_thresh: 0.65", 255, None),
+        ("occupied_thresh: 0.65\nmode: trinary\nnegate: 0\nfree_thresh: 0.196", 255, None),
+        ("occupied_thresh: 0.65\nmode: scale", 255, None),  # black and white mean the same in both modes
+        ("occupied_thresh: 0.65\nmode: scale", 0, None),  # unknown there: neither occupied nor free
+        ("occupied_thresh: 0.65\nnegate: 1", 255, 5),
+        ("occupied_thresh: 0.65\nnegate: true", 255, 5),
+        ("occupied_thresh: 0.65\nmode: raw", 255, 5),
+        ("occupied_thresh: 0.65\nfree_thresh: 0.9\nmode: Raw", 255, 6),
+        ("occupied_thresh: 0.65\nfree_thresh: junk\nnegate: junk\nmode: junk", 255, None),
     ],
 )
-def test_the_keys_of_map_server_are_followed(tmp_path: Path, keys: str, alpha: int, count: int) -> None:
-    file = world(tmp_path, f"image: rgb.png\noccupied_thresh: 0.65\n{keys}", alpha=alpha)
-    assert segments(file) == count
+def test_a_picture_is_read_as_flatland_reads_it_and_a_difference_is_said_with_its_line(
+    tmp_path: Path, keys: str, alpha: int, line: int | None
+) -> None:
+    found, walls = loaded(world(tmp_path, f"image: rgb.png\n{keys}", alpha=alpha))
+    assert walls == 4
+    assert [remark.location.line for remark in found.remarks] == ([] if line is None else [line])
+
+
+def test_a_heading_that_looks_like_degrees_is_said(tmp_path: Path) -> None:
+    file = world(tmp_path, "image: rgb.png\noccupied_thresh: 0.65")
+    (tmp_path / "bot.yaml").write_text(
+        "bodies: [{name: b, footprints: [{type: circle, radius: 0.1, density: 1}]}]\n"
+    )
+    for heading, count in (("90", 1), ("-7", 1), ("1.57", 0), ("-6.28", 0)):
+        text = "properties: {}\nlayers: []\nmodels:\n- {name: bot, model: bot.yaml, pose: [0, 0, %s]}\n"
+        file.write_text(text % heading)
+        remarks = load_world(file).remarks
+        assert len(remarks) == count
+        assert all(remark.location.line == 4 and heading in remark.message for remark in remarks)
 
 
 @pytest.mark.parametrize(
@@ -135,8 +175,6 @@ def test_a_picture_that_is_named_as_elsewhere_gets_the_near_name(
         ("free_thresh: 0.196", ["occupied_thresh"]),  # and not that free_thresh is meant to be that
         ("occupied_thresh: 65", ["0.65"]),
         ("occupied_thresh: 0,65", ["occupied_thresh"]),
-        ("occupied_thresh: 0.65\nmode: trinery", ["trinary"]),
-        ("occupied_thresh: 0.65\nnegate: 2", ["negate"]),
     ],
 )
 def test_one_mistake_is_one_sentence_about_the_right_key(tmp_path: Path, keys: str, said: list[str]) -> None:

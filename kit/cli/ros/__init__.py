@@ -31,8 +31,8 @@ VERBS: Final[Verbs] = {
     "run": ("kit.cli.ros.run", "Run a package's program, or a Python file, in the running world."),
     "launch": ("kit.cli.launch", "Same as `kit launch`."),
     "pkg": ("kit.cli.launch:package_command", "Same as `kit pkg`."),
-    "doctor": ("kit.cli.doctor", "Same as `kit doctor`."),
-    "wtf": ("kit.cli.doctor", "Same as `kit doctor`."),
+    "doctor": ("kit.cli.ros.doctor", "Check the running world, packages and this shell; report on them."),
+    "wtf": ("kit.cli.ros.doctor", "Same as `kit ros doctor`."),
 }
 
 ABSENT: Final[Mapping[str, str]] = {

@@ -23,9 +23,10 @@ from kit.inspection.client import CHECK_INTERVAL_S, NODE_PREFIX, InspectionClien
 from kit.inspection.ros_text import MessageFormat, absolute_name, to_yaml
 from kit.msg.interfaces import find_action
 from kit.plain_text import nearest_name
-from kit.ros.action.client import ENDED, STATUS_NAMES, ActionClient, ClientGoalHandle, uuid_bytes
+from kit.ros.action.client import ActionClient, ClientGoalHandle
+from kit.ros.action.goal_states import ENDED, STATUS_NAMES, uuid_bytes
 from kit.ros.execution.task import Future
-from kit.ros.graph.naming import (
+from kit.ros.graph.action_names import (
     action_names_and_types,
     all_served_actions,
     called_actions,

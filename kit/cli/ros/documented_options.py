@@ -70,7 +70,6 @@ ABSENT_OPTIONS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
         ),
         "run": ("--prefix",),
         "launch": ("--noninteractive", "--debug", "--print", "--launch-prefix", "--launch-prefix-filter"),
-        "doctor": ("--include-warnings", "--exclude-packages"),
     }
 )
 """The options, by command."""

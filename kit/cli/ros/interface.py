@@ -45,8 +45,6 @@ def list_interfaces(only_msgs: bool, only_srvs: bool, only_actions: bool) -> Non
 def show(name: str, all_comments: bool, no_comments: bool) -> None:
     """Print a type's definition with all nested types. - reads the type from standard input.
 
-    The kit's own definitions have no comments; those of your packages are shown as you wrote them.
-
     \b
     kit ros interface show geometry_msgs/msg/Twist
     kit ros topic type /cmd_vel | kit ros interface show -

@@ -27,10 +27,14 @@ def exit_with_error(message: str) -> NoReturn:
     raise SystemExit(EXIT_FAILURE)
 
 
+def package_folders(workspace: Path | None = None) -> tuple[Path, ...]:
+    """The folders in which packages are searched for: this one, its ``src`` and the workspace's."""
+    return Path.cwd(), Path.cwd() / "src", options.open_existing_workspace(workspace).packages
+
+
 def register_workspace_interfaces(workspace: Path | None = None) -> None:
     """Makes the interfaces of the packages of this folder and of the workspace known to this process."""
-    packages = options.open_existing_workspace(workspace).packages
-    found = interface_packages(find_packages((Path.cwd(), Path.cwd() / "src", packages)))
+    found = interface_packages(find_packages(package_folders(workspace)))
     register_packages({name: str(folder) for name, folder in found.items()})
 
 

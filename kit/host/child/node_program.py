@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import atexit
 import importlib
 import sys
-import threading
 import time
 from collections.abc import Callable
 from functools import partial
@@ -14,6 +14,7 @@ from typing import Final
 from kit.host.child.command_loop import CommandSession
 from kit.host.child.program_input import mark_reading
 from kit.host.child.simulated_time import use_simulated_time
+from kit.host.child.simulated_waits import SimulatedWaits
 from kit.host.child.student_module import StudentProgram, exit_status
 from kit.host.child.subprocesses import answer_ticks_meanwhile
 from kit.host.failure import Failure, FailureKind, StudentCodeError
@@ -34,13 +35,14 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     as_package = (
         "folder" in start and not start["is_controller"]
     )  # run as ``ros2 run`` would: what it prints may be all that it does
+    atexit._clear()  # what the kit's own modules have registered is not the program's
     install_import_names(start.get("interfaces", {}))
     # Last, so that what is really installed comes first.
     sys.path.append(SHIMS_FOLDER)
     sys.argv = [program.file, *start["args"]]
     bridge = ChildBridge(session, start["now"], uninterrupted=session.interrupts.deferred)
     set_default_graph_finder(lambda: bridge.graph)
-    use_simulated_time(bridge.graph, start["libraries"])
+    waits = use_simulated_time(bridge.graph, start["libraries"])
     waiter = bridge.graph.waiter
     assert isinstance(waiter, AllThreadsWaiter)  # the bridge's default
     if "folder" in start:  # the user's own, not a submission
@@ -63,6 +65,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
                 _run_main(module, program)
     except SystemExit as stop:
         if exit_status(stop):
+            _end_program(waits)
             bridge.send_last_messages()
             raise
     except MemoryError:
@@ -70,12 +73,16 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     except BaseException:
         bridge.send_last_messages()
         raise
-    for thread in threading.enumerate():
-        if thread is not threading.current_thread() and not thread.daemon:
-            thread.join()
+    _end_program(waits)
     if not bridge.has_had_nodes and not as_package:
         raise _no_program_error("The program ended without creating a node.", program)
     bridge.end()
+
+
+def _end_program(waits: SimulatedWaits) -> None:
+    """Does what Python does when a program has ended: waits for its threads, then calls what it has registered with atexit."""
+    waits.wait_for_threads()
+    atexit._run_exitfuncs()
 
 
 def _begin_when_needed(

@@ -28,7 +28,6 @@ from __future__ import annotations
 
 import os
 import sys
-import threading
 import time
 from collections.abc import Callable, Sequence
 from functools import cache
@@ -36,6 +35,7 @@ from typing import Any, Final, SupportsIndex
 
 import kit
 from kit.host.child.import_hooks import on_import
+from kit.host.child.simulated_waits import SimulatedWaits
 from kit.ros.graph.graph import Graph
 
 Seconds = float | SupportsIndex | None
@@ -150,35 +150,17 @@ class _GraphSelector:
         return found
 
 
-def _simulated_event(graph: Graph, is_own_code: Callable[[str], bool]) -> type[threading.Event]:
-    """Makes the class of the events of threads that wait in simulated time for the program, and for its timers."""
-    timer_code = threading.Timer.run.__code__
-
-    class Event(threading.Event):
-        def wait(self, timeout: float | None = None) -> bool:
-            caller = sys._getframe(1).f_code
-            if timeout is None or not (caller is timer_code or is_own_code(caller.co_filename)):
-                return super().wait(timeout)
-            graph.wait(self.is_set, graph.now_ns + max(0, int(timeout * 1e9)), what="Event.wait()")
-            return self.is_set()
-
-        def set(self) -> None:
-            super().set()
-            graph.notify()
-
-    return Event
-
-
 LOOP_RESOLUTION_S: Final = 1e-6
 """What asyncio takes for the same instant [s]: more than the error of a time as a float."""
 SOCKET_STEP_NS: Final = 10_000_000
 """How often a loop that has sockets looks at them [ns, simulated]."""
 
 
-def use_simulated_time(graph: Graph, libraries: Sequence[str] = ()) -> None:
+def use_simulated_time(graph: Graph, libraries: Sequence[str] = ()) -> SimulatedWaits:
     """Replaces functions of the module ``time`` in this process, as the table above says.
 
     A controller that uses them then behaves the same at every speed. ``libraries``: the folders of installed modules.
+    Returns the waits of the program's threads for each other.
     """
     foreign = (*_PYTHON, *(f"{folder}{os.sep}" for folder in libraries))
 
@@ -191,8 +173,10 @@ def use_simulated_time(graph: Graph, libraries: Sequence[str] = ()) -> None:
         """Waits in simulated time."""
         if seconds < 0:
             raise ValueError("sleep length must be non-negative")
-        graph.wait(lambda: False, graph.now_ns + int(seconds * 1e9), what="time.sleep()")
+        graph.wait(lambda: False, waits.clock.end_of(seconds), what="time.sleep()")
 
+    waits = SimulatedWaits(graph, _PYTHON[0], is_own_code)
+    waits.install()
     started = time.time()
     wall_localtime, wall_gmtime = time.localtime, time.gmtime
 
@@ -230,8 +214,11 @@ def use_simulated_time(graph: Graph, libraries: Sequence[str] = ()) -> None:
 
         def seconds() -> float:
             """The simulated time [s] for the program's own code, the wall clock's progress for that of libraries."""
-            if is_own_code(sys._getframe(1).f_code.co_filename):
+            caller = sys._getframe(1).f_code.co_filename
+            if is_own_code(caller):
                 return progress.read(time_ns()) / 1e9
+            if waits.is_waiting_code(caller) and waits.is_program():
+                return waits.clock.read()
             return float(wall())
 
         def nanoseconds() -> int:
@@ -248,9 +235,9 @@ def use_simulated_time(graph: Graph, libraries: Sequence[str] = ()) -> None:
     on_import("datetime", lambda module: _use_simulated_dates(module, lambda: started + time_ns() / 1e9))
     on_import("asyncio.base_events", lambda module: _use_simulated_loops(module, graph))
     on_import("asyncio.selector_events", lambda module: _use_simulated_selectors(module, graph))
-    threading.Event = _simulated_event(graph, is_own_code)  # type: ignore[misc]  # a subclass
     time.time_ns = time_ns
     time.time = lambda: time_ns() / 1e9
     time.localtime = localtime
     time.gmtime = gmtime
     time.ctime = ctime
+    return waits

@@ -57,6 +57,8 @@ class SandboxConfig:
     """Absolute paths without links in ``listed`` folders, of which the program may see nothing."""
     in_bubblewrap: bool = False
     """Whether bubblewrap has made the namespaces and the file tree already. At level 2."""
+    groups: Sequence[str] = ()
+    """Files of control groups: who writes 0 to them joins."""
 
     @property
     def scratch(self) -> str:
@@ -80,6 +82,7 @@ class SandboxConfig:
             content["listed"],
             content["hidden"],
             content["in_bubblewrap"],
+            content["groups"],
         )
 
     @property
@@ -157,6 +160,12 @@ def prepare(config: SandboxConfig) -> bool:
 def confine(config: SandboxConfig) -> None:
     """Confines this process, for good, before it receives the student's code. Raises ConfinementError."""
     os.umask(0o022)
+    for group in config.groups:
+        try:
+            with open(group, "w") as file:
+                file.write("0")
+        except OSError as problem:
+            raise ConfinementError(f"a control group cannot be joined ({problem.strerror}).") from None
     # The folder exists as long as the run, so no other run has its inode.
     user = _FIRST_USER + os.stat(config.scratch).st_ino % _USERS
     if config.level >= Level.ANOTHER_USER:
@@ -183,17 +192,21 @@ def confine(config: SandboxConfig) -> None:
         _restrict(config)
 
 
-def confine_reader(readable: Sequence[str], listed: Sequence[str], writable: Sequence[str]) -> None:
+def confine_reader(
+    readable: Sequence[str], listed: Sequence[str], writable: Sequence[str], *, starts_programs: bool = True
+) -> None:
     """Confines this process of the kit's own, for good, before it reads what somebody else has written.
 
-    As at level 1, but that it may start programs, which are then confined likewise. Raises ConfinementError.
+    As at level 1, but that with ``starts_programs`` it may start programs, which are then confined likewise. Raises
+    ConfinementError.
     """
     _require_filters()
     _prctl(_PR_SET_NO_NEW_PRIVS, 1)
+    _prctl(_PR_SET_PDEATHSIG, _KILL)
     try:
         _drop_capabilities()
         landlock.restrict(readable, listed, (*writable, *WRITABLE))
-        seccomp.install(starts_programs=True)
+        seccomp.install(starts_programs=starts_programs)
     except OSError as problem:
         raise ConfinementError(
             f"{problem.strerror}. A container may forbid it: see its seccomp profile."

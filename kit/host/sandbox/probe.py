@@ -15,6 +15,7 @@ from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.private_folder import private_folder
 from kit.host.sandbox import bubblewrap, landlock
 from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.control_groups import can_make_groups
 from kit.host.student_functions import StudentFunctions
 
 TRIAL_S: Final = 20.0
@@ -102,7 +103,8 @@ def _describe_limits() -> str:
 
 def _describe_filters() -> str:
     disk = "limited" if can_mount_scratch() else "measured ten times a second"
-    return f"Landlock (version {landlock.abi()}) and a filter of system calls; its disk is {disk}"
+    pages = "limited" if can_make_groups() else "limited by addresses alone, for want of control groups"
+    return f"Landlock (version {landlock.abi()}) and a filter of system calls; its disk is {disk}, its memory {pages}"
 
 
 def _describe_namespaces() -> str:

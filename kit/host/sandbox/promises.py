@@ -74,12 +74,16 @@ PROMISES: Final = (
     ),
     Promise(
         "threads",
-        "start more threads than its limit (from level 1 on, if the kit does not run as root)",
+        "start more threads than its limit (from level 1 on, if the kit is not root, or may make control groups)",
         Level.ANOTHER_USER,
     ),
     Promise("user", "run as the same user as the kit or another run", Level.ANOTHER_USER),
-    Promise("locks", "hold locks on files that other programs may read too", None),
-    Promise("cache", "leave a message for a later program in what of a common file lies in memory", None),
+    Promise("locks", "hold locks, of whichever kind, on files that other programs may read too", None),
+    Promise(
+        "cache",
+        "leave a message for a later program in what of common files and names, found or not, lies in memory",
+        None,
+    ),
     Promise(
         "load", "learn how many processes run, how busy the machine is and how much of its disk is free", None
     ),

@@ -1,1 +1,1 @@
-"""Tasks as environments: observations, actions, rewards, and the batch engine."""
+"""Tasks as environments: many worlds as arrays, and Gymnasium's view of them."""

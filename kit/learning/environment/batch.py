@@ -8,30 +8,31 @@ from numpy.typing import NDArray
 from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.kernels import grids, kernels
 from kit.kernels.arrays import StepInputs, StepMoves
-from kit.learning.environment.actions import Commands, DiscreteActions, TwistTable
 from kit.learning.environment.batch_loops import BatchLoops
-from kit.learning.environment.batch_map import BatchMap
 from kit.learning.environment.batch_state import NO_MOVE, BatchState, BatchStep, DisturbanceState
 from kit.learning.environment.case_arrays import CaseArrays, GoalCount
-from kit.learning.environment.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE, RAY_COUNT
-from kit.learning.environment.rewards import FORWARD_SHARE, Reward, RewardFunction
-from kit.learning.environment.tasks import LearningTask
-from kit.learning.environment.transition import (
+from kit.learning.maps.batch_map import BatchMap
+from kit.learning.maps.ray_directions import RAY_COUNT
+from kit.learning.tasks.actions import Commands, DiscreteActions, TwistTable
+from kit.learning.tasks.learning_task import (
+    AvoidGoal,
+    CoverGoal,
+    FollowGoal,
+    LearningTask,
+    PatrolGoal,
+    TargetGoal,
+    TaskCase,
+    WallGoal,
+)
+from kit.learning.tasks.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE
+from kit.learning.tasks.rewards import FORWARD_SHARE, Reward, RewardFunction
+from kit.learning.tasks.transition import (
     FAR,
     Array,
     Transition,
     average_speeds,
     bearing_of_target,
     distance_to_target,
-)
-from kit.learning.tasks.learning_task import (
-    AvoidGoal,
-    CoverGoal,
-    FollowGoal,
-    PatrolGoal,
-    TargetGoal,
-    TaskCase,
-    WallGoal,
 )
 from kit.world.catalogue import MapCard
 
@@ -315,7 +316,7 @@ class BatchEnv:
             return old.disturbed, StepMoves(
                 twists[None], self._check_times, self._same_command, self._checks, turn
             )
-        number = (old.episode << EPISODE_BITS) + JITTER_DRAWS + old.step
+        number = (old.episode << EPISODE_BITS) + JITTER_DRAWS + old.step * task.robots
         disturbed = old.disturbed.after_command(twists, self._random_keys, number)
         return disturbed, disturbed.moves(task.collision_checks)
 

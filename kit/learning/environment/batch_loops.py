@@ -10,10 +10,10 @@ from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
 from kit.kernels import batch_step, compilation, grids, world_kernels
 from kit.kernels.arrays import StepInputs, StepOutputs, StepRules
-from kit.learning.environment.batch_map import hulls_in_lidar_frame
 from kit.learning.environment.case_arrays import CELL, CaseArrays
-from kit.learning.environment.observations import RAY_COUNT
-from kit.learning.environment.tasks import LearningTask
+from kit.learning.maps.batch_map import geometry_for_scans
+from kit.learning.maps.ray_directions import RAY_COUNT
+from kit.learning.tasks.learning_task import LearningTask
 
 SCAN_LENGTH = -(-RAY_COUNT // 32) * 32
 """A scan's room: whole vectors of numbers are faster. What follows the last ray is the reach."""
@@ -34,13 +34,12 @@ class BatchLoops:
     def __init__(self, task: LearningTask, case_arrays: CaseArrays, n: int, *, has_ways: bool) -> None:
         """``n``: how many worlds a step is of. ``has_ways``: whether targets stand, so that tables have the ways to them."""
         self._robots, self._frame_size = task.robots, task.observation.frame_size
-        lidar = case_arrays.lidar
+        robot = case_arrays.robot
+        lidar = robot.lidar
         single_rays, sectors = task.observation.ray_tables(task.robots)
         self.rules = StepRules(
             fleet=case_arrays.fleet,
-            seen_fleet=case_arrays.fleet
-            if lidar == Pose()
-            else hulls_in_lidar_frame(case_arrays.fleet, lidar),
+            seen_fleet=geometry_for_scans(case_arrays.fleet, robot, task.robots),
             obstacles=case_arrays.obstacles,
             ways=case_arrays.ways,
             ways_corners=case_arrays.ways_corners,

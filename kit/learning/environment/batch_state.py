@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -10,8 +11,8 @@ import numpy as np
 from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.kernels import world_kernels
 from kit.kernels.arrays import StepMoves
-from kit.learning.environment.tasks import LearningTask
-from kit.learning.environment.transition import Array, Transition
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.transition import Array, Transition
 
 NO_MOVE = -1
 TRANSITION_ARRAYS = (
@@ -159,7 +160,7 @@ class DisturbanceState:
     commands: FloatArray
     """(n, depth, r, 2): twists at the wheels, the newest first. All that are older than the last one are in the past."""
     due: FloatArray
-    """(n, depth): in how many seconds each takes effect; at most 0 where it has already."""
+    """(n, depth, r): in how many seconds each takes effect; at most 0 where it has already."""
 
     @classmethod
     def allocate(cls, task: LearningTask, n: int) -> DisturbanceState:
@@ -170,7 +171,7 @@ class DisturbanceState:
             shared=np.zeros((n, len(SHARED_KINDS))),
             wheels=np.zeros((n, task.robots, len(WHEEL_KINDS))),
             commands=np.zeros((n, depth, task.robots, 2)),
-            due=np.zeros((n, depth)),
+            due=np.zeros((n, depth, task.robots)),
         )
 
     def copy(self) -> DisturbanceState:
@@ -198,50 +199,60 @@ class DisturbanceState:
 
     def after_command(self, twists: FloatArray, keys: IntArray, numbers: IntArray) -> DisturbanceState:
         """The state once ``twists`` (n, r, 2), forward [m/s] and turn [rad/s], are sent; a later command never
-        overtakes an earlier one. Its jitter is number ``numbers[i]`` of ``keys[i]``."""
+        overtakes an earlier one. The jitter of robot k is number ``numbers[i] + k`` of ``keys[i]``."""
         disturbances = self.task.disturbances
         if not disturbances:
             return replace(self, commands=twists[:, None])
         factor = 1.0 + self.wheels[:, :, 0]
         forward, turn = twists[:, :, 0] * factor, twists[:, :, 1] * factor
         driven = np.stack([forward, turn + forward * self.wheels[:, :, 1]], axis=2)
-        late = self.shared[:, 2]
+        late = self.shared[:, 2, None]
         if disturbances.command_jitter.high > 0.0:
-            drawn = np.empty((len(keys), 1))
+            drawn = np.empty((len(keys), self.task.robots))
             world_kernels.fill_uniform(keys, numbers, drawn)
-            late = late + self.shared[:, 3] * drawn[:, 0]
-        earlier = self.due - self.task.step_time
+            late = late + self.shared[:, 3, None] * drawn
+        before, earlier = self.commands[:, :-1], self.due - self.task.step_time
+        if self.task.stops_between:
+            before = np.where(earlier[:, :-1, :, None] > 0.0, before, 0.0)
         due = np.maximum(late, earlier[:, 0])
         return replace(
             self,
-            commands=np.concatenate([driven[:, None], self.commands[:, :-1]], axis=1),
+            commands=np.concatenate([driven[:, None], before], axis=1),
             due=np.concatenate([due[:, None], earlier[:, :-1]], axis=1),
         )
 
     def moves(self, checks: int) -> StepMoves:
         """The commands in force during a step with so many checks for collisions, one after each equal part of it."""
-        length, depth = self.task.step_time / checks, self.due.shape[1]
+        length = self.task.step_time / checks
         twists, lasts, after = [], [], []
         for check in range(checks):
-            durations = self.durations(check * length, length)
-            ages = [age for age in reversed(range(depth)) if durations[:, age].any()]
-            twists += [self.commands[:, age] for age in ages]
-            lasts += [durations[:, age] for age in ages]
-            after += [-1] * (len(ages) - 1) + [check]
+            parts = [
+                (driven, seconds) for driven, seconds in self._parts(check * length, length) if seconds.any()
+            ]
+            twists += [driven for driven, _ in parts]
+            lasts += [seconds for _, seconds in parts]
+            after += [-1] * (len(parts) - 1) + [check]
         turn = np.zeros(twists[0].shape[:2])
         for driven, seconds in zip(twists, lasts, strict=True):
             turn += driven[:, :, 1] * seconds[:, None]
         return StepMoves(np.stack(twists), np.stack(lasts), np.arange(len(after)), np.array(after), turn)
 
-    def durations(self, start: float, length: float) -> FloatArray:
-        """(n, depth): for how much of the ``length`` seconds after ``start`` each command is in force."""
-        n, depth = self.due.shape
+    def _parts(self, start: float, length: float) -> Iterator[tuple[FloatArray, FloatArray]]:
+        """The twists (n, r, 2) of the parts of the ``length`` seconds after ``start``, one after the other, and how long each
+        part takes (n,): in none of them does a robot change its command."""
+        n, depth, robots = self.due.shape
         if depth == 1:
-            return np.full((n, 1), length)
+            yield self.commands[:, 0], np.full(n, length)
+            return
+        end = np.full((n, 1), start + length)
         begins = np.clip(self.due, start, start + length)
         begins[:, -1] = start
-        ends = np.concatenate([np.full((n, 1), start + length), begins[:, :-1]], axis=1)
-        return ends - begins
+        changes = np.sort(begins.reshape(n, -1), axis=1)
+        seconds = np.diff(changes, axis=1, append=end)
+        worlds, own = np.arange(n)[:, None], np.arange(robots)
+        for place in range(changes.shape[1]):
+            later: IntArray = (begins[:, :-1] > changes[:, place, None, None]).sum(axis=1)
+            yield self.commands[worlds, later, own], seconds[:, place]
 
     def noise_std(self, usual: float, which: IntArray | slice) -> FloatArray:
         """(m,) standard deviation of the ranges [m] in the worlds ``which``, whose lidars' own is ``usual``."""

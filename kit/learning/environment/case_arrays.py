@@ -14,7 +14,7 @@ from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.fields.adjacency import wrap_angles
 from kit.fields.occupancy_grid import wall_distances
 from kit.kernels import compilation, grids, kernels, world_kernels
-from kit.learning.environment.batch_map import (
+from kit.learning.maps.batch_map import (
     FLOOR_CELL,
     BatchMap,
     UnsupportedWorld,
@@ -24,13 +24,13 @@ from kit.learning.environment.batch_map import (
     load_batch_map,
     measure_floor,
 )
-from kit.learning.environment.observations import LEFT_RAYS, RAY_COUNT, RIGHT_RAYS
-from kit.learning.environment.obstacles import ObstacleMotions, make_obstacle_parts
-from kit.learning.environment.tasks import LearningTask
+from kit.learning.maps.obstacles import ObstacleMotions, make_obstacle_parts
+from kit.learning.maps.ray_directions import LEFT_RAYS, RAY_COUNT, RIGHT_RAYS
 from kit.learning.tasks.learning_task import (
     AvoidGoal,
     CoverGoal,
     FollowGoal,
+    LearningTask,
     PatrolGoal,
     TargetGoal,
     TaskCase,
@@ -86,8 +86,8 @@ class CaseArrays:
         self.task = task
         self._draw = compilation.TypedKernel(world_kernels.draw_starts)
         self.fleet = batch_geometry(batch_maps, task.lidar_noise)
-        self.lidar = batch_maps[0].robot.lidar
-        """Pose of the lidar on each robot; all are identical."""
+        self.robot = batch_maps[0].robot
+        """What all robots are: they are identical."""
         self.obstacles = make_obstacle_parts([each.obstacles for each in batch_maps])
         self.motions = ObstacleMotions([each.obstacles for each in batch_maps])
         self.map_of: IntArray = np.array([cards.index(card) for card, _ in courses], dtype=np.int64)

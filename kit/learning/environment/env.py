@@ -19,18 +19,12 @@ from numpy.typing import NDArray
 from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import BatchMap
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStatsRecorder
-from kit.learning.environment.obstacles import Obstacle
-from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.tasks import (
-    HALLWAY,
-    TURN,
-    WHEELCHAIRS,
-    LearningTask,
-    UnknownTask,
-    find_task,
-)
+from kit.learning.maps.batch_map import BatchMap
+from kit.learning.maps.obstacles import Obstacle
+from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS, find_task
+from kit.learning.tasks.learning_task import LearningTask, UnknownTask
+from kit.learning.tasks.rewards import RewardFunction
 from kit.plain_text import quoted, suggestion
 from kit.render.image import draw_image, image_camera
 from kit.render.scene import Disc, Scene, SceneBody, Trail

@@ -8,9 +8,10 @@ from enum import Enum
 import numpy as np
 
 from kit.arrays import FloatArray
+from kit.fields.adjacency import is_adjacent_by_poses
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
-from kit.learning.environment.transition import Transition
+from kit.learning.tasks.transition import Transition
 
 
 class EpisodeOutcome(Enum):
@@ -42,6 +43,8 @@ class EpisodeStats:
     """The same by named term; for a student's reward its metrics, by name."""
     adjacency: float
     """The share of steps in which two robots were side by side, as their rays tell."""
+    by_poses: float = 0.0
+    """The same as their poses tell, where that is recorded."""
 
 
 class EpisodeStatsRecorder:
@@ -50,11 +53,14 @@ class EpisodeStatsRecorder:
     Begins where the worlds begin: make a new one after a reset.
     """
 
-    def __init__(self, batch: BatchEnv) -> None:
+    def __init__(self, batch: BatchEnv, *, with_poses: bool = False) -> None:
+        """``with_poses``: whether being side by side is also recorded as poses tell, of two robots."""
         self._names = [case.name for case in batch.cases]
         self._pair = batch.task.robots > 1
         self._reward = np.zeros(batch.n)
         self._adjacent = np.zeros(batch.n)
+        self._with_poses = with_poses and batch.task.robots == 2
+        self._by_poses = np.zeros(batch.n)
         self._terms: dict[str, FloatArray] = {}
 
     def add(self, step: BatchStep) -> list[EpisodeStats]:
@@ -64,9 +70,12 @@ class EpisodeStatsRecorder:
             self._terms[name] = self._terms.get(name, 0.0) + value
         if self._pair:
             self._adjacent += step.transition.adjacent
+        if self._with_poses:
+            pose = step.transition.pose
+            self._by_poses += is_adjacent_by_poses(pose[:, 0], pose[:, 1])
         over = np.flatnonzero(step.ended)
         episodes = [self._episode(int(world), step.transition) for world in over]
-        for sums in (self._reward, self._adjacent, *self._terms.values()):
+        for sums in (self._reward, self._adjacent, self._by_poses, *self._terms.values()):
             sums[over] = 0.0
         return episodes
 
@@ -80,4 +89,5 @@ class EpisodeStatsRecorder:
             reward=float(self._reward[world]),
             terms={name: float(sums[world]) for name, sums in self._terms.items()},
             adjacency=float(self._adjacent[world]) / steps,
+            by_poses=float(self._by_poses[world]) / steps,
         )

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.arrays import Float32Array
-from kit.learning.environment.batch_map import UnsupportedWorld
-from kit.learning.environment.tasks import LearningTask
+from kit.learning.maps.batch_map import UnsupportedWorld
+from kit.learning.tasks.learning_task import LearningTask
 
 
 class TaskMirror:

@@ -9,16 +9,18 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from kit.learning.environment.actions import DiscreteActions
+from kit.installation import install_command
 from kit.learning.environment.env import Observation, TaskEnv, resolve_task
-from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.tasks import WHEELCHAIRS, LearningTask
+from kit.learning.tasks.actions import DiscreteActions
+from kit.learning.tasks.catalogue import WHEELCHAIRS
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.rewards import RewardFunction
 
 try:
     from pettingzoo import ParallelEnv
 except ImportError:
     raise ImportError(
-        "PettingZoo is not installed. In the kit's folder: pip install -c constraints.txt -e '.[pettingzoo]'"
+        f"PettingZoo is not installed. To have it, type: {install_command('pettingzoo')}"
     ) from None
 
 

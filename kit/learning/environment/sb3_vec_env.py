@@ -15,8 +15,8 @@ from kit.arrays import Float32Array, Uint8Array
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
 from kit.learning.environment.mirror import TaskMirror
-from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.tasks import LearningTask
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.rewards import RewardFunction
 
 
 class BatchVecEnv(VecEnv):

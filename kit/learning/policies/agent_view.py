@@ -16,19 +16,14 @@ import numpy as np
 
 from kit.arrays import Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
-from kit.learning.environment.actions import ContinuousActions, DiscreteActions
 from kit.learning.environment.case_arrays import CaseArrays
-from kit.learning.environment.observations import (
-    MAX_COORDINATE,
-    MAX_TARGET_DISTANCE,
-    RAY_COUNT,
-    ObservationSpec,
-    ray_direction,
-)
-from kit.learning.environment.tasks import LearningTask
-from kit.learning.environment.transition import bearing_of_target, distance_to_target
+from kit.learning.maps.ray_directions import RAY_COUNT, ray_direction
 from kit.learning.policies.policies import Policy, PolicyError, PolicyPlayer
 from kit.learning.policies.policy_node import NODE_PARTS, ray_angles
+from kit.learning.tasks.actions import ContinuousActions, DiscreteActions
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE, ObservationSpec
+from kit.learning.tasks.transition import bearing_of_target, distance_to_target
 from kit.plain_text import counted
 from kit.render.scene import ScenePath
 from kit.run.lockstep import Observer
@@ -237,7 +232,7 @@ class AgentObserver(Observer):
         self._policy, self._task, self._models, self._on_view = policy, task, tuple(models), on_view
         self._target = np.array((math.nan, math.nan) if target is None else target)
         self._angles = np.array(ray_angles(task))
-        self._lidar_heading = CaseArrays(task).lidar.theta
+        self._lidar_heading = CaseArrays(task).robot.lidar.theta
         self._single, self._sectors = task.observation.ray_tables(task.robots)
         self._restart()
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -13,15 +13,14 @@ from threadpoolctl import threadpool_limits
 from kit.arrays import FloatArray, IndexArray
 from kit.document.blocks import Cell, CellStyle, Column, Table
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import load_batch_map
 from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.env import obstacle_outlines
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
-from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.tasks import LearningTask
+from kit.learning.maps.batch_map import load_batch_map
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
 from kit.learning.policies.policies import Policy, load_policy
-from kit.learning.tasks.learning_task import Area, PatrolGoal, TargetGoal, TaskCase
+from kit.learning.tasks.learning_task import Area, LearningTask, PatrolGoal, TargetGoal, TaskCase
+from kit.learning.tasks.rewards import RewardFunction
 from kit.render.drive_playback import DrivenPlace, DrivePlayback
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.world.catalogue import MapCard
@@ -34,6 +33,27 @@ def derive_seed(seed: int, purpose: str, number: int = 0) -> int:
     """A seed of its own for each use of a run's seed, so that no two uses see the same episodes."""
     words = np.random.SeedSequence((seed, number, *purpose.encode())).generate_state(1)
     return int(words[0])
+
+
+class EpisodeShare(NamedTuple):
+    """A share of an episode's steps, over several episodes."""
+
+    mean: float
+    """NaN of no episode."""
+    sd: float
+    """Sample standard deviation over the episodes; NaN of fewer than two."""
+
+    @classmethod
+    def of(cls, shares: Sequence[float]) -> EpisodeShare:
+        """
+        >>> EpisodeShare.of([0.5, 0.7]).mean
+        0.6
+        """
+        sd = float(np.std(shares, ddof=1)) if len(shares) > 1 else np.nan
+        return cls(sum(shares) / len(shares) if shares else np.nan, sd)
+
+
+NO_SHARE: Final = EpisodeShare.of(())
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +72,10 @@ class CaseResult:
     """Mean share of an episode's steps that two robots were side by side, as rays tell; NaN for one robot."""
     adjacency_sd: float = np.nan
     """Sample standard deviation of that share over the episodes; NaN for one robot or one episode."""
+    reached_by_rays: EpisodeShare = NO_SHARE
+    """The share by rays of the episodes that reached the target alone: others may end side by side because they began so."""
+    reached_by_poses: EpisodeShare = NO_SHARE
+    """The same as poses tell."""
 
     @property
     def episodes(self) -> int:
@@ -73,7 +97,8 @@ class CaseResult:
 
 def _case_cells(case: CaseResult) -> tuple[Cell, ...]:
     _, collided, timed_out = (count / case.episodes for count in case.outcomes)
-    return (case.case, case.share, case.interval, collided, timed_out, case.steps, case.adjacency)
+    beside = (case.reached_by_rays.mean, case.reached_by_poses.mean)
+    return (case.case, case.share, case.interval, collided, timed_out, case.steps, *beside)
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,13 +147,15 @@ class EvaluationResult:
             Column("steps", decimals=0),
         ]
         if self.is_pair:
-            columns.append(Column("adj rays"))
+            columns += [Column("adj rays"), Column("adj poses")]
         rows = [_case_cells(case)[: len(columns)] for case in self.cases]
         rows.append(("mean", self.mean, *[""] * (len(columns) - 2)))
         worst = self.worst
         note = (
             f"worst: {worst.share:.3f} in {worst.case}; {worst.episodes} episodes each, {self.action_choice}"
         )
+        if self.is_pair:
+            note += "; adj: share of steps side by side, of episodes that reached the target"
         return Table("test", "", tuple(columns), tuple(rows), note, is_ruled=False)
 
     @property
@@ -149,13 +176,20 @@ class EvaluationResult:
                     **dict(zip(("reached", "collided", "timed_out"), case.outcomes, strict=True)),
                     "share": case.share,
                     "interval": list(case.interval),
-                    "steps": None if np.isnan(case.steps) else case.steps,
+                    "steps": _number_or_none(case.steps),
                     "reward": case.reward,
-                    "adjacency": None if np.isnan(case.adjacency) else case.adjacency,
+                    "adjacency": _number_or_none(case.adjacency),
+                    "reached_by_rays": _number_or_none(case.reached_by_rays.mean),
+                    "reached_by_poses": _number_or_none(case.reached_by_poses.mean),
                 }
                 for case in self.cases
             },
         }
+
+
+def _number_or_none(number: float) -> float | None:
+    """JSON has no NaN."""
+    return None if np.isnan(number) else number
 
 
 class Evaluator:
@@ -197,7 +231,7 @@ class Evaluator:
         observations, fresh, recorder = (
             batch.reset(seed=seed),
             np.ones(n, dtype=np.bool_),
-            EpisodeStatsRecorder(batch),
+            EpisodeStatsRecorder(batch, with_poses=True),
         )
         if paths is not None:
             paths.begin(batch)
@@ -232,16 +266,21 @@ class _CaseSums:
     """Steps of the episodes that reached the target."""
     reward: float = 0.0
     adjacency: list[float] = field(default_factory=list)
+    reached: list[tuple[float, float]] = field(default_factory=list)
+    """By rays and by poses, of the episodes that reached the target."""
 
     def add(self, episode: EpisodeStats) -> None:
         self.outcomes[episode.outcome] += 1
         self.steps += episode.steps if episode.outcome is EpisodeOutcome.REACHED else 0
         self.reward += episode.reward
         self.adjacency.append(episode.adjacency)
+        if episode.outcome is EpisodeOutcome.REACHED:
+            self.reached.append((episode.adjacency, episode.by_poses))
 
     def result(self, case: TaskCase, pair: bool) -> CaseResult:
         reached, collided, timed_out = self.outcomes.values()
         episodes = reached + collided + timed_out
+        told = [EpisodeShare.of([each[k] for each in self.reached if pair]) for k in range(2)]
         return CaseResult(
             case.name,
             case.group,
@@ -250,6 +289,8 @@ class _CaseSums:
             reward=self.reward / episodes,
             adjacency=sum(self.adjacency) / episodes if pair else np.nan,
             adjacency_sd=float(np.std(self.adjacency, ddof=1)) if pair and episodes > 1 else np.nan,
+            reached_by_rays=told[0],
+            reached_by_poses=told[1],
         )
 
 

@@ -23,7 +23,8 @@ from numpy.typing import NDArray
 
 from kit.array_archives import read_arrays
 from kit.arrays import BoolArray, Float32Array, IntArray
-from kit.learning.environment.tasks import LearningTask, TaskSpec
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.workspace import write_atomically
 
 Activation = Literal["tanh", "relu"]

@@ -17,11 +17,11 @@ from textwrap import wrap
 from typing import Final
 
 from kit.launch.package_creation import PackageFrame, copy_world, new_package_folder, write_package_frame
-from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.case_arrays import CaseArrays
-from kit.learning.environment.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE
-from kit.learning.environment.tasks import LearningTask
 from kit.learning.policies.policies import Policy, PolicyError, policy_bytes
+from kit.learning.tasks.actions import DiscreteActions
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE
 from kit.plain_text import join_names
 
 TOPIC_PREFIXES = {1: ("",), 2: ("left/", "right/")}

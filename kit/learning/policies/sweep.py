@@ -19,17 +19,17 @@ from typing import Any
 import numpy as np
 
 from kit.document.blocks import Block, CellStyle, Column, Picture, Table, Text
-from kit.learning.environment.disturbances import (
+from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
+from kit.learning.policies.evaluation import EvaluationResult, Evaluator
+from kit.learning.policies.policies import Policy, policy_bytes
+from kit.learning.tasks.disturbances import (
     DISTURBANCE_KINDS,
     DisturbanceError,
     DisturbanceKind,
     Disturbances,
     UniformRange,
 )
-from kit.learning.environment.tasks import LearningTask
-from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
-from kit.learning.policies.evaluation import EvaluationResult, Evaluator
-from kit.learning.policies.policies import Policy, policy_bytes
+from kit.learning.tasks.learning_task import LearningTask
 from kit.plain_text import quoted, suggestion
 from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import Encoder

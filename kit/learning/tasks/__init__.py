@@ -1,1 +1,1 @@
-"""Learning tasks as files: their records, their reader, their text."""
+"""What a task to learn is: what agents see and do, rewards, goals, cases, and the files that say so."""

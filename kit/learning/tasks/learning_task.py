@@ -16,11 +16,11 @@ import numpy as np
 
 from kit.arrays import FloatArray
 from kit.geometry import Pose
-from kit.learning.environment.actions import Actions
-from kit.learning.environment.disturbances import UNDISTURBED, Disturbances
-from kit.learning.environment.observations import ObservationSpec
-from kit.learning.environment.rewards import Reward
-from kit.learning.environment.transition import Array, Transition
+from kit.learning.tasks.actions import Actions
+from kit.learning.tasks.disturbances import UNDISTURBED, Disturbances
+from kit.learning.tasks.observations import ObservationSpec
+from kit.learning.tasks.rewards import Reward
+from kit.learning.tasks.transition import Array, Transition
 from kit.plain_text import counted, quoted, suggestion
 from kit.world.catalogue import MapCard, MapCase, find_map
 from kit.world.yaml_section import Section
@@ -313,6 +313,9 @@ class LearningTask:
     """s"""
     collision_checks: int = 2
     """Into how many equal moves a step is divided; after each one, collisions are looked for."""
+    stops_between: bool = False
+    """Whether a robot stops at the end of each step until its next command takes effect, if that is late; else the last one
+    goes on."""
     max_steps: int = 200
     start: StartVariation = StartVariation()
     target_radius: float = 0.25

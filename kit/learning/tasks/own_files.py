@@ -1,4 +1,4 @@
-"""Finds a user's own task files and reward files: those of a list to choose from, and a task by its name."""
+"""Finds a user's own files: tasks, those of a list to choose from and one by its name."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Final
 
 from kit.learning.tasks.task_reader import task_name
-from kit.learning.training.student_reward import RewardFileError, reward_parameters
 from kit.workspace import WorkspaceError, open_workspace
 
 TASK_KEYS: Final = (
@@ -25,7 +24,7 @@ LEFT_OUT: Final = frozenset({"runs", "recordings", "lessons", "controllers"})
 
 def own_task_files(folders: Iterable[Path]) -> tuple[Path, ...]:
     """Every task file in the folders, sorted, each once. Whether it is sound is seen when it is read."""
-    return tuple(sorted({file for file in _files(folders, ".yaml") if _is_task(file)}))
+    return tuple(sorted({file for file in own_files(folders, ".yaml") if _is_task(file)}))
 
 
 def workspace_task_file(name: str) -> Path | None:
@@ -41,12 +40,8 @@ def workspace_folders() -> tuple[Path, ...]:
         return ()
 
 
-def own_reward_files(folders: Iterable[Path]) -> tuple[Path, ...]:
-    """Every Python file in the folders that has a function ``reward`` which training could call."""
-    return tuple(sorted({file for file in _files(folders, ".py") if _is_reward(file)}))
-
-
-def _files(folders: Iterable[Path], ending: str) -> Iterator[Path]:
+def own_files(folders: Iterable[Path], ending: str) -> Iterator[Path]:
+    """The files whose names end like this, in the folders and not too far below them."""
     for folder in folders:
         for pattern in PATTERNS:
             for file in folder.absolute().glob(pattern + ending):
@@ -56,21 +51,12 @@ def _files(folders: Iterable[Path], ending: str) -> Iterator[Path]:
 
 
 def _is_task(file: Path) -> bool:
-    text = _text(file)
+    text = short_text(file)
     return all(key.search(text) for key in TASK_KEYS)
 
 
-def _is_reward(file: Path) -> bool:
-    if "def reward(" not in _text(file):
-        return False
-    try:
-        reward_parameters(file)
-    except RewardFileError:
-        return False
-    return True
-
-
-def _text(file: Path) -> str:
+def short_text(file: Path) -> str:
+    """The text of a file; none for one that is long or no text."""
     try:
         return file.read_text(encoding="utf-8") if file.stat().st_size <= MAX_BYTES else ""
     except (OSError, UnicodeDecodeError):

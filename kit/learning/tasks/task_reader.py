@@ -13,24 +13,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Literal
 
-from kit.learning.environment.actions import (
-    MAX_SPEED,
-    MAX_TURN_RATE,
-    Actions,
-    ContinuousActions,
-    DiscreteActions,
-)
-from kit.learning.environment.disturbances import UNDISTURBED, DisturbanceError, Disturbances
-from kit.learning.environment.observations import PART_NAMES, RAY_COUNT, ObservationSpec
-from kit.learning.environment.rewards import (
-    REWARDS,
-    TERMS,
-    Reward,
-    TermWeight,
-    UnknownRewardTerm,
-    term_settings,
-)
+from kit.learning.maps.ray_directions import RAY_COUNT
+from kit.learning.tasks.actions import MAX_SPEED, MAX_TURN_RATE, Actions, ContinuousActions, DiscreteActions
 from kit.learning.tasks.case_reader import CaseReader, PlacedCase
+from kit.learning.tasks.disturbances import UNDISTURBED, DisturbanceError, Disturbances
 from kit.learning.tasks.learning_task import (
     PRESET_NAMES,
     AvoidGoal,
@@ -45,6 +31,8 @@ from kit.learning.tasks.learning_task import (
     WallGoal,
     read_curriculum,
 )
+from kit.learning.tasks.observations import PART_NAMES, ObservationSpec
+from kit.learning.tasks.rewards import REWARDS, TERMS, Reward, TermWeight, UnknownRewardTerm, term_settings
 from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import WORLD_FILE, MapCard, UnknownMap, allowed_root_of, find_map
@@ -333,8 +321,15 @@ def _read_observation(section: Section, robots: int) -> ObservationSpec:
         clip=section.number("clip", 2.0, above=0, maximum=100),
         scale=section.number("scale", 1.0, above=0, maximum=1000),
         frames=section.integer("frames", 1, minimum=1, maximum=MAX_FRAMES),
+        other_rays=section.integers("other_rays", (), minimum=0, maximum=RAY_COUNT - 1),
         **flags,
     )
+    if found.other_rays and (robots == 1 or len(found.other_rays) != len(found.rays)):
+        section.error(
+            f"other_rays are those of every robot but the first, {len(found.rays)} as for that one",
+            "other_rays",
+        )
+        found = replace(found, other_rays=())
     section.finish()
     if not found.frame_size:
         section.error("an agent needs observations: give rays, sectors or others")
@@ -398,6 +393,7 @@ def _with_step(task: LearningTask, section: Section | None) -> LearningTask:
         step_time=section.number("time", task.step_time, minimum=0.01, maximum=10),
         collision_checks=section.integer("collision_checks", task.collision_checks, minimum=1, maximum=100),
         max_steps=section.integer("limit", task.max_steps, minimum=1, maximum=MAX_STEPS),
+        stops_between=section.flag("stops_between", False),
     )
     section.finish()
     return task

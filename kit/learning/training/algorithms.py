@@ -16,6 +16,7 @@ from platform import machine, python_version, system
 from types import MappingProxyType
 from typing import Any, Literal
 
+from kit.installation import install_command
 from kit.plain_text import nearest_name, quoted
 
 AlgorithmFamily = Literal["rollouts", "replay", "search", "table", "imitation"]
@@ -263,10 +264,6 @@ def check_suits(algorithm: Algorithm, *, is_continuous: bool) -> None:
 # The packages of the extra ``learn``
 
 REQUIRED_PACKAGES = ("torch", "stable_baselines3", "sb3_contrib")
-INSTALL_COMMAND = (
-    "pip install -c constraints.txt -e '.[learn]' --extra-index-url https://download.pytorch.org/whl/cpu"
-)
-"""Command for the kit's folder. It installs torch's CPU build; Linux's default adds four gigabytes of GPU drivers."""
 RECORDED_PACKAGES = (
     "robot-learning-kit",
     "torch",
@@ -287,7 +284,7 @@ def require_learn_extra() -> None:
     missing = [name for name in REQUIRED_PACKAGES if find_spec(name) is None]
     if missing:
         raise LearnExtraMissing(
-            f"Training needs packages that are not installed: {', '.join(missing)}. In the kit's folder, run:\n  {INSTALL_COMMAND}\n"
+            f"Training needs packages that are not installed: {', '.join(missing)}. To have them, type:\n  {install_command('learn')}\n"
             "Viewing runs, and testing and playing trained policies, work without them."
         )
 

@@ -4,6 +4,10 @@ It draws actions in proportion to exp(value / temperature) and learns from squar
 towards the best value of a target network (Mnih and others, Nature 518, 2015); Keras-RL's other defaults are meant too.
 With rewards in the hundreds and temperature 1 it explores little: a difference of a few units in value already makes the
 better action all but certain. In numpy: with two layers of 24 neurons torch takes five times as long.
+
+Keras-RL takes all values over temperature beyond 500 for equal (``value_limit``), so that no exponential overflows. Where
+good actions are worth more, it chooses among them by chance, and the best of many values, each a little off, feeds on
+itself: they grow without end. Here no exponential overflows anyway: the largest is subtracted first.
 """
 
 from __future__ import annotations
@@ -18,7 +22,6 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import (
     ActionSampling,
     Activation,
@@ -28,13 +31,12 @@ from kit.learning.policies.policies import (
     action_counts,
     task_interface,
 )
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.deep import LEARNING_RATE_FACTOR, EpisodeReporter
 from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.presets import LinearSchedule, Preset, ReplayParams
 
-MAX_EXPONENT: Final = 500.0
-"""Values over temperature are kept within this, so that no exponential overflows."""
 ADAM_DECAY: Final = (0.9, 0.999)
 ADAM_EPSILON: Final = 1e-7
 """Adam's epsilon, as in Keras."""
@@ -49,6 +51,7 @@ DEFAULTS: Final = ReplayParams(
     gradient_steps=1,
     target_update_interval=1,
     temperature=1.0,
+    value_limit=math.inf,
 )
 
 
@@ -226,7 +229,8 @@ class BoltzmannLearner:
     def _draw(self, seen: Float32Array) -> IntArray:
         """An action for each world, in proportion to exp(value / temperature)."""
         values = self._network.outputs(seen)[-1].astype(np.float64) / self._setting("temperature")
-        exponents = np.clip(values, -MAX_EXPONENT, MAX_EXPONENT)
+        limit = self._setting("value_limit")
+        exponents = np.clip(values, -limit, limit)
         sums = np.exp(exponents - exponents.max(axis=1, keepdims=True)).cumsum(axis=1)
         drawn = self._rng.random(len(seen)) * sums[:, -1]
         actions: IntArray = (sums <= drawn[:, None]).sum(axis=1)
@@ -281,6 +285,11 @@ class BoltzmannLearner:
             array[:] = arrays[name]
         self._rate_factor *= LEARNING_RATE_FACTOR
 
+    def measures(self) -> dict[str, float]:
+        recent = self._env.recent
+        values = self._network.outputs(recent.observations)[-1].max(axis=1)
+        return recent.measures(values, self._setting("gamma"), None)
+
     def save(self) -> dict[str, bytes]:
         file = io.BytesIO()
         np.savez(file, **self._arrays())  # type: ignore[arg-type]  # numpy's stub takes the names for its own options
@@ -289,6 +298,7 @@ class BoltzmannLearner:
             "steps": self._steps,
             "updates": self._network.updates,
             "slower": self._rate_factor,
+            "largest": self._env.recent.save(),
         }
         return {
             "learner.json": json.dumps(counts).encode(),
@@ -308,3 +318,4 @@ class BoltzmannLearner:
         self._buffer.load(parts["replay.npz"])
         self._steps, self._network.updates = int(counts["steps"]), int(counts["updates"])
         self._rate_factor = float(counts["slower"])
+        self._env.recent.load(counts["largest"])

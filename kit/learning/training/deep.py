@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 import io
 import json
+import math
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -21,11 +22,12 @@ from torch import nn
 
 from kit.arrays import FloatArray
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.export import export_critic, export_network, export_sampling
 from kit.learning.policies.policies import Policy, action_counts, task_interface
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.learner import TrainingCallback
+from kit.learning.training.measures import RecentExperience
 from kit.learning.training.presets import LinearSchedule, OnPolicyParams, Preset
 
 LEARNING_RATE_FACTOR = 0.5
@@ -50,17 +52,31 @@ ENTROPY_WEIGHT = "log_ent_coef"
 LEARN_OPTIONS: Mapping[str, Mapping[str, Any]] = {"maskable-ppo": {"use_masking": False}}
 """The tasks forbid no action anywhere."""
 
+UPDATE_MEASURES: Mapping[str, tuple[str, float]] = {
+    "train/explained_variance": ("explained_variance", 1.0),
+    "train/entropy_loss": ("entropy", -1.0),
+    "train/clip_fraction": ("clip_fraction", 1.0),
+    "train/approx_kl": ("approx_kl", 1.0),
+    "train/kl_divergence_loss": ("approx_kl", 1.0),
+}
+"""What the library's on-policy learners log of their last update: the measure that it is, and its sign."""
+
 
 class EpisodeReporter(VecEnvWrapper):
-    """Passes every episode that ends to the callback."""
+    """Passes every episode that ends to the callback, and keeps the last observations."""
 
     callback: TrainingCallback | None = None
+
+    def __init__(self, venv: Any) -> None:
+        super().__init__(venv)
+        self.recent = RecentExperience(venv.num_envs, int(np.prod(venv.observation_space.shape)))
 
     def reset(self) -> Any:
         return self.venv.reset()
 
     def step_wait(self) -> Any:
         observations, rewards, dones, infos = self.venv.step_wait()
+        self.recent.add(observations, rewards, dones)
         if self.callback is not None:
             for number in np.flatnonzero(dones):
                 self.callback.on_episode_end(_episode_of(int(number), infos[number]))
@@ -184,6 +200,23 @@ class DeepLearner:
             export_critic(self._model),
         )
 
+    def measures(self) -> dict[str, float]:
+        if self._algorithm.family != "replay":
+            told = self._model.logger.name_to_value
+            found = {
+                name: float(told[key]) * sign for key, (name, sign) in UPDATE_MEASURES.items() if key in told
+            }
+            return {name: number for name, number in found.items() if math.isfinite(number)}
+        recent = self._env.recent
+        policy = self.policy()
+        scores = policy.model.scores(
+            recent.observations, np.zeros((len(recent.observations), 2, 0), np.float32)
+        )[0]
+        actions = np.tanh(scores[:, : policy.action_size])
+        values = policy.expected_returns(recent.observations, scores, actions)
+        assert values is not None  # of these algorithms either the scores or a critic tell
+        return recent.measures(values, float(self._model.gamma), None)
+
     def snapshot(self) -> Any:
         return copy.deepcopy(self._parameters())
 
@@ -213,6 +246,7 @@ class DeepLearner:
             "steps": self.steps,
             "updates": int(self._model._n_updates),
             "slower": self._rate_factor,
+            "largest": self._env.recent.save(),
         }
         parts = {"learner.json": json.dumps(counts).encode(), "parameters.pt": parameters.getvalue()}
         if self._algorithm.family == "replay":
@@ -228,6 +262,7 @@ class DeepLearner:
         self._model.num_timesteps = int(counts["steps"])
         self._model._n_updates = int(counts["updates"])
         self._rate_factor = float(counts["slower"])
+        self._env.recent.load(counts["largest"])
         if "replay.npz" in parts:
             _unpack_replay_buffer(self._model.replay_buffer, parts["replay.npz"])
 

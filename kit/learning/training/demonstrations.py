@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kit.arrays import Float32Array, FloatArray
-from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.batch import ALL_WORLDS, BatchEnv
-from kit.learning.environment.tasks import LearningTask
-from kit.learning.environment.transition import average_speeds
 from kit.learning.policies.policies import Policy
+from kit.learning.tasks.actions import DiscreteActions
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.transition import average_speeds
 from kit.plain_files import open_plain_file
 from kit.plain_text import quoted
 from kit.run.recording import ACCEPT, Recording

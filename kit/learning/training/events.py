@@ -47,6 +47,8 @@ class TrainingProgress:
     """Mean sum over an episode by named term of the reward."""
     adjacency: float | None = None
     """Mean share of steps side by side."""
+    measures: dict[str, float] = field(default_factory=dict)
+    """What the learner measures of its own learning, by the names of ``kit.learning.training.measures``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +67,8 @@ class Evaluated:
     """Why training stopped or went back, if it did."""
     adjacency: float | None = None
     """Mean share of an episode's steps that two robots were side by side; None for one robot."""
+    measures: dict[str, float] = field(default_factory=dict)
+    """As in ``TrainingProgress``."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,6 +55,10 @@ class GridLearnerSettings:
     """How far PPO's ratio counts, from 1; 0: as far as it goes."""
     entropy: float = 0.01
     """What PPO pays for entropy."""
+    temperature: float = 0.0
+    """Moves are drawn in proportion to exp(value / temperature), in place of epsilon; 0: they are not."""
+    value_limit: float = 0.0
+    """For that draw, values beyond it count as much as it does; 0: there is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +177,12 @@ class GridLearner:
         return self.world.sign(self.greedy_path()[-1]) == TARGET
 
     def _choose(self, cell: GridCell) -> int:
-        """A best move, any one of several; now and then any move at all."""
+        """A best move, any one of several; now and then any move at all. With a temperature: drawn by its value."""
+        if self.settings.temperature > 0:
+            values = self.values[cell]
+            if self.settings.value_limit > 0:
+                values = np.clip(values, -self.settings.value_limit, self.settings.value_limit)
+            return _draw(softmax(values / self.settings.temperature), self._rng)
         if self._rng.random() < self.settings.epsilon:
             return int(self._rng.integers(len(MOVES)))
         values = self.values[cell]
@@ -322,6 +331,11 @@ def softmax(logits: FloatArray) -> FloatArray:
     return chances
 
 
+def _draw(chances: FloatArray, rng: np.random.Generator) -> int:
+    """Draws one of ``n`` numbers by its chance (n,)."""
+    return int(np.searchsorted(np.cumsum(chances)[:-1], rng.random()))
+
+
 def advantages_of(
     rewards: FloatArray, values: FloatArray, next_values: FloatArray, ended: BoolArray, gamma: float
 ) -> FloatArray:
@@ -361,8 +375,7 @@ class PolicyLearner(GridLearner):
         return self._draw(cell)
 
     def _draw(self, cell: GridCell) -> int:
-        chances = softmax(self.logits[self.world.number_of(cell)])
-        return int(np.searchsorted(np.cumsum(chances)[:-1], self._policy_rng.random()))
+        return _draw(softmax(self.logits[self.world.number_of(cell)]), self._policy_rng)
 
     def _learn(
         self, cell: GridCell, move: int, reward: float, reached: GridCell, next_move: int, terminated: bool

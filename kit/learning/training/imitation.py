@@ -19,10 +19,11 @@ from torch import nn
 from torch.nn import functional
 
 from kit.arrays import FloatArray
-from kit.learning.environment.tasks import LearningTask, TaskSpec
 from kit.learning.policies.evaluation import derive_seed
 from kit.learning.policies.export import convert_modules
 from kit.learning.policies.policies import ActionSampling, Policy, action_counts, task_interface
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.demonstrations import DemonstrationError, Demonstrator, Examples, join_examples
 from kit.learning.training.learner import TrainingCallback
@@ -135,6 +136,9 @@ class ImitationLearner:
         with torch.no_grad():
             apart = self._network(torch.from_numpy(seen)).numpy() - done
         return tuple(np.sqrt(np.square(apart).mean(axis=0)).astype(float).tolist())
+
+    def measures(self) -> dict[str, float]:
+        return {}
 
     def snapshot(self) -> Any:
         return copy.deepcopy(self._network.state_dict())

@@ -41,6 +41,9 @@ class Learner(Protocol):
     def policy(self) -> Policy:
         """Returns the present policy."""
 
+    def measures(self) -> dict[str, float]:
+        """Returns what it measures of its own learning, by the names of ``kit.learning.training.measures``; it may be nothing."""
+
     def snapshot(self) -> Any:
         """Returns a copy of what it has learned, for ``restore``."""
 

@@ -24,6 +24,8 @@ LEARNING_RATE: Final = "learning_rate"
 """A setting of every algorithm that trains a network."""
 SHARES: Final = ("gamma", "tau", "exploration_fraction", "exploration_final_eps", "epsilon", "rate")
 """Settings from 0 to 1."""
+LIMITS: Final = ("value_limit",)
+"""Settings that may be infinite."""
 MAX_COUNT: Final = 1_000_000_000
 """The largest number of a setting that counts something."""
 
@@ -75,6 +77,8 @@ class ReplayParams:
     max_grad_norm: float | None = None
     temperature: float | None = None
     """Temperature of Boltzmann exploration."""
+    value_limit: float | None = None
+    """Beyond this all values over temperature count as equal in Boltzmann exploration; infinite: no limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,6 +210,8 @@ def _checked_setting(name: str, number: float, kind: type) -> int | float | Line
         if not (1 <= number <= MAX_COUNT and number == int(number)):
             raise RunError(f"{name} is a whole number from 1 to {MAX_COUNT:,}, not {number:g}.")
         return int(number)
+    if math.isinf(number) and name not in LIMITS:
+        raise RunError(f"{name} is a finite number.")
     if not 0.0 <= number <= (1.0 if name in SHARES else math.inf):
         bounds = "from 0 to 1" if name in SHARES else "of at least 0"
         raise RunError(f"{name} is a number {bounds}, not {number:g}.")
@@ -232,6 +238,7 @@ SEED_DQN = Preset(
         gradient_steps=1,
         gamma=0.99,
         temperature=1.0,
+        value_limit=500.0,  # Keras-RL's; with rewards in the hundreds values pass it, and it explores by chance from there on
     ),
     TrainUntilGoal(test_interval=10_000, episodes=100, goal=0.8),
     steps=1_000_000,  # where chapter 4 gives up
@@ -366,6 +373,7 @@ KIT_BOLTZMANN = replace(
         gamma=0.99,
         tau=1.0,
         temperature=0.05,  # values are a few units where rewards are scaled: 1 would be a coin toss
+        value_limit=math.inf,
     ),
 )
 KIT_ARS = Preset(

@@ -9,13 +9,15 @@ from typing import Final
 
 import numpy as np
 
+from kit.learning.authoring.task_check import check_task
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.environment.mirror import TaskMirror
-from kit.learning.environment.tasks import LearningTask, task_names
-from kit.learning.environment.transition import Transition
-from kit.learning.tasks.task_check import check_task
+from kit.learning.tasks.catalogue import task_names
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.student_reward import StudentReward
 from kit.learning.tasks.task_reader import read_task
+from kit.learning.tasks.transition import Transition
 from kit.learning.training.algorithms import (
     IMITATION_ALGORITHMS,
     Algorithm,
@@ -24,7 +26,6 @@ from kit.learning.training.algorithms import (
 )
 from kit.learning.training.demonstrations import DemonstrationError
 from kit.learning.training.runs import RunConfig, RunError
-from kit.learning.training.student_reward import StudentReward
 from kit.learning.training.training import fit_task_spec, resolve_preset
 
 

@@ -21,6 +21,7 @@ from kit.learning.training.events import (
     TrainingProgress,
     TrainingStarted,
 )
+from kit.learning.training.measures import MEASURES
 from kit.learning.training.run_text import format_event, success_shares
 from kit.learning.training.runs import RunCommand, RunConfig, TrainingSummary, summarise_events
 from kit.learning.training.training import resolve_preset
@@ -60,7 +61,8 @@ class TrainingCurve:
     reward: FloatArray
     """(n,) mean sum over an episode."""
     metrics: dict[str, FloatArray]
-    """(n,) each, NaN where a batch does not tell it: ``side by side`` of two robots, and every term of the reward."""
+    """(n,) each, NaN where a batch does not tell it: ``side by side`` of two robots, every term of the reward, and the
+    learner's measures."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,6 +109,8 @@ class RunStatus:
     """Mean share of steps in which two robots are side by side."""
     terms: dict[str, float]
     """The reward by named term."""
+    measures: dict[str, float]
+    """What the learner last measured of its own learning; see ``kit.learning.training.measures``."""
     note: str
     """The last event in words, progress left out."""
 
@@ -155,7 +159,12 @@ class RunTracker:
                 if event.reward is not None:
                     self._batches.append((event.steps, outcomes, event.reward))
                     beside = {ADJACENCY: event.adjacency} if event.adjacency else {}  # of one robot it is 0
-                    self._metrics.append({**beside, **event.terms})
+                    told = {
+                        MEASURES[name].title: number
+                        for name, number in event.measures.items()
+                        if name in MEASURES
+                    }
+                    self._metrics.append({**beside, **event.terms, **told})
             case Evaluated():
                 shares = list(success_shares(event).values())
                 self._evaluations.append((event.steps, sum(shares) / len(shares), min(shares)))
@@ -187,6 +196,7 @@ class RunTracker:
             length=self._recent_mean("length"),
             adjacency=self._recent_mean("adjacency"),
             terms=self._terms(),
+            measures=summary.measures,
             note=self._note,
         )
 

@@ -15,6 +15,7 @@ from kit.learning.training.events import (
     TrainingProgress,
     TrainingStarted,
 )
+from kit.learning.training.measures import VALUE_PAYABLE, format_measures
 
 
 def format_event(event: TrainingEvent) -> str:
@@ -55,8 +56,14 @@ def _format_evaluation(event: Evaluated) -> str:
     reason = f"; {event.reason}" if event.reason else ""
     return (
         f"{event.steps:>11,} steps  {event.seconds:7.1f} s  TEST mean {mean:.3f}, worst {shares[case]:.3f} "
-        f"({case}){kept}{reason}"
+        f"({case}){kept}{_told(event.measures)}{reason}"
     )
+
+
+def _told(measures: Mapping[str, float]) -> str:
+    """The measures, but for what rewards can pay."""
+    shown = {name: number for name, number in measures.items() if name != VALUE_PAYABLE}
+    return f"; {format_measures(shown)}" if shown else ""
 
 
 def success_shares(event: Evaluated) -> dict[str, float]:

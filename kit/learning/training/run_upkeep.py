@@ -12,9 +12,10 @@ from typing import Final
 import numpy as np
 
 from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText
-from kit.learning.environment.tasks import UnknownTask
+from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.training.algorithms import UnknownAlgorithm
 from kit.learning.training.events import Evaluated
+from kit.learning.training.measures import VALUE_MAX, format_measure, is_value_too_large, value_warning
 from kit.learning.training.run_status import RunTracker, plan_of_run
 from kit.learning.training.run_text import success_shares
 from kit.learning.training.runs import NAME_PATTERN, RunError, TrainingRun, TrainingSummary
@@ -129,6 +130,7 @@ def runs_table(runs: Sequence[RunOverview]) -> Table:
         Column("steps"),
         Column("best", decimals=3),
         Column("worst", decimals=3, is_spare=True),
+        Column("value", is_spare=True),
         Column("time", is_spare=True),
         Column("left", CellStyle.TEXT),
         Column("reward", CellStyle.TEXT),
@@ -137,7 +139,7 @@ def runs_table(runs: Sequence[RunOverview]) -> Table:
     needed = [
         n
         for n, column in enumerate(columns)
-        if column.title not in ("left", "reward") or any(each[n] for each in rows)
+        if column.title not in ("value", "left", "reward") or any(each[n] for each in rows)
     ]
     cells = tuple(tuple(each[n] for n in needed) for each in rows)
     return Table("runs", "", tuple(columns[n] for n in needed), cells, is_ruled=False)
@@ -146,7 +148,7 @@ def runs_table(runs: Sequence[RunOverview]) -> Table:
 def _run_cells(each: RunOverview) -> tuple[Cell, ...]:
     name, disk, summary = each.run.name, format_size(each.disk_bytes), each.summary
     if summary is None:
-        return (name, ToneText("damaged", Tone.BAD), disk, None, None, None, None, "", "")
+        return (name, ToneText("damaged", Tone.BAD), disk, None, None, None, None, None, "", "")
     best = worst = None
     if summary.best_evaluation is not None:
         shares = success_shares(summary.best_evaluation).values()
@@ -154,16 +156,30 @@ def _run_cells(each: RunOverview) -> tuple[Cell, ...]:
     left = "" if each.remaining_s is None else ToneText(format_seconds(each.remaining_s), Tone.BOLD)
     state = ToneText(summary.state, STATE_TONES[summary.state])
     time = f"{summary.seconds:.1f} s"
-    return (name, state, disk, f"{summary.steps:,}", best, worst, time, left, each.reward)
+    return (name, state, disk, f"{summary.steps:,}", best, worst, _value(summary), time, left, each.reward)
+
+
+def _value(summary: TrainingSummary) -> Cell:
+    """The largest value, marked where rewards cannot pay it."""
+    if VALUE_MAX not in summary.measures:
+        return None
+    number = format_measure(summary.measures[VALUE_MAX])
+    return ToneText(f"{number}!", Tone.BAD) if is_value_too_large(summary.measures) else number
 
 
 def runs_blocks(runs: Sequence[RunOverview]) -> list[Block]:
-    """The table, what is wrong with a damaged run, and the disk that all of them take."""
+    """The table, what is wrong with a damaged run or with the values of one, and the disk that all of them take."""
     total = sum(each.disk_bytes for each in runs)
+    grown = [
+        Text(f"{each.run.name}: {value_warning(each.summary.measures)}", hang=2, is_tight=True)
+        for each in runs
+        if each.summary is not None and is_value_too_large(each.summary.measures)
+    ]
     damaged = [Text(each.problem, hang=2, is_tight=True) for each in runs if each.problem]
     return [
         runs_table(runs),
         *damaged,
+        *grown,
         Text(f"{counted(len(runs), 'run')}, {format_size(total)} on disk", is_tight=True),
     ]
 

@@ -10,19 +10,21 @@ from __future__ import annotations
 import fcntl
 import io
 import json
+import math
+import os
 import re
 import time
 import zipfile
-import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import IO, Any, Literal, get_args
+from typing import IO, Any, Final, Literal, get_args
 
+from kit.array_archives import READ_ERRORS, check_arrays, check_stored
 from kit.field_types import check_field_types
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import Policy, load_policy
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.events import (
     Evaluated,
     EventReader,
@@ -31,6 +33,7 @@ from kit.learning.training.events import (
     TrainingProgress,
     TrainingStarted,
 )
+from kit.plain_files import open_plain_file
 from kit.plain_text import quoted, suggestion
 from kit.workspace import write_atomically
 
@@ -57,9 +60,18 @@ def _try_lock(lock: IO[bytes]) -> bool:
             return True
 
 
+NO_LIMIT = "none"
+"""Stands for an infinite limit."""
+
+
 def format_settings(settings: Iterable[tuple[str, float]]) -> str:
     """Changed settings, as ``--set`` takes them: ``gamma=0.98 n_steps=64``."""
-    return " ".join(f"{name}={number:.12g}" for name, number in settings)
+    return " ".join(f"{name}={format_setting(number)}" for name, number in settings)
+
+
+def format_setting(number: float) -> str:
+    """A setting's number, as ``--set`` takes it: infinity, of a limit, is ``none``."""
+    return NO_LIMIT if math.isinf(number) else f"{number:.12g}"
 
 
 class RunError(Exception):
@@ -141,6 +153,8 @@ class TrainingSummary:
     best_evaluation: Evaluated | None = None
     """That of the best policy."""
     reason: str = ""
+    measures: dict[str, float] = field(default_factory=dict)
+    """What the learner last measured of its own learning; see ``kit.learning.training.measures``."""
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able."""
@@ -293,12 +307,10 @@ class TrainingRun:
         damage = ""
         for file in self.checkpoints:
             try:
-                with zipfile.ZipFile(file) as archive:
-                    return {name: archive.read(name) for name in archive.namelist()}, damage
+                return _read_checkpoint(file), damage
             except FileNotFoundError:
                 continue
-            # RuntimeError: zipfile's, of an encrypted member or an unknown method of packing
-            except (zipfile.BadZipFile, zlib.error, OSError, EOFError, RuntimeError) as error:
+            except READ_ERRORS as error:
                 damage = f"{file.name} is damaged ({error})"
         if damage:
             raise RunError(
@@ -308,11 +320,35 @@ class TrainingRun:
         return None
 
 
+MAX_CHECKPOINT_BYTES: Final = 4 << 30
+"""Bytes of a checkpoint: its replay buffer is the largest part."""
+
+
+def _read_checkpoint(file: Path) -> dict[str, bytes]:
+    """Returns the parts of a checkpoint, which may be somebody else's: none of them unpacks to more than it is. Raises OSError,
+    ValueError and zipfile.BadZipFile."""
+    with open_plain_file(file) as opened:
+        size = os.fstat(opened.fileno()).st_size
+        if size > MAX_CHECKPOINT_BYTES:
+            raise zipfile.BadZipFile(f"it is larger than {MAX_CHECKPOINT_BYTES >> 30} GiB")
+        with zipfile.ZipFile(opened) as archive:
+            check_stored(archive, size)
+            parts = {name: archive.read(name) for name in archive.namelist()}
+    for name, data in parts.items():
+        if zipfile.is_zipfile(io.BytesIO(data)):  # arrays, or parameters of torch's
+            with zipfile.ZipFile(io.BytesIO(data)) as inner:
+                check_stored(inner, len(data))
+                if name.endswith(".npz"):
+                    check_arrays(inner, MAX_CHECKPOINT_BYTES)
+    return parts
+
+
 def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: RunCommand) -> TrainingSummary:
     """Summarises a run's events."""
     steps, seconds, rate, reason = 0, 0.0, 0.0, ""
     tested: Evaluated | None = None
     best: Evaluated | None = None
+    measures: dict[str, float] = {}
     state: RunState = "interrupted" if events else "new"
     for event in events:
         match event:
@@ -320,8 +356,9 @@ def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: R
                 state, steps = "interrupted", event.steps
             case TrainingProgress():
                 steps, seconds, rate = event.steps, event.seconds, event.rate
+                measures = event.measures or measures
             case Evaluated():
-                tested = event
+                tested, measures = event, event.measures or measures
                 best = event if event.kept else best
             case TrainingEnded():
                 state, steps, seconds, reason = event.how, event.steps, event.seconds, event.reason
@@ -329,7 +366,7 @@ def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: R
                 pass
     if alive:
         state = "paused" if order == "pause" else "running"
-    return TrainingSummary(state, steps, seconds, rate, tested, best, reason)
+    return TrainingSummary(state, steps, seconds, rate, tested, best, reason, measures)
 
 
 def create_run(folder: Path, config: RunConfig, name: str | None = None) -> TrainingRun:

@@ -21,7 +21,6 @@ from kit.arrays import FloatArray, IntArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.episode_stats import EpisodeStatsRecorder
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import (
     ActionSampling,
     ActionValueTable,
@@ -29,8 +28,10 @@ from kit.learning.policies.policies import (
     action_counts,
     task_interface,
 )
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.learner import TrainingCallback
+from kit.learning.training.measures import RecentExperience
 from kit.learning.training.presets import Preset, TabularParams
 
 MAX_STATES = 20_000
@@ -55,6 +56,7 @@ class TableLearner(ABC):
         self._values: FloatArray = np.zeros(self._table.values.shape)
         self._steps = 0
         self._rate_factor = 1.0
+        self._recent = RecentExperience(batch.n, int(batch.observation_space.shape[0]))
 
     def assign_cases(self, shares: FloatArray) -> None:
         if self._batch.has_fixed_cases:
@@ -73,6 +75,7 @@ class TableLearner(ABC):
             next_action = self._choose(reached_state, steps)
             self._update(state, action, step, reached_state, next_action, 1 - self._steps / steps)
             self._steps += self._batch.n
+            self._recent.add(step.observations, step.rewards, step.ended)
             for episode in recorder.add(step):
                 callback.on_episode_end(episode)
             # Where no episode ends, the next one's first observation is none of them.
@@ -134,6 +137,10 @@ class TableLearner(ABC):
             task_interface(self._batch.task),
         )
 
+    def measures(self) -> dict[str, float]:
+        values = self._values[self._table.states(self._recent.observations)].max(axis=1)
+        return self._recent.measures(values, self._settings.gamma, None)
+
     def snapshot(self) -> Any:
         return self._values.copy()
 
@@ -144,7 +151,12 @@ class TableLearner(ABC):
     def save(self) -> dict[str, bytes]:
         values = io.BytesIO()
         np.save(values, self._values)
-        counts = {"algorithm": self._algorithm.name, "steps": self._steps, "slower": self._rate_factor}
+        counts = {
+            "algorithm": self._algorithm.name,
+            "steps": self._steps,
+            "slower": self._rate_factor,
+            "largest": self._recent.save(),
+        }
         return {"learner.json": json.dumps(counts).encode(), "values.npy": values.getvalue()}
 
     def load(self, parts: Mapping[str, bytes]) -> None:
@@ -158,6 +170,7 @@ class TableLearner(ABC):
             raise ValueError("a value that is not finite")
         self._values = values
         self._steps, self._rate_factor = int(counts["steps"]), float(counts["slower"])
+        self._recent.load(counts["largest"])
 
 
 class QLearning(TableLearner):
@@ -176,11 +189,24 @@ class Sarsa(TableLearner):
         return taken
 
 
+def table_rows(inputs: int, bins: int) -> int:
+    """Returns how many rows a table has for so many numbers seen, each sorted into so many bins.
+
+    >>> table_rows(9, 3)
+    19683
+    """
+    return int(bins ** _used_count(inputs, bins))
+
+
+def _used_count(inputs: int, bins: int) -> int:
+    return min(inputs, int(np.log(MAX_STATES) / np.log(bins)))
+
+
 def _empty_table(batch: BatchEnv, settings: TabularParams) -> ActionValueTable:
     """One that counts as many inputs, evenly spread over what is seen, as make a table of reasonable size."""
     inputs = int(batch.observation_space.shape[0])
     bins = len(settings.edges) + 1
-    count = min(inputs, int(np.log(MAX_STATES) / np.log(bins)))
+    count = _used_count(inputs, bins)
     used = np.linspace(0, inputs - 1, count).round().astype(np.int64)
     actions = action_counts(batch.action_space)[0]
     values = np.zeros((bins**count, actions), dtype=np.float32)

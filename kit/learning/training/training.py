@@ -21,15 +21,16 @@ import numpy as np
 
 from kit.arrays import FloatArray
 from kit.host.failure import StudentCodeError
-from kit.learning.environment.actions import DiscreteActions
 from kit.learning.environment.batch import BatchEnv, RewardError
-from kit.learning.environment.batch_map import UnsupportedWorld
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
-from kit.learning.environment.rewards import RewardFunction
-from kit.learning.environment.tasks import LearningTask, TaskSpec
+from kit.learning.maps.batch_map import UnsupportedWorld
 from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator, derive_seed
 from kit.learning.policies.policies import Policy, PolicyError, save_policy
-from kit.learning.tasks.learning_task import CasePractice, practices
+from kit.learning.tasks.actions import DiscreteActions
+from kit.learning.tasks.learning_task import CasePractice, LearningTask, practices
+from kit.learning.tasks.rewards import RewardFunction
+from kit.learning.tasks.student_reward import RewardFileError, StudentReward
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import (
     Algorithm,
     UnsuitableAlgorithm,
@@ -49,6 +50,7 @@ from kit.learning.training.events import (
     TrainingStarted,
 )
 from kit.learning.training.learner import Learner, StopLearning
+from kit.learning.training.measures import is_value_too_large, value_warning
 from kit.learning.training.presets import LinearSchedule, Preset, find_preset
 from kit.learning.training.runs import RunConfig, RunError, TrainingRun
 from kit.learning.training.stopping_rules import (
@@ -60,7 +62,6 @@ from kit.learning.training.stopping_rules import (
     TrainUntilGoal,
     TrainUntilSure,
 )
-from kit.learning.training.student_reward import RewardFileError, StudentReward
 from kit.run.recording import RecordingError
 
 PROGRESS_S = 0.5
@@ -203,6 +204,8 @@ class _TrainingLoop:
         self._best_snapshot: Any = None
         self._first_returns: list[float] = []
         self._last_returns: deque[float] = deque(maxlen=COMPARED_EPISODES)
+        self._is_warned = False
+        """Whether it has been said that values exceed what rewards can pay."""
         self._success = 1.0
         """The share that reached the goal in the last test."""
         cases = [(case.name, case.group) for _, case in self._task.map_cases()]
@@ -317,7 +320,11 @@ class _TrainingLoop:
         if decision.is_best:
             save_policy(policy, self._run.best_policy)
             self._best_snapshot = self._learner.snapshot()
-        self._write(_evaluation_event(steps, self._elapsed(), decision, test))
+        measures = self._learner.measures()
+        self._write(_evaluation_event(steps, self._elapsed(), decision, test, measures))
+        if is_value_too_large(measures) and not self._is_warned:
+            self._is_warned = True
+            self._write(TrainingNote(value_warning(measures)))
         if decision.restore_best and self._best_snapshot is not None and not last:
             self._learner.restore(self._best_snapshot)
         self._follow_curriculum(decision.counts)
@@ -357,7 +364,8 @@ class _TrainingLoop:
 
     def _report_progress(self) -> None:
         if self._learner.steps > self._batch.steps:
-            self._write(self._batch.progress(self._learner.steps, self._elapsed()))
+            progress = self._batch.progress(self._learner.steps, self._elapsed())
+            self._write(replace(progress, measures=self._learner.measures()))
             self._batch = _ProgressBatch(self._learner.steps)
 
     def _checkpoint(self) -> None:
@@ -368,6 +376,7 @@ class _TrainingLoop:
             "resumed": self._resumed,
             "next_evaluation": self._next_evaluation,
             "stage": self._stage,
+            "is_warned": self._is_warned,
         }
         save_policy(self._learner.policy(), self._run.newest_policy)
         self._run.save_checkpoint({"training.json": json.dumps(state).encode(), **self._learner.save()})
@@ -398,7 +407,7 @@ class _TrainingLoop:
             self._memory = StoppingMemory(**{**state["memory"], "best": tuple(best) if best else None})
             self._seconds, self._test_count = float(state["seconds"]), int(state["test_count"])
             self._resumed, self._next_evaluation = int(state["resumed"]) + 1, int(state["next_evaluation"])
-            self._stage = int(state["stage"])
+            self._stage, self._is_warned = int(state["stage"]), bool(state["is_warned"])
             if min(self._seconds, self._test_count, self._resumed, self._next_evaluation, self._stage) < 0:
                 raise ValueError("a count below 0")
         note = "Training continues from the last checkpoint, with new episodes."
@@ -494,14 +503,20 @@ def _case_count(case: CaseResult) -> CaseCount:
 
 
 def _evaluation_event(
-    steps: int, seconds: float, decision: StoppingDecision, test: _SeededPolicyTest
+    steps: int,
+    seconds: float,
+    decision: StoppingDecision,
+    test: _SeededPolicyTest,
+    measures: dict[str, float],
 ) -> Evaluated:
     assert test.result is not None  # every strategy tests
     cases = {case.case: list(case.outcomes) for case in test.result.cases}
     adjacency = (
         float(np.mean([case.adjacency for case in test.result.cases])) if test.result.is_pair else None
     )
-    return Evaluated(steps, seconds, cases, decision.is_best, test.result.reward, decision.reason, adjacency)
+    return Evaluated(
+        steps, seconds, cases, decision.is_best, test.result.reward, decision.reason, adjacency, measures
+    )
 
 
 class _ProgressBatch:

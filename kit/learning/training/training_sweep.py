@@ -28,9 +28,9 @@ from typing import Any, Final
 from kit.document.blocks import Cell, CellStyle, Column, Table
 from kit.field_types import check_field_types
 from kit.host.job_executors import in_shard, read_result
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.policies.evaluation import Evaluator, derive_seed
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import (
     PresetName,
     RunConfig,

@@ -13,6 +13,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
 
+from kit.installation import install_command
 from kit.learning.training.run_check import check_settings
 from kit.learning.training.runs import RunConfig, RunError, format_settings
 from kit.learning.training.training import resolve_preset
@@ -43,9 +44,7 @@ class SettingRange:
 def require_optuna() -> None:
     """Raises RunError where the extra ``tune`` is not installed."""
     if find_spec("optuna") is None:
-        raise RunError(
-            "Tuning needs optuna. In the kit's folder: pip install -c constraints.txt -e '.[tune]'"
-        )
+        raise RunError(f"Tuning needs optuna. To have it, type: {install_command('tune')}")
 
 
 def check_ranges(config: RunConfig, ranges: Sequence[SettingRange]) -> None:

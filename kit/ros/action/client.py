@@ -1,21 +1,21 @@
-"""Action clients, which send goals and get feedback and results over three services and two topics under ``NAME/_action``; and the states of a goal."""
+"""Action clients, which send goals and get feedback and results over three services and two topics under ``NAME/_action``."""
 
 from __future__ import annotations
 
 import weakref
 from binascii import crc32
 from collections.abc import Callable
-from enum import Enum
-from types import GenericAlias, MappingProxyType
-from typing import Any, Final, Self
+from types import GenericAlias
+from typing import Any, Self
 
 from kit.msg.action_msgs import CancelGoal, GoalStatus, GoalStatusArray
 from kit.msg.message import Action
 from kit.msg.unique_identifier_msgs import UUID
+from kit.ros.action.goal_states import ENDED, FEEDBACK_QOS_PROFILE, uuid_bytes
 from kit.ros.exceptions import InvalidHandle
 from kit.ros.execution.callback_groups import CallbackGroup
 from kit.ros.execution.task import Future, Task
-from kit.ros.graph.naming import (
+from kit.ros.graph.action_names import (
     CANCEL_GOAL,
     FEEDBACK,
     GET_RESULT,
@@ -30,56 +30,6 @@ from kit.ros.node.node import Node, check_action_type
 from kit.ros.node.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from kit.ros.node.service_introspection import ServiceIntrospectionState
 from kit.ros.node.time import S_TO_NS
-
-
-class GoalEvent(Enum):
-    """What changes the state of a goal."""
-
-    EXECUTE = 1
-    CANCEL_GOAL = 2
-    SUCCEED = 3
-    ABORT = 4
-    CANCELED = 5
-
-
-STATUS_NAMES: Final = MappingProxyType(
-    {
-        GoalStatus.STATUS_UNKNOWN: "UNKNOWN",
-        GoalStatus.STATUS_ACCEPTED: "ACCEPTED",
-        GoalStatus.STATUS_EXECUTING: "EXECUTING",
-        GoalStatus.STATUS_CANCELING: "CANCELING",
-        GoalStatus.STATUS_SUCCEEDED: "SUCCEEDED",
-        GoalStatus.STATUS_CANCELED: "CANCELED",
-        GoalStatus.STATUS_ABORTED: "ABORTED",
-    }
-)
-
-ENDED: Final = frozenset({GoalStatus.STATUS_SUCCEEDED, GoalStatus.STATUS_CANCELED, GoalStatus.STATUS_ABORTED})
-"""The states that a goal never leaves."""
-
-TRANSITIONS: Final = MappingProxyType(
-    {
-        (GoalStatus.STATUS_ACCEPTED, GoalEvent.EXECUTE): GoalStatus.STATUS_EXECUTING,
-        (GoalStatus.STATUS_ACCEPTED, GoalEvent.CANCEL_GOAL): GoalStatus.STATUS_CANCELING,
-        (GoalStatus.STATUS_EXECUTING, GoalEvent.CANCEL_GOAL): GoalStatus.STATUS_CANCELING,
-        (GoalStatus.STATUS_EXECUTING, GoalEvent.SUCCEED): GoalStatus.STATUS_SUCCEEDED,
-        (GoalStatus.STATUS_EXECUTING, GoalEvent.ABORT): GoalStatus.STATUS_ABORTED,
-        (GoalStatus.STATUS_CANCELING, GoalEvent.SUCCEED): GoalStatus.STATUS_SUCCEEDED,
-        (GoalStatus.STATUS_CANCELING, GoalEvent.ABORT): GoalStatus.STATUS_ABORTED,
-        (GoalStatus.STATUS_CANCELING, GoalEvent.CANCELED): GoalStatus.STATUS_CANCELED,
-    }
-)
-"""The state that follows a state and an event; no other pair is allowed."""
-
-
-FEEDBACK_QOS_PROFILE: Final = QoSProfile(depth=10)
-"""The quality of service of an action's feedback."""
-
-
-def uuid_bytes(goal_id: UUID) -> bytes:
-    """The 16 bytes of a goal's identifier, without loading numpy as reading the field would."""
-    return bytes(goal_id._uuid)  # type: ignore[attr-defined]  # the field's slot
-
 
 _WARN_AFTER_NS = 5 * S_TO_NS
 """How long to wait for a server before saying what there is instead."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kit.ros.graph.naming import NamesAndTypes
+from kit.ros.graph.action_names import NamesAndTypes
 from kit.ros.node.node import Node
 
 

@@ -14,7 +14,7 @@ from typing import Any, Self
 from kit.msg.action_msgs import CancelGoal, GoalInfo, GoalStatus, GoalStatusArray
 from kit.msg.message import Action
 from kit.msg.unique_identifier_msgs import UUID
-from kit.ros.action.client import (
+from kit.ros.action.goal_states import (
     ENDED,
     FEEDBACK_QOS_PROFILE,
     STATUS_NAMES,
@@ -25,7 +25,7 @@ from kit.ros.action.client import (
 from kit.ros.exceptions import RCLError
 from kit.ros.execution.callback_groups import CallbackGroup
 from kit.ros.execution.task import Future, Task, await_or_execute
-from kit.ros.graph.naming import CANCEL_GOAL, FEEDBACK, GET_RESULT, SEND_GOAL, STATUS
+from kit.ros.graph.action_names import CANCEL_GOAL, FEEDBACK, GET_RESULT, SEND_GOAL, STATUS
 from kit.ros.node.clock import Clock
 from kit.ros.node.endpoint import accepted_argument_count, register_entity
 from kit.ros.node.node import Node, check_action_type

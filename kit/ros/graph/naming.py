@@ -8,10 +8,8 @@ Which node serves or calls an action is read off the topic of its feedback, as R
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable
 
-from kit.msg.message import type_name
 from kit.ros.exceptions import (
     InvalidNamespaceException,
     InvalidNodeNameException,
@@ -21,13 +19,8 @@ from kit.ros.exceptions import (
     NameValidationException,
 )
 
-if TYPE_CHECKING:
-    from kit.ros.graph.directory import Directory, NodeEntry
-
-
 TOPIC_SEPARATOR_STRING = "/"
 MAX_NAME_LENGTH = 255
-
 _INVALID_IN_NODE = re.compile(r"[^A-Za-z0-9_]")
 _INVALID_IN_PATH = re.compile(r"[^A-Za-z0-9_/]")
 _INVALID_IN_TOPIC = re.compile(r"[^A-Za-z0-9_/~{}]")
@@ -172,50 +165,3 @@ def _check_path(name: str, what: str, invalid: re.Pattern[str], make_exception: 
     number = re.search(r"(?:^|/)(\d)", name)
     if number:
         raise make_exception(name, f"{what} token must not start with a number", number.start(1))
-
-
-SEND_GOAL: Final = "_action/send_goal"
-CANCEL_GOAL: Final = "_action/cancel_goal"
-GET_RESULT: Final = "_action/get_result"
-FEEDBACK: Final = "_action/feedback"
-STATUS: Final = "_action/status"
-
-_FEEDBACK_TYPE: Final = "_FeedbackMessage"
-
-NamesAndTypes = list[tuple[str, list[str]]]
-
-
-def action_names_and_types(directory: Directory) -> NamesAndTypes:
-    """All actions that a node serves or calls, sorted by name."""
-    return _actions_of((name, types) for name, types in directory.topic_names_and_types())
-
-
-def all_served_actions(directory: Directory) -> dict[str, list[str]]:
-    """The types of all actions that a node serves, by name."""
-    found: dict[str, set[str]] = {}
-    for handle in directory.nodes:
-        for name, types in served_actions(handle):
-            found.setdefault(name, set()).update(types)
-    return {name: sorted(types) for name, types in sorted(found.items())}
-
-
-def served_actions(handle: NodeEntry) -> NamesAndTypes:
-    """The actions that a node serves, sorted by name."""
-    return _actions_of((end.topic_name, [type_name(end.msg_type)]) for end in handle.publishers)
-
-
-def called_actions(handle: NodeEntry) -> NamesAndTypes:
-    """The actions that a node calls, sorted by name."""
-    return _actions_of((end.topic_name, [type_name(end.msg_type)]) for end in handle.subscriptions)
-
-
-def _actions_of(topics: Iterable[tuple[str, list[str]]]) -> NamesAndTypes:
-    found: dict[str, set[str]] = {}
-    for topic, types in topics:
-        name, _, rest = topic.partition(f"/{FEEDBACK}")
-        if name == topic or rest:
-            continue
-        actions = {each.removesuffix(_FEEDBACK_TYPE) for each in types if each.endswith(_FEEDBACK_TYPE)}
-        if actions:
-            found.setdefault(name, set()).update(actions)
-    return [(name, sorted(types)) for name, types in sorted(found.items())]

@@ -13,16 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 from kit.msg.message import type_name
 from kit.ros.exceptions import NodeNameNonExistentError
+from kit.ros.graph.action_names import NamesAndTypes, action_names_and_types, called_actions, served_actions
 from kit.ros.graph.directory import GraphNode, NodeEntry
-from kit.ros.graph.naming import (
-    NamesAndTypes,
-    action_names_and_types,
-    called_actions,
-    expand_topic_name,
-    full_name,
-    served_actions,
-    validate_topic_name,
-)
+from kit.ros.graph.naming import expand_topic_name, full_name, validate_topic_name
 from kit.ros.graph.ready_queue import ReadyQueue
 from kit.ros.node.endpoint import (
     Destroyable,

@@ -10,8 +10,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from kit.render.encode import BrailleEncoder
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.render.world_text import scene_rows
@@ -167,11 +165,10 @@ def card_rows(
 ) -> list[str]:
     """The rows of the card, at most ``COLUMNS`` wide."""
     scenario = level.find_scenario()
-    walls = [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
     case = scenario.case
     tracks = [recording.track(name)[::5, :2] for name in scenario.partners]
     scene = Scene(
-        walls=np.concatenate(walls),
+        walls=scenario.world.wall_segments,
         paths=tuple(ScenePath(track) for track in tracks if len(track) > 1),
         targets=() if case is None else (Disc(*case.target, case.target_radius),),
         marks=tuple(SceneMark(start.x, start.y, "S") for start in scenario.starts[:1]),

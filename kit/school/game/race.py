@@ -21,13 +21,7 @@ from kit.host.private_folder import private_folder
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.probe import is_level_available
-from kit.learning.environment.batch_map import (
-    FLOOR_CELL,
-    hull_radius,
-    hull_width,
-    load_batch_map,
-    measure_floor,
-)
+from kit.learning.maps.batch_map import FLOOR_CELL, hull_radius, hull_width, load_batch_map, measure_floor
 from kit.learning.tasks.learning_task import CoverGoal, FollowGoal, PatrolGoal
 from kit.render.scene import Disc
 from kit.run.episode import EndCondition, EndReason, run_until, when, when_failed

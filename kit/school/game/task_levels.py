@@ -11,8 +11,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from kit.geometry import Pose
-from kit.learning.environment.batch_map import UnsupportedWorld
-from kit.learning.environment.tasks import UnknownTask, find_task_file, task_names, tasks_folder
+from kit.learning.authoring.task_check import check_task
+from kit.learning.maps.batch_map import UnsupportedWorld
+from kit.learning.tasks.catalogue import find_task_file, task_names, tasks_folder
 from kit.learning.tasks.learning_task import (
     AvoidGoal,
     FollowGoal,
@@ -20,9 +21,9 @@ from kit.learning.tasks.learning_task import (
     PatrolGoal,
     TargetGoal,
     TaskCase,
+    UnknownTask,
     WallGoal,
 )
-from kit.learning.tasks.task_check import check_task
 from kit.learning.tasks.task_reader import read_task
 from kit.plain_text import quoted
 from kit.run.scenario import BEACON, Scenario

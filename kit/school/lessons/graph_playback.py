@@ -8,16 +8,12 @@ from typing import Final
 from kit.plain_text import counted
 from kit.render.curve import paste_frame, write_text
 from kit.render.encode import AsciiEncoder, Encoder, Frame
-from kit.render.graph import (
-    ASCII_LINES,
-    UNICODE_LINES,
-    GraphDrawing,
-    GraphView,
-    MessageAnimation,
-    draw_graph,
-)
-from kit.render.graph_layout import GraphData, GraphItem, arrange_graph
-from kit.ros.graph.snapshot import FlowStats, MessageFlow
+from kit.render.graph import GraphDrawing, GraphView, draw_graph
+from kit.render.graph_data import GraphData, GraphItem
+from kit.render.graph_glyphs import ASCII_LINES, UNICODE_LINES
+from kit.render.graph_layout import arrange_graph
+from kit.render.message_animation import MessageAnimation
+from kit.ros.graph.topic_statistics import FlowStats, MessageFlow
 from kit.school.lessons.records import GraphChannel, GraphScene
 
 FRAME_S: Final = 0.125

@@ -30,7 +30,14 @@ from kit.school.lessons.lesson_text import (
     verdict_blocks,
 )
 from kit.school.lessons.reading import TEXT_WIDTH
-from kit.school.lessons.records import CommandKind, LessonCommand, LessonScene, LessonStep, PredictionOption
+from kit.school.lessons.records import (
+    CommandKind,
+    Exercise,
+    LessonCommand,
+    LessonScene,
+    LessonStep,
+    PredictionOption,
+)
 from kit.school.lessons.shell_lines import TITLE as SECOND_TERMINAL
 from kit.school.lessons.shell_lines import fill_in_paths, second_terminal_here, shell_path
 from kit.school.lessons.stage import NoStage, Stage
@@ -102,6 +109,8 @@ class LessonDialogue(Dialogue):
         self.stage: Stage = NoStage()
         self.work: ExerciseWork | None = None
         """The work on the step's exercise; None where it has none."""
+        self._works: dict[str, ExerciseWork] = {}
+        """The work on each exercise of this lesson that was come to. A check goes on while another step is looked at."""
         self.has_ended = False
         """Whether the last step is behind one."""
         self.is_answer_shown = True
@@ -124,16 +133,25 @@ class LessonDialogue(Dialogue):
 
     def enter(self, step: LessonStep) -> None:
         """Comes to a step."""
-        if self.work is not None:
-            self.work.close()
         self.step, self.work, self.has_ended, self._problem, self._looks_at = step, None, False, "", ""
         self.is_answer_shown = not self.is_waiting
         if step.exercise is not None:
             try:
-                self.work = ExerciseWork(self.session, step.exercise)
+                self.work = self._work_on(step.exercise)
             except ExerciseFilesError as error:
                 self._problem = f"The exercise files cannot be created: {error}"
         self.stage.open(step, still=self.begins_still)
+
+    def _work_on(self, exercise: Exercise) -> ExerciseWork:
+        if exercise.name not in self._works:
+            self._works[exercise.name] = ExerciseWork(self.session, exercise)
+        return self._works[exercise.name]
+
+    def _close_works(self) -> None:
+        """Ends every check of this lesson."""
+        for each in self._works.values():
+            each.close()
+        self._works.clear()
 
     # Where one is
 
@@ -309,9 +327,34 @@ class LessonDialogue(Dialogue):
 
     @property
     def polls(self) -> bool:
-        return self.work is not None and not self.work.by_hand
+        return bool(self._checked_elsewhere()) or (self.work is not None and not self.work.by_hand)
+
+    def _checked_elsewhere(self) -> list[LessonStep]:
+        """The steps, besides this one, whose exercise is being checked."""
+        return [
+            step
+            for step in self.session.lesson.steps
+            if step.exercise is not None
+            and (work := self._works.get(step.exercise.name)) is not None
+            and work is not self.work
+            and work.seconds is not None
+        ]
 
     def poll(self) -> Effect:
+        said = [text for step in self._checked_elsewhere() if (text := self._poll_elsewhere(step))]
+        effect = self._poll_here()
+        return Remark(" ".join(said), Tone.DIM) if effect is None and said else effect
+
+    def _poll_elsewhere(self, step: LessonStep) -> str:
+        """Takes in the check of another step; what it found, once it has ended."""
+        assert step.exercise is not None
+        work = self._works[step.exercise.name]
+        if not work.poll() or work.report is None:
+            return ""
+        found = "passed" if work.report.is_passed else "not yet passed"
+        return f"The check of step {step.number}, {step.title}, has ended: {found}."
+
+    def _poll_here(self) -> Effect:
         work = self.work
         if work is None:
             return None
@@ -346,8 +389,7 @@ class LessonDialogue(Dialogue):
         return Remark("Stopped; this check does not count. c checks again, q quits.")
 
     def close(self) -> None:
-        if self.work is not None:
-            self.work.close()
+        self._close_works()
         self.stage.close()
 
     def rested(self) -> bool:
@@ -393,8 +435,6 @@ class LessonDialogue(Dialogue):
                 if is_open
                 else None
             )
-        if self.work is not None:
-            self.work.close()
         self.stage.close()
         self.work, self.has_ended, self._looks_at = None, True, ""
         self._following = self.session.following()
@@ -403,6 +443,7 @@ class LessonDialogue(Dialogue):
     def _begin_following(self) -> Effect:
         if self._following is not None:
             is_told = bool(self.session.lesson.missing_language)
+            self._close_works()
             self.session, self._following = self._following, None
             self._opening_step = self._opening_step if is_told else self.session.first_step
             self.enter(self.session.first_step)
@@ -672,7 +713,7 @@ class LessonDialogue(Dialogue):
         return "next lesson" if self.has_ended else "next"
 
     def back_word(self) -> str:
-        return "back; each of these ends the check" if self.busy else "back"
+        return "back; each of these ends the check" if self.busy or self._checked_elsewhere() else "back"
 
     def predict_keys(self) -> str:
         return f"1-{len(self.step.options)}"
@@ -711,7 +752,7 @@ class LessonDialogue(Dialogue):
         ),
         help_action(),
         leave_action(lambda dialogue: Leave(), back_word),
-        Action(ACTIONS["steps"], go_to, takes_text=True, is_listed=False),
+        Action(ACTIONS["steps"], go_to, takes_text=True, is_listed=False, while_busy=True),
         Action(ACTIONS["quit"], lambda dialogue: Leave(), is_listed=False, is_for_lines=False, while_busy=True),
         glossary_action(),
     )  # fmt: skip

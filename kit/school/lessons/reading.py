@@ -11,7 +11,7 @@ from pathlib import Path, PurePosixPath
 from string import ascii_uppercase
 from typing import Final
 
-from kit.document.markup import MarkupError, parse_markup, wrap_blocks
+from kit.document.markup import BLOCK_INDENT, MarkupError, parse_markup, wrap_blocks
 from kit.learning.environment.grid_world import GridMapError, GridRewards, GridWorld
 from kit.learning.training.grid_learner import GRID_ALGORITHMS, GridLearnerSettings
 from kit.plain_files import is_file_there
@@ -349,10 +349,27 @@ def _check_step(section: Section, step: LessonStep) -> None:
     except MarkupError as error:
         section.error(str(error), "text")
         return
+    if (wide := next(_wide_code(step), None)) is not None:
+        section.error(
+            f"a row of code has at most {TEXT_WIDTH} characters, unless it is a command: {quoted(wide)}",
+            "text",
+        )
     if count > most:
         section.error(
             f"the text has {count} rows of {TEXT_WIDTH} characters; at most {most} fit on the screen", "text"
         )
+
+
+def _wide_code(step: LessonStep) -> Iterator[str]:
+    """Rows of code that a screen of 80 columns breaks. A command goes on in the next row, as a shell reads it."""
+    commands = {each.line for each in step.commands}
+    for block in parse_markup(step.text):
+        if block.kind == "code":
+            yield from (
+                row
+                for row in block.lines
+                if len(row) > TEXT_WIDTH - len(BLOCK_INDENT) and row not in commands
+            )
 
 
 def _read_scene(section: Section, folder: Path) -> LessonScene | None:
@@ -479,6 +496,8 @@ def _read_learners(scene: Section) -> Iterator[tuple[GridLearnerSettings, str]]:
             each.integer("worlds", known.worlds, minimum=1, maximum=64),
             each.number("clip", known.clip, minimum=0, maximum=1),
             each.number("entropy", known.entropy, minimum=0, maximum=1),
+            each.number("temperature", known.temperature, minimum=0, maximum=1e6),
+            each.number("value_limit", known.value_limit, minimum=0, maximum=1e9),
         )
         yield settings, each.text("title", settings.algorithm)
         each.finish()

@@ -4,7 +4,8 @@ newest policy."""
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ _TEST: Final = re.compile(
     r"^training (\d{1,3}) of (\d{1,3}), test: (\d{1,3}) % after ([\d,]{1,15}) of ([\d,]{1,15}) steps$",
     re.MULTILINE,
 )
+_EXAM: Final = re.compile(r"^training (\d{1,3}) of \d{1,3}, exam: (\d{1,3}) %$", re.MULTILINE)
 _DRIVE: Final = re.compile(r"^training (\d{1,3}) of \d{1,3}, drive: (\{.*\})$", re.MULTILINE)
 
 
@@ -79,11 +81,14 @@ class TrainingCurves:
     """Steps and success [%] of each test of each training."""
     drive: TestDrive | None = None
     """A drive with the newest policy; None if there is none."""
+    exams: Mapping[int, int] = field(default_factory=dict)
+    """By the number of the training: the success [%] in its exam, which is what the check judges. Of those that are over."""
 
     def describe(self) -> list[str]:
         """One line for each training: the success in its tests, from first to last; then the newest drive."""
         lines = [
             f"training {number} of {self.count}: tests {' '.join(str(share) for _, share in tests)} %"
+            + (f", exam {self.exams[number]} %" if number in self.exams else "")
             for number, tests in enumerate(self.tests, 1)
         ]
         return lines if self.drive is None else [*lines, self.drive.describe()]
@@ -107,7 +112,8 @@ class TrainingCurves:
 
         curves = [
             Curve(
-                f"training {number}",
+                f"training {number}"
+                + (f", exam {self.exams[number] / 100:.2f}" if number in self.exams else ""),
                 np.array([step for step, _ in tests], dtype=float),
                 np.array([share / 100 for _, share in tests]),
             )
@@ -172,7 +178,8 @@ def read_training_curves(progress: str) -> TrainingCurves | None:
     if not tests:
         return None
     shown = tuple(tuple(tests[number]) for number in sorted(tests))
-    return TrainingCurves(count, steps, shown, _newest_drive(progress, tests))
+    exams = {int(number): int(share) for number, share in _EXAM.findall(progress)}
+    return TrainingCurves(count, steps, shown, _newest_drive(progress, tests), exams)
 
 
 def _newest_drive(progress: str, tests: dict[int, list[tuple[int, int]]]) -> TestDrive | None:

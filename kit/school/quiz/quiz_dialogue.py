@@ -13,6 +13,7 @@ from kit.dialogue.effects import Effect
 from kit.document.blocks import Block, Choice, Choices, KeyLine, Picture, Text, Tone
 from kit.school.lessons.glossary import glossary_action
 from kit.school.progress import ProgressError
+from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOutcome
 from kit.school.quiz.items import OPTION_COUNT, QuizItem
 from kit.school.quiz.quiz_session import QuizSession
 from kit.school.quiz.quiz_text import (
@@ -24,7 +25,6 @@ from kit.school.quiz.quiz_text import (
     today_line,
     verdict_text,
 )
-from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, AnswerOutcome
 
 
 class QuizStage(Enum):

@@ -10,19 +10,16 @@ from typing import Final, Protocol
 
 from kit.school.lessons.reading import lesson_number
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
-from kit.school.quiz.items import QuestionBank, QuizItem, lesson_reference
-from kit.school.quiz.schedule import (
+from kit.school.quiz.answers import (
     AnswerChoice,
     AnswerOccasion,
     AnswerOutcome,
-    PracticeSchedule,
     QuizAnswer,
-    RoundHistory,
     answers_from_events,
-    build_schedule,
     event_content,
-    round_history,
 )
+from kit.school.quiz.items import QuestionBank, QuizItem, lesson_reference
+from kit.school.quiz.schedule import PracticeSchedule, RoundHistory, build_schedule, round_history
 
 SEED_SUBJECT: Final = "quiz-seed"
 """The journal's subject for the student's own seed, by which questions are shuffled."""

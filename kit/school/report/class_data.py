@@ -15,10 +15,12 @@ import numpy as np
 
 from kit.arrays import FloatArray
 from kit.plain_text import counted, is_printable
-from kit.school.progress import EventKind, ProgressError, ProgressEvent, read_export
-from kit.school.quiz.schedule import AnswerOccasion, answer_from_event
+from kit.school.form_answers import FormAnswers
+from kit.school.progress import EventKind, ProgressError, ProgressEvent
+from kit.school.progress_export import read_export
+from kit.school.quiz.answers import AnswerOccasion, answer_from_event
 from kit.school.report.measures import BLANK, AnswerSheet, ClassRatings, ItemReply, ReportItem
-from kit.school.survey import AnswerShape, FormAnswers, SurveyForm, SurveyPhase, SurveyQuestion
+from kit.school.survey import AnswerShape, SurveyForm, SurveyPhase, SurveyQuestion
 
 MAX_NAME_LENGTH: Final = 40
 

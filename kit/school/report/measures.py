@@ -16,7 +16,7 @@ import numpy as np
 
 from kit.arrays import BoolArray, FloatArray
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
-from kit.school.quiz.schedule import AnswerOutcome
+from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.inference import correlation, non_blank
 from kit.school.survey import QuestionPurpose, SurveyPhase, SurveyQuestion
 

@@ -6,15 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from kit.msg.std_msgs import Bool
-from kit.sim.plugin import (
-    OutgoingMessage,
-    Plugin,
-    PluginContext,
-    PluginType,
-    UpdateTimer,
-    read_rate,
-    read_topic,
-)
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_clock import UpdateTimer
+from kit.sim.plugin_messages import read_rate, read_topic
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
 
@@ -41,11 +35,11 @@ def read_params(section: Section, scope: ModelScope) -> BoolSensorParams:
 class BoolSensor(Plugin):
     """Publishes std_msgs/Bool: whether anything touches the body now, or did since the last message.
 
-    ============ ===========================================================
-    body         the body that feels (the first)
-    topic        bool_sensor
-    update_rate  messages per second; at every step by default
-    ============ ===========================================================
+    =========== ======================================================
+    body        the body that feels; by default the first of the model
+    topic       what it publishes
+    update_rate messages per second [Hz]; .inf: at every step
+    =========== ======================================================
 
     Footprints with ``sensor: true`` feel what overlaps them. In Flatland the topic gets the namespace
     twice; here once, like every other.
@@ -69,4 +63,4 @@ class BoolSensor(Plugin):
         return self._publisher.publish(lambda: Bool(data=touched))
 
 
-PLUGIN_TYPE = PluginType("BoolSensor", read_params, example="")
+PLUGIN_TYPE = PluginType("BoolSensor", BoolSensor, read_params, example="")

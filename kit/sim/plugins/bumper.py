@@ -8,15 +8,9 @@ from dataclasses import dataclass
 
 from kit.msg.flatland_msgs import Collision, Collisions, Vector2
 from kit.msg.std_msgs import Header
-from kit.sim.plugin import (
-    OutgoingMessage,
-    Plugin,
-    PluginContext,
-    PluginType,
-    UpdateTimer,
-    read_rate,
-    read_topic,
-)
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_clock import UpdateTimer
+from kit.sim.plugin_messages import read_rate, read_topic
 from kit.sim.state import Contact
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
@@ -47,13 +41,13 @@ def read_params(section: Section, scope: ModelScope) -> BumperParams:
 class Bumper(Plugin):
     """Publishes flatland_msgs/Collisions: what the model's bodies touch, after each step.
 
-    ======================== ==================================================================
-    topic                    collisions
-    world_frame_id           the frame named in the header (map)
-    update_rate              reports per second; at every step by default
-    publish_all_collisions   report at every step while anything touches, whatever the rate (true)
-    exclude                  names of bodies whose contacts are not reported
-    ======================== ==================================================================
+    ====================== ==============================================================
+    topic                  what it publishes
+    world_frame_id         the frame named in the header
+    update_rate            reports per second [Hz]; .inf: at every step
+    publish_all_collisions report at every step while anything touches, whatever the rate
+    exclude                names of bodies whose contacts are not reported
+    ====================== ==============================================================
 
     Entity and body a are the model's own, and normals point from a to b. A wall is named by its layer's first
     name, as entity and as body. Sensor footprints are reported with no points. Forces are rough: the impulse of
@@ -102,4 +96,4 @@ def _collision(contact: Contact) -> Collision:
     )
 
 
-PLUGIN_TYPE = PluginType("Bumper", read_params, example="")
+PLUGIN_TYPE = PluginType("Bumper", Bumper, read_params, example="")

@@ -10,7 +10,8 @@ from typing import Any
 from kit.msg.geometry_msgs import Twist
 from kit.sim.motors import SpeedLimits, read_speed_limits
 from kit.sim.odometry import Odometry, OdometryParams, read_odometry_params
-from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType, read_topic
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_messages import read_topic
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
 
@@ -44,22 +45,18 @@ class DiffDrive(Plugin):
     body gets this velocity at its origin, wherever its mass is, unless something is in the way. There
     are no wheels and there is no slip; ``odometry: encoders`` reports as if there were.
 
-    ======================== ==================================================================
-    body                     the body to move
-    twist_sub                topic of the commands (cmd_vel)
-    linear_dynamics          ``acceleration_limit`` and ``velocity_limit`` (0: none),
-    angular_dynamics         ``deceleration_limit`` (as for acceleration)
-    odom_pub                 odometry/filtered, a nav_msgs/Odometry
-    ground_truth_pub         odometry/ground_truth, the same without noise
-    twist_pub                twist, a geometry_msgs/TwistStamped with the odometry's twist
-    odom_frame_id            odom; ``ground_truth_frame_id`` is the same
-    pub_rate                 reports per second; at every step by default
-    enable_odom_pub, enable_twist_pub, enable_odom_tf_pub   all true
-    odom_pose_noise, odom_twist_noise                       variances ``[x, y, yaw]``, 0
-    odom_pose_covariance, odom_twist_covariance             36 numbers; the noise, by default
-    odometry                 ``ideal``, or ``encoders``: see ``kit.sim.odometry.Odometry``
-    wheel_separation         0.145 m, ``wheel_error`` 0.005, ``wheel_slip`` 0.002
-    ======================== ==================================================================
+    =================================== ======================================================================
+    body                                the body to move
+    twist_sub                           topic of the commands
+    linear_dynamics                     limits of the forward speed; without it none
+    angular_dynamics                    limits of the turn; without it none
+    linear_dynamics.acceleration_limit  limit of gaining speed [m/s^2]; 0: none
+    linear_dynamics.deceleration_limit  limit of losing speed [m/s^2]; by default that of gaining it; 0: none
+    linear_dynamics.velocity_limit      limit of the speed [m/s]; 0: none
+    angular_dynamics.acceleration_limit limit of gaining turn [rad/s^2]; 0: none
+    angular_dynamics.deceleration_limit limit of losing turn [rad/s^2]; by default that of gaining it; 0: none
+    angular_dynamics.velocity_limit     limit of the turn [rad/s]; 0: none
+    =================================== ======================================================================
     """
 
     def __init__(self, params: DiffDriveParams, context: PluginContext) -> None:
@@ -90,4 +87,4 @@ class DiffDrive(Plugin):
         return sent
 
 
-PLUGIN_TYPE = PluginType("DiffDrive", read_params, example="body: base")
+PLUGIN_TYPE = PluginType("DiffDrive", DiffDrive, read_params, example="body: base", parts=(Odometry,))

@@ -10,18 +10,9 @@ from kit.geometry import Pose
 from kit.msg.sensor_msgs import NavSatFix
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
-from kit.sim.plugin import (
-    TF_TOPIC,
-    OutgoingMessage,
-    Plugin,
-    PluginContext,
-    PluginType,
-    UpdateTimer,
-    read_rate,
-    read_topic,
-    tf_message,
-    transform_message,
-)
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_clock import UpdateTimer
+from kit.sim.plugin_messages import TF_TOPIC, read_rate, read_topic, tf_message, transform_message
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
 
@@ -62,13 +53,15 @@ def read_params(section: Section, scope: ModelScope) -> GpsParams:
 class Gps(Plugin):
     """Publishes sensor_msgs/NavSatFix: latitude and longitude [degrees], before the step; altitude 0.
 
-    ================= =======================================================================
-    body              the body that carries the antenna, ``origin`` where on it
-    topic, frame      gps/fix, and the plugin's name
-    update_rate       fixes per second (10)
-    ref_lat, ref_lon  where the world's origin lies on earth [degrees]; x points east, y north
-    broadcast_tf      whether to publish where its frame is on /tf (true)
-    ================= =======================================================================
+    ================ ========================================================================
+    body             the body that carries the antenna
+    origin           where on the body it is [m, m, rad]
+    topic            what it publishes
+    frame            frame of the messages; by default the plugin's name
+    update_rate      fixes per second [Hz]
+    ref_lat, ref_lon where the world's origin lies on earth [degrees]; x points east, y north
+    broadcast_tf     whether to publish where its frame is on /tf
+    ================ ========================================================================
     """
 
     def __init__(self, params: GpsParams, context: PluginContext) -> None:
@@ -132,4 +125,4 @@ def geodetic_position(
     )
 
 
-PLUGIN_TYPE = PluginType("Gps", read_params, example="body: base")
+PLUGIN_TYPE = PluginType("Gps", Gps, read_params, example="body: base")

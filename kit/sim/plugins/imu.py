@@ -13,14 +13,10 @@ from kit.msg import sensor_msgs
 from kit.msg.geometry_msgs import Vector3
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
-from kit.sim.plugin import (
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_clock import RandomStream, UpdateTimer
+from kit.sim.plugin_messages import (
     TF_TOPIC,
-    OutgoingMessage,
-    Plugin,
-    PluginContext,
-    PluginType,
-    RandomStream,
-    UpdateTimer,
     read_rate,
     read_topic,
     read_variances,
@@ -85,17 +81,21 @@ _NO_NOISE = ImuChannel((0.0, 0.0, 0.0), (0.0,) * 9)
 class Imu(Plugin):
     """Publishes sensor_msgs/Imu after the step, twice: with noise and as it is.
 
-    ======================= ====================================================================
-    body                    the body that carries it
-    imu_pub                 imu/filtered, unless ``enable_imu_pub`` is false
-    ground_truth_pub        imu/ground_truth
-    imu_frame_id            imu
-    pub_rate                messages per second; at every step by default
-    broadcast_tf            whether to publish where its frame is on /tf (true)
-    orientation_noise       variances of roll, pitch, yaw; of the other two, of x, y, z:
-                            ``angular_velocity_noise``, ``linear_acceleration_noise``
-    orientation_covariance  9 numbers; the noise, by default; likewise for the other two
-    ======================= ====================================================================
+    ============================== ==================================================================
+    body                           the body that carries it
+    imu_pub                        topic of the measurements with noise
+    enable_imu_pub                 whether to publish those with noise
+    ground_truth_pub               topic of the measurements without noise
+    imu_frame_id                   frame of the messages
+    pub_rate                       messages per second [Hz]; .inf: at every step
+    broadcast_tf                   whether to publish where its frame is on /tf
+    orientation_noise              variances of roll, pitch, yaw [rad^2]
+    angular_velocity_noise         variances of x, y, z [rad^2/s^2]
+    linear_acceleration_noise      variances of x, y, z [m^2/s^4]
+    orientation_covariance         3 x 3, row by row, in the messages [rad^2]; by default the noise's
+    angular_velocity_covariance    likewise [rad^2/s^2]
+    linear_acceleration_covariance likewise [m^2/s^4]
+    ============================== ==================================================================
 
     Acceleration is the change of the body's velocity in this step over the step, in the body's own frame.
     Flatland multiplies by the publishing rate instead, which is infinite by default, and has a sign wrong in y.
@@ -177,4 +177,4 @@ class Imu(Plugin):
         return tf_message(transform_message(self._context.clock.stamp, parent, self._frame, Pose()))
 
 
-PLUGIN_TYPE = PluginType("Imu", read_params, example="body: base")
+PLUGIN_TYPE = PluginType("Imu", Imu, read_params, example="body: base")

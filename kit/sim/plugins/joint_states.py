@@ -9,15 +9,9 @@ from dataclasses import dataclass
 
 from kit.msg import sensor_msgs
 from kit.msg.std_msgs import Header
-from kit.sim.plugin import (
-    OutgoingMessage,
-    Plugin,
-    PluginContext,
-    PluginType,
-    UpdateTimer,
-    read_rate,
-    read_topic,
-)
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_clock import UpdateTimer
+from kit.sim.plugin_messages import read_rate, read_topic
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
 
@@ -54,15 +48,14 @@ def read_params(section: Section, scope: ModelScope) -> JointStatesParams:
 class JointStates(Plugin):
     """Publishes sensor_msgs/JointState after the step: how far two wheels have turned [rad], and how fast [rad/s].
 
-    ================= ===========================================================
-    body              the body between the wheels
-    topic             joint_states
-    joints            names of the left and of the right wheel's joint
-                      (wheel_left_joint, wheel_right_joint)
-    wheel_radius      0.033 m
-    wheel_separation  0.16 m
-    update_rate       messages per second; at every step by default
-    ================= ===========================================================
+    ================ ================================================
+    body             the body between the wheels
+    topic            what it publishes
+    joints           names of the left and of the right wheel's joint
+    wheel_radius     radius of both wheels [m]
+    wheel_separation distance between the wheels [m]
+    update_rate      messages per second [Hz]; .inf: at every step
+    ================ ================================================
 
     The wheels turn as the body really moves: against a wall they stand.
     """
@@ -100,4 +93,4 @@ class JointStates(Plugin):
         )
 
 
-PLUGIN_TYPE = PluginType("JointStates", read_params, example="body: base")
+PLUGIN_TYPE = PluginType("JointStates", JointStates, read_params, example="body: base")

@@ -17,18 +17,9 @@ from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import Header
 from kit.msg.tf2_msgs import TFMessage
 from kit.sim.laser_scene import Scanner
-from kit.sim.plugin import (
-    TF_TOPIC,
-    OutgoingMessage,
-    Plugin,
-    PluginContext,
-    PluginType,
-    UpdateTimer,
-    read_rate,
-    read_topic,
-    tf_message,
-    transform_message,
-)
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_clock import UpdateTimer
+from kit.sim.plugin_messages import TF_TOPIC, read_rate, read_topic, tf_message, transform_message
 from kit.world.plugin_reader import ModelScope
 from kit.world.records import LaserMount
 from kit.world.yaml_section import Section
@@ -113,21 +104,25 @@ class Laser(Plugin):
     It scans before the step, all rays at one instant. Ray i points to ``angle.min + i * increment``,
     counter-clockwise; there are ``round((max - min) / increment) + 1``.
 
-    =============== =============================================================================
-    body, range     the body that carries it; how far it sees [m]
-    angle           ``min``, ``max``, ``increment`` [rad]
-    topic, frame    by default ``scan`` and the plugin's name
-    origin          its pose on the body, ``[x, y, theta]``
-    layers          what it sees: whatever is in one of these layers (all of them by default)
-    update_rate     scans per second; at every step by default
-    noise_std_dev   standard deviation of the noise on each hit [m]
-    range_min       what messages say of it, 0 m; nearer things are seen all the same
-    out_of_range    what messages say where nothing is in range: ``nan`` or ``inf`` (nan)
-    broadcast_tf    whether to publish where its frame is on /tf (true)
-    always_publish  also without subscribers (false)
-    upside_down     mounted upside down: ray i points to the negative of its angle (false)
-    flipped         the message lists the rays from last to first (false)
-    =============== =============================================================================
+    ==================== ===============================================================================
+    body                 the body that carries it
+    range                how far it sees [m]
+    angle                the directions of its rays, in its own frame
+    angle.min, angle.max direction of the first and the last ray [rad]
+    angle.increment      from one ray to the next [rad]
+    topic                what it publishes
+    frame                frame of the messages; by default the plugin's name
+    origin               its pose on the body [m, m, rad]
+    layers               what it sees: whatever is in one of these layers; all: in any
+    update_rate          scans per second [Hz]; .inf: at every step
+    noise_std_dev        standard deviation of the noise on each hit [m]
+    range_min            what messages say of the nearest range [m]; nearer things are seen all the same
+    out_of_range         what messages say where nothing is in range
+    broadcast_tf         whether to publish where its frame is on /tf
+    always_publish       whether to publish without subscribers too
+    upside_down          mounted upside down: ray i points to the negative of its angle
+    flipped              the message lists the rays from last to first
+    ==================== ===============================================================================
 
     Sensor footprints are invisible, and so is a footprint around the laser; the
     rest of its own robot is not. Noise depends on the seed, the laser, the step and the ray alone.
@@ -209,5 +204,8 @@ def _intensities(ranges: Float32Array, reflecting: Float32Array) -> array[float]
 
 
 PLUGIN_TYPE = PluginType(
-    "Laser", read_params, example="body: base\nrange: 10\nangle: {min: -3.14, max: 3.14, increment: 0.07}"
+    "Laser",
+    Laser,
+    read_params,
+    example="body: base\nrange: 10\nangle: {min: -3.14, max: 3.14, increment: 0.07}",
 )

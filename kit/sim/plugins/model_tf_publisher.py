@@ -6,17 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from kit.msg.tf2_msgs import TFMessage
-from kit.sim.plugin import (
-    TF_TOPIC,
-    OutgoingMessage,
-    Plugin,
-    PluginContext,
-    PluginType,
-    UpdateTimer,
-    read_rate,
-    tf_message,
-    transform_message,
-)
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_clock import UpdateTimer
+from kit.sim.plugin_messages import TF_TOPIC, read_rate, tf_message, transform_message
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
 
@@ -47,13 +39,13 @@ def read_params(section: Section, scope: ModelScope) -> ModelTfPublisherParams:
 class ModelTfPublisher(Plugin):
     """Publishes on /tf where the model's bodies are, before each step.
 
-    ================= =========================================================================
-    reference         the body in whose frame the others are given (the first)
-    publish_tf_world  also where the reference is in the world (false)
-    world_frame_id    the world's frame (map)
-    update_rate       updates per second; at every step by default
-    exclude           names of bodies that are left out
-    ================= =========================================================================
+    ================ ===============================================================================
+    reference        the body in whose frame the others are given; by default the first of the model
+    publish_tf_world whether to publish where the reference is in the world too
+    world_frame_id   the world's frame
+    update_rate      updates per second [Hz]; .inf: at every step
+    exclude          names of bodies that are left out
+    ================ ===============================================================================
 
     Bodies' frames are named ``namespace_body``; the world's, which all models share, has no prefix.
     """
@@ -82,4 +74,4 @@ class ModelTfPublisher(Plugin):
         return tf_message(*found)
 
 
-PLUGIN_TYPE = PluginType("ModelTfPublisher", read_params, example="")
+PLUGIN_TYPE = PluginType("ModelTfPublisher", ModelTfPublisher, read_params, example="")

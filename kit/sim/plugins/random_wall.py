@@ -9,7 +9,8 @@ import numpy as np
 from kit.arrays import FloatArray
 from kit.plain_text import quoted
 from kit.sim.physics import WallBody
-from kit.sim.plugin import Plugin, RandomStream, WorldPluginContext, WorldPluginType
+from kit.sim.plugin import Plugin, WorldPluginContext, WorldPluginType
+from kit.sim.plugin_clock import RandomStream
 from kit.world.plugin_reader import WorldScope
 from kit.world.yaml_section import Section
 
@@ -47,13 +48,13 @@ class RandomWall(Plugin):
     """Makes some walls of a layer thicker: copies wall segments that it chooses at random, at a distance from the
     original towards a robot's first place, and closes the ends. A plugin of the world.
 
-    ============== ==============================================
+    ============== =========================================
     layer          the layer whose walls are chosen and grow
     robot_name     the model on whose side the copies stand
-    num_of_walls   how many segments are chosen (0)
-    wall_wall_dist from the original to the copy [m] (1)
-    double_wall    whether to put a copy on both sides (false)
-    ============== ==============================================
+    num_of_walls   how many segments are chosen
+    wall_wall_dist from the original to the copy [m]
+    double_wall    whether to put a copy on both sides
+    ============== =========================================
 
     The seed of the simulation chooses, where Flatland asks the clock.
     """
@@ -92,4 +93,6 @@ class RandomWall(Plugin):
         return np.array([[*a, *(a + shift)], [*(a + shift), *(b + shift)], [*(b + shift), *b]])
 
 
-PLUGIN_TYPE = WorldPluginType("RandomWall", read_params, example="layer: walls\nrobot_name: robot")
+PLUGIN_TYPE = WorldPluginType(
+    "RandomWall", RandomWall, read_params, example="layer: walls\nrobot_name: robot"
+)

@@ -14,7 +14,8 @@ from kit.sim import motors
 from kit.sim.bodies import clamp
 from kit.sim.motors import SpeedLimits, read_speed_limits
 from kit.sim.odometry import Odometry, OdometryParams, read_odometry_params
-from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType, read_topic
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_messages import read_topic
 from kit.world.plugin_reader import ModelScope
 from kit.world.records import Joint, JointAnchor
 from kit.world.yaml_section import Section
@@ -126,19 +127,27 @@ class TricycleDrive(Plugin):
     """Moves a body as the last geometry_msgs/Twist says: ``linear.x`` is the front wheel's speed [m/s], ``angular.z``
     its steering **angle** [rad].
 
-    ====================== ==================================================================
-    body                   the body to move, whose origin is the front wheel
-    front_wheel_joint      a revolute joint at (0, 0) of the body
-    rear_left_wheel_joint  weld joints, side by side, on both sides of the body's x axis
-    rear_right_wheel_joint
-    twist_sub              topic of the commands (cmd_vel)
-    ackermann_sub          topic of ackermann_msgs/AckermannDriveStamped, as cars take it: ``drive.speed`` is the
-                           rear axle's speed, ``drive.steering_angle`` the angle; none by default
-    max_steer_angle        [rad], 0 for no limit
-    linear_dynamics        limits of the speed, as for DiffDrive
-    angular_dynamics       limits of the rate at which the steering angle changes, and of its change; the older
-                           ``max_angular_velocity`` and ``max_steer_acceleration`` mean the same
-    ====================== ==================================================================
+    =================================== ============================================================================
+    body                                the body to move, whose origin is the front wheel
+    front_wheel_joint                   a revolute joint at (0, 0) of the body
+    rear_left_wheel_joint               weld joint, side by side with the other, on the left of the body's x axis
+    rear_right_wheel_joint              weld joint on the right
+    twist_sub                           topic of the commands
+    ackermann_sub                       topic of ackermann_msgs/AckermannDriveStamped, as cars take it:
+                                        ``drive.speed`` is the rear axle's speed, ``drive.steering_angle`` the angle
+    max_steer_angle                     largest steering angle [rad]; 0: no limit
+    linear_dynamics                     limits of the speed; without it none
+    angular_dynamics                    limits of the rate at which the steering angle changes, and of its change;
+                                        without it none
+    linear_dynamics.acceleration_limit  limit of gaining speed [m/s^2]; 0: none
+    linear_dynamics.deceleration_limit  limit of losing speed [m/s^2]; by default that of gaining it; 0: none
+    linear_dynamics.velocity_limit      limit of the speed [m/s]; 0: none
+    angular_dynamics.acceleration_limit limit of gaining rate [rad/s^2]; 0: none
+    angular_dynamics.deceleration_limit limit of losing rate [rad/s^2]; by default that of gaining it; 0: none
+    angular_dynamics.velocity_limit     limit of the rate [rad/s]; 0: none
+    max_steer_acceleration              older key for both limits of gaining and losing rate [rad/s^2]
+    max_angular_velocity                older key for the limit of the rate [rad/s]
+    =================================== ============================================================================
 
     Reports as DiffDrive does, with the same keys; wheels of the encoders are the rear ones, which turn as
     ``kit.sim.motors.tricycle_twist`` says. The front wheel turns with the steering. Like DiffDrive's, the last command
@@ -193,6 +202,8 @@ class TricycleDrive(Plugin):
 
 PLUGIN_TYPE = PluginType(
     "TricycleDrive",
+    TricycleDrive,
     read_params,
     example="body: base\nfront_wheel_joint: front\nrear_left_wheel_joint: left\nrear_right_wheel_joint: right",
+    parts=(Odometry,),
 )

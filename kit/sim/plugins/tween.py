@@ -10,7 +10,8 @@ from typing import Any
 
 from kit.geometry import Pose
 from kit.msg.std_msgs import Bool
-from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType, read_topic
+from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin_messages import read_topic
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
 
@@ -128,16 +129,15 @@ def read_params(section: Section, scope: ModelScope) -> TweenParams:
 class Tween(Plugin):
     """Puts a body, before every step, at a place between where it stood and ``delta`` from there.
 
-    ============== ===========================================================================
-    body           the body it moves
-    mode           ``yoyo`` to and fro (default), ``loop`` always from the start, ``once``, or
-                   ``trigger``: forward after a true on the trigger topic, back after a false
-    duration       of one way [s] (1)
-    delta          ``[x, y, theta]``, along the world's axes
-    easing         ``linear``, or one of quadratic, cubic, quartic, quintic, exponential, circular, back,
-                   elastic and bounce, with In, Out or InOut after it: ``quadraticInOut``
-    trigger_topic  a topic of std_msgs/Bool
-    ============== ===========================================================================
+    ============= ==============================================================================================
+    body          the body it moves
+    mode          ``yoyo`` to and fro, ``loop`` always from the start, ``once``, or ``trigger``: forward after a
+                  true on the trigger topic, back after a false
+    duration      of one way [s]
+    delta         where it goes from where it stood, along the world's axes [m, m, rad]
+    easing        how it speeds up and slows down: ``quadraticInOut``
+    trigger_topic a topic of std_msgs/Bool, which ``mode: trigger`` needs
+    ============= ==============================================================================================
 
     The body passes through everything. In Flatland it does not obey ``move_model`` and stands still at
     steps below a millisecond; here it goes on from where it was put, at steps of any length.
@@ -191,4 +191,4 @@ class Tween(Plugin):
         return Pose(*(fraction * component for component in self._params.delta))
 
 
-PLUGIN_TYPE = PluginType("Tween", read_params, example="body: base")
+PLUGIN_TYPE = PluginType("Tween", Tween, read_params, example="body: base")

@@ -11,16 +11,8 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Final, Literal
 
-from kit.tui.input.modes import (
-    Clock,
-    DriveMode,
-    ExactMode,
-    KeyEventKind,
-    LatchMode,
-    RepeatMode,
-    drive_key,
-    named,
-)
+from kit.tui.input.drive_keys import drive_key, named
+from kit.tui.input.modes import Clock, DriveMode, ExactMode, KeyEventKind, LatchMode, RepeatMode
 from kit.tui.input.protocol import reports_releases
 
 ModeName = Literal["exact", "repeat", "latch"]

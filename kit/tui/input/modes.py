@@ -1,4 +1,4 @@
-"""The keys that drive, as one table, and the three ways to read driving from them: ``exact``, ``repeat`` and ``latch``."""
+"""The three ways to read driving from keys: ``exact``, ``repeat`` and ``latch``."""
 
 from __future__ import annotations
 
@@ -6,217 +6,27 @@ import enum
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Final, NamedTuple, Protocol
+from typing import Final, Protocol
 
-
-@dataclass(frozen=True, slots=True)
-class DriveKey:
-    """One row: the message name, the keys that send it, how a help screen calls them, and where it pushes."""
-
-    name: str
-    keys: tuple[str, ...]
-    """Textual's key names."""
-    label: str
-    linear: int = 0
-    """+1 forward, -1 backward."""
-    angular: int = 0
-    """+1 left (counter-clockwise), -1 right."""
-
-    @property
-    def pressed(self) -> str:
-        """The message that says it went down."""
-        return f"p_{self.name}"
-
-    @property
-    def released(self) -> str:
-        return f"r_{self.name}"
-
-    @property
-    def moves(self) -> bool:
-        return bool(self.linear or self.angular)
-
-    def opposes(self, other: DriveKey) -> bool:
-        """Whether the two push against each other."""
-        return self.linear * other.linear + self.angular * other.angular < 0
-
-
-DRIVE_KEYS: Final = (
-    DriveKey("up", ("up", "w"), "Up or W", linear=1),
-    DriveKey("down", ("down", "s"), "Down or S", linear=-1),
-    DriveKey("left", ("left", "a"), "Left or A", angular=1),
-    DriveKey("right", ("right", "d"), "Right or D", angular=-1),
-    DriveKey("q", ("q",), "Q"),
-    DriveKey("e", ("e",), "E"),
-    DriveKey("f", ("f",), "F"),
-    DriveKey("space", ("space",), "Space"),
-    DriveKey("shift_l", ("left_shift",), "Left Shift"),
-    DriveKey("shift_r", ("right_shift",), "Right Shift"),
-    DriveKey("ctrl_l", ("left_control",), "Left Ctrl"),
-    DriveKey("ctrl_r", ("right_control",), "Right Ctrl"),
-    DriveKey("esc", ("escape",), "Esc"),
-)
-"""Every key that drives. No terminal needs to be able to send the lone Shift and Ctrl: only some do."""
-
-_BY_KEY: Final[Mapping[str, DriveKey]] = MappingProxyType(
-    {key: row for row in DRIVE_KEYS for key in row.keys}
-)
-_BY_NAME: Final[Mapping[str, DriveKey]] = MappingProxyType({row.name: row for row in DRIVE_KEYS})
-
-
-def base_key(key: str) -> str:
-    """The key under a chord: ``shift+up`` is ``up``, ``W`` is ``w``. A release may carry other modifiers."""
-    bare = key.rpartition("+")[2]
-    return bare.lower() if len(bare) == 1 else bare
-
-
-def drive_key(key: str) -> DriveKey | None:
-    """The row for a key as Textual names it, alone or with Shift or Ctrl, which drive too; None if it has none."""
-    *modifiers, _ = key.split("+")
-    return _BY_KEY.get(base_key(key)) if {"shift", "ctrl"}.issuperset(modifiers) else None
-
-
-def named(name: str) -> DriveKey:
-    """The row for a message name. KeyError if there is none."""
-    return _BY_NAME[name]
-
-
-SHORTEST_DELAY: Final = 0.18
-LONGEST_DELAY: Final = 1.1
-"""A gap between these, followed by a quick one, is a delay before repeating: systems offer 0.2 to 1.02 s."""
-
-_DELAY_WEIGHT: Final = 0.3
-_PERIOD_WEIGHT: Final = 0.1
-_JITTER_WEIGHT: Final = 0.05
-_STUMBLE_WINDOW: Final = 5.0
-
-
-class Rhythm:
-    """The delay, period and jitter of the keyboard as it sounds from here: moving averages, for one session."""
-
-    def __init__(self) -> None:
-        self.delay = 0.5
-        self.period = 0.06
-        self.jitter = 0.01
-        self.uneven = False
-        """Twice within five seconds a held key was silent for so long that it counted as released: a bad link."""
-        self._last = 0.0
-        self._repeats = 0
-        self._pause: tuple[float, bool] | None = None
-        self._stumbled = -_STUMBLE_WINDOW
-
-    @property
-    def first_timeout(self) -> float:
-        """How long after a press a key may be silent and still be held."""
-        return 1.15 * self.delay + 0.06
-
-    @property
-    def next_timeout(self) -> float:
-        """The same after a repeat."""
-        return max(0.1, 2 * self.period + 4 * self.jitter + 0.02)
-
-    def start(self, now: float) -> None:
-        """Another key than before."""
-        self._last, self._repeats, self._pause = now, 0, None
-
-    def heard(self, now: float) -> None:
-        """The same key again. A gap is understood when the next one is known: only repeats follow quickly."""
-        gap, self._last = now - self._last, now
-        repeating = self._repeats >= 2
-        if gap > LONGEST_DELAY:
-            self._repeats, self._pause = 0, None
-        elif gap > (3 * self.period if repeating else SHORTEST_DELAY):
-            self._repeats, self._pause = 0, (gap, repeating)
-        else:
-            self._note_repeat(gap, now)
-
-    def _note_repeat(self, gap: float, now: float) -> None:
-        self._repeats += 1
-        if self._pause is not None:
-            pause, was_repeating = self._pause
-            self._pause = None
-            self._repeats = 2
-            if was_repeating:
-                self._note_gap(pause, now)
-            else:
-                self.delay += _DELAY_WEIGHT * (pause - self.delay)
-        if self._repeats >= 2:  # a single quick gap is a double tap
-            self._update_period(gap)
-
-    def _note_gap(self, pause: float, now: float) -> None:
-        """A held key was silent for a while."""
-        if pause > self.next_timeout:
-            self.uneven |= now - self._stumbled < _STUMBLE_WINDOW
-            self._stumbled = now
-        self._update_period(pause)
-
-    def _update_period(self, gap: float) -> None:
-        self.jitter += _JITTER_WEIGHT * (abs(gap - self.period) - self.jitter)
-        self.period += _PERIOD_WEIGHT * (gap - self.period)
-
-
-class KeyTransition(NamedTuple):
-    """A key went down or up at ``time`` [s] of the clock."""
-
-    key: str
-    down: bool
-    time: float
-
-
-class KeyState:
-    """Keys by their base name, because a release carries the modifiers of its own moment, not of the press.
-
-    ``clock`` gives seconds.
-    """
-
-    def __init__(self, clock: Callable[[], float]) -> None:
-        self._clock = clock
-        self._held: dict[str, float] = {}
-
-    @property
-    def held(self) -> Mapping[str, float]:
-        """The keys that are down, longest first, and since when [s]."""
-        return MappingProxyType(self._held)
-
-    def press(self, key: str) -> tuple[KeyTransition, ...]:
-        """The key goes down, unless it is down: without release events every repeat looks like a press."""
-        key = base_key(key)
-        if key in self._held:
-            return ()
-        self._held[key] = self._clock()
-        return (KeyTransition(key, True, self._held[key]),)
-
-    def repeat(self, key: str) -> tuple[KeyTransition, ...]:
-        """Changes nothing. A repeat of a key that is up belongs to a press from before ``clear``."""
-        return ()
-
-    def release(self, key: str) -> tuple[KeyTransition, ...]:
-        """The key goes up, if it was down."""
-        key = base_key(key)
-        if self._held.pop(key, None) is None:
-            return ()
-        return (KeyTransition(key, False, self._clock()),)
-
-    def clear(self) -> tuple[KeyTransition, ...]:
-        """All keys up: on losing the focus, on leaving the screen. Whoever releases them then, we shall not hear."""
-        now = self._clock()
-        up = tuple(KeyTransition(key, False, now) for key in self._held)
-        self._held.clear()
-        return up
-
+from kit.tui.input.drive_keys import DriveKey, base_key, drive_key
+from kit.tui.input.key_rhythm import KeyState, Rhythm
 
 Clock = Callable[[], float]
 """Seconds, never going back."""
 
 NUDGE: Final = 0.15
 """Seconds for which a fresh press drives at full strength: a tap moves the robot a little, not for 0.6 s."""
+
 BRIDGE: Final = 0.35
 """The strength from then until the keyboard's first repeat shows that the key is held."""
-
 LINEAR_STEPS: Final = 4
+
 ANGULAR_STEPS: Final = 2
 """Presses from standing still to full strength, in ``latch``."""
+
 _BOUNCE: Final = 0.1
 """The same key sooner than this after itself is the keyboard repeating, or a trembling hand: not a step."""
+
 _TAP: Final = 0.15
 """How long a button counts as pressed in ``latch``, which knows no release."""
 

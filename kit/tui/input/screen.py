@@ -14,8 +14,10 @@ from textual.screen import Screen
 from textual.timer import Timer
 
 from kit.tui.input.drive import DriveState, KeyboardDrive, ModeName
-from kit.tui.input.driver import KeyboardAnswer, KeyReleased, KeyRepeated, key_driver
-from kit.tui.input.modes import Clock, KeyEventKind, base_key, drive_key
+from kit.tui.input.drive_keys import base_key, drive_key
+from kit.tui.input.driver import key_driver
+from kit.tui.input.key_parser import KeyboardAnswer, KeyReleased, KeyRepeated
+from kit.tui.input.modes import Clock, KeyEventKind
 from kit.tui.terminal import TerminalDecision
 
 _NEXT: Final[Mapping[ModeName | None, ModeName | None]] = MappingProxyType(

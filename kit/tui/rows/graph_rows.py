@@ -10,16 +10,10 @@ from kit.document.rows import PLAIN, Row, row, spread
 from kit.msg.message import Message
 from kit.plain_text import counted, wrap
 from kit.render.graph import GraphElement, rate_text
-from kit.render.graph_layout import GraphData, message_field_rows
-from kit.ros.graph.snapshot import (
-    EndpointState,
-    FieldSample,
-    FlowStats,
-    GraphState,
-    MessageFlow,
-    ServiceState,
-    TopicState,
-)
+from kit.render.graph_data import GraphData
+from kit.render.message_rows import message_field_rows
+from kit.ros.graph.snapshot import EndpointState, GraphState, ServiceState, TopicState
+from kit.ros.graph.topic_statistics import FieldSample, FlowStats, MessageFlow
 
 MARKED: Final = "key"
 """The style of the field that is chosen in a message."""

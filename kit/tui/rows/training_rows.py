@@ -15,6 +15,13 @@ from kit.document.blocks import Text
 from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row, spread
 from kit.document.tables import list_rows
+from kit.learning.training.measures import (
+    MEASURES,
+    VALUE_MAX,
+    VALUE_PAYABLE,
+    format_measure,
+    is_value_too_large,
+)
 from kit.plain_text import format_size
 from kit.render.curve import Axes, ChartPart, Curve, StackedCounts
 from kit.render.roles import Role
@@ -22,8 +29,8 @@ from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import agent_panel
 
 if TYPE_CHECKING:
-    from kit.learning.environment.tasks import LearningTask
-    from kit.learning.policies.demonstration import DemonstrationView
+    from kit.learning.tasks.learning_task import LearningTask
+    from kit.learning.training.demonstration import DemonstrationView
     from kit.learning.training.run_status import CaseStatus, RunStatus
     from kit.learning.training.run_upkeep import RunOverview
 
@@ -33,7 +40,7 @@ def no_trainings(tasks: Sequence[LearningTask], width: int, height: int) -> list
     begin = (
         "No trainings yet. Press t to start one: choose a task, its cases, an algorithm, a reward, a seed."
     )
-    from kit.learning.tasks.task_text import tasks_table
+    from kit.learning.authoring.task_text import tasks_table
 
     rows = rows_of([Text(begin), tasks_table(tasks)], Page(width=width - 2, margin=1))
     if len(rows) <= height:
@@ -136,6 +143,8 @@ def figures(status: RunStatus, width: int) -> Row:
         parts.append(row((f"{status.rate:,.0f}", "bold"), (" steps/s", "dim")))
     if status.remaining_s is not None:
         parts.append(row(("at most ", "dim"), (clock(status.remaining_s), "bold"), (" left", "dim")))
+    if VALUE_MAX in status.measures:
+        parts.append(_largest_value(status.measures))
     if status.adjacency:
         parts.append(row(("side by side ", "dim"), (f"{status.adjacency:.0%}", "bold")))
     if status.reward is not None:
@@ -146,6 +155,15 @@ def figures(status: RunStatus, width: int) -> Row:
         if sum(len(text) for text, _ in longer) <= width:
             shown = longer
     return shown
+
+
+def _largest_value(measures: Mapping[str, float]) -> Row:
+    """The largest value, and whether rewards can pay it."""
+    told, number = MEASURES[VALUE_MAX].title, format_measure(measures[VALUE_MAX])
+    if not is_value_too_large(measures):
+        return row((f"{told} ", "dim"), (number, "bold"))
+    most = format_measure(measures[VALUE_PAYABLE])
+    return row((f"{told} {number}: rewards pay at most {most}", "bad"))
 
 
 def note(name: str, status: RunStatus, width: int) -> Row:
@@ -233,9 +251,11 @@ def shares(status: RunStatus) -> StackedCounts:
 
 
 def pages(status: RunStatus, width: int, height: int) -> tuple[tuple[Row, ...], ...]:
-    """Cases, and terms of the reward, on as few pages as they fit on; at least one."""
+    """Cases, terms of the reward, and what the learner measures, on as few pages as they fit on; at least one."""
     width = max(width, NAME + 4)
     blocks = [_cases(status, width, height), _terms(status, width)]
+    if status.measures:
+        blocks.append(_measures(status, width))
     made: list[tuple[Row, ...]] = []
     for title, rows in blocks:
         for start in range(0, len(rows), max(1, height - 1)):
@@ -313,6 +333,16 @@ def _terms(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
     ]
     down = -(-len(cells) // per_row)
     return title, [tuple(part for each in cells[line::down] for part in each) for line in range(down)]
+
+
+def _measures(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
+    """What the learner last measured of its own learning."""
+    rows = [
+        row(f"{MEASURES[name].title:{width - 14}.{width - 14}}", (f"{format_measure(number):>13} ", "bold"))
+        for name, number in status.measures.items()
+        if name in MEASURES
+    ]
+    return row(("the learner, by its last batch"[:width], "dim")), rows
 
 
 # The line of keys, and the last words

@@ -21,8 +21,8 @@ from kit.dialogue.actions import ScreenAction, ScreenActions
 from kit.document.rows import Row, broken, row, side_by_side
 from kit.plain_text import wrap
 from kit.render.roles import COLOR_SCHEMES
+from kit.tui.input.drive_keys import base_key
 from kit.tui.input.driver import key_driver
-from kit.tui.input.modes import base_key
 from kit.tui.rows.key_rows import bindings, footer, help_page
 from kit.tui.terminal import MOUSE_VARIABLE
 from kit.tui.textual_patches import ActivePaintScreen

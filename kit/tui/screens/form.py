@@ -8,9 +8,9 @@ from typing import Any
 from textual.screen import Screen
 
 from kit.school.form_dialogue import FormDialogue
+from kit.school.form_reading import read_form
 from kit.school.form_session import FormSession, current_phase
 from kit.school.progress import ProgressError, ProgressJournal
-from kit.school.survey import read_form
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.world.problems import WorldError

@@ -17,30 +17,15 @@ from textual.widgets import Input
 from kit.dialogue.actions import ScreenActions, letter
 from kit.document.rows import row
 from kit.msg.conversion import FieldValue, field_values
-from kit.render.graph import (
-    ASCII_LINES,
-    UNICODE_LINES,
-    GraphDrawing,
-    GraphElement,
-    GraphView,
-    MessageAnimation,
-    draw_graph,
-    kept_selection,
-    move_horizontally,
-    move_vertically,
-)
-from kit.render.graph_layout import (
-    GraphData,
-    GraphLayout,
-    arrange_graph,
-    build_graph_data,
-    message_field_rows,
-)
-from kit.ros.graph.snapshot import (
-    GraphState,
-    TopicStats,
-    snapshot,
-)
+from kit.render.graph import GraphDrawing, GraphElement, GraphView, draw_graph
+from kit.render.graph_data import GraphData, build_graph_data
+from kit.render.graph_glyphs import ASCII_LINES, UNICODE_LINES
+from kit.render.graph_layout import GraphLayout, arrange_graph
+from kit.render.graph_selection import kept_selection, move_horizontally, move_vertically
+from kit.render.message_animation import MessageAnimation
+from kit.render.message_rows import message_field_rows
+from kit.ros.graph.snapshot import GraphState, snapshot
+from kit.ros.graph.topic_statistics import TopicStats
 from kit.tui.rows.graph_rows import MARKED, GraphUpdate, about, heading, rates, ruled
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog

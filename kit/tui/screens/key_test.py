@@ -16,7 +16,8 @@ from textual.widgets import Static
 
 from kit.dialogue.actions import ScreenActions, letter
 from kit.tui.input.drive import DriveState
-from kit.tui.input.modes import DRIVE_KEYS, Clock, DriveKey, KeyEventKind
+from kit.tui.input.drive_keys import DRIVE_KEYS, DriveKey
+from kit.tui.input.modes import Clock, KeyEventKind
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.key_rows import bindings
 from kit.tui.terminal import TerminalDecision

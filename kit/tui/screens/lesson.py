@@ -21,8 +21,8 @@ from kit.school.lessons.records import LessonStep
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.lessons.training_curves import CURVE_ROWS, ROOMY_CURVE_ROWS
 from kit.tui.input.drive import DriveState
-from kit.tui.input.driver import KeyRepeated
-from kit.tui.input.modes import base_key, named
+from kit.tui.input.drive_keys import base_key, named
+from kit.tui.input.key_parser import KeyRepeated
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows import lesson_rows
 from kit.tui.screens.defence import DefenceScreen
@@ -315,9 +315,9 @@ class LessonScreen(DialogueScreen, DriveScreen):
 
     def _poll(self) -> None:
         work, is_checking = self.dialogue.work, bool(self.dialogue.busy)
-        if work is None or not (self.is_active or is_checking):
+        if not self.dialogue.polls or not (self.is_active or is_checking):
             return
-        is_read_anew = work.reads_anew()
+        is_read_anew = work is not None and work.reads_anew()
         super()._poll()
         if is_read_anew:
             self.show()
@@ -377,9 +377,14 @@ class LessonScreen(DialogueScreen, DriveScreen):
         return printed and "\n".join(plain_lines(printed))
 
     async def _drive(self, request: Drive) -> str | None:
-        from kit.tui.screens.lesson_drive import RecordedDriveScreen  # of no use to the first frame
+        from kit.run.recording_file import RecordingFile  # of no use to the first frame, as what follows
+        from kit.tui.screens.lesson_drive import RecordedDriveScreen
 
-        drive = RecordedDriveScreen(self.theme, request.scene, request.file, self.workspace)
+        try:
+            kept = RecordingFile(request.file)
+        except OSError as error:
+            return f"{request.file}: {error.strerror}." if error.strerror else str(error)
+        drive = RecordedDriveScreen(self.theme, request.scene, kept, self.workspace)
         await self.app.push_screen_wait(drive)
         return drive.problem or ("" if drive.was_kept else None)
 

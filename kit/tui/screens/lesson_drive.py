@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+import os
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual.binding import BindingType
@@ -12,10 +12,10 @@ from kit.controllers import find_controller
 from kit.dialogue.actions import VIEW_IDS, ScreenAction, ScreenActions
 from kit.document.rows import Row, row
 from kit.inspection.sockets import sockets_folder
-from kit.run.recording import Recording, save_recording
+from kit.run.recording import Recording
 from kit.run.scenario import Scenario, find_scenario
 from kit.tui.input.drive import DriveState
-from kit.tui.input.modes import drive_key, named
+from kit.tui.input.drive_keys import drive_key, named
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
@@ -23,6 +23,7 @@ from kit.workspace import Workspace
 
 if TYPE_CHECKING:
     from kit.learning.policies.policies import Policy
+    from kit.run.recording_file import RecordingFile
     from kit.run.session import Session
     from kit.school.lessons.records import LessonScene
 
@@ -103,17 +104,18 @@ class RecordedDriveScreen(WatchScreen):
     )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
 
-    def __init__(self, theme: Theme, scene: LessonScene, file: Path, workspace: Workspace) -> None:
-        """``file``: where the drive is kept."""
+    def __init__(self, theme: Theme, scene: LessonScene, kept: RecordingFile, workspace: Workspace) -> None:
+        """``kept``: where the drive is written as it goes on; closed with the screen."""
         super().__init__(
             theme,
             scene.case or scene.map_name,
             seed=scene.seed,
             socket_dir=sockets_folder(workspace.folder),
-            records=True,
+            store=kept,
         )
         self._scene = scene
-        self._file = file
+        self._kept = kept
+        self._notices = [each.removeprefix(f"{kept.file.parent}{os.sep}") for each in kept.notices]
         self._teleop = find_controller(TELEOP)
         self._strength = 1.0
         self._started = self._saving = self._reached = False
@@ -158,7 +160,8 @@ class RecordedDriveScreen(WatchScreen):
             self.host.set_paused(True)
             self.host.post(self._save_between_ticks)
         if (remark := self._remark()) and self.is_active:
-            self._rows("messages").show([remark])
+            told = [] if self._started else [row((f" {each}", "warn")) for each in self._notices]
+            self._rows("messages").show([*told, remark])
 
     def _remark(self) -> Row:
         if self._reached:
@@ -179,16 +182,17 @@ class RecordedDriveScreen(WatchScreen):
         if recording is None or not recording.ticks:
             return
         try:
-            save_recording(recording, self._file)
+            self._kept.complete(recording)
             self.was_kept, self.problem = True, ""
         except OSError as error:
-            self.problem = f"{self._file}: {error.strerror}."
+            self.problem = f"{self._kept.file}: {error.strerror}." if error.strerror else str(error)
 
     def on_unmount(self) -> None:
         """Saves the drive also when the whole kit is quit."""
         self.host.close()
         if self._started and not self._saving and not self._reached:
             self._save()
+        self._kept.close()
 
     # Keys
 

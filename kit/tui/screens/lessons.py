@@ -227,9 +227,10 @@ def _game(store: StudentStore) -> list[Row]:
 
 
 def _quiz(store: StudentStore) -> list[str]:
+    from kit.school.quiz.answers import answers_from_events
     from kit.school.quiz.quiz_session import local_now
     from kit.school.quiz.quiz_text import scores_blocks
-    from kit.school.quiz.schedule import answers_from_events, build_schedule
+    from kit.school.quiz.schedule import build_schedule
 
     events = store.progress().events()
     try:

@@ -47,7 +47,7 @@ from kit.school.game.starts import OWN_SEED, film_scenario
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
-from kit.tui.input.modes import drive_key, named
+from kit.tui.input.drive_keys import drive_key, named
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import MessageDialog, wrapped

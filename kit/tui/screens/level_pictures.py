@@ -28,11 +28,10 @@ WAY: Final = 0.15
 def picture_of(level: GameLevel, columns: int, rows: int, glyphs: str) -> list[str]:
     """A small picture: walls, targets and the start."""
     scenario = level.find_scenario()
-    walls = [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
     places = level.targets or (() if scenario.case is None else (scenario.case.target,))
     radius = 0.0 if scenario.case is None else scenario.case.target_radius
     scene = Scene(
-        walls=np.concatenate((np.empty((0, 4)), *walls)),
+        walls=scenario.world.wall_segments,
         targets=tuple(Disc(x, y, radius) for x, y in places),
         marks=tuple(SceneMark(start.x, start.y, "S") for start in scenario.starts[:1]),
     )

@@ -14,7 +14,8 @@ from textual.message import Message
 
 from kit.dialogue.actions import ScreenAction, ScreenActions, digits
 from kit.document.rows import Row, row
-from kit.mapmaking.new_map import MapSketch, NewMap, SketchMark, Square
+from kit.mapmaking.map_sketch import MapSketch, SketchMark, Square
+from kit.mapmaking.new_map import NewMap
 from kit.render.encode import Frame
 from kit.render.roles import Role
 from kit.tui.rows.key_rows import bindings, footer

@@ -87,7 +87,7 @@ class TrainingChoices:
 
     def config(self) -> RunConfig:
         """The configuration of a run."""
-        from kit.learning.environment.tasks import TaskSpec
+        from kit.learning.tasks.task_spec import TaskSpec
         from kit.learning.training.runs import RunConfig
 
         return RunConfig(
@@ -282,7 +282,7 @@ def begin_sweep(folder: Path, configs: Sequence[RunConfig]) -> TrainingSweep:
 
 def _task_items(folders: tuple[Path, ...]) -> list[PickerItem]:
     """The kit's tasks, then the user's own. In another thread: the learning side takes a moment to import."""
-    from kit.learning.environment.tasks import all_tasks
+    from kit.learning.tasks.catalogue import all_tasks
     from kit.learning.tasks.own_files import own_task_files
 
     own = [
@@ -297,7 +297,7 @@ def _short(file: Path) -> str:
 
 
 def _reward_items(folders: tuple[Path, ...]) -> list[PickerItem]:
-    from kit.learning.tasks.own_files import own_reward_files
+    from kit.learning.authoring.own_rewards import own_reward_files
 
     files: list[Any] = list(own_reward_files(folders))
     return [
@@ -308,7 +308,7 @@ def _reward_items(folders: tuple[Path, ...]) -> list[PickerItem]:
 
 def _case_items(task: str) -> list[tuple[str, str]]:
     """Groups of cases, then single ones, with what each is."""
-    from kit.learning.environment.tasks import find_task
+    from kit.learning.tasks.catalogue import find_task
 
     cases = [case for _, case in find_task(task).map_cases()]
     groups: dict[str, list[str]] = {}

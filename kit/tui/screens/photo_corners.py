@@ -14,8 +14,8 @@ from textual.message import Message
 from kit.arrays import FloatArray
 from kit.dialogue.actions import ScreenAction, ScreenActions
 from kit.document.rows import row
-from kit.mapmaking.photo import order_corners
 from kit.mapmaking.pixels import Corners
+from kit.mapmaking.sheet import order_corners
 from kit.render import raster
 from kit.render.curve import write_text
 from kit.render.encode import Encoder

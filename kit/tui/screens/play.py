@@ -14,8 +14,8 @@ from textual.binding import BindingType
 from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
 from kit.dialogue.actions import VIEW_IDS, ScreenAction, ScreenActions
 from kit.tui.input.drive import DriveState
+from kit.tui.input.drive_keys import named
 from kit.tui.input.driver import key_driver
-from kit.tui.input.modes import named
 from kit.tui.rows.key_rows import bindings, key_row
 from kit.tui.screens.dialogs import MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.screens.watch import WatchScreen

@@ -11,6 +11,7 @@ from kit.document.layout import Page, rows_of
 from kit.document.rows import MARGIN, row
 from kit.school.lessons.reading import lesson_number, lesson_title
 from kit.school.progress import ProgressError, ProgressJournal
+from kit.school.quiz.answers import answers_from_events
 from kit.school.quiz.items import QuestionBank, read_bank
 from kit.school.quiz.quiz_dialogue import QuizDialogue
 from kit.school.quiz.quiz_session import (
@@ -23,7 +24,7 @@ from kit.school.quiz.quiz_session import (
     student_seed,
 )
 from kit.school.quiz.quiz_text import scores_blocks, today_line
-from kit.school.quiz.schedule import answers_from_events, build_schedule
+from kit.school.quiz.schedule import build_schedule
 from kit.tui.screens.dialogs import MessageDialog, Picker, PickerItem, TextScreen, wrapped
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.world.problems import WorldError

@@ -7,18 +7,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar, Final
 
-import numpy as np
 from textual import work
 from textual.binding import BindingType
 from textual.message import Message
 
-from kit.arrays import FloatArray
 from kit.dialogue.actions import VIEW_IDS, ScreenActions
 from kit.document.rows import row
 from kit.geometry import Pose
-from kit.render.scene import Disc, Scene, SceneBody, ScenePath
+from kit.render.scene import Disc, Scene, ScenePath
 from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Scenario
+from kit.run.scene_bodies import scene_bodies
 from kit.run.session import Session
 from kit.school.game.ghosts import Ghost, level_ghosts
 from kit.school.game.levels import GameLevel, find_level
@@ -293,8 +292,7 @@ class _Shapes:
 
     def __init__(self, scenario: Scenario) -> None:
         simulation = Simulation(scenario.world)
-        walls = [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
-        self._walls: FloatArray = np.concatenate([np.empty((0, 4)), *walls])
+        self._walls = scenario.world.wall_segments
         outlines = simulation.outlines()
         self._robots = tuple(
             (name, simulation.pose(name), tuple(each for each in outlines if each.model == name))
@@ -303,26 +301,18 @@ class _Shapes:
 
     def scene(self, state: SharedGameState) -> Scene:
         """The world at this instant."""
-        bodies = []
-        for (name, start, outlines), pose in zip(self._robots, state.poses, strict=True):
-            moved = [(_moved(outline.points, start, pose), outline.radius) for outline in outlines]
-            bodies.append(
-                SceneBody(
-                    name,
-                    pose,
-                    tuple(points for points, radius in moved if not radius),
-                    tuple(
-                        Disc(float(points[0][0]), float(points[0][1]), radius)
-                        for points, radius in moved
-                        if radius
-                    ),
-                    is_robot=True,
-                )
-            )
-        return Scene(walls=self._walls, bodies=tuple(bodies))
+        poses = {name: pose for (name, _, _), pose in zip(self._robots, state.poses, strict=True)}
+        outlines = [
+            replace(outline, points=_moved(outline.points, start, poses[name]))
+            for name, start, own in self._robots
+            for outline in own
+        ]
+        return Scene(walls=self._walls, bodies=scene_bodies(outlines, poses, poses))
 
 
-def _moved(points: tuple[tuple[float, float], ...], start: Pose, pose: Pose) -> FloatArray:
-    """(k, 2): the points of a body that stood at ``start``, now that it stands at ``pose``."""
+def _moved(
+    points: tuple[tuple[float, float], ...], start: Pose, pose: Pose
+) -> tuple[tuple[float, float], ...]:
+    """The points of a body that stood at ``start``, now that it stands at ``pose``."""
     local = [start.relative(Pose(x, y)) for x, y in points]
-    return np.array([pose.transform_point(each.x, each.y) for each in local])
+    return tuple(pose.transform_point(each.x, each.y) for each in local)

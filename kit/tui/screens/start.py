@@ -18,7 +18,7 @@ from kit.document.rows import Row, row, spread
 from kit.inspection.sockets import sockets_folder
 from kit.plain_text import wrap
 from kit.tui.input.drive import DriveState
-from kit.tui.input.modes import base_key
+from kit.tui.input.drive_keys import base_key
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.dialogs import MessageDialog, PaletteCommand, wrapped
 from kit.tui.screens.play import TELEOP, PlayScreen

@@ -27,7 +27,7 @@ from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
-    from kit.learning.policies.demonstration import Demonstration, DemonstrationView
+    from kit.learning.training.demonstration import Demonstration, DemonstrationView
     from kit.learning.training.events import TrainingEvent
     from kit.learning.training.run_status import RunPlan, RunStatus
     from kit.learning.training.runs import RunCommand, TrainingRun
@@ -101,7 +101,7 @@ class TrainingFollower:
     # The reader's thread
 
     def _read(self) -> None:
-        from kit.learning.environment.tasks import UnknownTask
+        from kit.learning.tasks.learning_task import UnknownTask
         from kit.learning.training.algorithms import UnknownAlgorithm
         from kit.learning.training.events import EventReader
         from kit.learning.training.run_status import RunTracker, plan_of_run
@@ -158,8 +158,8 @@ class TrainingFollower:
     # The driver's thread
 
     def _drive(self, plan: RunPlan) -> None:
-        from kit.learning.policies.demonstration import Demonstration
         from kit.learning.policies.policies import PolicyError
+        from kit.learning.training.demonstration import Demonstration
         from kit.learning.training.runs import RunError
 
         demonstration = Demonstration(self._run, greedy=plan.greedy)

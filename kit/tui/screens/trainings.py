@@ -34,7 +34,7 @@ from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.tui.widgets.training_preview import TrainingPreview
 
 if TYPE_CHECKING:
-    from kit.learning.environment.tasks import LearningTask
+    from kit.learning.tasks.learning_task import LearningTask
     from kit.learning.training.run_upkeep import RunOverview
     from kit.learning.training.runs import TrainingRun
 
@@ -331,7 +331,7 @@ def _read_runs(folder: Path) -> Sequence[RunOverview]:
 
 
 def _read_tasks() -> Sequence[LearningTask]:
-    from kit.learning.environment.tasks import all_tasks
+    from kit.learning.tasks.catalogue import all_tasks
 
     return all_tasks()
 

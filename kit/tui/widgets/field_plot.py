@@ -12,7 +12,7 @@ from textual.containers import Vertical
 from kit.document.rows import Row, row
 from kit.msg.conversion import FieldValue, number_at
 from kit.render.curve import Axes, Curve, nice_ceiling
-from kit.ros.graph.snapshot import FieldSample
+from kit.ros.graph.topic_statistics import FieldSample
 from kit.tui.theme import Theme
 from kit.tui.widgets.chart_view import CurveView
 from kit.tui.widgets.text_rows import TextRows

@@ -19,7 +19,7 @@ from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import WorldView
 
 if TYPE_CHECKING:
-    from kit.learning.policies.demonstration import DemonstrationView
+    from kit.learning.training.demonstration import DemonstrationView
     from kit.learning.training.run_status import RunStatus
     from kit.learning.training.runs import TrainingRun
 

@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from grader.__main__ import main
-from grader.evidence.reward import TICKS_PER_MOVE
+from grader.kinds.reward.exploit_recording import TICKS_PER_MOVE
 from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario
 from kit.school.lessons.reading import lessons_folder
@@ -67,7 +67,7 @@ def test_the_exploit_of_a_reward(tmp_path: Path, wrong: Path) -> None:
     way, (target,) = kept.track("robot"), np.unique(kept.track("target"), axis=0)
     assert np.hypot(*np.diff(way[:, :2], axis=0).T).max() < 0.02
     assert np.hypot(*(way[:, :2] - target[:2]).T).min() > 0.1
-    walls = np.concatenate([layer.walls.segments for layer in place.world.layers if layer.walls is not None])
+    walls = place.world.wall_segments
     assert (way[:, :2] > walls[:, :2].min(axis=0)).all()
     assert (way[:, :2] < walls[:, 2:].max(axis=0)).all()
 

@@ -161,7 +161,7 @@ def test_the_same_error_in_three_works_is_the_graders_fault(
     if stage == "preparing":
         monkeypatch.setattr(submission_module, "_read_submission", failing)
     else:
-        monkeypatch.setattr("grader.cohort.queue.grade", failing_grade)
+        monkeypatch.setattr("grader.cohort.queue.grade_and_keep", failing_grade)
     queue = Queue(tmp_path / "queue")
     prepare_queue(queue, cohort, read_assignment(write_assignment(tmp_path / "sheet")), TERMS)
     for key in queue.waiting():
@@ -180,7 +180,7 @@ def failing(path: Path, main: str) -> Submission:
 
 
 def failing_grade(*given: object) -> None:
-    raise SubmissionUnreadable("a.py cannot be read (KeyError).", "KeyError in grader/kinds/drive.py:1")
+    raise SubmissionUnreadable("a.py cannot be read (KeyError).", "KeyError in grader/kinds/drive/kind.py:1")
 
 
 def test_unreadable_work_is_listed_first_with_its_way_out(tmp_path: Path) -> None:
@@ -270,7 +270,7 @@ def test_a_recording_that_no_reader_expects_has_no_grade(
     def fail(task: object, file: Path) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("grader.kinds.drive._load_checked", fail)
+    monkeypatch.setattr("grader.kinds.drive.kind._load_checked", fail)
     cohort = tmp_path / "in"
     cohort.mkdir()
     (cohort / "ada.npz").write_bytes(b"x")
@@ -290,7 +290,7 @@ def test_an_error_that_a_program_brings_to_light_is_its_own(
     def stumble(*_: object, **__: object) -> None:
         raise OverflowError("ours")
 
-    monkeypatch.setattr("grader.evidence.episodes.run_episode", stumble)
+    monkeypatch.setattr("grader.driving.episodes.run_episode", stumble)
     assignment = read_assignment(write_assignment(tmp_path / "quick", QUICK))
     work = Submission("ada", "controller.py", {"controller.py": FORWARD.encode()})
     with pytest.raises(SubmissionUnreadable, match="OverflowError"):

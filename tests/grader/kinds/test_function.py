@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
+import json
 import math
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 from grader.grading import GradingOptions, grade
-from grader.kinds.function import MAX_CASES, cases_of, format_value, is_close, load_reference
+from grader.kinds.function.kind import (
+    MAX_CASES,
+    FunctionsTask,
+    _as_json,
+    cases_of,
+    format_value,
+    is_close,
+    load_reference,
+)
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
+from kit.host.wire import Json
+from kit.school.lessons.reading import lessons_folder
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from kit.world.problems import WorldError
 from tests.cases import every_case
@@ -218,3 +233,49 @@ def test_a_number_that_is_none_reaches_the_student_wherever_it_stands(tmp_path: 
     }
     with StudentFunctions(file) as functions:
         assert functions.call_json("told", given) == [repr(value) for value in given.values()]
+
+
+def functions_of_lessons() -> list[Path]:
+    sheets = sorted(lessons_folder().glob("*/*/assignment.yaml"))
+    return [each.parent for each in sheets if "kind: function" in each.read_text("utf-8")]
+
+
+def answer_without_idea(
+    module: ModuleType, name: str, asked: Sequence[Mapping[str, Json]]
+) -> Iterator[Callable[..., Json]]:
+    """Yields functions that compute nothing: one of the most frequent answers, an argument as it came, and a table of the
+    answers to the public cases."""
+    known = {json.dumps(case, sort_keys=True): right_answer(module, name, case) for case in asked}
+    for answer, _ in Counter(map(json.dumps, known.values())).most_common(3):
+        yield partial(lambda text, **_: json.loads(text), answer)
+    for argument in asked[0]:
+        yield partial(lambda key, **case: case.get(key), argument)
+    yield lambda **case: known.get(json.dumps(case, sort_keys=True))
+
+
+def right_answer(module: ModuleType, name: str, case: Mapping[str, Json]) -> Json:
+    return _as_json(getattr(module, name)(**json.loads(json.dumps(case))))
+
+
+@every_case("folder", functions_of_lessons())
+def test_no_function_earns_points_that_computes_nothing(folder: Path) -> None:
+    """What earns nothing lies above what guessing agrees with: share: {none: ...}."""
+    assignment = read_assignment(folder)
+    task: FunctionsTask = assignment.task
+    module = load_reference(task.reference)
+    assert task.secret_seed is not None
+    for criterion in assignment.criteria:
+        spec = next(each for each in task.functions if each.name == criterion.params.function)
+        asked, hidden = (cases_of(module, spec.name, seed) for seed in (task.seed, task.secret_seed))
+        if all(case in asked for case in hidden):
+            continue  # there are no other cases
+        for answer in answer_without_idea(module, spec.name, asked):
+            agreed = min(
+                sum(
+                    is_close(right_answer(module, spec.name, case), _as_json(answer(**case)), spec.within)
+                    for case in cases
+                )
+                / len(cases)
+                for cases in (asked, hidden)
+            )
+            assert agreed <= criterion.anchors.none, (criterion.id, answer)

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from grader.assignment import Assignment
-from grader.evidence.launch import MAX_PROGRAMS, MAX_STRIDE, _driven_distance, offered_truths
 from grader.grading import GradingOptions, grade
+from grader.kinds.launch.launch_record import MAX_PROGRAMS, MAX_STRIDE, _driven_distance, offered_truths
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level

@@ -8,16 +8,16 @@ from pathlib import Path
 
 import pytest
 
-from grader.evidence.posed_task import ActionLoop, PosedTask
 from grader.evidence.submission_clock import SubmissionClock
 from grader.evidence.training_results import PosedTaskPlan
 from grader.grading import GradingOptions, grade
+from grader.kinds.task.posed_task import ActionLoop, PosedTask
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import policy_bytes, task_interface
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.school.lessons.reading import lessons_folder, solutions_folder
 from kit.school.result import CriterionStatus, GradingResult
 from kit.world.problems import WorldError

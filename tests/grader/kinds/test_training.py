@@ -10,9 +10,9 @@ import pytest
 
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.training_results import CaseOrder, StopRule, TrainingResults
-from grader.grading import GradingOptions, grade
-from grader.kinds import training
-from grader.kinds.training import CHECKS, collect_evidence
+from grader.grading import Grading, GradingOptions, grade
+from grader.kinds.training import kind as training
+from grader.kinds.training.kind import CHECKS, collect_evidence
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
@@ -68,6 +68,25 @@ def test_secret_seeds_take_the_place_of_the_others(folder: Path) -> None:
     secret = record.content
     assert len(secret.trainings) == 1
     assert secret.trainings[0].tests != public.trainings[0].tests
+
+
+@pytest.mark.parametrize("is_own_check", [True, False])
+def test_a_students_own_check_says_what_secret_trainings_found(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, is_own_check: bool
+) -> None:
+    """Where the public ones show nothing. They were shown while they ran; a grade at a level that confines says nothing of
+    them."""
+    monkeypatch.setattr(Grading, "_find_counterexample", lambda self, criterion: None)
+    (folder / "secret.yaml").write_text("seeds: [7]\n")
+    assignment = read_assignment(folder)
+    work = Submission("work", "training.yaml", {"training.yaml": b"batch: 1000\nsteps: 1000\n"})
+    level = Level.LIMITED if is_own_check else Level.FILTERED
+    found = grade(assignment, work, GradingOptions(level, secret=True, examples=is_own_check))
+    told = next(each for each in found.tests if each.id == "succeeds")
+    assert not told.is_passed
+    assert ("The exams of the trainings: 0.28." in told.rationale) is is_own_check
+    assert bool(told.actual) is is_own_check
+    assert bool(told.replay) is is_own_check
 
 
 @pytest.mark.long

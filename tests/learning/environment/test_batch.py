@@ -9,20 +9,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kit.learning.environment.actions import Move
 from kit.learning.environment.batch import BatchEnv, RewardError
 from kit.learning.environment.batch_state import BatchStep
-from kit.learning.environment.observations import MAX_TARGET_DISTANCE
-from kit.learning.environment.rewards import ALGORITHM_1, RewardFunction
-from kit.learning.environment.tasks import (
-    HALLWAY,
-    TASKS,
-    TURN,
-    WHEELCHAIRS,
-    LearningTask,
-    StartVariation,
-)
-from kit.learning.environment.transition import Array, Transition, bearing_of_target, distance_to_target
+from kit.learning.tasks.actions import Move
+from kit.learning.tasks.catalogue import HALLWAY, TASKS, TURN, WHEELCHAIRS
+from kit.learning.tasks.learning_task import LearningTask, StartVariation
+from kit.learning.tasks.observations import MAX_TARGET_DISTANCE
+from kit.learning.tasks.rewards import ALGORITHM_1, RewardFunction
+from kit.learning.tasks.transition import Array, Transition, bearing_of_target, distance_to_target
 from tests.learning.worlds import (
     FOUR_MOVES,
     NINETEEN_NUMBERS,

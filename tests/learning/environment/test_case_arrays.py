@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kit.learning.environment.batch_map import UnsupportedWorld, load_batch_map
 from kit.learning.environment.case_arrays import CELL, CLEARANCE, CaseArrays, compute_distance_field
-from kit.learning.environment.tasks import HALLWAY, TASKS, WHEELCHAIRS, LearningTask, StartVariation
+from kit.learning.maps.batch_map import UnsupportedWorld, load_batch_map
+from kit.learning.tasks.catalogue import HALLWAY, TASKS, WHEELCHAIRS
+from kit.learning.tasks.learning_task import LearningTask, StartVariation
 from kit.world.catalogue import find_map
 
 

@@ -24,8 +24,9 @@ from kit.learning.environment.env import (
     WheelchairsEnv,
     build_batch_scene,
 )
-from kit.learning.environment.rewards import ALGORITHM_3
-from kit.learning.environment.tasks import HALLWAY, TASKS, TURN, WHEELCHAIRS, LearningTask, UnknownTask
+from kit.learning.tasks.catalogue import HALLWAY, TASKS, TURN, WHEELCHAIRS
+from kit.learning.tasks.learning_task import LearningTask, UnknownTask
+from kit.learning.tasks.rewards import ALGORITHM_3
 from tests.learning import worlds
 
 REGISTERED = sorted(name for name in gymnasium.registry if name.startswith("RobotKit/"))

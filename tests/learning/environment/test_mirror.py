@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kit.learning.environment.actions import DiscreteActions, Move
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import UnsupportedWorld
 from kit.learning.environment.mirror import TaskMirror
-from kit.learning.environment.tasks import HALLWAY, TURN, WHEELCHAIRS, LearningTask, StartVariation
+from kit.learning.maps.batch_map import UnsupportedWorld
+from kit.learning.tasks.actions import DiscreteActions, Move
+from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS
+from kit.learning.tasks.learning_task import LearningTask, StartVariation
 from tests.learning.worlds import NINE_NUMBERS
 
 TELLING = replace(HALLWAY.observation, target=True, arrived=True)

@@ -10,9 +10,10 @@ from importlib import import_module
 import numpy as np
 import pytest
 
-from kit.learning.environment.actions import ContinuousActions
 from kit.learning.environment.env import TaskEnv
-from kit.learning.environment.tasks import WHEELCHAIRS, WHEELCHAIRS_SEED, LearningTask
+from kit.learning.tasks.actions import ContinuousActions
+from kit.learning.tasks.catalogue import WHEELCHAIRS, WHEELCHAIRS_SEED
+from kit.learning.tasks.learning_task import LearningTask
 
 pettingzoo_test = pytest.importorskip("pettingzoo.test", reason="the extra pettingzoo is not installed")
 

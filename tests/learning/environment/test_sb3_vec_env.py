@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.env import TaskEnv
-from kit.learning.environment.tasks import HALLWAY, TASKS, TURN, WHEELCHAIRS, LearningTask
+from kit.learning.tasks.catalogue import HALLWAY, TASKS, TURN, WHEELCHAIRS
+from kit.learning.tasks.learning_task import LearningTask
 
 pytestmark = pytest.mark.skipif(
     find_spec("stable_baselines3") is None, reason="the extra learn is not installed"

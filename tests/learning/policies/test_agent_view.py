@@ -8,9 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kit.learning.environment.actions import ContinuousActions
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.tasks import StartVariation, TaskSpec, find_task, task_names
 from kit.learning.policies.agent_view import AgentObserver, AgentView, ExpectedReturns, build_agent_view
 from kit.learning.policies.policies import (
     ActionSampling,
@@ -21,6 +19,10 @@ from kit.learning.policies.policies import (
     action_counts,
     task_interface,
 )
+from kit.learning.tasks.actions import ContinuousActions
+from kit.learning.tasks.catalogue import find_task, task_names
+from kit.learning.tasks.learning_task import StartVariation
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from tests.cases import every_case

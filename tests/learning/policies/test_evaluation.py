@@ -11,7 +11,6 @@ import pytest
 from kit.document.layout import lines_of
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
-from kit.learning.environment.tasks import StartVariation, TaskSpec, find_task
 from kit.learning.policies.evaluation import Evaluator, build_paths_scene, derive_seed, record_paths
 from kit.learning.policies.policies import (
     ActionSampling,
@@ -23,13 +22,15 @@ from kit.learning.policies.policies import (
     task_interface,
 )
 from kit.learning.policies.policy_node import format_policy_node
-from kit.learning.tasks.learning_task import EpisodePlaces
-from kit.learning.training.student_reward import (
+from kit.learning.tasks.catalogue import find_task
+from kit.learning.tasks.learning_task import EpisodePlaces, StartVariation
+from kit.learning.tasks.student_reward import (
     RewardFileError,
     StudentReward,
     metric_parameters,
     reward_parameters,
 )
+from kit.learning.tasks.task_spec import TaskSpec
 
 STRAIGHT = TaskSpec("hallway", ("straight", "center_door"))
 AHEAD_ONLY = replace(STRAIGHT.resolve(), start=StartVariation(shifted=False))
@@ -206,7 +207,7 @@ def test_a_reward_that_cannot_be_called_is_told_before_it_runs(
 
 @pytest.mark.parametrize("task", ["turn", "wheelchairs"])
 def test_a_reward_is_told_the_facts_of_each_world(tmp_path: Path, task: str) -> None:
-    from kit.learning.environment.transition import TRANSITION_FIELDS
+    from kit.learning.tasks.transition import TRANSITION_FIELDS
 
     file = tmp_path / "mine.py"
     file.write_text(

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.learning.environment.tasks import TaskSpec, UnknownTask, find_task
 from kit.learning.policies.policies import (
     ActionSampling,
     ActionValueTable,
@@ -21,6 +20,9 @@ from kit.learning.policies.policies import (
     save_policy,
     task_interface,
 )
+from kit.learning.tasks.catalogue import find_task
+from kit.learning.tasks.learning_task import UnknownTask
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import ALGORITHMS, Algorithm
 from kit.learning.training.presets import find_preset
 from kit.learning.training.training import fit_task_spec, make_learner

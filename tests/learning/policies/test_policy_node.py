@@ -17,7 +17,6 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.tasks import TaskSpec, find_task
 from kit.learning.policies.policies import (
     ActionSampling,
     Policy,
@@ -27,6 +26,8 @@ from kit.learning.policies.policies import (
     task_interface,
 )
 from kit.learning.policies.policy_node import create_policy_package, format_policy_node
+from kit.learning.tasks.catalogue import find_task
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.ros.packages import PackageError
 from tests.launch.test_package_creation import install_with_setuptools
 from tests.learning.policies.test_evaluation import always

@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 
 from kit.document.layout import lines_of
-from kit.learning.environment.disturbances import DISTURBANCE_KINDS, DisturbanceError, Disturbances
-from kit.learning.environment.tasks import StartVariation
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.policies.policies import Policy
 from kit.learning.policies.sweep import PolicySweep, SweepPoint, find_kinds, sweep_blocks, sweep_csv
+from kit.learning.tasks.disturbances import DISTURBANCE_KINDS, DisturbanceError, Disturbances
+from kit.learning.tasks.learning_task import StartVariation
 from kit.render.encode import ENCODERS
 from tests.learning.policies.test_evaluation import FORWARD, STRAIGHT
 

@@ -11,15 +11,16 @@ import numpy as np
 import pytest
 
 from kit.geometry import Pose
-from kit.learning.environment.actions import ContinuousActions
+from kit.learning.authoring.new_task import new_task_file
+from kit.learning.authoring.task_check import check_task
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import UnsupportedWorld, load_batch_map
-from kit.learning.environment.observations import RAY_COUNT, ray_direction
-from kit.learning.environment.tasks import LearningTask, StartVariation, TaskSpec
+from kit.learning.maps.batch_map import UnsupportedWorld, load_batch_map
+from kit.learning.maps.ray_directions import RAY_COUNT, ray_direction
 from kit.learning.policies.evaluation import Evaluator
-from kit.learning.tasks.task_check import check_task
+from kit.learning.tasks.actions import ContinuousActions
+from kit.learning.tasks.learning_task import LearningTask, StartVariation
 from kit.learning.tasks.task_reader import read_task
-from kit.learning.tasks.task_template import new_task_file
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import RunConfig, create_run
 from kit.learning.training.training import train
 from kit.msg.geometry_msgs import Twist, Vector3

@@ -10,14 +10,15 @@ import numpy as np
 import pytest
 
 from kit.document.layout import lines_of
+from kit.learning.authoring.task_text import task_blocks
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_map import UnsupportedWorld
 from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.episode_stats import EpisodeOutcome
-from kit.learning.environment.tasks import TaskSpec, find_task
+from kit.learning.maps.batch_map import UnsupportedWorld
+from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.learning_task import CurriculumStage, practices
 from kit.learning.tasks.task_reader import read_task
-from kit.learning.tasks.task_text import task_blocks
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.events import TrainingNote
 from kit.learning.training.presets import find_preset

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from kit.geometry import Pose
+from kit.learning.authoring.task_check import check_task
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.tasks import LearningTask
-from kit.learning.tasks.task_check import check_task
+from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_reader import read_task
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.simulation import Simulation, load_world

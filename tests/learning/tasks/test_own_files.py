@@ -6,9 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from kit.learning.environment.tasks import UnknownTask, find_task, find_task_file, tasks_folder
-from kit.learning.tasks.own_files import own_reward_files, own_task_files, workspace_task_file
-from kit.learning.tasks.task_template import new_task_file
+from kit.learning.authoring.new_task import new_task_file
+from kit.learning.authoring.own_rewards import own_reward_files
+from kit.learning.tasks.catalogue import find_task, find_task_file, tasks_folder
+from kit.learning.tasks.learning_task import UnknownTask
+from kit.learning.tasks.own_files import own_task_files, workspace_task_file
 from kit.world.catalogue import maps_folder
 
 

@@ -11,12 +11,14 @@ from pathlib import Path
 
 import pytest
 
-from kit.learning.environment.actions import ContinuousActions
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.environment.rewards import PROGRESS
-from kit.learning.environment.tasks import TASKS, LearningTask, StartVariation, TaskSpec, find_task
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.policies.policies import ActionValueTable
+from kit.learning.tasks.actions import ContinuousActions
+from kit.learning.tasks.catalogue import TASKS, find_task
+from kit.learning.tasks.learning_task import LearningTask, StartVariation
+from kit.learning.tasks.rewards import PROGRESS
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import (
     ALGORITHMS,
     Algorithm,

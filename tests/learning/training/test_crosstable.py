@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.document.layout import lines_of
-from kit.learning.environment.tasks import TaskSpec
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.crosstable import (
     CrosstableColumn,
     case_groups,

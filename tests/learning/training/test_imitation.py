@@ -11,7 +11,6 @@ import pytest
 
 from kit.controllers import find_controller
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.tasks import TaskSpec, find_task
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.policies.policies import (
     ActionSampling,
@@ -21,6 +20,8 @@ from kit.learning.policies.policies import (
     save_policy,
     task_interface,
 )
+from kit.learning.tasks.catalogue import find_task
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.controller_demonstrator import ControllerDemonstrator, read_demonstrator
 from kit.learning.training.demonstrations import (

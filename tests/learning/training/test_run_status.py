@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pytest
 
-from kit.learning.environment.tasks import TaskSpec
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.events import (
     Evaluated,
     TrainingEnded,
@@ -117,7 +117,7 @@ def test_the_plan_of_a_run() -> None:
 @pytest.mark.long
 def test_a_face_that_follows_a_run_needs_no_torch() -> None:
     code = (
-        "import sys, kit.learning.training.run_status, kit.learning.policies.demonstration, kit.learning.training.worker;"
+        "import sys, kit.learning.training.run_status, kit.learning.training.demonstration, kit.learning.training.worker;"
         "print(*{'torch', 'stable_baselines3'} & set(sys.modules))"
     )
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

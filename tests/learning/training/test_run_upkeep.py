@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from kit.document.layout import lines_of
-from kit.learning.environment.rewards import REWARDS
-from kit.learning.environment.tasks import TaskSpec
+from kit.learning.tasks.rewards import REWARDS
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.events import EventWriter, TrainingProgress
 from kit.learning.training.run_check import check_run_config
 from kit.learning.training.run_upkeep import (

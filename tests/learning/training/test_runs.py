@@ -2,14 +2,19 @@ from __future__ import annotations
 
 import errno
 import fcntl
+import io
 import multiprocessing
+import os
 import threading
+import tracemalloc
 import zipfile
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from kit.learning.environment.tasks import TaskSpec
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.events import (
     Evaluated,
     EventReader,
@@ -223,3 +228,47 @@ def test_a_flipped_bit_is_noticed(tmp_path: Path) -> None:
 def test_a_run_without_a_policy_says_so(tmp_path: Path) -> None:
     with pytest.raises(RunError, match="no policy yet"):
         TrainingRun(tmp_path).policy()
+
+
+def array_bomb() -> bytes:
+    """An archive of arrays whose header says that it has a petabyte of numbers."""
+    part = io.BytesIO()
+    np.lib.format.write_array_header_1_0(part, {"descr": "<f8", "fortran_order": False, "shape": (1 << 47,)})
+    return zipped({"arr_0.npy": part.getvalue()}, zipfile.ZIP_STORED)
+
+
+def zipped(parts: Mapping[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> bytes:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", method) as archive:
+        for name, data in parts.items():
+            archive.writestr(name, data)
+    return packed.getvalue()
+
+
+@every_case(
+    "make",
+    [
+        lambda: zipped({"learner.json": b"0" * (1 << 24)}),
+        lambda: zipped({"parameters.pt": zipped({"data.pkl": b"0" * (1 << 24)})}, zipfile.ZIP_STORED),
+        lambda: zipped({"replay.npz": zipped({"arr_0.npy": b"0" * (1 << 24)})}, zipfile.ZIP_STORED),
+        lambda: zipped({"replay.npz": array_bomb()}, zipfile.ZIP_STORED),
+        lambda: zipped({str(number): b"" for number in range(2000)}, zipfile.ZIP_STORED),
+    ],
+)
+def test_a_checkpoint_of_somebody_elses_unpacks_to_no_more_than_it_is(
+    make: Callable[[], bytes], tmp_path: Path
+) -> None:
+    run = TrainingRun(tmp_path)
+    run.checkpoints[0].write_bytes(make())
+    tracemalloc.start()
+    with pytest.raises(RunError, match="damaged"):
+        run.load_checkpoint()
+    assert tracemalloc.get_traced_memory()[1] < 1 << 23
+    tracemalloc.stop()
+
+
+def test_a_named_pipe_is_no_checkpoint(tmp_path: Path) -> None:
+    run = TrainingRun(tmp_path)
+    os.mkfifo(run.checkpoints[0])
+    with pytest.raises(RunError, match="damaged"):
+        run.load_checkpoint()

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.environment.tasks import TaskSpec
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import ALGORITHMS, LearnExtraMissing
 from kit.learning.training.events import Evaluated, TrainingNote, TrainingProgress, TrainingStarted
 from kit.learning.training.presets import KIT_PPO_HALLWAY

@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.learning.environment.tasks import TaskSpec
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import ALGORITHMS, find_algorithm
 from kit.learning.training.presets import LinearSchedule, find_preset
 from kit.learning.training.runs import RunConfig, RunError, format_settings

@@ -16,7 +16,8 @@ from kit.msg.example_interfaces import AddTwoInts, Fibonacci
 from kit.msg.interfaces import find_interface_or_event
 from kit.msg.std_msgs import String
 from kit.msg.tf2_msgs import LookupTransform
-from kit.ros.action.client import ActionClient, ClientGoalHandle, uuid_bytes
+from kit.ros.action.client import ActionClient, ClientGoalHandle
+from kit.ros.action.goal_states import uuid_bytes
 from kit.ros.action.server import ActionServer, CancelResponse, GoalResponse, ServerGoalHandle
 from kit.ros.bag_storage import Storage
 from kit.ros.bags import BagRecorder, read_messages

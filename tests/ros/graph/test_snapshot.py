@@ -8,7 +8,8 @@ from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import Int32, String
 from kit.msg.std_srvs import Trigger
 from kit.ros.graph.graph import Graph
-from kit.ros.graph.snapshot import HISTORY, EndpointState, MessageFlow, TopicStats, snapshot
+from kit.ros.graph.snapshot import EndpointState, snapshot
+from kit.ros.graph.topic_statistics import HISTORY, MessageFlow, TopicStats
 from kit.ros.node.node import create_graph_node
 from kit.ros.node.qos import qos_profile_sensor_data
 

@@ -380,9 +380,7 @@ def search_lattice(level: GameLevel) -> list[ReferenceDrive]:
     tricycle = is_tricycle(scenario)
     hull = true_hull + (0.035 if tricycle else MARGIN) * np.sign(true_hull)
     reach = float(np.hypot(hull[:, 0], hull[:, 1]).max())
-    walls = np.concatenate(
-        [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
-    )
+    walls = scenario.world.wall_segments
     points = walls.reshape(-1, 2)
     origin = points.min(axis=0) - 2 * CELL
     columns, rows = np.ceil((points.max(axis=0) + 2 * CELL - origin) / CELL).astype(int) + 1
@@ -550,9 +548,7 @@ def search_pursuit(level: GameLevel, seconds: float) -> ReferenceDrive | None:
     simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
     random, end = np.random.default_rng(1), time.perf_counter() + seconds
     fields: dict[float, object] = {}
-    walls = np.concatenate(
-        [layer.walls.segments for layer in scenario.world.layers if layer.walls is not None]
-    )
+    walls = scenario.world.wall_segments
     best, found, tries = math.inf, None, 0
     while time.perf_counter() < end:
         tries += 1

@@ -9,8 +9,9 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.controllers import find_controller
-from kit.learning.environment.tasks import find_task, task_names
-from kit.mapmaking.new_map import read_drawing, write_map
+from kit.learning.tasks.catalogue import find_task, task_names
+from kit.mapmaking.map_drawing import read_drawing
+from kit.mapmaking.new_map import write_map
 from kit.run.recording import load_recording
 from kit.school.game.drive_records import record_drive
 from kit.school.game.ghosts import load_ghosts

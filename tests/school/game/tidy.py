@@ -11,8 +11,6 @@ import math
 from collections.abc import Sequence
 from types import SimpleNamespace
 
-import numpy as np
-
 from kit.geometry import Pose, wrap_angle
 from kit.learning.environment.case_arrays import CELL, DistanceField, compute_distance_field
 from kit.msg.geometry_msgs import Twist, Vector3
@@ -41,8 +39,7 @@ class TidyDriver:
         self._targets = list(targets)
         starts = session.scenario.starts
         self._half_gap = 0.5 * math.dist(starts[0][:2], starts[1][:2]) if len(starts) > 1 else 0.0
-        walls = [layer.walls.segments for layer in session.scenario.world.layers if layer.walls is not None]
-        self._walls = SimpleNamespace(walls=np.concatenate(walls))
+        self._walls = SimpleNamespace(walls=session.scenario.world.wall_segments)
         self._field: DistanceField | None = None
 
     def exchange(self) -> bool:

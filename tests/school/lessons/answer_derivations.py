@@ -17,7 +17,7 @@ from types import MappingProxyType
 from typing import Final
 
 from grader.assignment import Assignment
-from grader.kinds.answers import AnswerQuestion
+from grader.kinds.answers.kind import AnswerQuestion
 from grader.reading import read_assignment
 from kit.school.lessons.checking import install_exercise
 from kit.school.lessons.records import Lesson, LessonStep

@@ -21,7 +21,7 @@ from PIL import Image
 from grader.evidence.contract import EvidenceOptions
 from grader.evidence.training_results import TrainingResults
 from grader.grading import GradingOptions, grade
-from grader.kinds.training import collect_evidence
+from grader.kinds.training.kind import collect_evidence
 from grader.reading import read_assignment
 from grader.submission import read_submission
 from kit.cli import main
@@ -32,20 +32,21 @@ from kit.layers.greedy import run_greedy
 from kit.layers.planning import solve_layers
 from kit.layers.requirements import LayerCase
 from kit.learning.environment.env import TurnEnv
-from kit.learning.environment.rewards import ALGORITHM_3
-from kit.learning.environment.tasks import TURN
 from kit.learning.policies.confidence_intervals import lower_bound
+from kit.learning.tasks.catalogue import TURN
+from kit.learning.tasks.rewards import ALGORITHM_3
 from kit.msg.sensor_msgs import LaserScan
 from kit.run.scenario import scenario_on_map
 from kit.run.session import Session
 from kit.school.lessons.reading import lessons_folder, solutions_folder
 from kit.school.lessons.records import LessonStep
 from kit.sim.simulation import Simulation, load_world
-from kit.tui.input.modes import named
+from kit.tui.input.drive_keys import named
 from kit.world.catalogue import find_map
 from kit.world.problems import WorldError
 from kit.world.records import Polygon
 from tests.school.lessons.capstone_derivations import CAPSTONE_DERIVATIONS
+from tests.school.lessons.failure_derivations import FAILURE_DEAR, FAILURE_DERIVATIONS
 from tests.school.lessons.follower_derivations import FOLLOWER_DERIVATIONS
 from tests.school.lessons.generalisation_derivations import GENERALISATION_DERIVATIONS
 from tests.school.lessons.imitation_derivations import IMITATION_DERIVATIONS
@@ -779,6 +780,7 @@ DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             *IMITATION_DERIVATIONS,
             *OWN_TASK_DERIVATIONS,
             *POLICY_DERIVATIONS,
+            *FAILURE_DERIVATIONS,
         )
     }
 )
@@ -806,6 +808,7 @@ DEAR: Final = frozenset(
         "careful-or-not",
         "cliff-paths",
         "teleop-near-walls",
+        *FAILURE_DEAR,
     }
 )
 """Those that take more than a fifth of a second: they run with the long tests."""

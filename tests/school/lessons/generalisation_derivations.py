@@ -10,11 +10,11 @@ from typing import Final
 
 import numpy as np
 
-from kit.learning.environment.actions import Move
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.mirror import TaskMirror
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.evaluation import Evaluator, derive_seed
+from kit.learning.tasks.actions import Move
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.presets import find_preset
 from kit.learning.training.training import make_learner

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Final
 
-from kit.learning.environment.grid_world import GridWorld
-from kit.learning.training.grid_learner import BATCH, HIDDEN, GridLearnerSettings, NetworkLearner
+import numpy as np
+
+from kit.learning.environment.grid_world import MOVES, GridWorld
+from kit.learning.training.grid_learner import (
+    BATCH,
+    HIDDEN,
+    GridLearnerSettings,
+    NetworkLearner,
+    ValueNetwork,
+)
 from kit.learning.training.presets import TabularParams
 from kit.school.lessons.records import LearningScene, LessonStep
+from tests.kit_content import kit_lesson
 from tests.school.lessons.table_derivations import SEEN, scene_of
 
 MOST: Final = 0.8
@@ -57,9 +67,39 @@ def state_count(words: str, step: LessonStep, folder: Path) -> str:
 
 
 def weight_count(words: str, step: LessonStep, folder: Path) -> str:
-    learner = NetworkLearner(GridWorld(("SG",)), GridLearnerSettings("dqn"))
-    count = sum(each.size for each in learner.network.parameters)
-    return f"A network with two layers of {HIDDEN} neurons has {count:,} weights here"
+    network = ValueNetwork(np.random.default_rng(0), SEEN, len(MOVES))
+    count = sum(each.size for each in network.parameters)
+    return f"A network with two layers of {HIDDEN} neurons that gets { {9: 'nine'}[SEEN] } distances has {count:,} weights"
+
+
+def first_overshoot(words: str, step: LessonStep, folder: Path) -> str:
+    """The first update of the lesson's first scene, as its line says it."""
+    scene = scene_of(kit_lesson("22-inside-dqn").steps[0])
+    update = NetworkLearner(scene.world, scene.learners[0]).step()
+    assert (update.after - update.target) * (update.before - update.target) < 0, "it stays on its side"
+    return (
+        f"the first update of the film took a value from {update.before:.2f} past its target, "
+        f"{update.target:.2f}, to {update.after:.2f}"
+    )
+
+
+def two_flat_layers(words: str, step: LessonStep, folder: Path) -> str:
+    """Of two layers without a bend: the one that gives the same for every input."""
+    first, second = (float(each) for each in re.findall(r"\d", words)[:2])
+    inputs = np.linspace(-2.0, 2.0, 9)
+    (one,) = set(np.round((second * (first * inputs))[inputs != 0] / inputs[inputs != 0], 9))
+    return f"{first:g} * ({second:g} * x) is {one:g} * x"
+
+
+def bends(words: str, step: LessonStep, folder: Path) -> str:
+    """Over sums of every size; ``tanh`` is what the networks of the scenes use."""
+    sums = np.linspace(-50.0, 50.0, 1001)
+    if words.startswith("holds"):
+        bent = np.tanh(sums)
+        return f"holds every sum between {bent.min():g} and {bent.max():g}"
+    below = np.unique(np.maximum(sums, 0.0)[sums < 0])
+    assert len(below) == 1
+    return f"turns what is below 0 into {below[0]:g}"
 
 
 def first_descent(words: str, step: LessonStep, folder: Path) -> str:
@@ -109,6 +149,9 @@ NETWORK_DERIVATIONS: Final = (
     one_network_update,
     state_count,
     weight_count,
+    first_overshoot,
+    two_flat_layers,
+    bends,
     first_descent,
     buffer_sizes,
     without_buffer,

@@ -7,9 +7,9 @@ from functools import cache
 from pathlib import Path
 from typing import Final
 
-from grader.evidence.posed_task import PosedTask
 from grader.evidence.submission_clock import SubmissionClock
 from grader.evidence.training_results import PosedTaskPlan
+from grader.kinds.task.posed_task import PosedTask
 from kit.school.lessons.reading import solutions_folder
 from kit.school.lessons.records import LessonStep
 from tests.school.lessons.table_derivations import learners_of, scene_of

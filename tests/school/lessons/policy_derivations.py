@@ -18,6 +18,7 @@ from kit.learning.training.grid_learner import (
     MAX_EPISODE_STEPS,
     GridLearnerSettings,
     PolicyLearner,
+    softmax,
 )
 from kit.learning.training.presets import find_preset
 from kit.school.lessons.records import LessonStep
@@ -60,6 +61,22 @@ def sure_of_the_way(words: str, step: LessonStep, folder: Path) -> str:
 
 def usual_lambda(words: str, step: LessonStep, folder: Path) -> str:
     return f"lambda, mostly {GAE_LAMBDA:g}"
+
+
+def one_push(words: str, step: LessonStep, folder: Path) -> str:
+    """The slope of the log of a chance by differences, in place of the lines that the step shows; and those lines."""
+    scores = np.zeros(4)
+    chances = softmax(scores)
+
+    def log_chance(number: int, change: float) -> float:
+        changed = scores.copy()
+        changed[number] += change
+        return float(np.log(softmax(changed)[0]))
+
+    slope = np.array([(log_chance(at, 1e-6) - log_chance(at, -1e-6)) / 2e-6 for at in range(4)])
+    assert np.allclose(slope, [1 - chances[0], *(-chances[1:])], atol=1e-6)
+    lifted = softmax(scores + slope)[0]
+    return f"From four chances of {chances[0]:g}, an advantage of 1 and a rate of 1 lift the move made to {lifted:.3f}"
 
 
 def epochs_of_a_batch(words: str, step: LessonStep, folder: Path) -> str:
@@ -144,6 +161,7 @@ POLICY_DERIVATIONS: Final = (
     equal_chances,
     sure_of_the_way,
     usual_lambda,
+    one_push,
     epochs_of_a_batch,
     clip_range,
     without_clipping,

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from grader.kinds.function import cases_of, load_reference
+from grader.kinds.function.kind import cases_of, load_reference
 from kit.controllers import find_controller
 from kit.fields.adjacency import (
     MAX_RANGE_DIFFERENCE,
@@ -292,7 +292,7 @@ def equal_weights(words: str, step: LessonStep, folder: Path) -> str:
 def sure_and_wrong(words: str, step: LessonStep, folder: Path) -> str:
     spread, off = localised(2, 400, 0.3)
     assert off > 1.0
-    return f"spread over {spread:.1f} m" if "spread" in words else "here more than a metre away"
+    return f"spread over {spread:.1f} m" if "spread" in words else "Here more than a metre away"
 
 
 # Two wheelchairs
@@ -330,9 +330,12 @@ def wrapped_degrees(words: str, step: LessonStep, folder: Path) -> str:
 
 
 def values_above_the_limit(words: str, step: LessonStep, folder: Path) -> str:
-    from kit.learning.training.boltzmann_dqn import MAX_EXPONENT  # brings torch along
+    from kit.learning.training.presets import SEED_DQN  # brings torch along
 
-    return f"The library took all values above {MAX_EXPONENT:g} for equal"
+    limit = SEED_DQN.settings.value_limit  # type: ignore[union-attr]  # a deep Q-network's
+    if words.startswith("Its"):
+        return f"Its library had the limit of {limit:g}"
+    return f"The library took all values above {limit:g} for equal"
 
 
 def pairs_of_actions(words: str, step: LessonStep, folder: Path) -> str:
@@ -342,8 +345,10 @@ def pairs_of_actions(words: str, step: LessonStep, folder: Path) -> str:
     with_three = f"with three robots of 7 it would be {count(7, 3)}"
     texts = (
         f"{count(7, 2)}, one for each pair of actions.",
-        f"Yes, 7 x 7. With 4 actions each it would be {count(4, 2)}, and {with_three}.",
+        f"These are 7 x 7. With 4 actions each it would be {count(4, 2)}, and {with_three}.",
         f"With 4 actions each, {count(4, 2)} pairs",
+        f"the largest of {count(7, 2)} guesses",
+        f"{count(7, 2)} actions",
     )
     return next((each for each in texts if each == words), texts[0])
 

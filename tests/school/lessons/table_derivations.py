@@ -12,9 +12,14 @@ import numpy as np
 
 from kit.learning.environment.env import TurnEnv
 from kit.learning.environment.grid_world import SMALL_TARGET, GridCell, GridWorld
+from kit.learning.policies.policies import ActionValueTable
+from kit.learning.tasks.catalogue import TURN
+from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.grid_learner import GridAlgorithm, GridLearner, GridLearnerSettings
-from kit.learning.training.presets import TabularParams
+from kit.learning.training.presets import TabularParams, find_preset
 from kit.learning.training.tabular import MAX_STATES
+from kit.learning.training.training import make_learner
 from kit.school.lessons.records import LearningScene, LessonStep
 from tests.kit_content import kit_lesson
 from tests.learning import worlds
@@ -220,9 +225,50 @@ def table_states(words: str, step: LessonStep, folder: Path) -> str:
     """What the agent sees, and into how many parts each number is sorted; all of it fits into a table."""
     parts = len(TabularParams().edges) + 1
     assert parts**SEEN <= MAX_STATES
-    counts = {9: "nine"}
-    names = {3: "near, middle and far"}
-    return f"sort each of its {counts[SEEN]} distances into {names[parts]}"
+    assert parts == 3
+    return f"sort each of its { {9: 'nine'}[SEEN] } distances into near"
+
+
+@cache
+def robots_table() -> ActionValueTable:
+    """The table that ``kit train turn --algo q-learning`` begins with."""
+    algorithm = find_algorithm("q-learning")
+    learner = make_learner(
+        algorithm, find_preset("kit", algorithm, TURN.preset), TaskSpec("turn"), TURN, seed=0
+    )
+    model = learner.policy().model
+    assert isinstance(model, ActionValueTable)
+    return model
+
+
+def row_of(distances: list[float]) -> int:
+    """The row of the table for what the robot measures [m]."""
+    seen = np.array([distances], dtype=np.float32) * np.float32(TURN.observation.scale)
+    return int(robots_table().states(seen)[0])
+
+
+def table_edges(words: str, step: LessonStep, folder: Path) -> str:
+    near, far = (each / TURN.observation.scale for each in robots_table().edges)
+    return f"near (less than {near:.1f} m), middle and far ({far:.1f} m or more)"
+
+
+def table_rows(words: str, step: LessonStep, folder: Path) -> str:
+    """By the scans that lead to the first and to the last row, and by how far one distance moves the row."""
+    assert row_of([0.0] * SEEN) == 0
+    parts = [row_of([0.0] * (SEEN - 1) + [distance]) for distance in (0.2, 0.5, 2.0)]
+    return {
+        "from": f"from 0 to {row_of([2.0] * SEEN):,}",
+        "write": f"write {parts[0]}, {parts[1]} or {parts[2]} for each",
+        "a": f"a number in base {len(parts)}",
+    }[words.split()[0]]
+
+
+def table_row(words: str, step: LessonStep, folder: Path) -> str:
+    """Of the picture's distances."""
+    first = step.picture.splitlines()[0]
+    distances = [float(each) for each in re.findall(r"\d\.\d+", first)]
+    assert len(distances) == SEEN
+    return f"1*3 + 0 = {row_of(distances):,}"
 
 
 # SARSA on a cliff
@@ -368,6 +414,9 @@ TABLE_DERIVATIONS: Final = (
     found_by_sixty,
     both_arrive,
     table_states,
+    table_edges,
+    table_rows,
+    table_row,
     cliff_rewards,
     cliff_epsilon,
     cliff_paths,

@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from grader.grading import GradingOptions, grade
-from grader.kinds.answers import AnswerQuestion
+from grader.kinds.answers.kind import AnswerQuestion
 from grader.reading import read_assignment
 from grader.submission import read_submission
 from kit.host.sandbox.confinement import Level

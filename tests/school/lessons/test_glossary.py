@@ -23,7 +23,7 @@ EMPHASIS = frozenset(
     |8 m wide and 6 m high|middle|4 m wide and 3 m high|centimetres|y points to the left.|in that body's frame|3 cm
     |2 cm|sixteen layers|they share at least one layer|all|the laser's|every|two|third|everyone|not|proof|prove
     |no two fit one layer|three|fewest|everything|ten|four|name|stopped|speed divided by rate|0.3 m|and|once
-    |in proportion|on its right|whole episode|difference|beginner|all of it lost|not below|worst|keep the best|wall
+    |in proportion|on its right|whole episode|difference|beginner|not below|worst|keep the best|wall
     |Side by side|lower left corner|measure something|told what to do
     |A wall runs along the edge between a dark and a bright pixel.|is there a future from here?|around it
     """.replace("\n    ", "").split("|")

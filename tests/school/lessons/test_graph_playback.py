@@ -8,7 +8,7 @@ import pytest
 
 from kit.controllers import find_controller
 from kit.render.encode import AsciiEncoder
-from kit.render.graph_layout import build_graph_data
+from kit.render.graph_data import build_graph_data
 from kit.ros.graph.snapshot import snapshot
 from kit.run.scenario import find_scenario
 from kit.run.session import Session

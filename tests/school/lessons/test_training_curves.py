@@ -45,6 +45,23 @@ def test_three_trainings_are_three_curves() -> None:
     assert curves.describe()[0] == "training 1 of 3: tests 25 83 %"
 
 
+def test_the_figure_that_is_judged_stands_beside_the_curve() -> None:
+    """That of the exam, which may be far from the last test."""
+    text = told([(90_000, 0.42)], [(90_000, 0.32)], count=2)
+    curves = read_training_curves(f"{text}training 1 of 2, exam: 58 %\n")
+    assert curves is not None
+    assert curves.exams == {1: 58}
+    for columns in (60, 76):
+        names = curves.picture(columns, AsciiEncoder())[0]
+        assert "training 1, exam 0.58" in names
+        assert "training 2" in names
+        assert names.count("exam") == 1
+    assert curves.describe() == [
+        "training 1 of 2: tests 42 %, exam 58 %",
+        "training 2 of 2: tests 32 %",
+    ]
+
+
 def test_a_curve_grows_with_what_is_said() -> None:
     whole = told([(30_000, 0.2), (60_000, 0.7), (90_000, 0.9)])
     pictures = []

@@ -9,6 +9,7 @@ from typing import Final
 from tests.school.quiz.derived.actions import ACTIONS
 from tests.school.quiz.derived.bags import BAGS
 from tests.school.quiz.derived.capstone import CAPSTONE
+from tests.school.quiz.derived.failures import FAILURES
 from tests.school.quiz.derived.fields import FIELDS
 from tests.school.quiz.derived.finding import Derivation
 from tests.school.quiz.derived.followers import FOLLOWERS
@@ -56,6 +57,7 @@ DERIVATIONS: Final[Mapping[str, Derivation]] = MappingProxyType(
         **CAPSTONE,
         **IMITATION,
         **OWN_TASKS,
+        **FAILURES,
     }
 )
 """By the name that an item's ``derived`` gives."""

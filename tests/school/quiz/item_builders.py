@@ -8,9 +8,9 @@ from pathlib import Path
 from kit.document.layout import Page, rows_of
 from kit.document.rows import MARGIN, Row, text_width
 from kit.school.progress import EventKind, ProgressEvent
+from kit.school.quiz.answers import NOT_SURE, AnswerChoice, AnswerOccasion, event_content
 from kit.school.quiz.items import AnswerOption, QuestionBank, QuizItem, QuizTopic, build_bank
 from kit.school.quiz.quiz_dialogue import QuizDialogue
-from kit.school.quiz.schedule import NOT_SURE, AnswerChoice, AnswerOccasion, event_content
 from kit.tui.screens.dialogue import WIDEST
 from kit.world.records import SourceLocation
 

@@ -11,8 +11,8 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.school.lessons.reading import lesson_names, lessons_folder
+from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice
 from kit.school.quiz.items import IDEA_COUNT, OPTION_COUNT, QUIZ_FILE, QuizItem, QuizTopic
-from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice
 from tests.cases import every_case
 from tests.kit_content import kit_bank, kit_lesson
 from tests.school.quiz.item_builders import asked, shown_rows, told_rows

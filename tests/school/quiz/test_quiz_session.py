@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
+from kit.school.quiz.answers import NOT_SURE, AnswerChoice, AnswerOutcome
 from kit.school.quiz.items import QuizTopic, build_bank
 from kit.school.quiz.quiz_session import (
     SEED_SUBJECT,
@@ -17,7 +18,6 @@ from kit.school.quiz.quiz_session import (
     quiz_plan,
     student_seed,
 )
-from kit.school.quiz.schedule import NOT_SURE, AnswerChoice, AnswerOutcome
 from tests.school.quiz.item_builders import MONDAY, bank, item
 
 BANK = build_bank(

@@ -7,18 +7,7 @@ from collections.abc import Sequence
 
 from kit.document.layout import Page, lines_of
 from kit.school.progress import EventKind, ProgressEvent
-from kit.school.quiz.items import QuizTopic
-from kit.school.quiz.quiz_text import (
-    OutcomeCounts,
-    calibration_blocks,
-    count_by_topic,
-    count_outcomes,
-    follow_up_blocks,
-    latest_answers,
-    measure_calibration,
-    tally_line,
-)
-from kit.school.quiz.schedule import (
+from kit.school.quiz.answers import (
     BLANK,
     NOT_SURE,
     AnswerChoice,
@@ -26,8 +15,17 @@ from kit.school.quiz.schedule import (
     AnswerOutcome,
     answer_from_event,
     answers_from_events,
-    round_history,
 )
+from kit.school.quiz.items import QuizTopic
+from kit.school.quiz.quiz_scores import (
+    OutcomeCounts,
+    count_by_topic,
+    count_outcomes,
+    latest_answers,
+    measure_calibration,
+)
+from kit.school.quiz.quiz_text import calibration_blocks, follow_up_blocks, tally_line
+from kit.school.quiz.schedule import round_history
 from tests.cases import every_case
 from tests.kit_content import kit_bank, kit_lesson
 from tests.school.quiz.item_builders import MONDAY, answered, bank, told_rows

@@ -9,18 +9,10 @@ import pytest
 
 from kit.document.layout import lines_of
 from kit.school.progress import EventKind, ProgressEvent
+from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
 from kit.school.quiz.items import QuestionBank, QuizItem, QuizTopic
 from kit.school.quiz.quiz_text import schedule_blocks, today_line
-from kit.school.quiz.schedule import (
-    BLANK,
-    GAP_DAYS,
-    NOT_SURE,
-    PRACTICE_SIZE,
-    AnswerChoice,
-    AnswerOccasion,
-    PracticeSchedule,
-    build_schedule,
-)
+from kit.school.quiz.schedule import GAP_DAYS, PRACTICE_SIZE, PracticeSchedule, build_schedule
 from tests.school.quiz.item_builders import MONDAY, answered, bank
 
 BANK = bank(ros2=6, layers=6, rl=2)

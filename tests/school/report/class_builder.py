@@ -12,19 +12,12 @@ from typing import Any
 
 import numpy as np
 
+from kit.school.form_answers import FormAnswers, asked_questions
+from kit.school.form_reading import read_form
 from kit.school.progress import FORMAT, VERSION, EventKind, ProgressEvent
+from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion, event_content
 from kit.school.quiz.items import QuizItem, read_bank
-from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion, event_content
-from kit.school.survey import (
-    AnswerShape,
-    AnswerValue,
-    FormAnswers,
-    SurveyForm,
-    SurveyPhase,
-    SurveyQuestion,
-    asked_questions,
-    read_form,
-)
+from kit.school.survey import AnswerShape, AnswerValue, SurveyForm, SurveyPhase, SurveyQuestion
 
 START = datetime(2026, 9, 14, 9, 0, tzinfo=UTC)
 LESSONS = (("01-drive", "flag"), ("02-nodes-and-topics", "echo"))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kit.school import progress
+from kit.school import progress_export
 from kit.school.progress import FORMAT, VERSION, EventKind, ProgressJournal
 from kit.school.report.class_data import read_roster, started_lessons, student_work
 from tests.cases import every_case
@@ -146,7 +146,7 @@ def test_files_that_are_not_there_or_not_files(tmp_path: Path) -> None:
 def test_a_file_larger_than_any_export_is_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = diary("Ada").export(tmp_path)
     assert len(read_roster([file]).students) == 1
-    monkeypatch.setattr(progress, "MAX_EXPORT_BYTES", file.stat().st_size - 1)
+    monkeypatch.setattr(progress_export, "MAX_EXPORT_BYTES", file.stat().st_size - 1)
     roster = read_roster([file])
     assert not roster.students
     assert "larger than" in roster.warnings[0]

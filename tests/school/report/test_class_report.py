@@ -24,12 +24,14 @@ from kit.document.blocks import (
     ScatterPlot,
     Table,
 )
-from kit.document.files import document_to_html, document_to_json, plot_to_svg, table_to_csv
+from kit.document.data_files import document_to_json, table_to_csv
 from kit.document.glyphs import ASCII_GLYPHS, BLOCK_GLYPHS
+from kit.document.html import document_to_html
 from kit.document.layout import document_lines, lines_of
+from kit.document.svg import plot_to_svg
 from kit.document.tables import MAX_CELL_LENGTH
 from kit.school.progress import EventKind
-from kit.school.quiz.schedule import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
+from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOccasion
 from kit.school.report.class_data import ClassData, build_class_data, read_roster
 from kit.school.report.class_report import CHAPTER_IDS, build_report, prepare_report
 from kit.school.report.measures import ReportItem

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from kit.school.quiz.schedule import AnswerOutcome
+from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.measures import BLANK, AnswerSheet, ItemReply, ReportItem, analyse_item, kr20
 from tests.cases import every_case
 

@@ -21,16 +21,10 @@ from textual.drivers import linux_driver
 from textual.drivers._writer_thread import WriterThread
 from textual.drivers.linux_driver import LinuxDriver
 
-from kit.tui.input.driver import (
-    FATAL,
-    KeyboardAnswer,
-    KeyParser,
-    KeyReleased,
-    KeyRepeated,
-    key_driver,
-    restore_terminal,
-)
+from kit.tui.input.driver import key_driver
+from kit.tui.input.key_parser import KeyboardAnswer, KeyParser, KeyReleased, KeyRepeated
 from kit.tui.input.protocol import RELEASES_OFF, RELEASES_ON
+from kit.tui.input.terminal_guard import FATAL, restore_terminal
 from tests.cases import every_case
 
 PRESSES = {

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from kit.tui.input.drive import KeyboardDrive
-from kit.tui.input.modes import RepeatMode, Rhythm
+from kit.tui.input.key_rhythm import Rhythm
+from kit.tui.input.modes import RepeatMode
 
 ONE_WAY = 0.03
 TAP = 0.08

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import itertools
 
-from kit.tui.input.modes import DRIVE_KEYS, KeyState, KeyTransition, base_key, drive_key
+from kit.tui.input.drive_keys import DRIVE_KEYS, base_key, drive_key
+from kit.tui.input.key_rhythm import KeyState, KeyTransition
 from tests.cases import every_case
 
 

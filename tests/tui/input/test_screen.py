@@ -14,7 +14,7 @@ from textual.screen import Screen
 from textual.widgets import Input, Static
 
 from kit.tui.input.drive import DriveState
-from kit.tui.input.driver import KeyboardAnswer, KeyReleased, KeyRepeated
+from kit.tui.input.key_parser import KeyboardAnswer, KeyReleased, KeyRepeated
 from kit.tui.input.modes import RepeatMode
 from kit.tui.input.screen import DriveScreen
 from kit.tui.terminal import TerminalFacts, decide_terminal

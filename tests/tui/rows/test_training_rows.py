@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from kit.learning.environment.episode_stats import EpisodeOutcome
-from kit.learning.environment.tasks import TASKS
+from kit.learning.tasks.catalogue import TASKS
 from kit.learning.training.events import Evaluated, TrainingEvent, TrainingProgress
 from kit.learning.training.run_status import RECENT_REPORTS, RunPlan, RunStatus, RunTracker
 from kit.tui.rows import training_rows

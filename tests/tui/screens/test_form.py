@@ -8,10 +8,12 @@ from pathlib import Path
 import pytest
 from textual.pilot import Pilot
 
+from kit.school.form_answers import FormAnswers
 from kit.school.form_dialogue import FormDialogue
+from kit.school.form_reading import read_form
 from kit.school.form_session import FormSession
 from kit.school.progress import EventKind, ProgressJournal
-from kit.school.survey import AnswerShape, AnswerValue, FormAnswers, SurveyPhase, read_form
+from kit.school.survey import AnswerShape, AnswerValue, SurveyPhase
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.tui.widgets.text_field import AnswerField

@@ -10,8 +10,8 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
-from kit.tui.input.driver import KeyboardAnswer, KeyReleased, KeyRepeated
-from kit.tui.input.modes import DRIVE_KEYS
+from kit.tui.input.drive_keys import DRIVE_KEYS
+from kit.tui.input.key_parser import KeyboardAnswer, KeyReleased, KeyRepeated
 from kit.tui.screens.key_test import KeyTestScreen
 from tests.tui.lesson_stage import rows
 

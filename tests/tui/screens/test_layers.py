@@ -13,7 +13,8 @@ from textual.pilot import Pilot
 from kit.layers.case_sources import open_task
 from kit.layers.requirements import ContactRequirement, SightRequirement
 from kit.layers.requirements_file import read_requirements
-from kit.tui.screens.layers import CaseEditor, LayersScreen
+from kit.tui.screens.layer_case_editor import CaseEditor
+from kit.tui.screens.layers import LayersScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.theme import Theme
 from tests.tui.lesson_stage import rows, text

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.screen import Screen
 
+from kit.part_file import lock_part, part_path
 from kit.run.recording import load_recording
 from kit.run.session import Session
 from kit.school.lessons.lesson_session import LessonSession
@@ -102,6 +104,53 @@ def test_beginning_anew_is_a_new_recording(tmp_path: Path, progress: ProgressJou
 
     stage(lambda theme: opened(tmp_path, progress, theme), scene)
     assert not file.exists()
+
+
+@pytest.mark.long
+def test_what_a_killed_drive_has_left_is_restored_by_the_next_and_said(
+    tmp_path: Path, progress: ProgressJournal, file: Path
+) -> None:
+    """It is on the disk while it is driven: what lies there then is what a kill leaves."""
+    part, left = part_path(file), b""
+
+    async def first(pilot: Pilot[None]) -> None:
+        nonlocal left
+        screen = await drive(pilot)
+        await pilot.press("left")
+        await until(pilot, lambda: screen.view is not None and screen.view.time_s > 2.0, "two seconds")
+        left = part.read_bytes()
+        await pilot.press("escape")
+        await until(pilot, file.exists, "the drive")
+
+    async def second(pilot: Pilot[None]) -> None:
+        await drive(pilot)
+        assert "restored from a run that was killed" in text(pilot)
+
+    stage(lambda theme: opened(tmp_path, progress, theme), first)
+    assert not part.exists()
+    whole = load_recording(file)
+    part.write_bytes(left)
+    shutil.rmtree(tmp_path / "lessons")  # to be written once more
+    stage(lambda theme: opened(tmp_path, progress, theme), second)
+    assert not part.exists()
+    restored = load_recording(file.with_name("drive-2.npz"))
+    assert 50 <= restored.ticks <= whole.ticks
+    assert (restored.place, restored.case) == (whole.place, whole.case)
+
+
+@pytest.mark.long
+def test_a_drive_into_a_file_that_another_program_writes_is_refused(
+    tmp_path: Path, progress: ProgressJournal, file: Path
+) -> None:
+    file.parent.mkdir(parents=True)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "press d to drive")
+        await pilot.press("d")
+        await seen(pilot, "The drive could not be saved")
+
+    with lock_part(part_path(file), file):
+        stage(lambda theme: opened(tmp_path, progress, theme), scene)
 
 
 @pytest.mark.long

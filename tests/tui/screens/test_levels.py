@@ -14,9 +14,10 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
+from kit.learning.authoring.new_task import new_task_file
 from kit.learning.tasks.learning_task import REACH_TARGET
-from kit.learning.tasks.task_template import new_task_file
-from kit.mapmaking.new_map import read_drawing, write_map
+from kit.mapmaking.map_drawing import read_drawing
+from kit.mapmaking.new_map import write_map
 from kit.school.game import ghosts, leaderboard, references
 from kit.school.game.challenges import all_challenges
 from kit.school.game.drive_records import DriveRecord, record_drive

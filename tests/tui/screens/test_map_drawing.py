@@ -7,7 +7,9 @@ from pathlib import Path
 import pytest
 from textual.pilot import Pilot
 
-from kit.mapmaking.new_map import MapSketch, NewMap, read_drawing, write_map
+from kit.mapmaking.map_drawing import read_drawing
+from kit.mapmaking.map_sketch import MapSketch
+from kit.mapmaking.new_map import NewMap, write_map
 from kit.tui.screens import map_drawing
 from kit.tui.screens.map_drawing import MapDrawingScreen, SketchView
 from kit.tui.theme import Theme

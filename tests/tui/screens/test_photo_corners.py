@@ -7,14 +7,8 @@ import pytest
 from PIL import Image, ImageDraw
 from textual.pilot import Pilot
 
-from kit.mapmaking.photo import (
-    Scale,
-    SheetNotFound,
-    find_sheet,
-    order_corners,
-    plan_from_photo,
-    refine_corners,
-)
+from kit.mapmaking.photo import Scale, plan_from_photo
+from kit.mapmaking.sheet import SheetNotFound, find_sheet, order_corners, refine_corners
 from kit.tui.screens.photo_corners import PhotoCornersScreen, PhotoView
 from tests.tui.lesson_stage import rows, seen, stage, text, until
 

@@ -9,7 +9,6 @@ import pytest
 from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import (
     ActionSampling,
     LinearLayer,
@@ -18,6 +17,7 @@ from kit.learning.policies.policies import (
     save_policy,
     task_interface,
 )
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import RunConfig, create_run
 from kit.run.headless import run_episode
 from kit.run.recording import load_recording

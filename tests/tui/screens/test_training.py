@@ -10,7 +10,6 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
-from kit.learning.environment.tasks import TaskSpec
 from kit.learning.policies.policies import (
     ActionSampling,
     LinearLayer,
@@ -19,6 +18,7 @@ from kit.learning.policies.policies import (
     save_policy,
     task_interface,
 )
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run
 from kit.render.curve import Axes, Curve
 from kit.render.encode import AsciiEncoder

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from textual.pilot import Pilot
 
-from kit.learning.environment.tasks import TaskSpec
+from kit.learning.authoring.new_task import new_task_file
 from kit.learning.policies.policies import (
     ActionSampling,
     LinearLayer,
@@ -19,7 +19,7 @@ from kit.learning.policies.policies import (
     save_policy,
     task_interface,
 )
-from kit.learning.tasks.task_template import new_task_file
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run, find_run, list_runs
 from kit.learning.training.training_sweep import TrainingSweep
 from kit.tui.screens.new_training import NewTrainingScreen, TrainingChoices

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from kit.ros.graph.snapshot import FieldSample
+from kit.ros.graph.topic_statistics import FieldSample
 from kit.tui.widgets.field_plot import LARGEST, field_curve, first_field, item_count, plot_note, why_not
 from tests.tui.lesson_stage import row_text
 

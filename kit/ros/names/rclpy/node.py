@@ -79,25 +79,21 @@ if TYPE_CHECKING:
         AllowableParameterValue as AllowableParameterValue,
         AllowableParameterValueT as AllowableParameterValueT,
         MsgT as MsgT,
-        MsgT as _MsgType,
+        MsgT as MsgType,
         Srv as Srv,
         SrvEventT as SrvEventT,
         SrvRequestT as SrvRequestT,
-        SrvRequestT as _SrvTypeRequest,
+        SrvRequestT as SrvTypeRequest,
         SrvResponseT as SrvResponseT,
-        SrvResponseT as _SrvTypeResponse,
-        SrvT as _SrvType,
+        SrvResponseT as SrvTypeResponse,
+        SrvT as SrvType,
         check_is_valid_msg_type as check_is_valid_msg_type,
         check_is_valid_srv_type as check_is_valid_srv_type,
     )
 
     GuardCondition = _GuardCondition
-    MsgType = _MsgType
     ParameterMsg = _ParameterMsg
     ParameterService = _ParameterService
-    SrvType = _SrvType
-    SrvTypeRequest = _SrvTypeRequest
-    SrvTypeResponse = _SrvTypeResponse
     LoggingService: Any
     TimeSource: Any
     TypeDescriptionService: Any

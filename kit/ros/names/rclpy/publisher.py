@@ -18,9 +18,8 @@ if TYPE_CHECKING:
     )
     from kit.ros.node.qos import QoSProfile as QoSProfile
     from kit.ros.node.time import Duration as Duration
-    from kit.ros.type_support import MsgT as MsgT, MsgT as _MsgType
+    from kit.ros.type_support import MsgT as MsgT, MsgT as MsgType
 
-    MsgType = _MsgType
     QoSEventHandler = _QoSEventHandler
 else:
     _LATE_NAMES = {

@@ -46,28 +46,16 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from enum import IntEnum as IntEnum, IntEnum as IntEnum
-    from kit.ros.execution.callback_groups import CallbackGroup as CallbackGroup, CallbackGroup as CallbackGroup
-    from kit.ros.execution.client_library import get_logger as get_logger, get_logger as get_logger
-    from kit.ros.node.waitable import (
-        NumberOfEntities as NumberOfEntities,
-        NumberOfEntities as NumberOfEntities,
-        Waitable as Waitable,
-        Waitable as Waitable,
-    )
+    from enum import IntEnum as IntEnum
+    from kit.ros.execution.callback_groups import CallbackGroup as CallbackGroup
+    from kit.ros.execution.client_library import get_logger as get_logger
+    from kit.ros.node.waitable import NumberOfEntities as NumberOfEntities, Waitable as Waitable
     EventHandlerData: Any
-    qos_policy_name_from_kind: Any
     qos_policy_name_from_kind: Any
 else:
     _LATE_NAMES = {
         "CallbackGroup": "kit.ros.execution.callback_groups:CallbackGroup",
         "EventHandlerData": "!rclpy's library in C, in whose place the kit has a graph of its own",
-        "IntEnum": "enum:IntEnum",
-        "NumberOfEntities": "kit.ros.node.waitable:NumberOfEntities",
-        "Waitable": "kit.ros.node.waitable:Waitable",
-        "get_logger": "kit.ros.execution.client_library:get_logger",
-        "qos_policy_name_from_kind": "!rclpy's library in C, in whose place the kit has a graph of its own",
-        "CallbackGroup": "kit.ros.execution.callback_groups:CallbackGroup",
         "IntEnum": "enum:IntEnum",
         "NumberOfEntities": "kit.ros.node.waitable:NumberOfEntities",
         "Waitable": "kit.ros.node.waitable:Waitable",

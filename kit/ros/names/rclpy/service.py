@@ -18,15 +18,11 @@ if TYPE_CHECKING:
         Srv as Srv,
         SrvEventT as SrvEventT,
         SrvRequestT as SrvRequestT,
-        SrvRequestT as _SrvTypeRequest,
+        SrvRequestT as SrvTypeRequest,
         SrvResponseT as SrvResponseT,
-        SrvResponseT as _SrvTypeResponse,
-        SrvT as _SrvType,
+        SrvResponseT as SrvTypeResponse,
+        SrvT as SrvType,
     )
-
-    SrvType = _SrvType
-    SrvTypeRequest = _SrvTypeRequest
-    SrvTypeResponse = _SrvTypeResponse
 else:
     _LATE_NAMES = {
         "CallbackGroup": "kit.ros.execution.callback_groups:CallbackGroup",

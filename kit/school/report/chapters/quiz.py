@@ -22,7 +22,7 @@ from kit.document.blocks import (
     p_value_text,
 )
 from kit.learning.policies.confidence_intervals import wilson_interval
-from kit.school.quiz.schedule import AnswerOutcome
+from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.chapters.context import (
     SHARE_BOUNDS,
     ReportContext,

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from kit.learning.environment.env import TaskEnv, TurnEnv
-from kit.learning.environment.rewards import ALGORITHM_3, Reward, TermWeight
-from kit.learning.environment.tasks import TURN
-from kit.learning.environment.transition import Transition
 from kit.learning.policies.confidence_intervals import lower_bound
+from kit.learning.tasks.catalogue import TURN
+from kit.learning.tasks.rewards import ALGORITHM_3, Reward, TermWeight
+from kit.learning.tasks.transition import Transition
 from kit.learning.training.presets import LinearSchedule
 from kit.learning.training.tabular import QLearning, Sarsa, TableLearner
 from kit.school.quiz.items import QuizItem

@@ -8,7 +8,7 @@ import numpy as np
 
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.grid_world import GridRewards, GridWorld
-from kit.learning.environment.tasks import TaskSpec
+from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.grid_learner import GridLearner, GridLearnerSettings
 from kit.school.lessons.reading import lessons_folder
 from kit.school.quiz.items import QuizItem

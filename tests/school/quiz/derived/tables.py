@@ -86,22 +86,21 @@ def off_policy(item: QuizItem, folder: Path) -> Finding:
 
 
 def smaller_alpha(item: QuizItem, folder: Path) -> Finding:
-    """Over many seeds: how often do the best moves lead to the target, and how large are the values?"""
+    """Of many trainings, those with smaller values: do their best moves lead to the target more seldom, or more often?"""
     world = GridWorld(("..#...G", "..#.#..", "....#..", "S......"))
     solved, largest = {}, {}
     for alpha in (0.1, 1.0):
         many = [trained(world, GridLearnerSettings(alpha=alpha, seed=seed), 20) for seed in range(12)]
         solved[alpha] = sum(each.is_solved for each in many)
         largest[alpha] = np.mean([each.values.mean() for each in many])
+    assert largest[0.1] < largest[1.0]
     difference = solved[0.1] - solved[1.0]
-    policy = "as good" if abs(difference) <= 1 else "better" if difference > 0 else "worse"
-    values = "smaller" if largest[0.1] < largest[1.0] else "exact"
     return Finding(
-        (policy, values),
+        0 if abs(difference) <= 1 else difference // abs(difference),
         {
-            "It is as good, with smaller values": ("as good", "smaller"),
-            "It is worse, with smaller values": ("worse", "smaller"),
-            "It is better, with exact values": ("better", "exact"),
+            "Nothing, if each cell's order is the same": 0,
+            "That it leads to the target more seldom": -1,
+            "That it leads to the target more often": 1,
         },
     )
 

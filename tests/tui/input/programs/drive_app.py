@@ -16,7 +16,8 @@ from textual.screen import Screen
 from textual.widgets import Static
 
 from kit.tui.input.drive import DriveState
-from kit.tui.input.driver import KeyboardAnswer, KeyDriver
+from kit.tui.input.driver import KeyDriver
+from kit.tui.input.key_parser import KeyboardAnswer
 from kit.tui.input.modes import KeyEventKind
 from kit.tui.input.screen import DriveScreen
 

@@ -10,7 +10,7 @@ import threading
 import tty
 from types import FrameType
 
-from kit.tui.input.driver import TerminalGuard
+from kit.tui.input.terminal_guard import TerminalGuard
 
 
 def own_handler(number: int, frame: FrameType | None) -> None:

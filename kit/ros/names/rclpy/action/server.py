@@ -4,7 +4,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from kit.ros.action.client import GoalEvent
+from kit.ros.action.goal_states import GoalEvent
 from kit.ros.action.server import (
     ActionServer,
     CancelResponse,

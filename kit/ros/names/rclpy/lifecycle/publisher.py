@@ -15,9 +15,7 @@ if TYPE_CHECKING:
     from kit.ros.node.events import PublisherEventCallbacks as PublisherEventCallbacks
     from kit.ros.node.publisher import Publisher as Publisher
     from kit.ros.node.qos import QoSProfile as QoSProfile
-    from kit.ros.type_support import MsgT as MsgT, MsgT as _MsgType
-
-    MsgType = _MsgType
+    from kit.ros.type_support import MsgT as MsgT, MsgT as MsgType
     LifecyclePublisherArgs: Any
     LifecyclePublisherKWArgs: Any
 else:

@@ -1,0 +1,248 @@
+"""The roster of a class: who is in it, as Moodle, Canvas, Gradescope and GitHub Classroom export it, and whose work is whose.
+
+A roster is a CSV file with a line of column titles. Whose form it has is told by these titles; one of a teacher's own has
+``name``, ``email``, ``id``, ``login`` and ``group``, of which one is enough. The file's own rows are kept, so that a grade can go
+back into them.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+import unicodedata
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Final
+
+from kit.plain_files import read_plain_file
+from kit.plain_text import join_names
+
+MAX_BYTES: Final = 32 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class Student:
+    """One student of the class. What the roster does not say is empty."""
+
+    name: str = ""
+    email: str = ""
+    id: str = ""
+    """The number by which the university or the learning platform knows the student."""
+    login: str = ""
+    group: str = ""
+    """Students of one group hand in one work."""
+    number: str = ""
+    """What downloads of the platform write beside the name: Moodle's participant, Canvas's ID."""
+
+    @property
+    def label(self) -> str:
+        """What the student is called in lists."""
+        return self.name or self.email or self.login or self.id
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Everything by which this student can be meant, but for the group."""
+        return tuple(each for each in (self.email, self.id, self.login, self.number, self.name) if each)
+
+
+@dataclass(frozen=True, slots=True)
+class RosterForm:
+    """The form of one platform's export."""
+
+    platform: str
+    told_by: tuple[str, ...]
+    """The column titles that only this form has, as ``_title`` writes them."""
+    columns: Mapping[str, tuple[str, ...]]
+    """Titles of the columns of each field of ``Student``; more than one are put together with a blank."""
+
+
+FORMS: Final = (
+    RosterForm(
+        "moodle",
+        ("identifier", "full name", "grade"),
+        {
+            "number": ("identifier",),
+            "name": ("full name",),
+            "id": ("id number",),
+            "email": ("email address",),
+            "group": ("group",),
+        },
+    ),
+    RosterForm(
+        "moodle",
+        ("email address",),
+        {
+            "name": ("first name", "surname|last name"),
+            "id": ("id number",),
+            "email": ("email address",),
+            "group": ("groups",),
+        },
+    ),
+    RosterForm(
+        "canvas",
+        ("student", "id", "section"),
+        {"name": ("student",), "number": ("id",), "id": ("sis user id",), "login": ("sis login id",)},
+    ),
+    RosterForm(
+        "gradescope",
+        ("sid",),
+        {"name": ("first name|name|full name", "last name"), "id": ("sid",), "email": ("email",)},
+    ),
+    RosterForm(
+        "github",
+        ("identifier", "github username"),
+        {"name": ("name",), "id": ("identifier",), "login": ("github username",)},
+    ),
+    RosterForm(
+        "own",
+        (),
+        {each: (each,) for each in ("name", "email", "id", "login", "group")},
+    ),
+)
+"""Every form, of which the first that fits is taken."""
+
+
+@dataclass(frozen=True, slots=True)
+class Roster:
+    """The students of a class, and the file in which they stand."""
+
+    platform: str
+    """Whose form it has: moodle, canvas, gradescope, github or own."""
+    titles: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    """Its rows as they stand in the file, with those that are no student's."""
+    students: Mapping[int, Student]
+    """By index of the row."""
+
+    def find(self, key: str) -> tuple[Student, ...]:
+        """Returns every student that a teacher may mean by a name, an e-mail address, an id, a login or a group."""
+        return self.index.get(look(key), ())
+
+    @property
+    def index(self) -> Mapping[str, tuple[Student, ...]]:
+        """The students by each of their keys."""
+        found: dict[str, list[Student]] = {}
+        for student in self.students.values():
+            for key in {*map(look, student.keys), *([look(student.group)] if student.group else [])}:
+                found.setdefault(key, []).append(student)
+        return MappingProxyType({key: tuple(each) for key, each in found.items()})
+
+
+def look(name: str) -> str:
+    """Returns what a reader takes a name for: without double blanks, letters of other widths, and what cannot be seen."""
+    shown = "".join(
+        sign for sign in unicodedata.normalize("NFKC", name) if sign.isprintable() or sign.isspace()
+    )
+    return " ".join(shown.split()).casefold()
+
+
+def read_roster(file: Path) -> Roster:
+    """Reads a roster. Raises ValueError, with the file and the line, and OSError."""
+    data = read_plain_file(file, MAX_BYTES)
+    try:
+        text = data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("cp1252", "replace")  # how a spreadsheet of Windows saves CSV by default
+    separator = max(",;\t", key=text.partition("\n")[0].count)
+    try:
+        lines = list(csv.reader(io.StringIO(text), delimiter=separator))
+    except csv.Error as error:
+        raise ValueError(f"{file}: not a table in CSV: {error}") from None
+    if not lines:
+        raise ValueError(f"{file}: it is empty; a roster begins with a line of column titles")
+    titles = tuple(lines[0])
+    columns = {_title(each): i for i, each in reversed([*enumerate(titles)])}
+    form = next((each for each in FORMS if all(told in columns for told in each.told_by)), FORMS[-1])
+    places = {
+        name: [at for each in parts if (at := _place(each, columns)) is not None]
+        for name, parts in form.columns.items()
+    }
+    if not any(places.values()):
+        raise ValueError(
+            f"{file}:1: none of the columns is known ({join_names(titles)}): a roster has name, email, id, login or group, "
+            "or is an export of Moodle, Canvas, Gradescope or GitHub Classroom"
+        )
+    students = {}
+    for number, row in enumerate(lines[1:]):
+        fields = {
+            name: " ".join(" ".join(row[at] for at in found if at < len(row)).split())
+            for name, found in places.items()
+        }
+        student = Student(**_tidy(form.platform, fields))
+        if student.keys and not _is_no_student(form.platform, student):
+            students[number] = student
+    if not students:
+        raise ValueError(f"{file}: there is no student in it")
+    return Roster(form.platform, titles, tuple(map(tuple, lines[1:])), MappingProxyType(students))
+
+
+def _title(text: str) -> str:
+    return " ".join(text.strip().casefold().replace("_", " ").split())
+
+
+def _place(names: str, columns: Mapping[str, int]) -> int | None:
+    """The index of a column that has one of these titles, separated by ``|``."""
+    return next((columns[each] for each in names.split("|") if each in columns), None)
+
+
+def _tidy(platform: str, fields: dict[str, str]) -> dict[str, str]:
+    if platform == "canvas":
+        last, comma, first = fields["name"].partition(", ")
+        fields["name"] = f"{first} {last}" if comma else last
+    if platform == "moodle":
+        fields["number"] = fields.get("number", "").removeprefix("Participant ")
+        fields["group"] = fields.get("group", "").strip()
+    return fields
+
+
+def _is_no_student(platform: str, student: Student) -> bool:
+    """Whether this is a row of the platform's own: the most points, or its student for tests."""
+    return platform == "canvas" and student.name.casefold() in ("points possible", "test student")
+
+
+MOODLE_NAME: Final = re.compile(r"(?P<name>.+?)_(?P<number>\d+)_assignsubmission_(file|onlinetext)(_.*)?")
+CANVAS_NAME: Final = re.compile(r"(?P<name>[^_]+)_(LATE_)?(?P<number>\d+)_\d+_.+")
+GRADESCOPE_NAME: Final = re.compile(r"submission_(?P<number>\d+)")
+
+
+@dataclass(frozen=True, slots=True)
+class WorkOwners:
+    """Whose each work of a class is."""
+
+    students: Mapping[str, tuple[Student, ...]]
+    """By the work's name: one student, or those of a group; empty where it fits nobody, or several."""
+    ambiguous: Mapping[str, tuple[Student, ...]]
+    """The works whose name fits more than one student, with these."""
+
+
+def owners_of(works: Iterable[str], roster: Roster) -> WorkOwners:
+    """Finds whose each work is, by its name: that of a file or folder, as platforms write them in their downloads."""
+    index = roster.index
+    groups = {look(each.group) for each in roster.students.values() if each.group}
+    students: dict[str, tuple[Student, ...]] = {}
+    ambiguous: dict[str, tuple[Student, ...]] = {}
+    for work in works:
+        key, found = next(((key, index[key]) for key in _readings(work) if key in index), ("", ()))
+        if len(found) > 1 and key not in groups:
+            ambiguous[work], found = found, ()
+        students[work] = found
+    return WorkOwners(students, ambiguous)
+
+
+def _readings(work: str) -> Iterator[str]:
+    """Yields what the name of a work may mean, the surest first."""
+    yield look(work)
+    for pattern in (MOODLE_NAME, CANVAS_NAME, GRADESCOPE_NAME):
+        if (found := pattern.fullmatch(work)) is not None:
+            yield look(found["number"])
+            if "name" in found.groupdict():
+                yield look(found["name"])
+    yield look(work.partition("@")[0])
+    # GitHub Classroom's repositories are called ASSIGNMENT-LOGIN, and a login may hold hyphens.
+    parts = work.split("-")
+    yield from (look("-".join(parts[first:])) for first in range(1, len(parts)))
+    yield look(work.replace("_", " "))
+    yield look(work.replace(".", " "))

@@ -1,0 +1,186 @@
+"""A layer plan made by hand, in a YAML file: the members of each layer, the layers of each laser, and a proof of minimality.
+
+The submission::
+
+    layers:
+      A: [robot, hall]
+      B: [drone, hall]
+    lasers: {lidar: [A]}
+    proof: [robot - hall, drone - hall, lidar sees hall]
+
+``case`` in the assignment names a requirements file beside it (see ``kit.layers.requirements_file``), or one of the kit's examples; it may be in
+``secret.yaml`` instead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+from typing import Final
+
+from grader.assignment import Assignment
+from grader.check import NoParams, check
+from grader.evidence.contract import EvidenceOptions, EvidenceRecord
+from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once, read_submitted_yaml
+from kit.host.failure import Failure
+from kit.layers.assignment import LayerAssignment as Plan
+from kit.layers.assignment import NamedLayer, RequirementBreach, find_breaches
+from kit.layers.examples import EXAMPLES
+from kit.layers.requirements import (
+    ContactRequirement,
+    LayerCase,
+    Requirement,
+    SightRequirement,
+    layer_conflict,
+)
+from kit.layers.requirements_file import read_requirements
+from kit.plain_text import quoted, suggestion
+from kit.world.problems import WorldError
+from kit.world.yaml_section import Section
+
+MAX_ENTRIES: Final = 64
+"""Layers, and lines of a proof."""
+SIGHT_SEPARATOR: Final = " sees "
+CONTACT_SEPARATOR: Final = " - "
+
+
+@dataclass(frozen=True, slots=True)
+class SubmittedPlan:
+    """The submitted plan together with the requirements it must meet."""
+
+    case: LayerCase
+    plan: Plan
+    proof: tuple[Requirement, ...]
+
+    @property
+    def breaches(self) -> tuple[RequirementBreach, ...]:
+        return find_breaches(self.case, self.plan)
+
+    def combinable_pairs(self) -> Iterator[str]:
+        """Yields the pairs of the proof that one layer could serve; they prove nothing."""
+        for one, other in combinations(self.proof, 2):
+            if layer_conflict(self.case, one, other) is None:
+                yield f"one layer could serve both “{one}” and “{other}”"
+
+
+@check(none=1, full=0, words=("all of them", "not all"))
+def complete(evidence: EvidenceRecord, params: NoParams) -> float:
+    """Not everything that must happen happens in your plan:"""
+    plan: SubmittedPlan = evidence.content
+    return float(sum(breach.is_missing for breach in plan.breaches))
+
+
+@check(none=1, full=0, words=("nothing else", "more than was asked"))
+def nothing_more(evidence: EvidenceRecord, params: NoParams) -> float:
+    """In your plan something happens that must not:"""
+    plan: SubmittedPlan = evidence.content
+    return float(sum(not breach.is_missing for breach in plan.breaches))
+
+
+@check(none=17, full=16, unit="layers")
+def few_layers(evidence: EvidenceRecord, params: NoParams) -> float:
+    """Your plan has {actual}; it can be done with {full}."""
+    submitted: SubmittedPlan = evidence.content
+    return float(len(submitted.plan.layers))
+
+
+@check(none=0, full=1, unit="lines")
+def proof(evidence: EvidenceRecord, params: NoParams) -> float:
+    """A proof is a list of things that must happen, no two of which fit one layer: then each needs a layer of its
+    own. Yours proves {actual}; {full} are wanted."""
+    plan: SubmittedPlan = evidence.content
+    return 0.0 if next(plan.combinable_pairs(), None) else float(len(plan.proof))
+
+
+CHECKS: Final = (complete, nothing_more, few_layers, proof)
+
+
+def read_settings(files: AssignmentFiles) -> KindSettings:
+    """Reads the requirements."""
+    in_secret = not files.public.has("case") and files.secret is not None
+    holder = files.secret if in_secret and files.secret is not None else files.public
+    name = holder.name("case")
+    file = files.folder / name
+    if name in EXAMPLES:
+        return KindSettings(task=EXAMPLES[name])
+    try:
+        return KindSettings(task=read_requirements(file).case)
+    except WorldError as error:
+        holder.error(f"no case: {error}", "case")
+        return KindSettings()
+
+
+def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
+    """Reads the submitted plan."""
+    case: LayerCase = assignment.task
+    plan = read_submitted_yaml(file, lambda section: _read_plan(section, case))
+    if isinstance(plan, Failure):
+        return EvidenceRecord(failure=plan)
+    return EvidenceRecord(plan, label="your plan", explain_with=lambda name, params: _explain(plan, name))
+
+
+def _explain(plan: SubmittedPlan, name: str) -> str:
+    if name == proof.name:
+        return "; ".join(plan.combinable_pairs())
+    if name in (complete.name, nothing_more.name):
+        wanted = name == complete.name
+        return "; ".join(str(breach) for breach in plan.breaches if breach.is_missing is wanted)
+    return ""
+
+
+def _read_plan(section: Section, case: LayerCase) -> SubmittedPlan:
+    layers = []
+    inner = _subsection(section, "layers")
+    for name in () if inner is None else tuple(inner.keys()):
+        assert inner is not None
+        layers.append(NamedLayer(name, frozenset(_known_names(inner, name, case.names, "thing"))))
+    names = [layer.name for layer in layers]
+    watched = _subsection(section, "lasers")
+    watches = {}
+    for laser in () if watched is None else tuple(watched.keys()):
+        assert watched is not None
+        if laser not in case.laser:
+            watched.error(f"no laser {quoted(laser)}: {suggestion(laser, tuple(case.laser))}", laser)
+        watches[laser] = _known_names(watched, laser, names, "layer of yours")
+    lines_given = () if section.is_blank("proof") else section.texts("proof", ())
+    lines = tuple(_requirement(section, line, case) for line in lines_given)
+    if max(len(layers), len(lines)) > MAX_ENTRIES:
+        section.error(f"at most {MAX_ENTRIES} layers and {MAX_ENTRIES} lines of proof")
+    return SubmittedPlan(
+        case, Plan(tuple(layers), watches), tuple(dict.fromkeys(each for each in lines if each))
+    )
+
+
+def _subsection(section: Section, key: str) -> Section | None:
+    """Returns the section of a key; None where it is empty."""
+    return None if section.is_blank(key) else section.section(key, None)
+
+
+def _known_names(
+    section: Section, key: str, known: list[str] | tuple[str, ...], what: str
+) -> tuple[str, ...]:
+    names = () if section.is_blank(key) else section.texts(key, ())
+    for name in names:
+        if name not in known:
+            section.error(f"there is no {what} named {quoted(name)}: {suggestion(name, known)}", key)
+    return names
+
+
+def _requirement(section: Section, line: str, case: LayerCase) -> Requirement | None:
+    """Reads a line of the proof as a requirement of the case; notes an error for any other line."""
+    split = SIGHT_SEPARATOR if SIGHT_SEPARATOR in line else CONTACT_SEPARATOR
+    one, _, other = (part.strip() for part in line.partition(split))
+    plan: Requirement = (
+        SightRequirement(one, other) if split == SIGHT_SEPARATOR else ContactRequirement(one, other)
+    )
+    if plan in case.requirements:
+        return plan
+    section.error(f"{quoted(line)} is nothing that must happen here: write A - B, or LASER sees A", "proof")
+    return None
+
+
+KIND: Final = Kind(
+    (".yaml", ".yml"), {each.name: each for each in CHECKS}, read_settings, collect_once(collect_evidence)
+)

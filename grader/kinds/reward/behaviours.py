@@ -1,0 +1,167 @@
+"""Compares what a reward pays for behaviours: drives to the target, detours, loops."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from grader.kinds.reward.optimal_policy import TimeCheck, rollout, value_iteration, without_limit
+from grader.kinds.reward.task_model import BACK, FORWARD, HEADINGS, LAST_MOVES, LEFT, RIGHT, GridModel
+from kit.arrays import FloatArray
+
+Moves = Sequence[int]
+DETOUR = (LEFT, RIGHT) * 4
+
+START_COUNT = 5
+"""The number of start states from which behaviours are compared."""
+
+
+@dataclass(frozen=True, slots=True)
+class BehaviourComparison:
+    """The returns of two behaviours from the same start; the first should be larger."""
+
+    better: str
+    worse: str
+    better_return: float
+    worse_return: float
+
+    @property
+    def is_ordered(self) -> bool:
+        return self.better_return > self.worse_return + 1e-9 * max(
+            abs(self.better_return), abs(self.worse_return)
+        )
+
+    def __str__(self) -> str:
+        return f"It pays {self.better_return:.3g} for {self.better}, but {self.worse_return:.3g} for {self.worse}."
+
+
+@dataclass(frozen=True, slots=True)
+class LoopComparison:
+    """The returns of a loop that never arrives and of driving to the target."""
+
+    name: str
+    loop_return: float
+    arrival_return: float
+
+    @property
+    def is_profitable(self) -> bool:
+        return self.loop_return >= self.arrival_return - 1e-9 * max(
+            abs(self.loop_return), abs(self.arrival_return)
+        )
+
+    def __str__(self) -> str:
+        return f"{self.name.capitalize()} forever earns {self.loop_return:.3g}, driving to the target only {self.arrival_return:.3g}."
+
+
+def compare_behaviours(
+    model: GridModel, rewards: FloatArray, check_time: TimeCheck = without_limit
+) -> tuple[BehaviourComparison, ...]:
+    """Compares good and bad behaviours from several starts."""
+    return tuple(_compare_behaviours(model, rewards, check_time))
+
+
+def compare_loops(
+    model: GridModel, rewards: FloatArray, check_time: TimeCheck = without_limit
+) -> tuple[LoopComparison, ...]:
+    """Compares every loop that fits into the map with driving to the target, from several starts."""
+    drives = []
+    for start, good in _sample_drives(model, check_time):
+        arrival_return = discounted_return(model, rewards, start, good)
+        for name, loop in LOOPS.items():
+            check_time()
+            if _is_free_loop(model, start, loop):
+                repeated = loop * (model.task.max_steps // len(loop))
+                drives.append(
+                    LoopComparison(name, discounted_return(model, rewards, start, repeated), arrival_return)
+                )
+    return tuple(drives)
+
+
+LOOPS: dict[str, tuple[int, ...]] = {
+    "going forward and back": (FORWARD, BACK),
+    "spinning on the spot": (LEFT,) * HEADINGS,
+    "turning left and right": (LEFT, RIGHT),
+    "driving in a circle": (FORWARD, LEFT) * HEADINGS,
+    "driving in a circle to the right": (FORWARD, RIGHT) * HEADINGS,
+}
+
+
+def discounted_return(model: GridModel, rewards: FloatArray, start: int, moves: Moves) -> float:
+    """Returns the discounted return of a sequence of moves, until the episode ends."""
+    total, weight, state = 0.0, 1.0, start
+    for move in moves[: model.task.max_steps]:
+        total += weight * float(rewards[state, move])
+        weight *= model.task.discount
+        if model.done[state, move]:
+            break
+        state = int(model.next[state, move])
+    return total
+
+
+def _compare_behaviours(
+    model: GridModel, rewards: FloatArray, check_time: TimeCheck
+) -> Iterator[BehaviourComparison]:
+    for start, good in _sample_drives(model, check_time):
+        check_time()
+        direct_return = discounted_return(model, rewards, start, good)
+        slow_return = discounted_return(model, rewards, start, (*DETOUR, *good))
+        crash = _crash_moves(model, start)
+        for name, moves in (
+            ("the same after turning to and fro", (*DETOUR, *good)),
+            ("spinning on the spot until time runs out", (LEFT,) * model.task.max_steps),
+            (
+                "waiting near the target until time runs out",
+                (*good[:-1], *((LEFT, RIGHT) * model.task.max_steps)),
+            ),
+            ("running into a wall", crash),
+        ):
+            yield BehaviourComparison(
+                "driving to the target", name, direct_return, discounted_return(model, rewards, start, moves)
+            )
+        yield BehaviourComparison(
+            "reaching the target slowly",
+            "spinning on the spot until time runs out",
+            slow_return,
+            discounted_return(model, rewards, start, (LEFT,) * model.task.max_steps),
+        )
+
+
+def _sample_drives(model: GridModel, check_time: TimeCheck) -> list[tuple[int, tuple[int, ...]]]:
+    """Returns some start states, each with the moves of a shortest drive to the target."""
+    rewards = np.where(model.reached, 1.0, np.where(model.hit, -1.0, -0.01))
+    policy = value_iteration(model, rewards, check_time)
+    starts = [int(start) for start in model.starts if np.isfinite(model.to_go[model.cell_of(start)])]
+    drives = []
+    for start in starts[len(starts) // (2 * START_COUNT) :: max(1, len(starts) // START_COUNT)][:START_COUNT]:
+        states = rollout(policy, start, model.task.max_steps)
+        moves = (states[1:] % LAST_MOVES).tolist()
+        if len(moves) > 1:
+            drives.append((start, tuple(moves)))
+    return drives
+
+
+def _crash_moves(model: GridModel, start: int) -> Moves:
+    return (
+        (FORWARD,) * model.task.max_steps if _ends_in_wall(model, start) else (BACK,) * model.task.max_steps
+    )
+
+
+def _ends_in_wall(model: GridModel, start: int) -> bool:
+    state = start
+    for _ in range(model.task.max_steps):
+        if model.done[state, FORWARD]:
+            return bool(model.hit[state, FORWARD])
+        state = int(model.next[state, FORWARD])
+    return False
+
+
+def _is_free_loop(model: GridModel, start: int, loop: Moves) -> bool:
+    """True if the loop is closed and free of walls, and does not touch the target."""
+    state = start
+    for move in loop:
+        if model.done[state, move]:
+            return False
+        state = int(model.next[state, move])
+    return bool(model.cell_of(np.array(state)) == model.cell_of(np.array(start)))

@@ -1,0 +1,315 @@
+"""Measures a task that a student posed: its places, its reward, and the result of a short training.
+
+No program of the student's runs. Everything is worked out when a check first asks for it, in the process of
+``posed_task_child``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import permutations
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from grader.evidence.submission_clock import SubmissionClock
+from grader.evidence.training_results import (
+    CaseOrder,
+    PosedTaskPlan,
+    StopRule,
+    TrainingBudget,
+    TrainingResults,
+    TrainingSettings,
+)
+from grader.kinds.task.task_process import PosedMeasure
+from grader.kinds.training.trainings import run_trainings
+from kit.arrays import IntArray
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.episode_stats import EpisodeStats
+from kit.learning.policies.confidence_intervals import lower_bound
+from kit.learning.policies.evaluation import EvaluationResult, Evaluator, derive_seed
+from kit.learning.policies.policies import Policy, PolicyError
+from kit.learning.tasks.actions import DiscreteActions
+from kit.learning.tasks.learning_task import LearningTask, TaskCase
+from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithms import find_algorithm
+from kit.learning.training.presets import LinearSchedule, find_preset
+from kit.learning.training.tabular import table_rows
+from kit.learning.training.training import make_learner
+from kit.plain_files import is_file_there
+from kit.plain_text import counted
+
+TEACHING_REWARD: Final = "progress"
+"""The kit's reward by which a robot is taught to arrive, to see what its drives earn by the task's own reward."""
+REPEATS: Final = (1, 5, 15)
+"""Numbers of steps for which each action of a loop is repeated."""
+TEACHERS: Final = 4
+"""Most robots that are trained, one after the other, until one arrives."""
+DRIVES: Final = 32
+"""Drives whose mean return is that of arriving."""
+TABLE_EDGES: Final = (0.2,)
+"""Between the bins of the tables that learn a task."""
+TESTS: Final = 6
+"""Tests during a training."""
+
+
+@dataclass(frozen=True, slots=True)
+class ActionLoop:
+    """What a robot earns that repeats a few actions until time is up, or it meets a wall."""
+
+    actions: tuple[str, ...]
+    repeats: int
+    """Steps for which each action is kept up."""
+    total_reward: float
+    is_arriving: bool
+
+    def __str__(self) -> str:
+        if len(self.actions) == 1:
+            return f"only {self.actions[0]}"
+        steps = "one step" if self.repeats == 1 else f"{self.repeats} steps"
+        return f"{' and '.join(self.actions)}, {steps} each, again and again"
+
+
+class PosedTask:
+    """A task that can be read, and everything that checks measure about it."""
+
+    def __init__(self, file: Path, plan: PosedTaskPlan, seed: int, clock: SubmissionClock) -> None:
+        self.plan = plan
+        self.choice = TaskSpec(str(file))
+        self.task: LearningTask = self.choice.resolve()
+        self.cases = tuple(case for _, case in self.task.map_cases())
+        self._folder = file.parent
+        self._seed = seed
+        self._clock = clock
+
+    @cached_property
+    def ways(self) -> tuple[float, ...]:
+        """The length of the way from start to target, for each case [m]."""
+        numbers = np.arange(len(self.cases))
+        batch = BatchEnv(self.task, len(numbers), self._seed, autoreset=False)
+        batch.reset(cases=numbers)
+        return tuple(float(each) for each in batch.state.to_go[:, 0])
+
+    @cached_property
+    def arriving_reward(self) -> float:
+        """The mean return of drives that arrive; NaN if no robot that was well taught does."""
+        for number in range(TEACHERS):
+            found = self._mean_of_arriving(self._teacher(number))
+            if not math.isnan(found):
+                return found
+        return math.nan
+
+    def _mean_of_arriving(self, teacher: Policy) -> float:
+        batch = BatchEnv(self.task, DRIVES, derive_seed(self._seed, "drives"), autoreset=False)
+        player = teacher.make_player(DRIVES)
+        earned, running = np.zeros(DRIVES), np.ones(DRIVES, dtype=np.bool_)
+        reached = np.zeros(DRIVES, dtype=np.bool_)
+        observations, fresh = batch.reset(), np.ones(DRIVES, dtype=np.bool_)
+        while running.any():
+            self._clock.check()
+            step = batch.step(player.act(observations, fresh))
+            earned += np.where(running, step.rewards, 0.0)
+            reached |= running & step.ended & step.transition.reached
+            running &= ~step.ended
+            observations, fresh = step.observations, np.zeros(DRIVES, dtype=np.bool_)
+        return float(earned[reached].mean()) if reached.any() else math.nan
+
+    @cached_property
+    def loops(self) -> tuple[ActionLoop, ...]:
+        """Every action alone, and every two in turn, each driven once from the first case's start."""
+        actions = self.task.actions
+        assert isinstance(actions, DiscreteActions)  # others are refused before
+        names = list(actions.names)
+        plans: list[tuple[tuple[int, ...], int]] = [((number,), 1) for number in range(len(names))]
+        plans += [(pair, repeats) for repeats in REPEATS for pair in permutations(range(len(names)), 2)]
+        batch = BatchEnv(self.task, len(plans), derive_seed(self._seed, "loops"), autoreset=False)
+        batch.reset(cases=np.zeros(len(plans), dtype=np.int64))
+        earned, running = np.zeros(len(plans)), np.ones(len(plans), dtype=np.bool_)
+        reached = np.zeros(len(plans), dtype=np.bool_)
+        step_number = 0
+        while running.any():
+            self._clock.check()
+            step = batch.step(self._loop_actions(plans, step_number))
+            earned += np.where(running, step.rewards, 0.0)
+            reached |= running & step.ended & step.transition.reached
+            running &= ~step.ended
+            step_number += 1
+        return tuple(
+            ActionLoop(tuple(names[each] for each in which), repeats, float(total), bool(arrived))
+            for (which, repeats), total, arrived in zip(plans, earned, reached, strict=True)
+        )
+
+    @cached_property
+    def paying_loops(self) -> tuple[ActionLoop, ...]:
+        """Loops that do not arrive and yet earn as much as a drive that does, the best first."""
+        found = [
+            each
+            for each in self.loops
+            # Not "as much or more": of a sum without a value, inf - inf, neither is true.
+            if not (each.is_arriving or each.total_reward < self.arriving_reward)
+        ]
+        return tuple(sorted(found, key=lambda each: -each.total_reward))
+
+    @cached_property
+    def results(self) -> TrainingResults:
+        """Trainings with the task's own reward, and their tests."""
+        plan, names = self.plan, tuple(case.name for case in self.cases)
+        seeds = tuple(derive_seed(self._seed, "posed", number) for number in range(plan.trainings))
+        budget = TrainingBudget(self.choice, names, (plan.algorithm,), plan.steps, seeds, (), plan.episodes)
+        settings = TrainingSettings(
+            algorithm=plan.algorithm,
+            learning_rate=LinearSchedule(0.2, 0.02),
+            exploration=LinearSchedule(0.3, 0.02),
+            discount=0.99,
+            edges=TABLE_EDGES,
+            worlds=16,
+            train_on=names,
+            order=CaseOrder.MIXED,
+            batch=max(500, plan.steps // TESTS),
+            test_episodes=20 * len(names),
+            stop=StopRule.NEVER,
+            goal=0.9,
+            keeps_best=True,
+            steps=plan.steps,
+        )
+        return run_trainings(settings, budget, seeds, self._clock)
+
+    @cached_property
+    def policy_test(self) -> EvaluationResult | str:
+        """The test of the policy that was handed in with the task; what is wrong with it where it cannot be tested."""
+        from grader.kinds.policy.kind import load_submitted_policy  # only here: a kind imports this module
+
+        file = self._folder / self.plan.policy
+        if not is_file_there(file):
+            return f"There is no {self.plan.policy} beside the task: train it, and copy the run's best.npz there."
+        try:
+            policy = load_submitted_policy(file)
+            policy.check_fits(self.task)
+        except (PolicyError, OSError, RecursionError, OverflowError, MemoryError) as error:
+            return str(error).replace(f"{self._folder}/", "")
+        return Evaluator(self.task).test(
+            policy, self.plan.episodes, derive_seed(self._seed, "policy"), before_step=self._clock.check
+        )
+
+    def shortest_seconds(self) -> float:
+        """How long the longest way takes at the highest speed that the actions have [s]."""
+        actions = self.task.actions
+        assert isinstance(actions, DiscreteActions)
+        return max(self.ways) / max(1e-9, max(abs(forward) for forward, _ in actions.twist_table))
+
+    def measure(self, check: str, params: Mapping[str, str]) -> PosedMeasure:
+        """Measures what a check of the kind ``task`` asks for, by its name and parameters."""
+        return {
+            "places": self._measure_places,
+            "way": lambda params: PosedMeasure(min(self.ways)),
+            "loops": self._measure_loops,
+            "learns": self._measure_learning,
+            "arrives": self._measure_arriving,
+            "quick": self._measure_time,
+        }[check](params)
+
+    def _measure_places(self, params: Mapping[str, str]) -> PosedMeasure:
+        found = [list(_misplaced(case, params)) for case in self.cases]
+        share = sum(not each for each in found) / len(found)
+        return PosedMeasure(share, next((text for each in found for text in each), ""))
+
+    def _measure_loops(self, params: Mapping[str, str]) -> PosedMeasure:
+        if math.isnan(self.arriving_reward):
+            return PosedMeasure(
+                0.0,
+                "A robot that was taught by the kit's own reward never arrived, so there is nothing to compare with: does "
+                "it see enough, can it turn, is there time enough?",
+            )
+        if not self.paying_loops:
+            return PosedMeasure(1.0)
+        best = self.paying_loops[0]
+        return PosedMeasure(
+            1.0 - len(self.paying_loops) / len(self.loops),
+            f"The best of them: {best}. It earns {best.total_reward:.4g} and never arrives; who arrives earns "
+            f"{self.arriving_reward:.4g}.",
+        )
+
+    def _measure_learning(self, params: Mapping[str, str]) -> PosedMeasure:
+        exams = [training.exam.values() for training in self.results.trainings]
+        surest = max(
+            lower_bound(sum(count.reached for count in exam), sum(count.episodes for count in exam))
+            for exam in exams
+        )
+        shares = ", ".join(f"{training.accuracy:.2f}" for training in self.results.trainings)
+        inputs = int(self.task.observation.space(self.task.robots).shape[0])
+        rows = table_rows(inputs, len(TABLE_EDGES) + 1)
+        sees = (
+            f"It sees {counted(inputs, 'number')}, so its table has {counted(rows, 'row')} to fill: fewer are learned sooner; "
+            "with too few, places look alike that ask for different actions."
+        )
+        return PosedMeasure(surest, f"The exams of its trainings: {shares}. {sees}", self.results.picture())
+
+    def _measure_arriving(self, params: Mapping[str, str]) -> PosedMeasure:
+        if isinstance(self.policy_test, str):
+            return PosedMeasure(0.0, self.policy_test)
+        cases = self.policy_test.cases
+        share = lower_bound(sum(case.reached for case in cases), sum(case.episodes for case in cases))
+        return PosedMeasure(share, _worst_case(self.policy_test))
+
+    def _measure_time(self, params: Mapping[str, str]) -> PosedMeasure:
+        if isinstance(self.policy_test, str):
+            return PosedMeasure(math.nan, self.policy_test)
+        steps = [case.steps for case in self.policy_test.cases if case.reached]
+        ratio = max(steps) * self.task.step_time / self.shortest_seconds() if steps else math.nan
+        return PosedMeasure(ratio, _worst_case(self.policy_test))
+
+    def _loop_actions(self, plans: list[tuple[tuple[int, ...], int]], step: int) -> IntArray:
+        return np.array([which[step // repeats % len(which)] for which, repeats in plans], dtype=np.int64)
+
+    def _teacher(self, number: int) -> Policy:
+        """A robot that was taught the task by the kit's own reward."""
+        choice = replace(self.choice, reward=TEACHING_REWARD, scale=None)
+        task, algorithm = choice.resolve(), find_algorithm(self.plan.algorithm)
+        preset = find_preset("kit", algorithm, task.preset, is_continuous=False)
+        learner = make_learner(
+            algorithm, preset, choice, task, seed=derive_seed(self._seed, "teacher", number)
+        )
+        learner.learn(self.plan.steps, _ClockedTraining(self._clock))
+        return learner.policy()
+
+
+def _worst_case(test: EvaluationResult) -> str:
+    worst = test.worst
+    return f"The worst case is {worst.case}, reached {worst.reached} times in {worst.episodes}."
+
+
+def _misplaced(case: TaskCase, params: Mapping[str, str]) -> Iterator[str]:
+    """Names the places of a case that lie elsewhere than asked."""
+    for name, asked, spots in (
+        ("starts", params["start"], case.starts[0]),
+        ("target", params["target"], case.targets),
+    ):
+        if not asked:
+            continue
+        x1, y1, x2, y2 = (float(number) for number in asked.split())
+        corners = [(spots.area[0], spots.area[1]), (spots.area[2], spots.area[3])] if spots.area else []
+        points = corners or [(pose.x, pose.y) for pose in spots.poses]
+        for x, y in points:
+            if not (x1 <= x <= x2 and y1 <= y <= y2):
+                yield f"{case.name}: ({x:g}, {y:g}), one of its {name}, is not between ({x1:g}, {y1:g}) and ({x2:g}, {y2:g})"
+
+
+class _ClockedTraining:
+    """Callbacks of a training that ends when the submission's time is used up."""
+
+    def __init__(self, clock: SubmissionClock) -> None:
+        self._clock = clock
+        self._updates = 0
+
+    def between_updates(self) -> None:
+        self._clock.check()
+        self._updates += 1
+        if self._updates % 200 == 1:
+            self._clock.show_progress("teaching a robot to arrive, to see what its drives earn")
+
+    def on_episode_end(self, episode: EpisodeStats) -> None:
+        """No-op: what each episode earns does not matter here."""

@@ -1,0 +1,87 @@
+"""Makes a new assignment from a complete example: a template, or an exercise of a lesson with its solutions."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Final
+
+from grader.reading import read_assignment
+from kit.plain_text import quoted, suggestion
+from kit.school.lessons.reading import find_lesson, lessons_folder, solutions_folder
+from kit.workspace import write_atomically
+
+TEMPLATES: Final = Path(__file__).parent / "templates"
+
+EXERCISES_OF_KINDS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "answers": "20-q-learning/by_hand",
+        "drive": "01-drive/flag",
+        "environment": "10-words-of-learning/hallway",
+        "field": "13-potential-fields/pair",
+        "function": "30-quality-of-service/heard",
+        "launch": "04-launch-files/driver",
+        "task": "24-train-your-own/pays",
+        "training": "12-training-strategies/forget",
+    }
+)
+"""The lessons' exercise that is the example of each kind which has no folder of its own in ``templates``."""
+
+CARD: Final = "README.md"
+"""The page of an assignment that its students read."""
+
+
+class NoExample(LookupError):
+    """No example has that name; the message says which there are."""
+
+
+@dataclass(frozen=True, slots=True)
+class AssignmentExample:
+    """A complete assignment to start from: folders whose files together make it."""
+
+    folders: tuple[Path, ...]
+    source: str
+    """What it is called in messages."""
+
+
+def example_of_kind(kind: str) -> AssignmentExample:
+    """Returns the example of a kind of submission. Raises KeyError for an unknown kind, FileNotFoundError."""
+    if (TEMPLATES / kind).is_dir():
+        return AssignmentExample((TEMPLATES / kind,), kind)
+    return example_of_exercise(EXERCISES_OF_KINDS[kind])
+
+
+def example_of_exercise(name: str) -> AssignmentExample:
+    """Returns an exercise of a lesson with its solution and its wrong solutions: ``LESSON/EXERCISE``, where the lesson is
+    called as in ``kit lesson``. Raises NoExample, UnknownLesson, WorldError, FileNotFoundError."""
+    lesson_name, _, exercise = name.partition("/")
+    lesson = find_lesson(lesson_name)
+    names = [each.name for each in lesson.exercises]
+    if exercise not in names:
+        choices = [f"{lesson.name}/{each}" for each in names]
+        raise NoExample(f"There is no exercise {quoted(name)}: {suggestion(name, choices)}.")
+    folders = (lessons_folder() / lesson.name / exercise, solutions_folder() / lesson.name / exercise)
+    return AssignmentExample(folders, f"{lesson.name}/{exercise}")
+
+
+def make_assignment(example: AssignmentExample, folder: Path) -> None:
+    """Copies the example into ``folder``, which is empty or does not exist yet. Raises OSError, WorldError."""
+    ignored = shutil.ignore_patterns("__pycache__", "*.pyc")
+    for each in example.folders:
+        shutil.copytree(each, folder, dirs_exist_ok=True, ignore=ignored)
+    if not (folder / CARD).exists():
+        write_atomically((folder / CARD).absolute(), _card(folder).encode())
+
+
+def _card(folder: Path) -> str:
+    """The page for students of an assignment that has none yet."""
+    assignment = read_assignment(folder)
+    starter = next((each.name for each in sorted(folder.glob("starter*"))), "")
+    start = f"Start from `{starter}`. " if starter else ""
+    return (
+        f"# {assignment.title}\n\nHand in `{assignment.submit}`. {start}To see where you stand:\n\n"
+        f"    grader check {assignment.submit} --assignment .\n"
+    )

@@ -1,0 +1,33 @@
+"""``kit completion``: what a shell needs to complete commands and options of ``kit`` and ``grader``."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import click
+from click.shell_completion import get_completion_class
+
+from kit.cli import options
+
+SHELLS: Final = ("bash", "zsh", "fish")
+PROGRAMS: Final = ("kit", "grader")
+
+
+@click.command()
+@click.argument("shell", type=click.Choice(SHELLS))
+@click.pass_context
+def command(context: click.Context, shell: str) -> None:
+    """Print a script that lets a shell complete commands and options with the Tab key.
+
+    \b
+    bash:  kit completion bash >> ~/.bashrc
+    zsh:   kit completion zsh >> ~/.zshrc
+    fish:  kit completion fish > ~/.config/fish/completions/kit.fish
+    """
+    completion = get_completion_class(shell)
+    if completion is None:
+        options.fail(f"click has no completion for {shell}.")
+    root = context.find_root().command
+    for program in PROGRAMS:
+        script = completion(root, {}, program, f"_{program.upper()}_COMPLETE")
+        click.echo(script.source_template % script.source_vars())

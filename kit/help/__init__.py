@@ -1,0 +1,1 @@
+"""The pages that explain the kit: one source, shown in the terminal and as a folder of HTML."""

@@ -1,0 +1,1 @@
+"""What the author of a task uses: writes, checks, shows and packs task files."""

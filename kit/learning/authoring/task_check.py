@@ -1,0 +1,108 @@
+"""Checks a task against its worlds: starts that touch a wall, targets out of reach, rewards that cannot be called."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from kit.arrays import BoolArray, FloatArray
+from kit.geometry import Pose
+from kit.kernels import world_kernels
+from kit.learning.environment.case_arrays import CaseArrays
+from kit.learning.maps.batch_map import (
+    BatchMap,
+    batch_geometry,
+    hull_radius,
+    hull_width,
+    load_batch_map,
+    measure_floor,
+)
+from kit.learning.tasks.case_reader import START_KEYS, TARGET_KEYS, PlacedCase
+from kit.learning.tasks.learning_task import FollowGoal, LearningTask, PatrolGoal, TargetGoal
+from kit.learning.tasks.student_reward import reward_parameters
+from kit.learning.tasks.task_reader import ReadTask
+
+
+def check_task(read: ReadTask) -> None:
+    """Raises WorldError with all that is wrong with a task's starts and targets, each with its place in the file;
+    UnsupportedWorld for a map that the batch engine cannot represent, UnknownTask for a case that is none, and
+    RewardFileError."""
+    task = read.task
+    if task.reward_file is not None:
+        reward_parameters(task.reward_file)
+    cards = task.map_cards
+    for placed in read.cases:
+        card = cards[placed.map_number]
+        _check_case(task, placed, load_batch_map(card, task.robots_on(card)))
+    read.problems.raise_if_any()
+    CaseArrays(task)
+
+
+def _check_case(task: LearningTask, placed: PlacedCase, batch_map: BatchMap) -> None:
+    case, is_free = placed.case, True
+    for number in range(max(len(places.poses) for places in case.starts)):
+        poses = [places.poses[number] for places in case.starts if places.poses]
+        touches = np.flatnonzero(touching(batch_map, poses))
+        is_free &= not len(touches)
+        for robot in touches:
+            x, y, theta = poses[robot]
+            placed.error(
+                f"the start ({x:g}, {y:g}, {theta:g} rad) is inside a wall or another robot, or touches one",
+                (("other_starts",) if robot else ()) + START_KEYS,
+            )
+    needs_target = isinstance(task.goal, TargetGoal | PatrolGoal | FollowGoal)
+    if case.targets.model is None and needs_target and is_free:
+        _check_targets(task, placed, batch_map)
+
+
+def _check_targets(task: LearningTask, placed: PlacedCase, batch_map: BatchMap) -> None:
+    """Whether the targets can be reached from the first robot's first start."""
+    case, floor, width = placed.case, measure_floor(batch_map), hull_width(batch_map)
+    starts = case.starts[0]
+    if starts.is_area:
+        found = floor.area_cells(starts.area, floor.clearance > hull_radius(batch_map))
+        if not len(found):
+            placed.error("it has no free floor for a robot to start on", START_KEYS)
+            return
+        start = Pose(float(found[0, 0]), float(found[0, 1]))
+    else:
+        start = starts.poses[0]
+    reached = floor.reached_from(start.x, start.y, width)
+    targets = [(each.x, each.y) for each in case.targets.poses]
+    for x, y in targets:
+        if not len(
+            _cells_within(floor.area_cells(None, reached), x, y, task.target_radius + hull_radius(batch_map))
+        ):
+            placed.error(
+                f"the target ({x:g}, {y:g}) cannot be reached: there is no path from ({start.x:g}, {start.y:g}) "
+                f"that is {width:g} m wide",
+                TARGET_KEYS,
+            )
+    if case.targets.is_area and not len(floor.area_cells(case.targets.area, reached)):
+        placed.error(
+            f"nothing in it can be reached from ({start.x:g}, {start.y:g})",
+            TARGET_KEYS,
+        )
+
+
+def _cells_within(cells: FloatArray, x: float, y: float, distance: float) -> FloatArray:
+    """Those of the points (k, 2) that lie within a distance [m] of another one."""
+    near: FloatArray = cells[np.hypot(cells[:, 0] - x, cells[:, 1] - y) <= distance]
+    return near
+
+
+def touching(batch_map: BatchMap, poses: list[Pose]) -> BoolArray:
+    """(robots,) which robots touch a wall or another robot at these poses."""
+    count = len(poses)
+    hit = np.zeros((1, count), dtype=np.bool_)
+    fleet = batch_geometry([batch_map])
+    world_kernels.step_worlds(
+        fleet,
+        np.zeros(1, dtype=np.int64),
+        np.zeros((1, count, 2)),
+        np.zeros(1),
+        np.array([poses], dtype=np.float64),
+        np.zeros((1, count)),
+        hit,
+    )
+    found: BoolArray = hit[0]
+    return found

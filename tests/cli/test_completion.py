@@ -1,0 +1,82 @@
+"""Completion: the scripts, and what the programs answer a shell."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from kit.cli import VERBS
+from kit.cli.completion import SHELLS
+from tests.cli.verbs import kit
+
+
+def answers(program: str, *words: str) -> list[str]:
+    """What a program answers bash that completes the last of these words."""
+    asked = {
+        f"_{program.upper()}_COMPLETE": "bash_complete",
+        "COMP_WORDS": " ".join((program, *words)),
+        "COMP_CWORD": str(len(words)),
+    }
+    module = {"kit": "kit.cli", "grader": "grader.__main__"}[program]
+    ended = subprocess.run(
+        [sys.executable, "-c", f"from {module} import run; run()"],
+        env={**os.environ, **asked},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return [line.partition(",")[2] for line in ended.stdout.splitlines()]
+
+
+def test_commands_and_options_are_completed() -> None:
+    assert answers("kit", "ru") == ["run", "runs"]
+    assert answers("kit", "run", "--ste") == ["--steps"]
+    assert answers("kit", "ros", "topic", "e") == ["echo"]
+    assert answers("grader", "self") == ["self-test"]
+
+
+def test_completing_a_command_imports_none() -> None:
+    program = (
+        "import sys; from kit.cli import main\nmain.shell_complete(__import__('click').Context(main), '')\n"
+    )
+    program += "print([name for name in sys.modules if name.startswith('kit.cli.')])"
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert ended.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_a_script_serves_both_programs(shell: str) -> None:
+    script = kit("completion", shell).output
+    assert "_KIT_COMPLETE" in script
+    assert "_GRADER_COMPLETE" in script
+    if shutil.which(shell):
+        subprocess.run([shell, "-n", "/dev/stdin"], input=script, text=True, check=True)
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="no bash")
+def test_bash_completes_with_it(tmp_path: Path) -> None:
+    programs = tmp_path / "bin"
+    programs.mkdir()
+    (programs / "kit").write_text(
+        f'#!/bin/sh\nexec {sys.executable} -c "from kit.cli import run; run()" "$@"\n'
+    )
+    (programs / "kit").chmod(0o755)
+    (tmp_path / "completion").write_text(kit("completion", "bash").output)
+    script = (
+        f"source {tmp_path}/completion; COMP_WORDS=(kit le); COMP_CWORD=1; _kit_completion kit; "
+        'echo "${COMPREPLY[@]}"'
+    )
+    ended = subprocess.run(
+        ["bash", "-c", script],
+        env={**os.environ, "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert ended.stdout.split() == ["lesson"]
+    assert "lesson" in VERBS

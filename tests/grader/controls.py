@@ -1,0 +1,326 @@
+"""Takes each defence of the grader's away, in a copy of the project, and shows that the test which holds it then fails.
+
+``python -m tests.grader.controls`` goes through all; words choose those whose names hold them. Exit code 1 if a test passes
+without its defence. What a test holds only on some machines (as root, with Landlock) is tried only there.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+ROOT: Final = Path(__file__).parents[2]
+COPIED: Final = (
+    "kit",
+    "grader",
+    "lessons",
+    "maps",
+    "tests",
+    ".github",
+    "pyproject.toml",
+    "README.md",
+    "constraints.txt",
+)
+LIMIT_S: Final = 600.0
+"""Wall clock of one test without its defence: some then never end."""
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """One defence, how it is taken away, and the test that must then fail."""
+
+    name: str
+    file: str
+    defence: str
+    """What stands in the file, once."""
+    without: str
+    """What stands there in its place."""
+    test: str
+
+
+CONTROLS: Final = (
+    Control(
+        "a pip.py beside a submission in CI",
+        "grader/ci.py",
+        "          python -P -m pip install --quiet",
+        "          cd $GITHUB_WORKSPACE && python -m pip install --quiet",
+        "grader/test_ci.py::test_a_workflow_grades_and_runs_nothing_of_the_students",
+    ),
+    Control(
+        "a secret handed on by the page cache",
+        "grader/grading.py",
+        "        if self._has_run_public:\n            return\n        self._has_run_public = True\n",
+        "        return\n",
+        "grader/test_secrets.py::test_nothing_that_a_student_reads_of_is_run_after_a_secret_run",
+    ),
+    Control(
+        "rewards whose sums are infinite",
+        "grader/evidence/submission_clock.py",
+        "    def check(self) -> None:\n",
+        "    def check(self) -> None:\n        return\n\n    def _unused_check(self) -> None:\n",
+        "grader/test_returned_numbers.py::test_a_calculation_ends_with_the_submissions_time",
+    ),
+    Control(
+        "a folder exchanged for a link while it is read",
+        "grader/submission.py",
+        "flags = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC",
+        "flags = os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC",
+        "grader/test_submission.py::test_a_name_exchanged_for_a_link_while_it_is_read_leads_nowhere",
+    ),
+    Control(
+        "a hard link of another's",
+        "grader/submission.py",
+        "    if status.st_nlink < 2:\n",
+        "    if status.st_nlink < 1000:\n",
+        "grader/test_submission.py::test_a_hard_link_that_another_can_have_made_is_not_read",
+    ),
+    Control(
+        "memory in pipes",
+        "kit/host/sandbox/seccomp.py",
+        '    "pipe2": (293, 59), "eventfd"',
+        '    "pipe2": (293, 59), "vmsplice": (278, 75), "eventfd"',
+        "host/sandbox/test_confinement.py::test_no_attack_gets_anywhere",
+    ),
+    Control(
+        "a disk of files that are mapped and unlinked",
+        "kit/host/sandbox/namespaces.py",
+        '        _mount("none", scratch, "tmpfs", _NO_SUID | _NO_DEVICES, _scratch_options(room, files))\n    except',
+        "        raise OSError\n    except",
+        "host/sandbox/test_confinement.py::test_files_that_nobody_sees_are_limited_too",
+    ),
+    Control(
+        "a lesson that is checked at its own level",
+        "grader/grading.py",
+        "    return max(assignment.level, Level.FILTERED) if requested is None else requested\n",
+        "    return assignment.level if requested is None else requested\n",
+        "grader/cli/test_check_level.py::test_a_lesson_checked_for_somebody_else_writes_nothing",
+    ),
+    Control(
+        "a queue and a workspace that everybody reads",
+        "kit/workspace.py",
+        "        folder.chmod(stat.S_IMODE(status.st_mode) & 0o700)\n",
+        "        pass\n",
+        "test_neighbours.py::test_a_workspace_and_a_queue_that_are_open_are_closed",
+    ),
+    Control(
+        "signals of the user",
+        "kit/host/sandbox/confinement.py",
+        "        wanted[resource.RLIMIT_SIGPENDING] = MAX_PENDING_SIGNALS\n",
+        "",
+        "host/sandbox/test_confinement.py::test_no_attack_gets_anywhere",
+    ),
+    Control(
+        "an old result in a checkout",
+        "grader/ci.py",
+        '    - rm -rf "$CI_PROJECT_DIR/.grade"',
+        '    - true "$CI_PROJECT_DIR/.grade"',
+        "grader/test_ci.py::test_a_result_that_lay_in_the_checkout_is_not_reported",
+    ),
+    Control(
+        "a header of very many records",
+        "grader/archives.py",
+        "    for _ in range(MAX_HEADER_RECORDS + 1):\n",
+        "    while True:\n",
+        "grader/test_submission.py::test_a_header_of_very_many_records_is_refused_at_once",
+    ),
+    Control(
+        "a program that stands still in a race",
+        "kit/school/game/race.py",
+        "    return run_race(level, scenario, install_driver, on_second, confinement, wall_limit_s)\n",
+        "    return run_race(level, scenario, install_driver, on_second, confinement)\n",
+        "grader/cohort/test_program_ladder.py::test_a_race_has_a_wall_clock",
+    ),
+    Control(
+        "a recording or a policy that a teacher merely opens",
+        "kit/array_archives.py",
+        "        check_arrays(archive, MAX_UNPACKED_BYTES)\n",
+        "        pass\n",
+        "test_plain_files.py::test_an_archive_that_unpacks_to_far_more_takes_no_memory",
+    ),
+    Control(
+        "a recording that names a file elsewhere",
+        "kit/run/scenario.py",
+        "        if not any(file.resolve().is_relative_to(folder) for folder in near):\n",
+        "        if not near:\n",
+        "test_plain_files.py::test_a_recording_names_no_file_elsewhere",
+    ),
+    Control(
+        "a checkpoint that unpacks to far more",
+        "kit/learning/training/runs.py",
+        "            check_stored(archive, size)\n",
+        "",
+        "learning/training/test_runs.py::test_a_checkpoint_of_somebody_elses_unpacks_to_no_more_than_it_is",
+    ),
+    Control(
+        "exports that are huge",
+        "kit/plain_files.py",
+        "    if content is None or len(content) > limit:\n",
+        "    if content is None:\n        content = Path(file).read_bytes()\n    if False:\n",
+        "school/report/test_class_data.py::test_a_file_larger_than_any_export_is_left_out",
+    ),
+    Control(
+        "a pipe that holds a reader",
+        "kit/plain_files.py",
+        "    flags = os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC",
+        "    flags = os.O_RDONLY | os.O_CLOEXEC",
+        "learning/training/test_runs.py::test_a_named_pipe_is_no_checkpoint",
+    ),
+    Control(
+        "an environment variable that grants folders",
+        "kit/host/sandbox/grants.py",
+        "        return [path for path in named if os.path.realpath(path) in loaded]\n",
+        "        return named\n",
+        "host/sandbox/test_grants.py::test_the_environment_grants_no_folder",
+    ),
+    Control(
+        "an environment that moves its robot and never drives",
+        "grader/kinds/environment/examination.py",
+        "        return service in self._services and not self.is_in_step\n",
+        "        return service in self._services\n",
+        "grader/driving/test_checks.py::test_an_environment_moves_its_robot_only_where_an_episode_begins",
+    ),
+    Control(
+        "a program that drives the other robot",
+        "grader/driving/episodes.py",
+        "for name in traffic if name in self._others_topics]",
+        "for name in traffic if not name]",
+        "grader/driving/test_checks.py::test_a_program_drives_no_other_robot",
+    ),
+    Control(
+        "slow near walls by the clock",
+        "grader/driving/checks.py",
+        "    return min(shares) if len(shares) == len(asked) else 0.0\n",
+        "    return 1.0\n",
+        "grader/driving/test_checks.py::test_the_speed_must_follow_what_the_laser_measures",
+    ),
+    Control(
+        "round and round without a laser",
+        "grader/driving/checks.py",
+        "    return PLACE_SIZE * (len(np.unique(places, axis=0)) - 1) if len(places) else 0.0\n",
+        "    return drive.score.distance_m\n",
+        "grader/driving/test_checks.py::test_to_and_fro_leads_nowhere",
+    ),
+    Control(
+        "all messages in the first tick",
+        "grader/driving/checks.py",
+        "    return max(mean_error, uneven)\n",
+        "    return mean_error\n",
+        "grader/driving/test_checks.py::test_a_rate_is_kept_all_the_time",
+    ),
+    Control(
+        "names that look alike",
+        "grader/cohort/queue.py",
+        '    return " ".join(shown.split()).casefold()\n',
+        "    return name\n",
+        "grader/cohort/test_cohort.py::test_no_two_names_of_a_class_look_alike",
+    ),
+    Control(
+        "a command of a CI service in a note",
+        "grader/cli/options.py",
+        "    click.echo(plain(message), err=True)\n",
+        "    click.echo(message, err=True)\n",
+        "grader/cohort/test_cohort.py::test_a_note_gives_a_ci_service_no_command",
+    ),
+    Control(
+        "a common folder of whoever came first",
+        "kit/workspace.py",
+        "    if status.st_uid not in (0, os.geteuid()):\n",
+        "    if status.st_uid < 0:\n",
+        "test_workspace.py::test_a_common_folder_of_another_user_is_refused",
+    ),
+    Control(
+        "a stranger's reference",
+        "grader/author_code.py",
+        "    confine_reader(readable, granted.listed, [scratch], starts_programs=False)\n",
+        "",
+        "grader/test_author_code.py::test_it_reaches_nothing",
+    ),
+    Control(
+        "what the grader has open, read by a stranger's reference",
+        "grader/author_code.py",
+        "    os.closerange(FIRST_OWN_DESCRIPTOR, writer)\n",
+        "",
+        "grader/test_author_code.py::test_it_reaches_nothing",
+    ),
+    Control(
+        "threads of root that nobody counts",
+        "kit/host/sandbox/control_groups.py",
+        '                _write(f"{folder}/pids.max", processes)\n',
+        "                pass\n",
+        "host/sandbox/test_control_groups.py::test_threads_of_root_are_counted",
+    ),
+    Control(
+        "groups of a killed kit",
+        "kit/host/sandbox/control_groups.py",
+        "            _remove_abandoned(each.folder)\n",
+        "            pass\n",
+        "host/sandbox/test_control_groups.py::test_the_groups_of_a_killed_kit_are_removed_at_the_next_start",
+    ),
+)  # fmt: skip
+
+
+def is_held(control: Control, folder: Path) -> bool:
+    """Returns whether the test passes in a copy of the project, and fails there without its defence. ``folder``: an empty one,
+    for the copy."""
+    for name in COPIED:
+        source = ROOT / name
+        if source.is_dir():
+            shutil.copytree(
+                source, folder / name, copy_function=os.link, ignore=shutil.ignore_patterns("__pycache__")
+            )
+        elif source.exists():
+            os.link(source, folder / name)
+    changed = folder / control.file
+    text = changed.read_text("utf-8")
+    if _run(control, folder) != 0:
+        return False
+    changed.unlink()
+    changed.write_text(text.replace(control.defence, control.without), "utf-8")
+    return _run(control, folder) in (1, None)
+
+
+def _run(control: Control, folder: Path) -> int | None:
+    """Returns the exit code of the control's test in a copy of the project; None where it does not end."""
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:xdist", "-p", "no:cacheprovider"]
+    command += ["-m", "long or not long", f"tests/{control.test}"]
+    environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+    try:
+        return subprocess.run(
+            command, cwd=folder, env=environment, capture_output=True, timeout=LIMIT_S, check=False
+        ).returncode
+    except subprocess.TimeoutExpired:
+        return None
+
+
+def tried(words: Sequence[str] = ()) -> Iterator[tuple[Control, bool]]:
+    """Yields each control whose name holds one of the words, with whether its test sees that the defence is gone."""
+    for control in CONTROLS:
+        if not words or any(word in control.name for word in words):
+            # Beside the project: links reach no other file system.
+            with tempfile.TemporaryDirectory(dir=ROOT.parent, prefix="kit-control-") as folder:
+                yield control, is_held(control, Path(folder))
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="python -m tests.grader.controls", description=__doc__)
+    parser.add_argument("words", nargs="*", help="words in the names of those to try")
+    passed = 0
+    for control, holds in tried(parser.parse_args().words):
+        print(
+            f"{'fails without it' if holds else 'PASSES WITHOUT IT':<18} {control.name}: {control.test}",
+            flush=True,
+        )
+        passed += not holds
+    return 1 if passed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,271 @@
+"""Checks of drives ask for a behaviour: what happens once, or all at once, is none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grader.check import NoParams
+from grader.driving import checks as drives
+from grader.driving.checks import CircleParams, FlagByRangeParams, SpeedByFlagParams, SpeedByRangeParams
+from grader.driving.drive_record import GradedDrive
+from grader.grading import GradingOptions, grade
+from grader.kinds.environment.examination import FreePlacementRunner
+from grader.reading import read_assignment
+from grader.submission import Submission
+from kit.arrays import FloatArray
+from kit.host.sandbox.confinement import Level
+from kit.ros.graph.graph import Graph
+from kit.run.scenario import find_scenario
+from kit.sim.simulation import Simulation, SimulationError
+from tests.cases import every_case
+from tests.grader.conftest import QUICK, write_assignment
+from tests.grader.further_attacks import ROBOT, ROBOT_WITH_LASER, ROOM, SQUARE
+
+SECONDS = 20
+
+
+def rate_of(per_second: dict[int, int], rate: float) -> float:
+    return drives._rate_error(per_second, rate, SECONDS)
+
+
+@every_case(
+    "rate, per_second, is_steady",
+    [
+        (10, dict.fromkeys(range(SECONDS), 10), True),
+        (10, dict.fromkeys(range(1, SECONDS), 10), True),
+        (10, {0: 10 * SECONDS}, False),
+        (10, {0: 100, 19: 100}, False),
+        (10, dict.fromkeys(range(0, SECONDS, 2), 20), False),
+        (10, dict.fromkeys(range(SECONDS), 5), False),
+        (10, {}, False),
+        (1, dict.fromkeys(range(SECONDS), 1), True),
+        (1, {0: SECONDS}, False),
+        (0.5, dict.fromkeys(range(0, SECONDS, 2), 1), True),
+        (0.5, {0: 10}, False),
+    ],
+)
+def test_a_rate_is_kept_all_the_time(rate: float, per_second: dict[int, int], is_steady: bool) -> None:
+    assert (rate_of(per_second, rate) <= 0.1) == is_steady
+
+
+def graded(folder: Path, checks: str, source: str) -> dict[str, float]:
+    sheet = QUICK.partition("checks:")[0] + f"checks: [{checks}]\n"
+    assignment = read_assignment(write_assignment(folder, sheet))
+    work = Submission("ada", "controller.py", {"controller.py": source.encode()})
+    result = grade(assignment, work, GradingOptions(Level.LIMITED))
+    return {test.id: test.points for test in result.tests}
+
+
+NODE = """
+import rclpy
+from rclpy.node import Node
+from geometry_msgs.msg import Twist
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__("talker")
+        self.drive = self.create_publisher(Twist, "TOPIC", 10)
+        self.create_timer(PERIOD, self.once)
+        self.is_first = True
+
+    def once(self):
+        for _ in range(COUNT):
+            if self.is_first or not ALL_AT_ONCE:
+                self.drive.publish(Twist())
+                self.get_logger().info("alive")
+        self.is_first = False
+
+rclpy.init()
+rclpy.spin(Talker())
+"""
+
+
+def talker(topic: str, *, all_at_once: bool, count: int = 1) -> str:
+    words = {"TOPIC": topic, "PERIOD": "0.1", "COUNT": str(count), "ALL_AT_ONCE": str(all_at_once)}
+    source = NODE
+    for word, value in words.items():
+        source = source.replace(word, value)
+    return source
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("all_at_once", "count", "points"), [(False, 1, 2.0), (True, 40, 0.0)])
+def test_all_messages_and_lines_in_the_first_tick_are_no_rate(
+    all_at_once: bool, count: int, points: float, tmp_path: Path
+) -> None:
+    checks = (
+        "{check: rate, points: 1, with: {topic: /cmd_vel, rate: 10}}, "
+        "{check: says, points: 1, with: {text: alive, seconds: 0.1}}"
+    )
+    source = talker("cmd_vel", all_at_once=all_at_once, count=count)
+    sheet_time = QUICK.count("time:")
+    assert sheet_time == 1
+    assert sum(graded(tmp_path / "r", checks, source).values()) == pytest.approx(points)
+
+
+def drive_by_range(distances: list[float], speeds: list[float]) -> float:
+    """What ``speed_by_range`` measures where a scan comes ten times a second, and a command right after it."""
+    times = np.arange(len(distances)) / 10
+    drive = drive_of(
+        ahead={"/static_laser": np.column_stack([times, distances, distances])},
+        commands=np.column_stack([times + 0.01, speeds, 0 * times]),
+    )
+    return drives.speed_by_range.measure(drive, SpeedByRangeParams())
+
+
+def drive_of(**fields: Any) -> GradedDrive:
+    """A drive of which only these fields are known."""
+    drive = object.__new__(GradedDrive)
+    for name, value in fields.items():
+        object.__setattr__(drive, name, value)
+    return drive
+
+
+def test_the_speed_must_follow_what_the_laser_measures() -> None:
+    distances = [*np.linspace(2.0, 0.4, 60).tolist(), *[0.4] * 20, *[float("nan")] * 5]
+    right = [0.0 if each < 0.5 else 0.3 if each < 1.2 else 0.6 for each in distances]
+    assert drive_by_range(distances, right) == 1.0
+    assert drive_by_range(distances, [right[0], *right[:-1]]) == 1.0, (
+        "it may answer the scan before the newest"
+    )
+    assert drive_by_range(distances, [0.6] * len(right)) == 0.0
+    late = [*[0.6] * 12, *right[:-12]]
+    assert drive_by_range(distances, late) < 0.9, "the same speeds in the same order, by the clock"
+    assert drive_by_range([2.0] * 50, [0.6] * 50) == 0.0, "who never comes near shows nothing"
+    assert drive_by_range([], []) == 0.0
+
+
+def flags_by_range(near: list[float], wide: list[float], said: list[bool]) -> float:
+    times = np.arange(len(near)) / 10
+    drive = drive_of(
+        ahead={"/static_laser": np.column_stack([times, near, wide])},
+        flags={"/wall_ahead": np.column_stack([times, said])},
+    )
+    return drives.flag_by_range.measure(drive, FlagByRangeParams())
+
+
+def test_what_is_said_of_walls_must_be_true() -> None:
+    near = [*[2.0] * 20, *[0.4] * 20, *[float("nan")] * 20]
+    true = [each < 0.5 for each in near]
+    assert flags_by_range(near, near, true) == 1.0
+    assert flags_by_range(near, near, [False] * 60) < 0.1, "never true"
+    assert flags_by_range(near, near, [True] * 60) < 0.1, "always true"
+    assert flags_by_range(near, near, [not each for each in true]) < 0.1
+    beside = [*[0.4] * 10, *near[10:]]  # a wall beside it, which some take for one ahead
+    assert flags_by_range(near, beside, [True] * 10 + true[10:]) == flags_by_range(near, beside, true) == 1.0
+    assert flags_by_range([2.0] * 60, [2.0] * 60, [False] * 60) == 0.0, "who never comes near shows nothing"
+
+
+def test_the_speed_must_follow_what_was_said() -> None:
+    def measured(said: list[bool], speeds: list[float]) -> float:
+        times = np.arange(len(said)) / 10
+        drive = drive_of(
+            flags={"/wall_ahead": np.column_stack([times, said])},
+            commands=np.column_stack([times + 0.01, speeds, 0 * times]),
+        )
+        return drives.speed_by_flag.measure(drive, SpeedByFlagParams())
+
+    said = [False] * 20 + [True] * 20
+    assert measured(said, [0.4] * 20 + [0.0] * 20) == 1.0
+    assert measured(said, [0.4] * 21 + [0.0] * 19) == 1.0, "it may answer the one before the newest"
+    assert measured(said, [0.4] * 40) < 0.1
+    assert measured([False] * 40, [0.4] * 40) == 0.0, "who is never told of a wall shows nothing"
+    assert measured(said, [0.4, 0.0] * 20) < 0.6
+
+
+def test_to_and_fro_leads_nowhere() -> None:
+    along = np.linspace(0, 6, 2500)
+
+    def ground(x: FloatArray, y: FloatArray) -> float:
+        return drives.gets_about.measure(drive_of(track=np.column_stack([x, y, 0 * x])), NoParams())
+
+    assert ground(along, 0 * along) == pytest.approx(6.0, abs=0.3)
+    assert ground(np.abs(along % 0.3 - 0.15), 0 * along) <= 0.2
+    assert ground(0.1 * np.cos(along * 10), 0.1 * np.sin(along * 10)) < 1.0
+    assert ground(along[:0], along[:0]) == 0.0
+
+
+def test_a_circle_is_driven_one_way_round() -> None:
+    def off(angles: FloatArray, turning: str = "left") -> float:
+        track = np.column_stack([0.3 * np.cos(angles), 0.3 * np.sin(angles), angles])
+        drive = drive_of(track=track, recording=SimpleNamespace(step_size=0.01))
+        return drives.circle.measure(drive, CircleParams(0.3, 0.0, turning))
+
+    round_it = np.linspace(0, 15, 1500)
+    assert off(round_it) < 0.01
+    assert off(-round_it, "right") < 0.01
+    assert off(-round_it) > 1.0
+    assert off(np.abs(round_it % 2.0 - 1.0)) > 0.5, "to and fro on an arc"
+    assert off(0 * round_it) > 1.0
+
+
+@every_case(
+    "sent, bumps, share",
+    [
+        ((101, 111), (100,), 1.0),
+        ((0, 101), (100,), 1.0),  # the grader's own, before the first tick
+        ((), (100,), 0.0),
+        ((101,), (), 0.0),
+        ((101,), (100, 500), 0.5),
+        ((101, 301, 501), (100,), 1 / 3),  # by the clock
+        ((320,), (100,), 0.0),
+    ],
+)
+def test_home_after_a_bump_and_not_otherwise(
+    sent: tuple[int, ...], bumps: tuple[int, ...], share: float
+) -> None:
+    inputs = [SimpleNamespace(kind="move_model", tick=tick) for tick in sent]
+    drive = drive_of(bump_ticks=bumps, recording=SimpleNamespace(inputs=inputs, step_size=0.01))
+    assert drives.goes_home.measure(drive, NoParams()) == pytest.approx(share)
+
+
+TWO_ROBOTS = """
+properties: {}
+layers: [{name: [solid], map: room.yaml}]
+models:
+  - {name: robot, model: robot.model.yaml, pose: [1, 1, 0]}
+  - {name: cart, model: cart.model.yaml, pose: [3, 3, 0], namespace: cart}
+"""
+CART = ROBOT.replace("RADIUS", "0.1") + "plugins: [{type: DiffDrive, name: drive, body: base}]\n"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("topic", "obeys"), [("cmd_vel", 1.0), ("/cart/cmd_vel", 0.0)])
+def test_a_program_drives_no_other_robot(topic: str, obeys: float, tmp_path: Path) -> None:
+    """Traffic that is stopped stands in nobody's way."""
+    folder = tmp_path / "two"
+    folder.mkdir()
+    files = {
+        "world.yaml": TWO_ROBOTS,
+        "cart.model.yaml": CART,
+        "room.yaml": ROOM.decode(),
+        "room.dat": SQUARE.decode(),
+    }
+    for name, text in {**files, "robot.model.yaml": ROBOT_WITH_LASER}.items():
+        (folder / name).write_text(text)
+    sheet = QUICK.partition("trials:")[0] + (
+        "trials: [{name: two, place: world.yaml, time: 1, seeds: [1], target: [3.5, 1]}]\n"
+        "checks: [{check: obeys, points: 1}]\n"
+    )
+    (folder / "assignment.yaml").write_text(sheet)
+    source = talker(topic, all_at_once=False)
+    work = Submission("ada", "controller.py", {"controller.py": source.encode()})
+    result = grade(read_assignment(folder), work, GradingOptions(Level.LIMITED))
+    assert result.points == obeys, result.tests
+
+
+def test_an_environment_moves_its_robot_only_where_an_episode_begins() -> None:
+    """One that moves it in each step, and never drives, acts on nothing."""
+    scenario = find_scenario("turn")
+    simulation = Simulation(scenario.world, seed=1)
+    runner = FreePlacementRunner(simulation, Graph(log_sink=lambda record: None), frozenset({"move_model"}))
+    runner.call_service("move_model", scenario.robot, (0.5, 0.0, 0.0))
+    runner.is_in_step = True
+    with pytest.raises(SimulationError):
+        runner.call_service("move_model", scenario.robot, (0.6, 0.0, 0.0))
+    assert runner.refused == ["move_model"]

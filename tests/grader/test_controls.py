@@ -1,0 +1,30 @@
+"""Each defence can be taken away, and its test then fails."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from tests.grader.conftest import LOCKS
+from tests.grader.controls import CONTROLS, ROOT, Control, is_held
+
+
+def test_each_takes_away_what_is_there_once() -> None:
+    for control in CONTROLS:
+        text = (ROOT / control.file).read_text("utf-8")
+        assert text.count(control.defence) == 1, control.name
+        file, _, function = control.test.partition("::")
+        assert not function or f"\ndef {function}(" in (ROOT / "tests" / file).read_text("utf-8"), (
+            control.name
+        )
+
+
+@LOCKS
+@pytest.mark.nightly
+@pytest.mark.long
+@pytest.mark.parametrize("control", CONTROLS, ids=lambda control: control.name)
+def test_its_test_fails_without_it(control: Control) -> None:
+    with tempfile.TemporaryDirectory(dir=ROOT.parent, prefix="kit-control-") as folder:
+        assert is_held(control, Path(folder))

@@ -1,0 +1,109 @@
+"""What a transition tells of itself."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from kit.fields.adjacency import wrap_angles
+from kit.learning.tasks.actions import Move
+from kit.learning.tasks.transition import (
+    COMMON_FIELDS,
+    TRANSITION_FIELDS,
+    Transition,
+    bearing_of_target,
+    distance_to_target,
+)
+from tests.cases import every_case
+from tests.learning.worlds import TASKS, sampled
+
+
+def pair(left: tuple[float, float, float], right: tuple[float, float, float]) -> Transition:
+    """Two robots at these poses, 0.3 m from whatever their rays look at."""
+    pose, flags, numbers = np.array([left, right]), np.zeros(2, dtype=np.bool_), np.zeros(2)
+    moves = np.full(2, Move.FORWARD)
+    return Transition(
+        case=np.int64(0),
+        step=np.int64(1),
+        max_steps=300,
+        hit=flags,
+        in_target=flags,
+        was_in_target=flags,
+        move=moves,
+        previous_move=moves,
+        pose=pose,
+        previous_pose=pose,
+        target=np.array([1.0, 1.0]),
+        to_go=numbers,
+        previous_to_go=numbers,
+        full_turns=numbers,
+        previous_full_turns=numbers,
+        forward_steps=numbers,
+        ranges=np.full((2, 91), 0.3),
+        twist=np.zeros((2, 2)),
+        target_heading=np.float64(0.0),
+        obstacle_distance=numbers,
+        achieved=np.float64(0.0),
+        previous_achieved=np.float64(0.0),
+    )
+
+
+def test_facts_are_what_a_reward_may_ask_for() -> None:
+    assert {"collided", "reached", "front", "bearing", "pose", "step", "adjacent"} <= set(TRANSITION_FIELDS)
+    assert not {name for name in TRANSITION_FIELDS if name.startswith("_")}
+    for task in TASKS:
+        transition = sampled(task)
+        assert all(getattr(transition, name) is not None for name in TRANSITION_FIELDS)
+
+
+@every_case("task", TASKS)
+@every_case("fact", TRANSITION_FIELDS)
+def test_a_fact_is_the_same_of_one_world_and_of_many(task: str, fact: str) -> None:
+    many = sampled(task)
+    of_all = getattr(many, fact)
+    for i in (0, 7, len(many.step) - 1):
+        of_one = getattr(many.select(i), fact)
+        expected = of_all if fact in (*COMMON_FIELDS, "robots") else of_all[i]
+        assert np.array_equal(np.asarray(of_one), np.asarray(expected))
+
+
+@pytest.mark.parametrize(
+    ("right", "how_well"),
+    [
+        ((0.0, -0.4, 0.0), 1.0),
+        ((0.16, -0.4, 0.0), math.exp(-4.0)),
+        ((-0.16, -0.4, 0.0), math.exp(-4.0)),
+        ((0.0, -0.4, math.tau), 1.0),
+    ],
+)
+def test_abreast(right: tuple[float, float, float], how_well: float) -> None:
+    assert float(pair((0.0, 0.0, 0.0), right).abreast) == pytest.approx(how_well)
+
+
+def test_facing_apart_is_not_abreast() -> None:
+    assert float(pair((0.0, 0.0, 0.0), (0.0, -0.4, math.pi)).abreast) < 1e-6
+
+
+def test_adjacent_takes_four_short_and_like_readings() -> None:
+    beside = pair((0.0, 0.0, 0.0), (0.0, -0.4, 0.0))
+    assert bool(beside.adjacent)
+    for robot, ray in ((0, 24), (0, 20), (1, 66), (1, 70)):
+        for reading in (0.36, 0.41):
+            beside.ranges[robot, ray] = reading
+            again = beside.select(...)
+            assert not bool(again.adjacent)
+            beside.ranges[robot, ray] = 0.3
+
+
+def test_directions_and_distances() -> None:
+    poses = np.array([[[0.0, 0.0, 0.0]], [[2.0, 1.0, math.pi / 2]], [[1.0, 2.0, 3.0]]])
+    target = np.array([[1.0, 1.0]] * 3)
+    assert distance_to_target(poses, target)[:, 0] == pytest.approx([math.sqrt(2), 1.0, 1.0])
+    assert bearing_of_target(poses, target)[:, 0] == pytest.approx(
+        [math.pi / 4, math.pi / 2, math.tau - 3 - math.pi / 2]
+    )
+    assert wrap_angles(np.array([math.pi, -math.pi, 7.0])) == pytest.approx(
+        [-math.pi, -math.pi, 7.0 - math.tau]
+    )
