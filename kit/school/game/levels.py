@@ -12,6 +12,7 @@ from kit.geometry import Pose
 from kit.learning.tasks.learning_task import REACH_TARGET, CoverGoal, FollowGoal, Goal, PatrolGoal
 from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Scenario, find_scenario
+from kit.school.game.drive_commands import ReferenceDrive
 from kit.school.lessons.reading import lesson_number, lessons_folder
 from kit.sim.motors import SpeedLimits
 from kit.sim.plugins.diff_drive import DiffDriveParams
@@ -183,6 +184,8 @@ class GameLevel:
     """The model that a ``FollowGoal`` follows."""
     reference: str = ""
     """The level whose reference drive is this one's too; empty: it has its own."""
+    drive: ReferenceDrive | None = None
+    """Its reference drive, where that is not in the file of all."""
     conditions: LevelConditions = UNCHANGED
     rules: ExtraRules = ExtraRules()
 

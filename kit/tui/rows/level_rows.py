@@ -12,12 +12,13 @@ from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Ton
 from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row, spread
 from kit.plain_text import counted
+from kit.school.game.daily import DAILY_PREFIX, daily_level, today
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.leaderboard import LeaderboardEntry, PlayerStanding
 from kit.school.game.levels import GameLevel, GameWorld, all_levels, all_worlds
 from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time
-from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of, daily_level, today
+from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.starts import SEEDS
 from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedGameState, SharedMode, SharedPhase
@@ -80,8 +81,8 @@ def game_progress(summary: GameSummary) -> list[Row]:
     return [row(f"  {medal_counts(summary)}"), row(), *rows_of([table], Page(margin=2))]
 
 
-BEST: Final = 3
-"""Rows of the leaderboard per level."""
+BEST, BEST_TODAY = 3, 10
+"""Rows of the leaderboard per level, and for that of the day."""
 
 
 def leaderboard_standings(standings: Sequence[PlayerStanding], offer: str = "") -> list[Block]:
@@ -124,7 +125,9 @@ def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
     rows = tuple(
         (title, _player(each.name, each.is_mine), f"{each.seconds:.2f} s", _driven(each))
         for level, title in titles.items()
-        for each in [each for each in entries if each.level == level][:BEST]
+        for each in [each for each in entries if each.level == level][
+            : BEST_TODAY if level.startswith(DAILY_PREFIX) else BEST
+        ]
     )
     columns = (Column("", CellStyle.TEXT), Column("", CellStyle.TEXT), Column(""), Column("", CellStyle.TEXT))
     return Table("times", "", columns, rows, grouped=True)
@@ -319,6 +322,8 @@ def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord) -> list[Ro
                 (f"   {NO_STAR} ", "dim"), "a controller of the kit drove: it shows the way and earns nothing"
             )
         ]
+    if record.is_practice:
+        return [row((f"   {NO_STAR} ", "dim"), "practice: the first run of the day has counted")]
     if not level.has_medals:
         return [row(("   your best time so far", "good"))] if record.is_best else []
     if not finish.reached:

@@ -22,6 +22,7 @@ from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
 from kit.school.game.challenge import Challenge
 from kit.school.game.challenges import all_challenges, challenge_medals
+from kit.school.game.daily import daily_level, streak, today
 from kit.school.game.ghosts import Ghost, ghost_file, level_ghosts
 from kit.school.game.levels import CHALLENGES_WORLD, GameLevel, GameWorld, all_levels, all_worlds
 from kit.school.game.medal import Medal
@@ -32,11 +33,8 @@ from kit.school.game.player_progress import (
     LevelProgress,
     belt_of,
     completed_lessons,
-    daily_level,
     facts_of_program,
     level_progress,
-    streak,
-    today,
 )
 from kit.school.game.race import DriverKind, agent_controller
 from kit.school.game.references import reference_recording, reference_seconds

@@ -20,10 +20,11 @@ from kit.mapmaking.map_drawing import read_drawing
 from kit.mapmaking.new_map import write_map
 from kit.school.game import ghosts, leaderboard, references
 from kit.school.game.challenges import all_challenges
+from kit.school.game.daily import daily_level, today
 from kit.school.game.drive_records import DriveRecord, record_drive
 from kit.school.game.levels import GameLevel, all_worlds
 from kit.school.game.medal import Medal
-from kit.school.game.player_progress import ExtraRule, daily_level, today
+from kit.school.game.player_progress import ExtraRule
 from kit.school.game.race import DriverKind
 from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
@@ -365,6 +366,7 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
         Medal.SILVER,
         tuple(ExtraRule)[:4],
         (),
+        False,
         False,
         True,
         9.0,
