@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import ClassVar, Final, Generic, TypeAlias, TypeVar
 
@@ -14,6 +14,8 @@ from kit.school.game.challenge import Judgement
 State = TypeVar("State")
 
 WALL: Final = "#"
+FULL: Final = "█"
+"""Fills a cell."""
 MOVES: Final = {"l": (0, -1), "r": (0, 1), "u": (-1, 0), "d": (1, 0)}
 """The letter of each move, with its change of row and column."""
 ARROWS: Final = {"l": "←", "r": "→", "u": "↑", "d": "↓"}
@@ -29,6 +31,8 @@ class Board(ABC):
 
     keys: ClassVar[str]
     """What the keys do, in one sentence."""
+    scale: int = 1
+    """How many times larger than usual a drawing is shown."""
 
     @property
     @abstractmethod
@@ -122,23 +126,25 @@ def letters_of(columns: int, rows: int) -> str:
     return next((name for name, change in MOVES.items() if change == (rows, columns)), "")
 
 
-def grid_rows(
-    grid: Grid, signs: Mapping[Cell, tuple[str, str]], plain: Callable[[str], tuple[str, str]] | None = None
-) -> list[Row]:
-    """A grid as rows, two columns per cell. ``signs``: sign and style of cells that differ from the drawing."""
+def grid_rows(grid: Grid, signs: Mapping[Cell, tuple[str, str]], scale: int = 1) -> list[Row]:
+    """A grid as rows, for each cell ``scale`` rows of twice as many columns. ``signs``: sign and style of cells that differ
+    from the drawing."""
 
-    def shown(row: int, column: int) -> tuple[str, str]:
-        sign, style = signs.get((row, column)) or (plain or _plain)(grid[row][column])
-        return (sign * 2 if sign == "█" else f"{sign} "), style
+    def shown(row: int, column: int, part: int) -> tuple[str, str]:
+        sign, style = signs.get((row, column)) or _plain(grid[row][column])
+        if sign == FULL:
+            return sign * 2 * scale, style
+        return (sign if part == scale // 2 else " ").center(2 * scale - 1) + " ", style
 
     return [
-        (("  ", ""), *_joined(shown(row, column) for column in range(len(line))))
+        (("  ", ""), *_joined(shown(row, column, part) for column in range(len(line))))
         for row, line in enumerate(grid)
+        for part in range(scale)
     ]
 
 
 def _plain(sign: str) -> tuple[str, str]:
-    return ("█", "dim") if sign == WALL else (sign, "")
+    return (FULL, "dim") if sign == WALL else (sign, "")
 
 
 def _joined(cells: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:

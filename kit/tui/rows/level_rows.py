@@ -11,7 +11,7 @@ from typing import Final
 from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText
 from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row, spread
-from kit.plain_text import counted
+from kit.plain_text import counted, wrap
 from kit.school.game.daily import DAILY_PREFIX, daily_level, today
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
@@ -22,6 +22,7 @@ from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgres
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.starts import SEEDS
 from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedGameState, SharedMode, SharedPhase
+from kit.tui.rows.readout_rows import title as ruled
 
 TITLE_WIDTH: Final = 24
 STAR, NO_STAR, SHUT = "*", ".", "-"
@@ -205,7 +206,7 @@ def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, widt
 
     >>> from kit.document.rows import row_text
     >>> row_text(ladder_bar(DriverKind.KEYS, 10.0, 15.0, 30))
-    'B━━━━━━━━━━━●─────S──────G──M─'
+    'B━━━━━━━━━━━●─────S──────G──MR'
     """
     shares = SHARES[driver]
     widest = math.log(shares[Medal.BRONZE])
@@ -214,14 +215,39 @@ def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, widt
         return round((width - 1) * (1.0 - min(math.log(max(share, 1.0)) / widest, 1.0)))
 
     signs = ["─"] * width
-    for medal in RUNGS[:-1]:  # the record is to the right of all
-        at = column(shares[medal])
-        signs[at] = MEDAL_SIGNS[medal]
+    for medal in RUNGS:
+        below_record = 0 if medal is Medal.RECORD else 1
+        signs[min(column(shares[medal]), width - 1 - below_record)] = MEDAL_SIGNS[medal]
     if seconds is None or seconds > medal_time(Medal.BRONZE, reference, driver):
         return row(("".join(signs), "dim"))
     here = column(seconds / reference)
     passed = "".join("━" if sign == "─" else sign for sign in signs[:here])
     return row((passed, "good"), (HERE, "bold"), ("".join(signs[here + 1 :]), "dim"))
+
+
+def level_card(level: GameLevel, driver: DriverKind, reference: float | None, width: int) -> list[Row]:
+    """What a level is about: story, task, the rungs of its ladder, and the rules that earn stars."""
+    rows = [ruled("level", width), *(row(line) for line in wrap(level.story, width))]
+    rows += [row((line, "bold")) for line in wrap(level.hint, width)]
+    if level.skill:
+        rows += [row((line, "dim")) for line in wrap(f"skill: {level.skill}", width)]
+    if reference is None:
+        return rows
+    rows += [
+        ruled("ladder", width, driver.phrase),
+        row(*ladder_bar(driver, reference, None, min(width, RESULT_BAR))),
+    ]
+    rows += [
+        row(
+            (f"{MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]),
+            f"{medal.title:<8} {medal_time(medal, reference, driver):8.2f} s",
+        )
+        for medal in reversed(RUNGS)
+    ]
+    rows.append(ruled("stars", width))
+    for rule in ExtraRule:
+        rows += [row((line, "")) for line in wrap(f"{STAR} {rule.description(level)}", width, "", "  ")]
+    return rows
 
 
 def next_rung(driver: DriverKind, reference: float, seconds: float | None) -> Medal | None:

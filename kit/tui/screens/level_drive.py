@@ -355,6 +355,7 @@ class LevelDrive(WatchScreen):
     """
 
     help_notes = (LETTER_NOTES,)
+    shows_program = False
     screen_actions = ScreenActions(
         "level",
         ("drive_keys", "stop_robot", "restart", "pause", "help", "back"),
@@ -446,6 +447,17 @@ class LevelDrive(WatchScreen):
         self.host.post(lambda session: session.keys.publish(messages, strength))
 
     # What is shown
+
+    def _panel_rows(self, view: View) -> tuple[Row, ...]:
+        """On a large screen the level's card fills the rest of the panel."""
+        rows = super()._panel_rows(view)
+        if not self._is_large:
+            return rows
+        panel = self._rows("panel").size
+        card = level_rows.level_card(
+            self._level, self._driver, reference_seconds(self._level), panel.width - 2
+        )
+        return (*rows, *card[: max(0, panel.height - len(rows))])
 
     def _view_arrived(self, view: View) -> None:
         """In the world's thread: the level's targets and bumps take the place of those of the map's case."""

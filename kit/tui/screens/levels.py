@@ -80,10 +80,10 @@ class LevelsScreen(RowsScreen[None]):
     AUTO_FOCUS = ""
     screen_actions = ScreenActions(
         "levels",
-        ("choose", "open", "hand_over", "agent", "replay", "hall_of_fame", "daily", "help", "back"),
+        ("choose", "open", "hand_over", "agent", "replay", "leaderboard", "daily", "help", "back"),
         own=(
             letter("agent", "a", "agent", "let an agent that you trained drive the level"),
-            letter("hall_of_fame", "f", "leaderboard", "show this machine's leaderboard"),
+            letter("leaderboard", "f", "leaderboard", "show this machine's leaderboard"),
             letter("daily", "d", "daily", "drive the level of the day, the same for everyone"),
         ),
     )  # fmt: skip
@@ -523,7 +523,7 @@ class LevelsScreen(RowsScreen[None]):
             RecordingScreen(self._theme, film_scenario(level, recording.seed), recording, who)
         )
 
-    def action_hall_of_fame(self) -> None:
+    def action_leaderboard(self) -> None:
         self.app.push_screen(LeaderboardScreen(self._progress, self._workspace))
 
     def _may_drive(self) -> bool:

@@ -103,7 +103,7 @@ def _status(name: str, overview: StudentOverview | None) -> str:
     if name == "levels":
         if not overview.has_run_today:
             return f"maze: day {overview.streak + 1}" if overview.streak else "today's maze"
-        return f"{counted(overview.streak, 'day')} in a row" if overview.streak else ""
+        return f"streak {counted(overview.streak, 'day')}" if overview.streak else ""
     if name == "quiz" and overview.due:
         return f"{overview.due} due today"
     return ""

@@ -126,7 +126,7 @@ class BlindBoard(MovesBoard):
         goal = find_cell(task.grid, "G")
         signs[goal] = ("@", "good") if goal in belief else ("G", "bold")
         return [
-            *grid_rows(task.grid, signs),
+            *grid_rows(task.grid, signs, self.scale),
             row(),
             row((f"  moves {len(self.moves)}", "bold"), f"   the robot may be in {len(belief)} places"),
         ]

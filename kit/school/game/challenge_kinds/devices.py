@@ -134,7 +134,7 @@ class DevicesBoard(Board):
         under = signs[self._cursor][0]
         signs[self._cursor] = ("+" if under in " ·" else under, "chosen")
         return [
-            *grid_rows(task.grid, signs),
+            *grid_rows(task.grid, signs, self.scale),
             row(),
             row(
                 (f"  lasers {len(self._lasers)}", "bold"),

@@ -181,7 +181,7 @@ class PassByBoard(Board):
         state = f"they meet at tick {meeting}" if meeting else "they do not meet"
         ticks = max(map(len, self._moves))
         return [
-            *grid_rows(task.grid, signs),
+            *grid_rows(task.grid, signs, self.scale),
             row(),
             *plans,
             row((f"  ticks {ticks}", "bold"), f"   shown: after tick {tick}   {state}"),

@@ -286,7 +286,12 @@ class PolicyBoard(Board):
                 signs[cell] = (PIT, "bad")
         signs[self._cursor] = (signs[self._cursor][0], "chosen")
         worth = f"  worth {value_of(task, self._policy):.3f} from S, at {start[0]},{start[1]}"
-        return [*grid_rows(task.grid, signs), row(), row((worth, "bold")), row((f"  {task.prices}", "dim"))]
+        return [
+            *grid_rows(task.grid, signs, self.scale),
+            row(),
+            row((worth, "bold")),
+            row((f"  {task.prices}", "dim")),
+        ]
 
 
 KIND = PolicyTask

@@ -126,7 +126,7 @@ class RoundBoard(MovesBoard):
         signs[cell] = ("@", "chosen")
         visited = len(task.places) - len(left)
         return [
-            *grid_rows(task.grid, signs),
+            *grid_rows(task.grid, signs, self.scale),
             row(),
             row(
                 (f"  moves {len(self.moves)}", "bold"),
