@@ -517,6 +517,8 @@ class LineNewcomer(Newcomer):
     """Line by line."""
 
     options = ("--plain",)
+    _keys = ""
+    """What can be typed, as it was last said: it is said again when it changes."""
 
     def read(self, step: LessonStep) -> str:
         if step.number == 1:
@@ -529,7 +531,9 @@ class LineNewcomer(Newcomer):
     def _hear(self, since: int) -> str:
         """What is said until the next line may be typed."""
         self.wait(lambda: self.user.output[since:].endswith(b"\n> "), "the prompt")
-        return self.user.output[since:].decode().replace("\r\n", "\n")
+        said = self.user.output[since:].decode().replace("\r\n", "\n")
+        self._keys = next((part for part in reversed(said.split("\n\n")) if "? help" in part), self._keys)
+        return said
 
     def type(self, line: str) -> str:
         """Types a line; returns what is said to it."""
@@ -541,7 +545,7 @@ class LineNewcomer(Newcomer):
         """Types the letter of an action, which must have been named."""
         found = ACTIONS[action]
         letter = found.keys.split()[0]
-        assert re.search(rf"(^|\s){re.escape(letter)} {found.label}\b", self._said), self._said
+        assert re.search(rf"(^|\s){re.escape(letter)} {found.label}\b", self._keys), self._keys
         return self.type(letter)
 
     def named_file(self) -> Path:
@@ -550,7 +554,7 @@ class LineNewcomer(Newcomer):
         return Path(*shlex.split(found[1])).expanduser()
 
     def predict(self, step: LessonStep) -> None:
-        assert f"1-{len(step.options)} predict" in self._said
+        assert f"1-{len(step.options)} predict" in self._keys
         self._said = self.type(str(right_number(step)))
         assert "Right." in self._said, self._said
 

@@ -120,7 +120,7 @@ def test_the_installed_kit_runs_a_shipped_map(wheel: Path, tmp_path: Path) -> No
     )
     assert walked.returncode == 0, walked.stderr
     assert file.is_file()
-    assert " points, in " in walked.stdout
+    assert " points, checked in " in walked.stdout
     assert "stars" in _said(python, tmp_path, environment, "game", "--plain")
 
 

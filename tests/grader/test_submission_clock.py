@@ -6,15 +6,13 @@ import shutil
 from pathlib import Path
 
 import pytest
-from tests.grader.kinds.environment.kind import test_kind as test_environment
-from tests.grader.kinds.reward.kind import test_kind as test_reward
 
 from grader.grading import GradingOptions, grade
 from grader.reading import default_submission_limit_s, read_assignment
 from grader.submission import Submission, read_submission
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
-from kit.learning.policies.policies import policy_bytes
+from kit.learning.policies.policy_file import policy_bytes
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.grader.conftest import FORWARD, TEMPLATES, write_assignment
 from tests.grader.kinds import (
@@ -23,6 +21,8 @@ from tests.grader.kinds import (
     test_policy,
     test_training,
 )
+from tests.grader.kinds.environment import test_kind as test_environment
+from tests.grader.kinds.reward import test_kind as test_reward
 
 LESSONS = Path(__file__).parents[2] / "lessons"
 SOLUTIONS = Path(__file__).parents[1] / "solutions"

@@ -39,7 +39,7 @@ def _steps(said: str) -> int:
 
 
 def _answers(said: str) -> int:
-    return max((int(number) for number in re.findall(r"^Question (\d+) of", said, re.M)), default=1) - 1
+    return max((int(number) for number in re.findall(r"question (\d+) of", said)), default=1) - 1
 
 
 CASES = {
