@@ -269,3 +269,16 @@ def test_a_test_after_nothing_is_a_mistake_of_the_sheet(tmp_path: Path) -> None:
     )
     with pytest.raises(WorldError, match="reached"):
         read_assignment(folder)
+
+
+def test_the_folder_may_be_named_from_where_one_stands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = write_assignment(tmp_path / "own", QUICK + "tests: [test_own.py]\n")
+    (folder / "test_own.py").write_text(
+        'import pytest\n\n@pytest.mark.points(1)\ndef test_moved(grading):\n    """Moved."""\n'
+    )
+    monkeypatch.chdir(tmp_path)
+    submission = Submission("ada", "controller.py", {"controller.py": FORWARD.encode()})
+    result = grade(read_assignment(Path("own")), submission, DESK)
+    assert result.tests[-1].status is CriterionStatus.PASS
