@@ -191,8 +191,6 @@ def run_teacher_tests(
     """
     if not tests:
         return {}
-    # They run in another folder than this one.
-    folder, files = folder.absolute(), [file.absolute() for file in files]
     limit_s = max(MIN_TIME_S, clock.left_s)
     session = _Session(grading, first_failure, TestDeadline(limit_s))
     try:
