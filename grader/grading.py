@@ -558,7 +558,12 @@ def open_grading(
         shield_this_process()
     with submission.in_temporary_folder() as file:
         clock = SubmissionClock(assignment.submission_limit_s, options.show_progress)
-        evidence_options = EvidenceOptions(available, options.secret, clock)
+        evidence_options = EvidenceOptions(
+            available,
+            options.secret,
+            clock,
+            stops_at_death=options.examples and available is Level.LIMITED,
+        )
         with ExitStack() as stack:
             stack.enter_context(admitting(assignment.packages))
             with reading_submission(submission.name):

@@ -23,6 +23,7 @@ DISTRIBUTION: Final = "robot-learning-kit"
 TOP_LEVEL: Final = ("kit", "grader")
 """The packages of the distribution. Others on the package index carry the same names."""
 _REQUIREMENT: Final = re.compile(r"""(?P<name>[\w.-]+)[^;]*(;.*extra == ['"](?P<extra>\w+)['"])?""")
+_OLDER_THAN: Final = re.compile(r"""python_version < ['"]3\.(\d+)['"]""")
 _PACKAGE: Final = Path(__file__).parent
 
 
@@ -34,8 +35,14 @@ def requirements(extra: str | None = None) -> tuple[str, ...]:
         lines = requires(DISTRIBUTION) or ()
     except PackageNotFoundError:
         return ()
-    found = (match for line in lines if (match := _REQUIREMENT.match(line)))
+    found = (match for line in lines if not _is_for_older(line) and (match := _REQUIREMENT.match(line)))
     return tuple(match["name"] for match in found if match["extra"] == extra)
+
+
+def _is_for_older(requirement: str) -> bool:
+    """Whether a requirement is for a Python older than this one."""
+    bound = _OLDER_THAN.search(requirement)
+    return bound is not None and sys.version_info[1] >= int(bound[1])
 
 
 def installed_version(package: str) -> str | None:

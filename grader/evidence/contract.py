@@ -10,11 +10,11 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from itertools import chain
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, SeedSet, Trial, counterpart_seed
 from grader.evidence.submission_clock import SubmissionClock
-from kit.host.failure import Failure
+from kit.host.failure import Failure, FailureKind
 from kit.host.sandbox.confinement import Level
 
 
@@ -28,6 +28,8 @@ class EvidenceOptions:
     """Whether the secret seeds are used too."""
     clock: SubmissionClock = field(default_factory=SubmissionClock)
     """The wall clock of the whole submission."""
+    stops_at_death: bool = False
+    """Whether no further episode is run of a program that has died in one: a student's own check, who mends that first."""
 
 
 class Evidence(Protocol):
@@ -253,6 +255,10 @@ class CachingCollector:
             yield self._counterparts[key]
 
 
+DEATHS: Final = frozenset((FailureKind.EXCEPTION, FailureKind.EXIT))
+"""Failures that end a program by its own doing."""
+
+
 class EpisodeCollector(CachingCollector):
     """Runs each episode of one submission when a criterion first needs it."""
 
@@ -268,6 +274,8 @@ class EpisodeCollector(CachingCollector):
         super().__init__(options)
         self._assignment = assignment
         self._secret = options.secret
+        self._stops_at_death = options.stops_at_death
+        self._death: Failure | None = None
         self._run = run
         self._criteria = assignment.criteria if criteria is None else criteria
 
@@ -288,13 +296,21 @@ class EpisodeCollector(CachingCollector):
 
     def _evidence_of(self, spec: EpisodeSpec) -> Evidence:
         number = len(self._evidence) + 1
-        return self._collect(
+        evidence = self._collect(
             (spec.trial.name, spec.secret, spec.seed),
-            lambda: self._run(spec),
+            lambda: self._run_unless_dead(spec),
             spec.label,
             secret=spec.secret,
             progress=f"episode {number} of {self._episode_count}: {spec.label}",
         )
+        if self._stops_at_death and evidence.failure is not None and evidence.failure.kind in DEATHS:
+            self._death = self._death or evidence.failure
+        return evidence
+
+    def _run_unless_dead(self, spec: EpisodeSpec) -> Evidence:
+        if self._death is None:
+            return self._run(spec)
+        return EvidenceRecord(failure=self._death, label=spec.label, secret=spec.secret, outcome="not run")
 
     @cached_property
     def _episode_count(self) -> int:

@@ -14,6 +14,7 @@ from typing import Any
 
 import grader
 import kit
+from kit.extensions import ExtensionError, extensions, load
 from kit.host.sandbox.grants import find_grants
 
 
@@ -33,6 +34,9 @@ def confine_before_reading(
     from grader.assignment import TEACHERS_STEMS
     from kit.host.sandbox.confinement import confine_reader
 
+    for device in extensions("devices").values():  # of the packages that the assignment names
+        with suppress(ExtensionError):
+            load(device)
     granted = find_grants([file.parent])
     own = [
         str(entry)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import os
+import signal
 import sys
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
@@ -246,19 +247,25 @@ class LazyGroup(click.Group):
                 formatter.write_dl([(name, f"From {each.source}.") for name, each in others.items()])
 
 
+class UnusablePart(click.ClickException):
+    """A verb of another package cannot be used."""
+
+    exit_code = BAD_INPUT
+
+
 def _command_of(extension: Extension) -> click.Command:
     """The verb, or the verb that opens a dialogue, of another package; one that cannot be used ends with a sentence."""
     try:
         found = load(extension)
     except ExtensionError as error:
-        raise click.UsageError(str(error)) from None
+        raise UnusablePart(str(error)) from None
     if extension.group == "dialogues":
         from kit.cli.dialogue import dialogue_command
 
         return dialogue_command(extension.name, found)
     if isinstance(found, click.Command):
         return found
-    raise click.UsageError(f"The verb {extension.name} of {extension.source} is no click command.")
+    raise UnusablePart(f"The verb {extension.name} of {extension.source} is no click command.")
 
 
 @click.group(
@@ -297,6 +304,8 @@ def run_as_process(command: click.Command, name: str) -> NoReturn:
     process ends once its output is written. The screen has given the terminal back and removed what it made; the exit
     handlers of libraries do not run, which would take compiled code away from threads that are still in it.
     """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # for the imports; see ``kit.__main__``
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     for foreign in foreign_distributions(only_named=True):
         click.echo(f"{name}: {overwritten_text(*foreign)}", err=True)
         raise SystemExit(BAD_INPUT)

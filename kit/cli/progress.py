@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from datetime import datetime
 from pathlib import Path
 
 import click
@@ -13,8 +14,10 @@ from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text
 from kit.document.layout import lines_of
 from kit.document.rows import row_text
 from kit.plain_text import counted
+from kit.school.badges import badge_table, badges, streak
 from kit.school.game.challenges import game_summary
 from kit.school.lessons.catalogue import LessonEntry, list_lessons
+from kit.school.lessons.reading import read_units
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.school.progress_export import read_export
 from kit.workspace import WorkspaceError, open_workspace
@@ -91,11 +94,16 @@ def _show(journal: ProgressJournal) -> None:
         return
     shelf = list_lessons(events)
     finished = sum(each.is_completed for each in shelf)
+    days = streak(events, datetime.now().astimezone().date())
+    won = badges(shelf, read_units(), days, events)
     blocks: list[Block] = [
         _lessons_table(shelf),
         Text(f"{counted(finished, 'lesson')} done. `kit quiz --scores` shows the quiz."),
-        Text("The game"),
+        Text(f"{counted(sum(each.is_earned for each in won), 'badge')}. {days.describe()}"),
     ]
+    if any(each.done for each in won):
+        blocks.append(badge_table(won))
+    blocks.append(Text("The game"))
     click.echo("\n".join([*lines_of(blocks), *map(row_text, game_progress(game_summary(events)))]))
 
 

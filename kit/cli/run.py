@@ -17,6 +17,7 @@ from kit.document.layout import lines_of
 from kit.host.program_terminal import ProgramTerminal, has_user_terminal, piped_streams
 from kit.inspection.server import InspectionServer
 from kit.inspection.sockets import sockets_folder
+from kit.kernels.compilation_progress import PROGRESS
 from kit.plain_text import counted, escape_controls
 from kit.ros.bags import BagRecorder
 from kit.ros.graph.graph import Graph
@@ -114,6 +115,7 @@ def command(
         participants.append(lambda graph: _record_bag(graph, bag, storage))
     try:
         with ExitStack() as stack:
+            stack.enter_context(PROGRESS.told_by(lambda text: click.echo(text, err=True)))
             if has_user_terminal():
                 streams = stack.enter_context(ProgramTerminal(shows_output=False)).streams
             else:

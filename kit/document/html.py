@@ -44,7 +44,7 @@ th { text-align: left; border-bottom: 1px solid var(--text); } th, td { padding:
 .number { text-align: right; font-variant-numeric: tabular-nums; }
 .note { font-size: 0.85rem; margin-top: -0.5rem; } .caution { border-left: 4px solid var(--mark); padding-left: 0.7rem; }
 blockquote { margin: 0.3rem 0 1rem 1rem; white-space: pre-wrap; } svg { max-width: 100%; height: auto; display: block; margin: 1rem 0; }
-nav a { margin-right: 1rem; }
+nav { columns: 18rem; column-gap: 1.5rem; } nav a { display: block; }
 """
 
 Links = Mapping[str, str]
@@ -127,12 +127,14 @@ def _piece_html(piece: StyledText, links: Links) -> str:
 def _table_lines(table: Table) -> Iterator[str]:
     kinds = ["" if column.style is CellStyle.TEXT else ' class="number"' for column in table.columns]
     caption = f"<caption>{_html_text(table.title)}</caption>" if table.title else ""
-    yield f'<div class="wide"><table>{caption}<thead><tr>'
-    yield "".join(
-        f'<th scope="col"{kind}>{_html_text(column.title)}</th>'
-        for kind, column in zip(kinds, table.columns, strict=True)
-    )
-    yield "</tr></thead><tbody>"
+    yield f'<div class="wide"><table>{caption}'
+    if any(column.title for column in table.columns):
+        heads = (
+            f'<th scope="col"{kind}>{_html_text(column.title)}</th>'
+            for kind, column in zip(kinds, table.columns, strict=True)
+        )
+        yield f"<thead><tr>{''.join(heads)}</tr></thead>"
+    yield "<tbody>"
     for number, row in enumerate(table.rows):
         shown = (row[0] if table.shows_first_cell(number) else "", *row[1:])
         cells = (

@@ -10,14 +10,28 @@ from contextlib import chdir, nullcontext, suppress
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
+from kit.kernels.compilation_progress import PROGRESS
+
 NUMBA_SETTINGS = Path(".numba_config.yaml")
 """numba reads it in the current folder, at its import and whenever it compiles. It names the cache, whose files can run code,
 and the current folder may be a student's."""
 with chdir("/") if NUMBA_SETTINGS.exists() else nullcontext():
     import numba
-    from numba.core import config
+    from numba.core import config, event
 
 config._config_fname = ""  # no file has this name
+
+
+class _ProgressListener(event.Listener):
+    def on_start(self, event: Any) -> None:
+        PROGRESS.begin(event.data["dispatcher"].py_func.__name__)
+
+    def on_end(self, event: Any) -> None:
+        PROGRESS.end()
+
+
+_register: Any = event.register  # numba has no types
+_register("numba:compile", _ProgressListener())
 
 SOURCE_STAMP = tuple(
     (file.name, file.stat().st_mtime, file.stat().st_size)

@@ -504,24 +504,6 @@ def test_a_hard_link_in_a_folder_of_another_user_is_not_read(tmp_path: Path) -> 
         read_submission(folder, "ada.py")
 
 
-def test_an_archive_alone_in_a_folder_is_the_work(tmp_path: Path) -> None:
-    """As a platform's download has it: a folder for each student, and in it what was uploaded."""
-    folder = tmp_path / "Ada_4711_assignsubmission_file_"
-    folder.mkdir()
-    with zipfile.ZipFile(folder / "work.zip", "w") as archive:
-        archive.writestr("deep/controller.py", "pass\n")
-        archive.writestr("deep/part.py", "x = 1\n")
-    (folder / "screenshot.png").write_bytes(b"\x89PNG")
-    submission = read_submission(folder, "controller.py")
-    assert set(submission.files) == {"controller.py", "part.py"}
-    shutil.copy(folder / "work.zip", folder / "again.zip")
-    with pytest.raises(SubmissionRefused, match="missing"):
-        read_submission(folder, "controller.py")
-    (folder / "again.zip").unlink()
-    (folder / "controller.py").write_text("print()\n")
-    assert set(read_submission(folder, "controller.py").files) == {"controller.py"}
-
-
 HIDDEN = (
     b"# -*- coding: utf-7 -*-\n# harmless: +AAoAaQBtAHAAbwByAHQAIABvAHM-\n",
     b"# coding: unicode_escape\n# harmless \\nimport os\n",
@@ -553,3 +535,21 @@ def test_what_reads_otherwise_than_it_runs_is_refused(source: bytes, inside: boo
 def test_what_reads_as_it_runs_is_taken(source: bytes, tmp_path: Path) -> None:
     (tmp_path / "controller.py").write_bytes(source)
     assert read_submission(tmp_path / "controller.py", "controller.py").files["controller.py"] == source
+
+
+def test_an_archive_alone_in_a_folder_is_the_work(tmp_path: Path) -> None:
+    """As a platform's download has it: a folder for each student, and in it what was uploaded."""
+    folder = tmp_path / "Ada_4711_assignsubmission_file_"
+    folder.mkdir()
+    with zipfile.ZipFile(folder / "work.zip", "w") as archive:
+        archive.writestr("deep/controller.py", "pass\n")
+        archive.writestr("deep/part.py", "x = 1\n")
+    (folder / "screenshot.png").write_bytes(b"\x89PNG")
+    submission = read_submission(folder, "controller.py")
+    assert set(submission.files) == {"controller.py", "part.py"}
+    shutil.copy(folder / "work.zip", folder / "again.zip")
+    with pytest.raises(SubmissionRefused, match="missing"):
+        read_submission(folder, "controller.py")
+    (folder / "again.zip").unlink()
+    (folder / "controller.py").write_text("print()\n")
+    assert set(read_submission(folder, "controller.py").files) == {"controller.py"}

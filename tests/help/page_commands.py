@@ -44,12 +44,11 @@ WAYS: Final[Mapping[str, Way]] = {
     "kit play": Way.SCREEN,
     "kit play maze": Way.SCREEN,
     "kit play world.yaml": Way.SCREEN,
-    "kit play worlds/hall": Way.SCREEN,
+    "kit play ~/robot-kit/worlds/hall": Way.SCREEN,
     "kit maps new hall": Way.SCREEN,
     "kit replay run.npz": Way.SCREEN,
     "kit watch first": Way.SCREEN,
     "kit quiz": Way.SCREEN,
-    "kit quiz --today": Way.SCREEN,
     "kit form": Way.SCREEN,
     "kit run maze --serve --steps 100000": Way.SERVES,
     "kit ros node list": Way.ASKS,
@@ -169,7 +168,12 @@ def _write_class(folder: Path) -> None:
     (folder / "late.yaml").write_text("\n".join(rules) + "\n")
     (folder / "marks.yaml").write_text("\n".join(marks) + "\n")
     (folder / "answers").mkdir()
-    exported = [sys.executable, "-m", "kit", "progress", "export", "answers/ada.json"]
+    kit = [sys.executable, "-m", "kit"]
+    answers = "3\n3\n3\nq\n"
+    subprocess.run(
+        [*kit, "form", "--plain"], cwd=folder, input=answers, text=True, check=True, capture_output=True
+    )
+    exported = [*kit, "progress", "export", "answers/ada.json"]
     subprocess.run(exported, cwd=folder, check=True, capture_output=True)
 
 

@@ -25,13 +25,13 @@ import math
 import random
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Final
+from typing import Any, Final, Self
 
 from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, SeedSet, counterpart_seed, read_seed
 from grader.author_code import UNINTELLIGIBLE, AuthorCodeError, run_author_code
@@ -203,7 +203,8 @@ def _answers_of(module: ModuleType, name: str, seed: int) -> Json:
 
 
 class FunctionCollector(CachingCollector):
-    """Calls each function when a criterion first needs it, so that an error in one costs no other."""
+    """Calls each function when a criterion first needs it: all of them in one process with the public cases, then in another
+    with the secret ones. After a failure the next function gets a new one, so that an error in one costs no other."""
 
     def __init__(self, assignment: Assignment, file: Path, options: EvidenceOptions) -> None:
         super().__init__(options)
@@ -213,6 +214,40 @@ class FunctionCollector(CachingCollector):
         self._secret = options.secret and self._task.secret_seed is not None
         self._known: dict[tuple[str, int], Json] = {}
         """By function and seed: each case with the right answer, or why there are none."""
+        self._functions: StudentFunctions | None = None
+        self._calls_secret = False
+        """Whether the open process is called with secret cases."""
+        self._not_loaded: Failure | None = None
+        """Why the file cannot be loaded: then it is not tried again."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._close()
+
+    def _close(self) -> None:
+        if self._functions is not None:
+            self._functions.close()
+            self._functions = None
+
+    def _open(self, *, secret: bool) -> StudentFunctions:
+        """Returns the process to call. One that was called with public cases has ended before a secret one starts. Raises
+        StudentCodeError."""
+        if self._not_loaded is not None:
+            raise StudentCodeError(self._not_loaded)
+        if self._calls_secret is not secret:
+            self._close()
+        if self._functions is None:
+            limits = self._clock.shorten(self._assignment.limits)
+            try:
+                self._functions = StudentFunctions(self._file, limits=limits, level=self.level)
+            except StudentCodeError as error:
+                if error.failure.kind in (FailureKind.SYNTAX, FailureKind.IMPORT):
+                    self._not_loaded = error.failure
+                raise
+            self._calls_secret = secret
+        return self._functions
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         name = self._function(criterion.params.function)
@@ -281,15 +316,15 @@ class FunctionCollector(CachingCollector):
         clock = self._clock
         case: Mapping[str, Json] | None = None
         try:
-            limits = clock.shorten(self._assignment.limits)
-            with StudentFunctions(self._file, limits=limits, level=self.level) as functions:
-                for case, expected in cases:
-                    clock.check()
-                    actual = functions.call_json(spec.name, case)
-                    if not is_close(expected, actual, spec.within):
-                        differences.append(CaseDifference(case, expected, actual))
-                printed = tuple(printable(line.text) for line in functions.take_output().lines)
+            functions = self._open(secret=blank.secret)
+            for case, expected in cases:
+                clock.check()
+                actual = functions.call_json(spec.name, case)
+                if not is_close(expected, actual, spec.within):
+                    differences.append(CaseDifference(case, expected, actual))
+            printed = tuple(printable(line.text) for line in functions.take_output().lines)
         except StudentCodeError as error:
+            self._close()
             return failed_record(blank, clock.explain(error.failure), spec.name, case)
         found = FunctionComparison(spec.name, len(cases), tuple(differences))
         explanation = "" if blank.secret else found.explain_first()
@@ -365,7 +400,7 @@ def collect(
     assignment: Assignment, file: Path, options: EvidenceOptions
 ) -> AbstractContextManager[EvidenceCollector]:
     """Calls each function when a criterion first needs it."""
-    return nullcontext(FunctionCollector(assignment, file, options))
+    return FunctionCollector(assignment, file, options)
 
 
 KIND: Final = Kind((".py",), {agrees.name: agrees}, read_settings, collect)

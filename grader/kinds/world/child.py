@@ -22,7 +22,6 @@ from grader.evidence.reader_child import (
     send_answer,
 )
 from grader.kinds.world.facts import WorldFacts, WorldRunSpec
-from kit.extensions import ExtensionError, extensions, load
 from kit.world.documents import AllowedRoot, UnusableFile, WorldDocuments
 from kit.world.problems import ProblemCollector, WorldError
 from kit.world.records import SourceLocation, World
@@ -34,7 +33,6 @@ def main() -> None:
     file = Path(path)
     limit_resources()
     limit_memory(int(memory))
-    load_devices()
     if is_confined:
         confine_before_reading(file, scratch, drivers)
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
@@ -45,13 +43,6 @@ def main() -> None:
 
     for line in sys.stdin:
         send_answer(answers, asdict(run_world(_readable(world), WorldRunSpec(**json.loads(line)))))
-
-
-def load_devices() -> None:
-    """Loads the devices of the packages that the assignment names, which this process cannot open once it is confined."""
-    for each in extensions("devices").values():
-        with suppress(ExtensionError):
-            load(each)
 
 
 def _read_world(file: Path, memory: int) -> tuple[WorldFacts, World | None]:

@@ -45,10 +45,10 @@ On a screen, `n` shows the nodes with the messages moving between them. `kit hel
             "Check a world and plan its layers",
             """
     kit maps new hall --from hall.txt
-    kit world check worlds/hall/world.yaml
-    kit layers plan worlds/hall/world.yaml
-    kit layers plan worlds/hall/world.yaml --patch
-    kit layers check worlds/hall/world.yaml
+    kit world check ~/robot-kit/worlds/hall/world.yaml
+    kit layers plan ~/robot-kit/worlds/hall/world.yaml
+    kit layers plan ~/robot-kit/worlds/hall/world.yaml --patch
+    kit layers check ~/robot-kit/worlds/hall/world.yaml
 
 `plan` finds the provably smallest set of collision layers that keeps what collides and what each laser sees; `--patch` prints
 the change to the files, `--apply` makes it and loads them again. `kit layers explain slides` shows the method step by step,

@@ -74,7 +74,7 @@ A training is a process of its own: it goes on when you leave the screen or the 
             "Make a map",
             """
     kit maps new hall --from hall.txt
-    kit play worlds/hall
+    kit play ~/robot-kit/worlds/hall
 
 `hall.txt` is a drawing: `#` is wall, `S` the start and `T` the target, a character is 0.5 m wide, or what `--cell` says.
 `kit maps new hall` draws on the screen instead, `kit maps from-photo PICTURE --width METRES` reads a photograph of paper.

@@ -46,6 +46,7 @@ class _Ruleset(ctypes.Structure):
 
 class _PathBeneath(ctypes.Structure):
     _pack_ = 1
+    _layout_ = "ms"  # what `_pack_` implies; Python 3.14 wants it said
     _fields_ = (("access", ctypes.c_uint64), ("descriptor", ctypes.c_int32))
 
 

@@ -63,6 +63,18 @@ def checking(seconds: float, progress: str = "") -> Row:
     return row((f"  {seconds:.1f} s: {progress}" if progress else f"  Checking ... {seconds:.1f} s", "bold"))
 
 
+PASSED_S: Final = 1.2
+"""How long the line of a check that has passed moves [s]."""
+PASSED_CELLS: Final = 12
+"""Cells that a robot drives along it, and leaves stars in."""
+
+
+def passing(seconds: float) -> Row:
+    """The line of a check that has just passed, so long after: a robot drives along it and leaves a star in each cell."""
+    driven = min(PASSED_CELLS, int(PASSED_CELLS * seconds / PASSED_S))
+    return row(("  Passed: ", "good"), (f"{'*' * driven}>", "good"))
+
+
 def file_rows(path: str, by_hand: bool, others: bool, width: int) -> list[Row]:
     """The whole path of what is edited, on as many rows as it needs. ``others``: there is more beside it."""
     head = " Saved in " if by_hand else " Edit "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from asyncio import to_thread
 from typing import TYPE_CHECKING, Any, Final
 
@@ -15,6 +16,7 @@ from kit.inspection.sockets import sockets_folder
 from kit.run.scenario import find_scenario
 from kit.school.lessons.aside import plain_lines
 from kit.school.lessons.defence_dialogue import DefenceDialogue
+from kit.school.lessons.exercise_work import ExerciseWork
 from kit.school.lessons.lesson_dialogue import Drive, Edit, LessonDialogue, Replay, RunCommand
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import LessonStep
@@ -136,6 +138,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
         self.stage = ScenePair(world, PlaybackSceneView(theme))
         self._page = LessonPage(self.stage.world, self.stage.playback)
         self._strength = 1.0
+        self._passed_at = -lesson_rows.PASSED_S
+        """When the line of a check that passed began to move."""
         self._said_row = self._look_row = 0
         """Rows of the words in which what was said begins, and what was said last; 0: nothing was."""
 
@@ -252,6 +256,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
         work = self.dialogue.work
         if work is not None and work.seconds is not None:
             return lesson_rows.checking(work.seconds, work.progress)
+        if (since := time.monotonic() - self._passed_at) < lesson_rows.PASSED_S and self.turn.remark is None:
+            return lesson_rows.passing(since)
         return self._remark()
 
     def _work_picture(self, width: int, *, is_roomy: bool = False) -> list[str]:
@@ -319,8 +325,23 @@ class LessonScreen(DialogueScreen, DriveScreen):
             return
         is_read_anew = work is not None and work.reads_anew()
         super()._poll()
+        if is_checking and not self.dialogue.busy and work is not None and work is self.dialogue.work:
+            self._celebrate(work)
         if is_read_anew:
             self.show()
+
+    def _celebrate(self, work: ExerciseWork) -> None:
+        """Lets the line of a check that has passed move once, unless motion is reduced."""
+        if work.report is None or not work.report.is_passed or self.theme.terminal.reduce_motion.value:
+            return
+        self._passed_at = time.monotonic()
+        count = lesson_rows.PASSED_CELLS + 1
+        self.set_interval(lesson_rows.PASSED_S / lesson_rows.PASSED_CELLS, self._show_status, repeat=count)
+        self._show_status()
+
+    def _show_status(self) -> None:
+        if self.is_active and self.dialogue.work is not None:
+            self._rows("status").show([self._status_row()])
 
     # Keys
 

@@ -13,6 +13,7 @@ from textual.message import Message
 
 from kit.dialogue.actions import ACTIONS, ScreenActions
 from kit.document.rows import Row, row
+from kit.kernels.compilation_progress import PROGRESS
 from kit.run.pacing import MAXIMUM, REAL_TIME
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.key_rows import footer
@@ -54,9 +55,9 @@ BREAKPOINTS: Final = [(0, "-narrow"), (74, "-wide"), (100, "-roomy")]
 """From which width on: without and with the figures beside the world, and with what an agent perceives beside both."""
 LOADING_S: Final = 1.5
 """Seconds from which on a world that does not move yet says why."""
-LOADING: Final = row(
-    ("Getting ready. The first time takes longer: code is compiled for this machine.", "dim")
-)
+LOADING_EVERY_S: Final = 0.5
+"""Seconds between two looks at how far that is."""
+LOADING: Final = "Getting ready. The first time takes longer: code is compiled for this machine."
 NOTICE_S: Final = 8.0
 """Seconds for which a notice stands in place of the messages."""
 MAP_COLUMNS: Final = 70
@@ -119,6 +120,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         self.host: SessionHost
         self._history = SpeedHistory()
         self._notice: Row | None = None
+        self._tells_of_loading = False
         self._program: tuple[Path | None, tuple[str, ...]] = (None, ())
         self._announced = False
         self._beams = (
@@ -274,8 +276,8 @@ class WatchScreen(RowsScreen[None], DriveScreen):
 
     def on_view_changed(self) -> None:
         self._announced = False
-        if self._notice is LOADING and not self._is_loading:
-            self._notice = None
+        if self._tells_of_loading and not self._is_loading:
+            self._tells_of_loading, self._notice = False, None
         elif self._is_loading:
             self.set_timer(LOADING_S, self._tell_of_loading)
         self._show()
@@ -287,8 +289,10 @@ class WatchScreen(RowsScreen[None], DriveScreen):
 
     def _tell_of_loading(self) -> None:
         if self._is_loading:
-            self._notice = LOADING
+            self._tells_of_loading = True
+            self._notice = row((PROGRESS.text or LOADING, "dim"))
             self._show()
+            self.set_timer(LOADING_EVERY_S, self._tell_of_loading)
 
     def message_rows(self, view: View) -> tuple[Row, ...]:
         """The rows below the picture."""

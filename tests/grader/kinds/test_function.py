@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
@@ -291,3 +292,39 @@ def test_the_folder_may_be_named_from_where_one_stands(
     work = read_submission(Path("new/solution.py"), "heard.py")
     options = GradingOptions(Level.FILTERED)
     assert grade(read_assignment(Path("new")), work, options).points == 6
+
+
+@pytest.mark.parametrize(
+    ("source", "processes"),
+    [
+        pytest.param(NEAREST + HALVES, 2, id="public and secret"),
+        pytest.param(
+            NEAREST.replace("return", "return 1 / 0 or") + HALVES, 4, id="a new one after a failure"
+        ),
+        pytest.param("def nearest(:\n", 1, id="a file that cannot be loaded"),
+    ],
+)
+def test_public_cases_share_a_process_and_secret_ones_another(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, source: str, processes: int
+) -> None:
+    (folder / "secret.yaml").write_text("seed: 4611686018427387903\n")
+    starts = 0
+    opened: list[Any] = []
+
+    class Counted(StudentFunctions):
+        def __init__(self, *arguments: object, **settings: object) -> None:
+            nonlocal starts
+            starts += 1
+            assert all(each.is_closed for each in opened), "two run at once"
+            super().__init__(*arguments, **settings)  # type: ignore[arg-type]  # as they came
+            opened.append(self)
+            self.is_closed = False
+
+        def close(self) -> None:
+            self.is_closed = True
+            super().close()
+
+    monkeypatch.setattr("grader.kinds.function.kind.StudentFunctions", Counted)
+    graded(folder, source, GradingOptions(Level.LIMITED, secret=True))
+    assert starts == processes
+    assert all(each.is_closed for each in opened)

@@ -463,6 +463,8 @@ def test_a_shielded_grader_keeps_its_secrets_even_without_confinement(student: S
     for folder in above(file):
         folder.chmod(0o755)
     python = "/usr/bin/python3"
+    if not Path(python).is_file():
+        pytest.skip("no Python that another user may run")
     code = SHIELD.format(root=str(Path(__file__).parents[3]), file=str(file))
     for expected, script in (("[0.0]", code), ("[3.0]", code.replace("\nshield_this_process()", ""))):
         run = subprocess.run(

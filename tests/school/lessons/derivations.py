@@ -581,7 +581,9 @@ def sparse_reward(words: str, step: LessonStep, folder: Path) -> str:
 
 
 def crash_in_steps(words: str, step: LessonStep, folder: Path) -> str:
-    found = re.search(rf"- ({NUMBER}) \* collided - ({NUMBER})", step.text)
+    found = re.search(
+        rf"takes ({NUMBER}) for a collision and ({NUMBER}) for every step", " ".join(step.text.split())
+    )
     assert found is not None
     return f"a crash costs as much as { {100: 'a hundred'}[round(float(found[1]) / float(found[2]))] } steps"
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import SimpleNamespace
 from typing import Final
-from unittest import mock
 
 import numpy as np
+import pytest
 from click.testing import CliRunner
 
 from kit.arrays import FloatArray
@@ -23,8 +24,8 @@ from kit.learning.grid.grid_learner import GridLearnerSettings
 from kit.learning.grid.grid_world import GridWorld
 from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.algorithms import find_algorithm
-from kit.learning.training.presets import find_preset
+from kit.learning.training.algorithms import UnsuitableAlgorithm, check_suits, find_algorithm
+from kit.learning.training.presets import ReplayParams, find_preset
 from kit.learning.training.training import make_learner
 from kit.school.lessons.records import LessonStep
 from tests.kit_content import lesson_reference
@@ -34,10 +35,11 @@ FAILING: Final = "27-why-a-training-fails"
 TABLES: Final = "28-a-papers-table"
 PAIR: Final = "wheelchairs-seed-49"
 LAST: Final = 10
+WORLDS_OF_DQN: Final = 64
+"""By so many steps, a step of all worlds, a training may go past its last one."""
 STOP, FORWARD = 0, 1
 STANDING_SEEDS: Final = range(8)
-SEEN_STEPS: Final = 2000
-"""Steps of the replay buffer whose best values are looked at."""
+EXPLODING_STEPS: Final = (10_000, 20_000, 30_000, 50_000)
 
 
 @cache
@@ -97,27 +99,25 @@ def side_by_side_bonus(words: str, step: LessonStep, folder: Path) -> str:
     return f"The reward paid {bonus:g} for each step side by side"
 
 
-def largest_values(limit: float) -> dict[int, float]:
-    """By the steps of a training as the lesson runs it: the largest of the best values in what it has seen."""
-    from kit.learning.training import boltzmann_dqn  # brings torch along
-
+def largest_values(*, is_limited: bool) -> dict[int, float]:
+    """By the steps of a training as the lesson runs it: the largest value of what it has just seen."""
     algorithm, choice = find_algorithm("boltzmann-dqn"), TaskSpec(PAIR, on=("pair_straight",))
     task = choice.resolve()
-    learner = make_learner(algorithm, find_preset("seed", algorithm, task.preset), choice, task, seed=0)
+    preset = find_preset("seed", algorithm, task.preset)
+    assert isinstance(preset.settings, ReplayParams)
+    if not is_limited:
+        preset = replace(preset, settings=replace(preset.settings, value_limit=math.inf))
+    learner = make_learner(algorithm, preset, choice, task, seed=0)
     watcher = SimpleNamespace(between_updates=lambda: None, on_episode_end=lambda episode: None)
     found = {}
-    for steps in (5_000, 10_000, 20_000, 30_000):
-        with mock.patch.object(boltzmann_dqn, "MAX_EXPONENT", limit):
-            learner.learn(steps, watcher)
-        seen = learner._buffer.sample(np.random.default_rng(0), SEEN_STEPS).seen
-        found[steps] = float(learner._network.outputs(seen)[-1].max())
+    for steps in EXPLODING_STEPS:
+        learner.learn(steps, watcher)
+        found[steps] = learner.measures()["value_max"]
     return found
 
 
 def exploding_values(words: str, step: LessonStep, folder: Path) -> str:
-    from kit.learning.training.boltzmann_dqn import MAX_EXPONENT  # brings torch along
-
-    limited, free = largest_values(MAX_EXPONENT), largest_values(np.inf)
+    limited, free = largest_values(is_limited=True), largest_values(is_limited=False)
     steps, *rows = (
         " ".join(f"{each:,.0f}" for each in row) for row in (limited, limited.values(), free.values())
     )
@@ -233,21 +233,48 @@ def best_of_tests(words: str, step: LessonStep, folder: Path) -> str:
 
 
 @cache
-def exams() -> dict[str, list[float]]:
-    """The sorted shares of five seeds, by algorithm: of the very command that the lesson's last step names, and of PPO."""
-    found: dict[str, list[float]] = {}
+def trainings() -> dict[str, list[dict[str, str]]]:
+    """Five trainings of each algorithm, by its name: of the command that the lesson's last step names, with two more."""
+    found: dict[str, list[dict[str, str]]] = {}
     with TemporaryDirectory() as folder:
         file = Path(folder) / "trainings.csv"
-        line = "sweep turn --algos q-learning,sarsa,ppo --rewards progress --steps 60000 --seeds 5 --episodes 200"
+        line = "sweep turn --algos q-learning,sarsa,dqn,ppo --rewards progress --steps 60000 --seeds 5 --episodes 200"
         result = CliRunner().invoke(main, [*line.split(), "--csv", str(file), "--workspace", folder])
         assert result.exit_code == 0, result.output
         head, *rows = (each.split(",") for each in file.read_text().splitlines())
         for row in rows:
             training = dict(zip(head, row, strict=False))
-            assert int(training["steps"]) <= 60_000
+            assert int(training["steps"]) < 60_000 + WORLDS_OF_DQN
             assert int(training["episodes"]) == 400
-            found.setdefault(training["algorithm"], []).append(float(training["mean"]))
-    return {name: sorted(shares) for name, shares in found.items()}
+            found.setdefault(training["algorithm"], []).append(training)
+    return found
+
+
+def exams() -> dict[str, list[float]]:
+    """The sorted shares of each algorithm's five trainings."""
+    return {name: sorted(float(each["mean"]) for each in rows) for name, rows in trainings().items()}
+
+
+def four_algorithms(words: str, step: LessonStep, folder: Path) -> str:
+    """As ``kit sweep`` prints them: learned, and the mean success."""
+    name, *rest = words.split()
+    if name not in trainings():
+        return words
+    rows = trainings()[name]
+    learned = sum(float(each["worst"]) >= 0.9 for each in rows)
+    success = np.mean([float(each["mean"]) for each in rows])
+    kept = " ".join(rest).rsplit(" ", 4)[0]
+    return f"{name} {kept} {learned} of {len(rows)} {success:.3f}"
+
+
+def continuous_actions(words: str, step: LessonStep, folder: Path) -> str:
+    """Which algorithms say that they suit them."""
+    for name in ("q-learning", "sarsa", "dqn"):
+        with pytest.raises(UnsuitableAlgorithm):
+            check_suits(find_algorithm(name), is_continuous=True)
+    for name in ("ppo", "sac"):
+        check_suits(find_algorithm(name), is_continuous=True)
+    return words
 
 
 def five_seeds(words: str, step: LessonStep, folder: Path) -> str:
@@ -282,7 +309,9 @@ FAILURE_DERIVATIONS: Final = (
     best_of_sixty,
     best_of_tests,
     five_seeds,
+    four_algorithms,
+    continuous_actions,
 )
 FAILURE_DEAR: Final = frozenset(
-    {"exploding-values", "five-seeds", "wages-of-two", "limited-wanders", "limited-values"}
+    {"exploding-values", "five-seeds", "four-algorithms", "wages-of-two", "limited-wanders", "limited-values"}
 )

@@ -51,7 +51,7 @@ def progress_in_a_loop(words: str, step: LessonStep, folder: Path) -> str:
     loops = posed("pays/solution.yaml").loops
     assert any("back" in each.actions for each in loops)
     assert all(each.total_reward < 0.5 for each in loops if not each.is_arriving)
-    return "takes it back for each metre away. So a loop earns nothing by it."
+    return "takes it back for each metre away, so that a loop earns nothing."
 
 
 def ward_way(words: str, step: LessonStep, folder: Path) -> str:

@@ -167,3 +167,16 @@ def test_a_running_check_fits_into_a_line() -> None:
     assert "training 10 of 10" in line
     assert len(line) <= 80
     assert "Checking" in row_text(lesson_rows.checking(0.4))
+
+
+def test_what_has_passed_moves_from_left_to_right_once() -> None:
+    def written(seconds: float) -> str:
+        return "".join(part for part, _ in lesson_rows.passing(seconds))
+
+    times = [lesson_rows.PASSED_S * number / 20 for number in range(22)]
+    lines = [written(each) for each in times]
+    stars = [line.count("*") for line in lines]
+    assert stars == sorted(stars)
+    assert stars[0] == 0
+    assert stars[-1] == stars[-2] == lesson_rows.PASSED_CELLS
+    assert all(line.startswith("  Passed: ") and line.endswith(">") and line.isascii() for line in lines)

@@ -17,6 +17,7 @@ from kit.school.lessons import checking
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.reading import read_lesson
 from kit.school.progress import EventKind, ProgressJournal
+from kit.tui.rows import lesson_rows
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_page import LessonSceneView
@@ -482,3 +483,22 @@ def test_reduced_motion_shows_the_beginning_and_the_end_alone(
     stage(student.screen, scene, environ={"KIT_REDUCE_MOTION": "1"})
     assert len({view.time_s for view in arrived}) > 3
     assert {view.time_s for view in arrived if view.scene in drawn} == {0.0, 20.0}
+
+
+@pytest.mark.parametrize("is_still", [False, True])
+def test_passed_moves_once_unless_motion_is_reduced(
+    student: Student, monkeypatch: pytest.MonkeyPatch, is_still: bool
+) -> None:
+    student.goes_to(COLOUR)
+    told: list[float] = []
+    before = lesson_rows.passing
+    monkeypatch.setattr(lesson_rows, "passing", lambda seconds: told.append(seconds) or before(seconds))
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Save the file")
+        student.file.write_text("colour: green\n")
+        await seen(pilot, "Passed: *** 2 of 2 points")
+
+    stage(student.screen, scene, environ={"KIT_REDUCE_MOTION": "1"} if is_still else {})
+    assert bool(told) is not is_still
+    assert told == sorted(told), "it moved more than once"

@@ -48,6 +48,27 @@ def the_best_of_sixty(item: QuizItem, folder: Path) -> Finding:
     return nearest(item, float(drawn.mean()), 0.01)
 
 
+def why_the_largest_is_taken_away(item: QuizItem, folder: Path) -> Finding:
+    """Against the chances by the definition, with exponentials that do not overflow yet."""
+    found = lesson_reference(FAILING, "chances").chances([3000.0, 2990.0], 10.0)
+    plain = np.exp(np.array([300.0, 299.0]))
+    is_same = np.allclose(found, plain / plain.sum())
+    return Finding(
+        "same" if is_same else "equal" if found[0] == found[1] else "overflow",
+        {
+            "They stay just as they were": "same",
+            "Both moves become equally likely": "equal",
+            "They overflow, as they did before": "overflow",
+        },
+    )
+
+
+def report_of_the_best(item: QuizItem, folder: Path) -> Finding:
+    tests, exams = [[60, 100], [77, 100], [50, 100]], [[55, 100], [64, 100], [80, 100]]
+    _, share, _ = lesson_reference(TABLES, "best").report(tests, exams)
+    return nearest(item, share, 0.001)
+
+
 def two_rows(item: QuizItem, folder: Path) -> Finding:
     claim = lesson_reference(TABLES, "honest").claim([0.79, 0.64, 0.93], [0.93, 0.87, 0.99])
     return Finding(claim, {"The first one": "better", "The second one": "worse", "Neither of them": "open"})
@@ -76,6 +97,8 @@ FAILURES: dict[str, Derivation] = {
     "worth-of-a-wage": worth_of_a_wage,
     "standing-or-arriving": standing_or_arriving,
     "the-best-of-sixty": the_best_of_sixty,
+    "why-the-largest-is-taken-away": why_the_largest_is_taken_away,
+    "report-of-the-best": report_of_the_best,
     "two-rows": two_rows,
     "seeds-and-width": seeds_and_width,
     "adjacency-of-crashes": adjacency_of_crashes,

@@ -1,0 +1,45 @@
+"""The first start on a machine says what it compiles; the next one has nothing to say."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from kit.kernels.compilation_progress import CompilationProgress
+
+
+def test_it_names_the_function_that_was_asked_for_and_counts_all() -> None:
+    told: list[str] = []
+    progress = CompilationProgress()
+    with progress.told_by(told.append):
+        progress.begin("scan")
+        progress.begin("hit")
+        progress.end()
+        assert "scan" in progress.text
+        progress.end()
+        assert progress.text == ""
+        progress.begin("step")
+    progress.end()
+    assert [each.split("; ")[1] for each in told] == ["0 functions are done", "2 functions are done"]
+    progress.begin("later")
+    assert len(told) == 2
+
+
+@pytest.mark.long
+def test_a_first_start_tells_by_line_what_is_compiled(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "kit", "run", "maze", "--steps", "10"]
+    environment = {
+        **os.environ,
+        "NUMBA_CACHE_DIR": str(tmp_path / "cache"),
+        "KIT_WORKSPACE": str(tmp_path / "kit"),
+    }
+    first, second = (
+        subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stderr
+        for _ in range(2)
+    )
+    assert first.count("Compiling for this machine, once: ") > 3
+    assert "Compiling" not in second

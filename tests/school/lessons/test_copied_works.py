@@ -1,0 +1,113 @@
+"""What can be copied from a lesson's own pages and hints is no solution: a reward or a task made of it earns at most half."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from grader.grading import GradingOptions, grade
+from grader.reading import read_assignment
+from grader.submission import read_submission
+from kit.document.markup import parse_markup
+from kit.host.sandbox.confinement import Level
+from kit.school.lessons.checking import STARTER
+from kit.school.lessons.reading import lesson_names
+from kit.school.lessons.records import Exercise, Lesson
+from tests.kit_content import kit_lesson
+
+MOST = 0.5
+KINDS = ("reward", "task")
+EXERCISES = [
+    pytest.param(lesson, exercise, id=f"{name}-{exercise.name}", marks=[pytest.mark.long])
+    for name in lesson_names()
+    for lesson in [kit_lesson(name)]
+    for exercise in lesson.exercises
+    if read_assignment(exercise.folder).kind in KINDS
+]
+PARAMETERS = "reached, collided, distance, previous_distance"
+
+
+def printed(lesson: Lesson, exercise: Exercise) -> Iterator[str]:
+    """The blocks of code of the lesson's texts, and what stands alone in a hint."""
+    for step in lesson.steps:
+        yield from ("\n".join(block.lines) for block in parse_markup(step.text) if block.kind == "code")
+    for criterion in read_assignment(exercise.folder).criteria:
+        yield from criterion.hints
+
+
+def copied_rewards(lesson: Lesson, exercise: Exercise) -> Iterator[str]:
+    """Each expression that is printed, as a reward."""
+    for text in printed(lesson, exercise):
+        first = text.splitlines()[0].strip().split("  ")[0]
+        if "reached" in first or "distance" in first:
+            source = f"def reward({PARAMETERS}):\n    return {first}\n"
+            try:
+                compile(source, "reward.py", "exec")
+            except SyntaxError:
+                continue
+            yield source
+
+
+def copied_tasks(lesson: Lesson, exercise: Exercise, starter: dict[str, Any]) -> Iterator[str]:
+    """The starter, with the rewards that are printed, and with every part that is."""
+    parts: dict[str, list[Any]] = {}
+    for text in printed(lesson, exercise):
+        for candidate in (text, f"reward: {{terms: {{{text}}}}}"):
+            try:
+                found = yaml.safe_load(candidate)
+            except yaml.YAMLError:
+                continue
+            if isinstance(found, dict):
+                for key, value in found.items():
+                    if key in ("cases", "actions", "observation", "target", "step", "start") or (
+                        key == "reward"
+                        and all(isinstance(each, (int, float)) for each in value["terms"].values())
+                    ):
+                        parts.setdefault(key, []).append(value)
+    everything = {key: values[0] for key, values in parts.items()}
+    rewards = [{"reward": value} for value in parts.get("reward", [])]
+    for chosen in (*rewards, everything, *({**everything, **each} for each in rewards[1:])):
+        yield yaml.safe_dump({**starter, **chosen}, sort_keys=False)
+
+
+def copies(lesson: Lesson, exercise: Exercise, folder: Path) -> Iterator[Path]:
+    """What is handed in, one work after the other."""
+    whole = exercise.folder / STARTER
+    if whole.is_dir():
+        shutil.copytree(whole, folder, dirs_exist_ok=True)
+    file = folder / exercise.file
+    suffix = Path(exercise.file).suffix
+    single = exercise.folder / f"{STARTER}{suffix}"
+    starter = (single if single.is_file() else file).read_text()
+    texts = (
+        copied_rewards(lesson, exercise)
+        if suffix == ".py"
+        else copied_tasks(lesson, exercise, yaml.safe_load(starter))
+    )
+    for text in texts:
+        file.write_text(text)
+        yield folder if whole.is_dir() else file
+
+
+@pytest.mark.parametrize(("lesson", "exercise"), EXERCISES)
+def test_a_copied_work_earns_at_most_half(lesson: Lesson, exercise: Exercise, tmp_path: Path) -> None:
+    assignment = read_assignment(exercise.folder)
+    shares = {}
+    for work in copies(lesson, exercise, tmp_path):
+        result = grade(assignment, read_submission(work, assignment.submit), GradingOptions(Level.LIMITED))
+        assert result.points is not None
+        shares[(tmp_path / exercise.file).read_text()] = result.points / result.max_points
+    assert {text: share for text, share in shares.items() if share > MOST} == {}
+
+
+def test_something_is_copied() -> None:
+    """Else the test above would try nothing."""
+    rewards = kit_lesson("11-rewards")
+    assert len(list(copied_rewards(rewards, rewards.exercises[0]))) >= 2
+    tasks = kit_lesson("24-train-your-own")
+    assert len(list(copied_tasks(tasks, tasks.exercises[0], {}))) >= 2
