@@ -223,6 +223,7 @@ def read_sheet(
     kind: str, section: Section, secrets: Section | None, folder: Path, packages: tuple[str, ...] = ()
 ) -> Assignment:
     """Reads the sheet of an assignment of this kind in ``folder``, and its secret file; notes their mistakes."""
+    folder = folder.absolute()  # its own code runs in another folder than this process
     kind_record = find_kind(kind)
     teacher_test_files = tuple(_teacher_test_files(section, folder))
     task = kind_record.read_settings(AssignmentFiles(folder, section, secrets))

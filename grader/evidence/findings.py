@@ -20,6 +20,8 @@ from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level
 
 Answer = TypeVar("Answer")
+FailureData = dict[str, str | int | None]
+"""A failure's fields, for JSON."""
 Measure = Callable[[Evidence, Any], float]
 """(evidence, params of the check) -> the measure. Raises StudentCodeError."""
 
@@ -37,12 +39,12 @@ class Finding:
     outcome: str
     steps: int
     printed: tuple[str, ...]
-    failure: dict[str, Any] | None
+    failure: FailureData | None
     measures: dict[str, str] = field(default_factory=dict)
     """By check and params; as text, since JSON has no infinity."""
-    failed_measures: dict[str, dict[str, Any]] = field(default_factory=dict)
+    failed_measures: dict[str, FailureData] = field(default_factory=dict)
     """How the program failed where it was measured, by check and params."""
-    failures: dict[str, dict[str, Any] | None] = field(default_factory=dict)
+    failures: dict[str, FailureData | None] = field(default_factory=dict)
     """How the program had failed when it had been measured, by check and params: a measure may be the first to run it."""
     steps_then: dict[str, int] = field(default_factory=dict)
     """The steps that had been simulated when it had been measured."""
@@ -292,12 +294,13 @@ def _kept(answers: Mapping[str, Answer], key: str) -> Answer:
     return answers[key]
 
 
-def _failure_data(failure: Failure) -> dict[str, Any]:
+def _failure_data(failure: Failure) -> FailureData:
     return {**asdict(failure), "kind": failure.kind.value}
 
 
-def _failure_from(content: Mapping[str, Any]) -> Failure:
-    failure = Failure(**{**content, "kind": FailureKind(content["kind"])})
+def _failure_from(content: FailureData) -> Failure:
+    given: dict[str, Any] = {**content, "kind": FailureKind(content["kind"])}
+    failure = Failure(**given)
     check_field_types(Failure, asdict(failure))
     return failure
 

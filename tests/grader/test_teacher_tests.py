@@ -18,7 +18,7 @@ from grader.teacher_tests import TestDeadline, TestTimeUsedUp, read_teacher_test
 from kit.host.sandbox.confinement import Level
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict, Visibility
 from kit.world.problems import WorldError
-from tests.grader.conftest import FORWARD, QUICK, write_assignment
+from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 from tests.grader.test_grading import run_pytest
 
 DESK = GradingOptions(Level.LIMITED)
@@ -269,3 +269,17 @@ def test_a_test_after_nothing_is_a_mistake_of_the_sheet(tmp_path: Path) -> None:
     )
     with pytest.raises(WorldError, match="reached"):
         read_assignment(folder)
+
+
+@LOCKS
+def test_the_folder_may_be_named_from_where_one_stands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = write_assignment(tmp_path / "own", QUICK + "tests: [test_own.py]\n")
+    (folder / "test_own.py").write_text(
+        'import pytest\n\n@pytest.mark.points(1)\ndef test_moved(grading):\n    """Moved."""\n'
+    )
+    monkeypatch.chdir(tmp_path)
+    submission = Submission("ada", "controller.py", {"controller.py": FORWARD.encode()})
+    result = grade(read_assignment(Path("own")), submission, GradingOptions(Level.FILTERED))
+    assert result.tests[-1].status is CriterionStatus.PASS

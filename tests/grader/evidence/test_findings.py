@@ -37,9 +37,12 @@ def own(folder: Path) -> Path:
     return folder
 
 
-def handed_in(speed: float = 0.3) -> Submission:
-    text = FORWARD.replace("SPEED = 0.3", f"SPEED = {speed}")
-    return Submission("ada", "controller.py", {"controller.py": text.encode()})
+def forward(speed: float) -> str:
+    return FORWARD.replace("SPEED = 0.3", f"SPEED = {speed}")
+
+
+def handed_in() -> Submission:
+    return Submission("ada", "controller.py", {"controller.py": forward(0.3).encode()})
 
 
 def through_json(findings: Findings | None) -> Findings:
@@ -58,11 +61,14 @@ def edited(folder: Path, pattern: str, text: str, file: str = "assignment.yaml")
 @pytest.mark.parametrize(
     "options", [DESK, replace(DESK, secret=True), replace(DESK, secret=True, examples=True)]
 )
-@pytest.mark.parametrize("speed", [0.3, 0.02])
-def test_findings_give_the_same_result_again(options: GradingOptions, speed: float, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "text", [forward(0.3), forward(0.02), "1/0\n", "def main(:\n", "import no_such_package\n"]
+)
+def test_findings_give_the_same_result_again(options: GradingOptions, text: str, tmp_path: Path) -> None:
     assignment = read_assignment(own(tmp_path / "own"))
-    result, findings = grade_and_keep(assignment, handed_in(speed), options)
-    again = judge_findings(assignment, handed_in(speed), options, through_json(findings))
+    submission = Submission("ada", "controller.py", {"controller.py": text.encode()})
+    result, findings = grade_and_keep(assignment, submission, options)
+    again = judge_findings(assignment, submission, options, through_json(findings))
     assert again is not None
     assert again.tests == result.tests
     assert (again.steps, again.secret_steps, again.level, again.verdict) == (

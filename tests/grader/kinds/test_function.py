@@ -23,8 +23,9 @@ from grader.kinds.function.kind import (
     is_close,
     load_reference,
 )
+from grader.new_assignment import example_of_kind, make_assignment
 from grader.reading import read_assignment
-from grader.submission import Submission
+from grader.submission import Submission, read_submission
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json
@@ -280,6 +281,17 @@ def test_no_function_earns_points_that_computes_nothing(folder: Path) -> None:
                 for cases in (asked, hidden)
             )
             assert agreed <= criterion.anchors.none, (criterion.id, answer)
+
+
+@LOCKS
+def test_the_folder_may_be_named_from_where_one_stands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    make_assignment(example_of_kind("function"), tmp_path / "new")
+    monkeypatch.chdir(tmp_path)
+    work = read_submission(Path("new/solution.py"), "heard.py")
+    options = GradingOptions(Level.FILTERED)
+    assert grade(read_assignment(Path("new")), work, options).points == 6
 
 
 @pytest.mark.parametrize(
