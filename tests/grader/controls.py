@@ -50,8 +50,8 @@ CONTROLS: Final = (
     Control(
         "a pip.py beside a submission in CI",
         "grader/ci.py",
-        "          python -P -m pip install --quiet",
-        "          cd $GITHUB_WORKSPACE && python -m pip install --quiet",
+        "        run: python -P -m pip install --quiet",
+        "        run: cd $GITHUB_WORKSPACE && python -m pip install --quiet",
         "grader/test_ci.py::test_a_workflow_grades_and_runs_nothing_of_the_students",
     ),
     Control(
