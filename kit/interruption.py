@@ -71,13 +71,20 @@ def ended_by_signals() -> Iterator[None]:
 
     def repeat(problem: sys.UnraisableHookArgs) -> None:
         """Ctrl-C or a signal that came while a library's C code called Python, as pymunk's steps do, is lost there."""
-        if os.getpid() == owner and issubclass(problem.exc_type, KeyboardInterrupt):
-            ends_at.clear()  # it has ended nothing
-            again = threading.Timer(REPEAT_S, os.kill, (owner, received[0] if received else signal.SIGINT))
-            again.daemon = True
-            again.start()
-        else:
+        if os.getpid() != owner or not issubclass(problem.exc_type, KeyboardInterrupt):
             hook(problem)
+            return
+        is_sent = False
+        while not is_sent:
+            with suppress(
+                KeyboardInterrupt
+            ):  # it came before this had returned, where it is lost as well: once more
+                ends_at.clear()  # it has ended nothing
+                number = received[0] if received else signal.SIGINT
+                again = threading.Timer(REPEAT_S, os.kill, (owner, number))
+                again.daemon = True
+                again.start()
+                is_sent = True
 
     sys.unraisablehook = repeat
     try:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 import threading
+from pathlib import Path
 
 import pytest
 
@@ -125,3 +128,52 @@ def test_what_is_uninterrupted_becomes_whole(sent: signal.Signals) -> None:
         signal.SIG_DFL,
         signal.SIG_DFL,
     ]
+
+
+AT_IMPORT = """
+import importlib.abc, signal, sys
+
+class Interrupt(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path=None, target=None):
+        if name == {module!r}:
+            sys.meta_path.remove(self)
+            signal.raise_signal(signal.SIGINT)
+            return None
+
+sys.meta_path.insert(0, Interrupt())
+sys.argv = ["kit", "maps"]
+import runpy
+runpy.run_module("kit", run_name="__main__", alter_sys=True)
+"""
+
+
+@pytest.mark.parametrize("module", ["click", "kit.cli.options", "kit.cli.maps"])
+def test_an_interrupt_while_the_kit_starts_ends_it_without_a_traceback(module: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", AT_IMPORT.format(module=module)],
+        cwd=Path(__file__).parents[1],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode in (-signal.SIGINT, 1, 128 + signal.SIGINT)
+    assert done.stdout == ""
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("sent", ALL)
+def test_a_signal_that_is_lost_twice_is_sent_again(
+    sent: signal.Signals, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On a busy machine the repeated one comes before the hook that repeats it has returned."""
+    start, started = threading.Timer.start, []
+
+    def start_late(timer: threading.Timer) -> None:
+        start(timer)
+        started.append(timer)
+        if len(started) < 3:
+            threading.Event().wait(0.2)
+
+    monkeypatch.setattr(threading.Timer, "start", start_late)
+    test_a_signal_in_a_callback_of_c_code_is_not_lost(sent)
+    assert len(started) == 3

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import os
+import signal
 import sys
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
@@ -303,6 +304,8 @@ def run_as_process(command: click.Command, name: str) -> NoReturn:
     process ends once its output is written. The screen has given the terminal back and removed what it made; the exit
     handlers of libraries do not run, which would take compiled code away from threads that are still in it.
     """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # for the imports; see ``kit.__main__``
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     for foreign in foreign_distributions(only_named=True):
         click.echo(f"{name}: {overwritten_text(*foreign)}", err=True)
         raise SystemExit(BAD_INPUT)

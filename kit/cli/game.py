@@ -119,7 +119,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
 @click.pass_obj
 def play(workspace: Path | None, level: str, plain: bool) -> None:
     """Drive LEVEL by hand. LEVEL is a level's name or number, or a task's file or name."""
-    from kit.school.game.player_progress import find_playable_level
+    from kit.school.game.daily import find_playable_level
     from kit.school.game.race import DriverKind
 
     with _open_journal(workspace) as (journal, opened_workspace):
@@ -147,7 +147,8 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
     """
     from kit.learning.policies.policy import PolicyError
     from kit.learning.training.runs import RunError
-    from kit.school.game.player_progress import facts_of_program, find_playable_level
+    from kit.school.game.daily import find_playable_level
+    from kit.school.game.player_progress import facts_of_program
     from kit.school.game.race import DriverKind, agent_controller, race_from_all_starts
 
     if (controller is None) == (agent is None):
@@ -180,7 +181,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
 @click.pass_context
 def daily(context: click.Context, controller: str | None, plain: bool) -> None:
     """Drive the level of the day, which is the same for everyone."""
-    from kit.school.game.player_progress import daily_level, streak, today
+    from kit.school.game.daily import daily_level, streak, today
 
     level = daily_level(today())
     click.echo(f"{level.title}. {level.hint}")
@@ -260,10 +261,11 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
 def replay(workspace: Path | None, level: str, driver: str | None) -> None:
     """Replay your best drive of LEVEL, or the reference drive."""
     from kit.run.recording import RecordingError, load_recording
+    from kit.school.game.daily import find_playable_level
     from kit.school.game.ghosts import ghost_file, load_ghosts
-    from kit.school.game.player_progress import find_playable_level
     from kit.school.game.race import DriverKind
     from kit.school.game.references import reference_recording
+    from kit.school.game.starts import film_scenario
 
     with _open_journal(workspace) as (_journal, opened_workspace):
         chosen = find_playable_level(level)
@@ -280,7 +282,7 @@ def replay(workspace: Path | None, level: str, driver: str | None) -> None:
             options.fail(f"This drive cannot be shown: {error}")
         if recording is None:
             options.fail(f"{chosen.title} has no reference drive.")
-        drive, scenario = recording, chosen.film_scenario()
+        drive, scenario = recording, film_scenario(chosen, recording.seed)
         who = name if name == "reference" else DriverKind(name).phrase
         terminal = options.terminal()
         if terminal.plain.value:
@@ -457,6 +459,8 @@ def _record_drive(
     click.echo(f"{level.title}: {end}, {counted(finish.collisions, 'bump')}.")
     if record.is_shipped:
         click.echo("The kit's own controller drove: it demonstrates the level and earns nothing.")
+    elif record.is_practice:
+        click.echo("Practice: the first run of the day has counted.")
     elif level.has_medals:
         click.echo(f"  {record.medal.title}")
     for rule in record.rules:

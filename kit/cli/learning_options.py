@@ -110,7 +110,7 @@ def _read_settings(
         except ValueError:
             raise click.BadParameter(f"{text}: give NAME=NUMBER, such as gamma=0.98.") from None
         if any(map(math.isnan, found[name])):
-            raise click.BadParameter(f"{text}: that is not a number.")
+            raise click.BadParameter(f"{text}: the number must be finite, or `none` for no limit.")
     return found
 
 

@@ -19,7 +19,7 @@ from kit.run.animation import AnimationSettings, ExportError, count_frames, expo
 from kit.run.recording import Recording, RecordingError, load_recording, rerun
 from kit.run.recording_file import restore_recordings
 from kit.run.scenario import Scenario, find_recorded_scenario
-from kit.school.game.player_progress import find_playable_level
+from kit.school.game.daily import find_playable_level
 from kit.school.game.two_players import CannotShare, recorded_scenario
 from kit.world.problems import WorldError
 

@@ -79,14 +79,16 @@ def command(
     kit study 3.5 --again --kit   the same with the kit's own preset
     kit study 4.1 --again --no-limit   without his library's limit of values
     kit study clip                values with and without that limit; --again
-                                  makes both again, in about five minutes
+                                  makes both again, in about three minutes
+    kit study author              what the author's own agents reach here
     kit study --html FOLDER       everything on one page; --csv for tables
     kit study --check             check that the document follows from the logs
 
     "ours" are agents trained with the dissertation's settings, "kit" with the
     kit's own preset, each on its own group of cases only. Results of both come
     with the kit; --again saves its results in the workspace, in
-    study/NUMBER.jsonl or NUMBER-kit.jsonl, and they are shown instead. Tables
+    study/NUMBER.jsonl, NUMBER-kit.jsonl or NUMBER-no-limit.jsonl, and they
+    are shown instead. Tables
     5.4 to 5.9 are computed from the dissertation's raw answers.
 
     You can interrupt --again; run the same command to continue.

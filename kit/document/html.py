@@ -44,7 +44,7 @@ th { text-align: left; border-bottom: 1px solid var(--text); } th, td { padding:
 .number { text-align: right; font-variant-numeric: tabular-nums; }
 .note { font-size: 0.85rem; margin-top: -0.5rem; } .caution { border-left: 4px solid var(--mark); padding-left: 0.7rem; }
 blockquote { margin: 0.3rem 0 1rem 1rem; white-space: pre-wrap; } svg { max-width: 100%; height: auto; display: block; margin: 1rem 0; }
-nav a { margin-right: 1rem; }
+nav { columns: 18rem; column-gap: 1.5rem; } nav a { display: block; }
 """
 
 Links = Mapping[str, str]

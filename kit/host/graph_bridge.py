@@ -276,8 +276,15 @@ class ChildBridge(GraphBridge):
 
     def next_tick(self, wake_ns: int | None) -> None:
         """Answers that the program waits, until ``wake_ns`` at the latest, and applies the next tick."""
+        self._next_tick("reply", wake_ns)
+
+    def next_held_tick(self) -> None:
+        """Likewise, at once; simulated time is to stand still from that tick until the next answer."""
+        self._next_tick("held")
+
+    def _next_tick(self, kind: str, *wake_ns: int | None) -> None:
         with self._uninterrupted():
-            self._commands.answer("reply", wake_ns, self._flush())
+            self._commands.answer(kind, *wake_ns, self._flush())
             _, now_ns, events = self._commands.next_command()
             self.has_ticked = True
             with self.graph.lock:

@@ -13,7 +13,6 @@ from typing import Any, Final, Self
 
 import kit
 from kit.host.graph_bridge import ChildBridge
-from kit.host.protocol import HOLD_NS
 from kit.host.waiter import SingleThreadWaiter
 from kit.host.wire import Json, ProtocolError
 from kit.inspection.sockets import FramedSocket, RunningWorld, connect
@@ -143,7 +142,7 @@ class InspectionClient:
 
     def hold_time(self) -> None:
         """Waits for the world's present time. The world stands still then until ``graph`` is waited in again."""
-        self._bridge.next_tick(HOLD_NS)
+        self._bridge.next_held_tick()
 
     def wait_for_tick(self) -> None:
         """Waits for the world's next tick, so that ``graph`` has the present time, not that of the last message."""

@@ -78,6 +78,8 @@ class PairSummary:
     jerk: float
     failures: tuple[tuple[int, str], ...]
     """For each way to fail: how many runs failed so, and how the first of them did."""
+    broken: int = 0
+    """Runs whose program failed, perhaps on a machine too slow for it: they say nothing of the method."""
 
     @classmethod
     def of(cls, case: str, controller: str, outcomes: list[PairRunResult]) -> PairSummary:
@@ -101,6 +103,7 @@ class PairSummary:
             nearest_wall_m=min(each.nearest_wall_m for each in outcomes),
             jerk=mean("jerk"),
             failures=tuple((len(some), f"{end}: {some[0].why}") for end, some in failed.items()),
+            broken=len(failed.get("failed", ())),
         )
 
 

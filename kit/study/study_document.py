@@ -114,7 +114,8 @@ def chapters(
             if with_plots or not figure.plots
         ]
         failures = _failures(chosen, workspace)
-        return lists, (*lists, *failures, *tables, *_evaluation_chapters(chosen, with_class), *figures)
+        head = () if wanted else (summary_chapter(),)
+        return lists, (*head, *lists, *failures, *tables, *_evaluation_chapters(chosen, with_class), *figures)
     if wanted == AUTHOR and not kind:
         text = "What the author's own published agents reach in this simulator."
         return (), (Chapter(AUTHOR, "The author's agents", (Text(text), author_agents_table())),)
@@ -170,7 +171,7 @@ FAILURES_NOTE: Final = (
 def recorded_study_document() -> str:
     """The document as it follows from the printed cells and the logs that come with the kit."""
     _, whole = chapters("", "", None, to_files=True, with_plots=False)
-    return document_to_markdown(Document(TITLE, (summary_chapter(), *whole)))
+    return document_to_markdown(Document(TITLE, whole))
 
 
 def summary_chapter() -> Chapter:
@@ -469,7 +470,7 @@ def _overview(chapter: StudyChapter, workspace: Workspace | None) -> Chapter:
         status = "from the answers" if figure.plots else "none"
         if figure.results_of:
             is_recorded = _is_recorded(figure, workspace)
-            status = "recorded" if is_recorded else f"none; {figure.results_of.replace('-', ' ')} --again"
+            status = "recorded" if is_recorded else f"none; {figure.run.removeprefix('kit study ')}"
         name = figure.id if figure.sessions == "values" else f"Figure {figure.id}"
         items.append((name, figure.title, status))
     names = "; ".join(f"{VARIANT_NAMES[each]}: {_VARIANT_WORDS[each]}" for each in VARIANTS)

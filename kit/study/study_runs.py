@@ -221,9 +221,11 @@ class StudyRun:
         """The groups of cases that agents are trained on; none where potential fields alone drive."""
         if not self.task or not self._can_be_varied:
             return ()
-        known, parts = self.table.trained_groups, parts_of(self.table.id)
+        known = self.table.trained_groups
+        parts = [set(part.row_groups) for part in parts_of(self.table.id)]
         # What another table shows alone comes first: a sweep of it may grow to this one.
-        ordered = dict.fromkeys((*(group for part in parts for group in part.row_groups), *known))
+        alone = [group for part in parts if part < set(known) for group in known if group in part]
+        ordered = dict.fromkeys((*alone, *known))
         return tuple(group for group in ordered if group in (self.only or known))
 
     @property

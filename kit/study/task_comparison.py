@@ -17,7 +17,7 @@ from kit.learning.tasks.learning_task import LearningTask
 def test_differences(one: LearningTask, other: LearningTask) -> list[str]:
     """What differs, each with both values; empty where agents of both are tested alike.
 
-    >>> from kit.learning.environment.tasks import find_task
+    >>> from kit.learning.tasks.catalogue import find_task
     >>> test_differences(find_task("hallway"), find_task("hallway-seed"))
     []
     >>> test_differences(find_task("wheelchairs"), find_task("wheelchairs-seed-49"))[-1]

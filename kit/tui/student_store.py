@@ -25,6 +25,10 @@ class StudentOverview:
     """Where to go on; None: all is done, or there is nothing."""
     due: int | None = None
     """Questions due today; None: they cannot be read."""
+    streak: int = 0
+    """Days in a row on which the level of the day was finished."""
+    has_run_today: bool = False
+    """Whether today's run of it is over."""
     problem: str = ""
     """Why progress, or lessons, cannot be read."""
 
@@ -68,7 +72,16 @@ class StudentStore:
             shelf = list_lessons(events, self._lessons)
         except (ProgressError, FileNotFoundError) as error:
             return StudentOverview(problem=str(error))
-        return StudentOverview(shelf, next_lesson(shelf), self._due())
+        from kit.school.game.daily import DAILY_PREFIX, streak, today
+
+        day = today()
+        return StudentOverview(
+            shelf,
+            next_lesson(shelf),
+            self._due(),
+            streak(events, day),
+            any(event.subject == f"{DAILY_PREFIX}{day.isoformat()}" for event in events),
+        )
 
     def visit(self, lesson: Lesson) -> LessonSession:
         """Opens a lesson for the student. Raises ProgressError."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -34,6 +35,7 @@ WRITERS = {
     "kit train": "kit train turn --steps 100 --workspace {out}",
     "kit quiz": "kit quiz --workspace {out}",
     "kit lesson": "kit lesson 1 --plain --workspace {out}",
+    "kit help --html": "kit help --html {out}",
     "grader new": "grader new {out}",
     "grader check --output": "grader check {made}/work/solution.py --assignment {made}/work --output {out}",
     "grader report --output": "grader report {made}/result.json --output {out}",
@@ -54,6 +56,8 @@ ELSEWHERE = {
     "kit class report --csv": "as kit study",
     "kit class report --json": "as kit study",
     "grader check --replay": "as kit run --record",
+    "grader gradebook --feedback": "needs submissions; write_atomically",
+    "grader gradebook --output": "needs submissions; write_atomically",
     "grader cohort --queue": "needs submissions; tests.endings",
 }
 """Outputs that are not tried here, and why."""
@@ -151,7 +155,7 @@ def full(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 @pytest.mark.parametrize("name", WRITERS)
 def test_a_full_disk_is_one_sentence_that_names_the_place(name: str, made: Path, full: Path) -> None:
-    done = run(WRITERS[name], made, full / "out")
+    done = run(WRITERS[name], made, full / re.sub(r"\W+", "-", name))
     said = [line for line in done.stderr.splitlines() if "space left" in line or "is full" in line]
     assert done.returncode not in (0, -11), done.stdout
     assert "Traceback" not in done.stderr

@@ -65,5 +65,9 @@ def test_packages_of_the_kit_are_listed() -> None:
 
 
 def test_a_type_of_the_same_package_is_shown_by_its_own_name() -> None:
-    shown = CliRunner().invoke(main, ["ros", "interface", "show", "geometry_msgs/msg/Twist"]).output
+    shown = (
+        CliRunner()
+        .invoke(main, ["ros", "interface", "show", "geometry_msgs/msg/Twist", "--no-comments"])
+        .output
+    )
     assert shown.splitlines()[:2] == ["Vector3 linear", "\tfloat64 x"]

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from kit.cli.fields import _table_row
 from kit.controllers import find_controller
 from kit.run.scenario import Scenario, find_scenario, scenario_in_file
 from kit.study.pairs import (
@@ -149,3 +151,14 @@ def test_a_controller_that_fails_before_anything_was_measured_is_told(tmp_path: 
     found = run_once(find_scenario("pair_turn"), find_controller(str(broken)))
     assert found.end == "failed"
     assert "no battery" in found.why
+
+
+def test_a_program_that_failed_is_no_result_of_its_method() -> None:
+    good = PairRunResult("reached", "", 10.0, 1.0, 0.9, 1.0, 3.0, 0.1, 0.2)
+    late = replace(good, end="failed", why="it did not come back", by_geometry=math.nan, by_rays=math.nan)
+    printed = PrintedPairResult("straight", "pair_straight", "pair_straight", 1.0, 0.28)
+    whole, partly = (PairSummary.of("case", "who", outcomes) for outcomes in ([good] * 2, [good, late]))
+    assert (whole.broken, partly.broken) == (0, 1)
+    first, second = (_table_row(printed, (each,)) for each in (whole, partly))
+    assert first.split() == ["straight", "1.00", "0.28", "1.00", "0.90", "1.00"]
+    assert second.split() == ["straight", "1.00", "0.28", "-", "-", "-"]

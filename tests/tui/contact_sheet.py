@@ -85,6 +85,11 @@ VISITS: Final = {
     "exercise": ScreenVisit(("lesson", "C1"), ("l", "circle\r")),
     "levels": ScreenVisit(("game",), seconds=6.0),
     "level": ScreenVisit(("game", "play", "first-drive"), ("w",), 3.0),
+    "daily": ScreenVisit(("game",), ("d",), 4.0),
+    "leaderboard": ScreenVisit(("game",), ("f",), 3.0),
+    "challenges": ScreenVisit(("game",), ("\x1b[D",), 3.0),
+    "puzzle": ScreenVisit(("game",), ("\x1b[D", "\r", "\x1b[C\x1b[C\x1b[B"), 3.0),
+    "puzzle-lasers": ScreenVisit(("game",), ("\x1b[D", *["\x1b[B"] * 8, "\r", "\x1b[C\x1b[C\x1b[B "), 3.0),
     "nodes": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("n",), 4.0),
     "message-plot": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("n", "y", "\x1b[B"), 6.0),
     "layers": ScreenVisit(keys=("6", "m", "slides-lasers\r", "3")),
@@ -340,7 +345,7 @@ def main() -> None:
     )
     parser.add_argument("--out", type=Path, default=Path("sheets"))
     parser.add_argument("--screen", nargs="*", default=list(VISITS), choices=list(VISITS))
-    parser.add_argument("--size", nargs="*", default=["80x24", "120x36", "200x50"])
+    parser.add_argument("--size", nargs="*", default=["80x24", "120x35", "200x50"])
     parser.add_argument("--background", nargs="*", default=list(BACKGROUNDS), choices=list(BACKGROUNDS))
     parser.add_argument("--color", nargs="*", default=["none", "16", "256", "true"])
     options = parser.parse_args()

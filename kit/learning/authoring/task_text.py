@@ -127,14 +127,16 @@ def _seen(seen: ObservationSpec) -> Iterator[Block]:
     if seen.side_rays:
         parts.insert(0, f"2 rays towards the other robot, {limit}")
     if seen.rays:
-        parts.insert(0, f"{len(seen.rays)} rays, {limit}")
+        others = ", others for the second robot on" if seen.other_rays else ""
+        parts.insert(0, f"{len(seen.rays)} rays{others}, {limit}")
     yield from (Text(part, indent=2, hang=2, is_tight=True) for part in parts)
 
 
 def _actions(task: LearningTask) -> Iterator[Block]:
     actions = task.actions
     checks = "" if task.collision_checks == 1 else f", {task.collision_checks} collision checks"
-    time = f"for {task.step_time:g} s{checks}"
+    stops = ", then stopped until the next command" if task.stops_between else ""
+    time = f"for {task.step_time:g} s{checks}{stops}"
     if not isinstance(actions, DiscreteActions):
         (slow, fast), (right, left) = actions.linear, actions.angular
         speeds = f"any speed from {slow:g} to {fast:g} m/s and turn from {right:g} to {left:g} rad/s"

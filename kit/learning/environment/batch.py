@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -230,8 +228,7 @@ class BatchEnv:
         draws = self._scan_draws(ALL_WORLDS, self.n, before.episode, step, disturbed)
         inputs = StepInputs(self._maps, moves, bodies, before.target_row, target, draws)
         robots = self._loops.step(before.robots, inputs)
-        after = replace(
-            before,
+        after = before.changed(
             robots=robots._replace(
                 to_go=self._limited_ways(robots.to_go, robots.pose, target),
                 in_target=self.task.goal.is_arrived(robots.in_target, robots.pose, before.target_heading),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -115,17 +116,24 @@ class BatchState:
     def copy(self) -> BatchState:
         """The same, of which the beginning of episodes may write into every array that it writes into: the others are shared."""
         robots = self.robots
-        return replace(
-            self,
+        own = {name: getattr(self, name).copy() for name in BEGUN_ARRAYS}
+        if self.disturbed.task.disturbances:
+            own["disturbed"] = self.disturbed.copy()
+        return self.changed(
             robots=robots._replace(**{name: getattr(robots, name).copy() for name in BEGUN_ROBOT_ARRAYS}),
-            **{name: getattr(self, name).copy() for name in BEGUN_ARRAYS},
+            **own,
         )
+
+    def changed(self, **changes: Any) -> BatchState:
+        """The same with other values of some fields, as ``dataclasses.replace``, which takes three times as long."""
+        return BatchState(*[changes[name] if name in changes else getattr(self, name) for name in FIELDS])
 
 
 BEGUN_ROBOT_ARRAYS = ("pose", "clearance", "to_go", "in_target", "rotation")
 """Those of the robots that the beginning of an episode writes into."""
+FIELDS = tuple(field.name for field in fields(BatchState))
 BEGUN_ARRAYS = tuple(
-    field.name for field in fields(BatchState) if field.name not in ("robots", "frames", "obstacle_distance")
+    name for name in FIELDS if name not in ("robots", "frames", "obstacle_distance", "disturbed")
 )
 """Those of a state. ``frames`` is replaced; nothing is seen of the other before the first step."""
 

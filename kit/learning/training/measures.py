@@ -70,8 +70,8 @@ def value_warning(measures: Mapping[str, float]) -> str:
     return (
         f"The largest value, {measures[VALUE_MAX]:,.0f}, exceeds what this task's rewards can pay, "
         f"{measures[VALUE_PAYABLE]:,.0f}: the values are learned from each other and no longer from rewards. What looks best "
-        "is chance from here on, and tests go up and down with it. Lower the learning rate or tau, scale the rewards down, or "
-        "raise a value_limit."
+        "is chance from here on, and tests go up and down with it. Lower the learning rate or tau, scale the rewards down, or take "
+        "a limit away with `--set value_limit=none`."
     )
 
 

@@ -130,7 +130,7 @@ def runs_table(runs: Sequence[RunOverview]) -> Table:
         Column("steps"),
         Column("best", decimals=3),
         Column("worst", decimals=3, is_spare=True),
-        Column("value", is_spare=True),
+        Column("value"),
         Column("time", is_spare=True),
         Column("left", CellStyle.TEXT),
         Column("reward", CellStyle.TEXT),

@@ -7,14 +7,19 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, Final, Self
+from typing import TYPE_CHECKING, ClassVar, Final, Self
 
 from kit.school.game.medal import Medal
 from kit.workspace import write_atomically
 from kit.world.yaml_section import Section
 
+if TYPE_CHECKING:
+    from kit.school.game.board import Board
+
 COMMENT: Final = "#"
 """Begins a line of an answer's file that is not part of the answer."""
+GOLD_GAIN, SILVER_GAIN = 0.98, 0.75
+"""Shares of what the best answer gains on the naive one that earn gold and silver, where more is better."""
 
 
 class ChallengeError(ValueError):
@@ -88,6 +93,11 @@ class ChallengeTask(ABC):
         """The content of an answer's file before anybody has written in it: an answer that earns no medal."""
         return ""
 
+    def board(self, answer: str) -> Board | None:
+        """The board on which the puzzle is played by keys, with an answer as ``read_answer`` read it, or the naive one where
+        that cannot be read; None for a kind that has none."""
+        return None
+
     def prepare(self, folder: Path, about: Sequence[str]) -> Path | None:
         """Makes the answer's file in ``folder`` unless it is there, and returns it; None where the answer is no file.
 
@@ -111,6 +121,15 @@ class ChallengeTask(ABC):
         return " ".join(line for line in lines if not line.lstrip().startswith(COMMENT))
 
 
+def judge_share(text: str, comparison: AnswerComparison, naive: float, best: float) -> Judgement:
+    """Judges an answer of which more is better by its share of what the best one gains on the naive one."""
+    if comparison.answer <= naive:
+        return Judgement(Medal.NONE, text, comparison)
+    share = (comparison.answer - naive) / (best - naive)
+    medal = Medal.GOLD if share >= GOLD_GAIN else Medal.SILVER if share >= SILVER_GAIN else Medal.BRONZE
+    return Judgement(medal, text, comparison)
+
+
 def as_comments(lines: Sequence[str]) -> str:
     """Lines of an answer's file that are not part of the answer."""
     return "".join(f"{COMMENT} {line}\n" for line in lines)
@@ -128,10 +147,10 @@ class Challenge:
     task: ChallengeTask
 
 
-def judge_count(unit: str, text: str, count: int, fewest: int, naive: int) -> Judgement:
-    """Judges an answer of which less is better and ``fewest`` is proved."""
+def judge_count(unit: str, text: str, count: int, fewest: int, naive: int, near: int = 1) -> Judgement:
+    """Judges an answer of which less is better and ``fewest`` is proved. ``near``: that many more still earn silver."""
     comparison = AnswerComparison(unit, count, (("naive answer", naive), ("best answer", fewest)))
     if count >= naive:
         return Judgement(Medal.NONE, text, comparison)
-    medal = Medal.GOLD if count <= fewest else Medal.SILVER if count == fewest + 1 else Medal.BRONZE
+    medal = Medal.GOLD if count <= fewest else Medal.SILVER if count <= fewest + near else Medal.BRONZE
     return Judgement(medal, text, comparison)

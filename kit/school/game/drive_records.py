@@ -13,27 +13,26 @@ from pathlib import Path
 from kit.render.encode import BrailleEncoder
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.render.world_text import scene_rows
+from kit.run.animation import AnimationSettings, export_recording
 from kit.run.recording import Recording
 from kit.school.game import leaderboard
+from kit.school.game.daily import DAILY_PREFIX, daily_level, has_run, streak, today
 from kit.school.game.ghosts import best_recordings, save_ghost
 from kit.school.game.levels import GameLevel, all_levels
 from kit.school.game.medal import Medal, medal_of
 from kit.school.game.player_progress import (
     BY_HAND,
-    DAILY_PREFIX,
     DriverFacts,
     ExtraRule,
     belt_of,
     completed_lessons,
-    daily_level,
     is_best_drive,
     kept_rules,
     level_progress,
-    streak,
-    today,
 )
 from kit.school.game.race import DriverKind, RaceFinish, middle_drive
 from kit.school.game.references import reference_seconds
+from kit.school.game.starts import film_scenario
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace, write_atomically
 
@@ -52,6 +51,8 @@ class DriveRecord:
     """Those that no drive before had kept."""
     is_shipped: bool
     """Whether one of the kit's own controllers drove, which earns nothing."""
+    is_practice: bool
+    """Whether a run of this day's level came before: only the first one counts."""
     is_best: bool
     previous_best: float | None
     """The driver's shortest time before [s]."""
@@ -84,7 +85,8 @@ def record_drive(
     lessons = completed_lessons(levels, events)
     before = level_progress(levels, events, lessons)
     (of_level,) = level_progress([level], events)
-    is_best = not facts.is_shipped and is_best_drive(of_level, driver, finish)
+    is_practice = has_run(events, level)
+    is_best = not facts.is_shipped and not is_practice and is_best_drive(of_level, driver, finish)
     recording_file = None
     if is_best:
         try:
@@ -93,7 +95,7 @@ def record_drive(
             )
         except OSError:
             recording_file = None
-    earns = level.has_medals and not facts.is_shipped
+    earns = level.has_medals and not facts.is_shipped and not is_practice
     medal = medal_of(finish, reference_seconds(level), driver) if earns else Medal.NONE
     rules = kept_rules(level, finish, facts) if earns else ()
     content = {
@@ -102,7 +104,8 @@ def record_drive(
         "rules": [rule.value for rule in rules],
         "shipped": facts.is_shipped,
     }
-    journal.add(EventKind.FINISH, level.id, content)
+    if not is_practice:
+        journal.add(EventKind.FINISH, level.id, content)
     events = journal.events(EventKind.FINISH)
     after = level_progress(levels, events, lessons)
     belt_before, belt = (
@@ -117,6 +120,7 @@ def record_drive(
         rules,
         tuple(rule for rule in rules if rule not in of_level.rules),
         facts.is_shipped,
+        is_practice,
         is_best,
         of_level.best_times.get(driver),
         of_level.medals.get(driver, Medal.NONE),
@@ -179,6 +183,14 @@ def card_rows(
         f"robot learning kit, {driver.phrase}",
         *scene_rows(scene, COLUMNS, ROWS, BrailleEncoder()),
     ]
+
+
+def save_film(card: Path, level: GameLevel, recording: Recording) -> Path:
+    """Writes a drive as a moving picture beside its card. Raises OSError and ExportError."""
+    file = card.with_suffix(".gif")
+    settings = AnimationSettings(speed=2.0)
+    export_recording(recording, film_scenario(level, recording.seed), file, settings, title=level.title)
+    return file
 
 
 def save_card(workspace: Workspace, level: GameLevel, driver: DriverKind, rows: list[str]) -> Path:

@@ -141,6 +141,8 @@ NEAR: Final = 0.8
 """A place counts as passed within this distance of it [m]."""
 LEEWAY: Final = 0.1
 """A passage may be so much farther away than a later one [m]."""
+GAIN_TICKS: Final = 25
+"""Of one part of a drive that is coloured by what it gained."""
 PUT_BACK, PUT_BACK_SPEED = 0.1, 1.0
 """A robot that has moved farther than this [m] and faster [m/s] was put back."""
 
@@ -215,6 +217,22 @@ class GhostComparison:
             found.append(Split(mine, sector, sector - (theirs - before[1])))
             before = mine, theirs
         return tuple(found)
+
+
+def gains_along(track: FloatArray, step_size: float, ghost: Ghost) -> FloatArray:
+    """How much each part of a recorded drive gained on a ghost: (k, 5) ``x y x y`` of a part's ends [m], and the seconds that
+    it gained; nan away from the ghost's way."""
+    comparison = GhostComparison(ghost)
+    rows = []
+    before: tuple[float, float, float | None] | None = None
+    for tick in range(0, len(track), GAIN_TICKS):
+        x, y = float(track[tick, 0]), float(track[tick, 1])
+        behind = comparison.add(tick * step_size, x, y)
+        if before is not None:
+            gain = math.nan if behind is None or before[2] is None else before[2] - behind
+            rows.append((before[0], before[1], x, y, gain))
+        before = x, y, behind
+    return np.array(rows, dtype=np.float64).reshape(-1, 5)
 
 
 def compare_tracks(track: FloatArray, step_size: float, ghost: Ghost, finish_s: float) -> tuple[Split, ...]:

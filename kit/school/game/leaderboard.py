@@ -20,9 +20,9 @@ from typing import Final
 from kit.arrays import FloatArray
 from kit.plain_files import open_plain_file
 from kit.run.recording import Recording
+from kit.school.game.daily import DAILY_PREFIX, daily_level, today
 from kit.school.game.levels import GameLevel, all_levels
 from kit.school.game.medal import RUNGS, Medal
-from kit.school.game.player_progress import DAILY_PREFIX, daily_level, today
 from kit.school.game.race import DriverKind
 from kit.school.game.shared_drives import (
     MAX_FILE_BYTES,

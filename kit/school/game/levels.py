@@ -14,6 +14,7 @@ from kit.learning.tasks.goals.registry import read_goal
 from kit.learning.tasks.goals.target import REACH_TARGET
 from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Scenario, find_scenario
+from kit.school.game.drive_commands import ReferenceDrive
 from kit.school.lessons.reading import lesson_number, lessons_folder
 from kit.sim.motors import SpeedLimits
 from kit.sim.plugins.diff_drive import DiffDriveParams
@@ -185,6 +186,8 @@ class GameLevel:
     """The model that is followed, by a goal that needs one."""
     reference: str = ""
     """The level whose reference drive is this one's too; empty: it has its own."""
+    drive: ReferenceDrive | None = None
+    """Its reference drive, where that is not in the file of all."""
     conditions: LevelConditions = UNCHANGED
     rules: ExtraRules = ExtraRules()
 
@@ -220,12 +223,6 @@ class GameLevel:
             first = replace(scenario.case, target=self.targets[0])
             scenario = replace(scenario, case=first, targets=self.goal.route(self.targets))
         return apply_conditions(scenario, self.conditions)
-
-    def film_scenario(self) -> Scenario:
-        """The scenario as a film of a drive shows it, under the level's title. Raises as ``find_scenario``."""
-        scenario = self.find_scenario()
-        case = None if scenario.case is None else replace(scenario.case, name=self.title)
-        return replace(scenario, case=case)
 
 
 def all_levels(folder: Path | None = None) -> tuple[GameLevel, ...]:

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import ast
 import contextlib
-import datetime
-import random
-import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import Final
@@ -17,14 +14,10 @@ from kit.controllers import kit_controllers
 from kit.school.game.levels import (
     CHALLENGES_WORLD,
     GameLevel,
-    UnknownLevel,
-    all_levels,
     all_worlds,
-    find_level,
 )
 from kit.school.game.medal import Medal
 from kit.school.game.race import DriverKind, RaceFinish
-from kit.school.game.task_levels import find_task_level
 from kit.school.lessons.catalogue import lesson_progress_from_events
 from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressEvent
@@ -262,66 +255,3 @@ def _progress_of_level(level: GameLevel, drives: Sequence[RecordedDrive], is_ope
             medals[driver] = max(medals.get(driver, Medal.NONE), drive.medal)
             rules |= drive.rules
     return LevelProgress(level, is_open or bool(best), medals, rules, best)
-
-
-DAILY_PREFIX: Final = "daily-"
-_ID: Final = re.compile(rf"{DAILY_PREFIX}(\d{{4}}-\d{{2}}-\d{{2}})")
-
-
-def today() -> datetime.date:
-    """The date where the player is."""
-    return datetime.datetime.now().astimezone().date()
-
-
-def daily_level(day: datetime.date) -> GameLevel:
-    """The level of a day: one of the levels with a single robot, on every second day in fog. It is always open."""
-    chance = random.Random(day.toordinal())
-    levels = [each for each in all_levels() if each.world != "pair" and not each.goal.is_route]
-    level = chance.choice(levels)
-    fog = level.conditions.fog or chance.random() < 0.5
-    title = f"{day.isoformat()}: {level.title}{' in fog' if fog else ''}"
-    return replace(
-        level,
-        id=f"{DAILY_PREFIX}{day.isoformat()}",
-        title=title,
-        opened_by=(),
-        opened_by_lesson="",
-        reference=level.reference_id,
-        conditions=replace(level.conditions, fog=fog),
-    )
-
-
-def find_playable_level(name: str) -> GameLevel:
-    """Finds a level as ``find_level`` does, a daily one by its id, such as ``daily-2026-09-01``, or the level of a task by
-    the task's file, folder or name. Raises UnknownLevel, and WorldError for a task that cannot be one."""
-    found = _ID.fullmatch(name)
-    if found is None:
-        try:
-            return find_level(name)
-        except UnknownLevel:
-            of_task = find_task_level(name)
-            if of_task is None:
-                raise
-            return of_task
-    try:
-        return daily_level(datetime.date.fromisoformat(found[1]))
-    except ValueError:
-        raise UnknownLevel(f"There is no such day: {found[1]}.") from None
-
-
-def streak(events: Sequence[ProgressEvent], today: datetime.date) -> int:
-    """Returns for how many days in a row, up to today or yesterday, the daily challenge was finished on its day."""
-    days = set()
-    for event in events:
-        found = _ID.fullmatch(event.subject) if event.kind is EventKind.FINISH else None
-        drive = drive_from_event(event) if found is not None else None
-        if found is None or drive is None or not drive.finish.reached or drive.is_shipped:
-            continue
-        day = event.time.astimezone().date()
-        if day.isoformat() == found[1]:
-            days.add(day)
-    last = today if today in days else today - datetime.timedelta(days=1)
-    count = 0
-    while last - datetime.timedelta(days=count) in days:
-        count += 1
-    return count

@@ -6,7 +6,6 @@ import json
 import math
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Final
@@ -14,31 +13,12 @@ from typing import Final
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.recording import Recording
 from kit.run.session import Session
+from kit.school.game.drive_commands import DriveCommand, ReferenceDrive
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import RaceFinish, run_race
 from kit.school.lessons.reading import lessons_folder
 
 DRIVES_FILE: Final = "reference_drives.json"
-
-
-@dataclass(frozen=True, slots=True)
-class DriveCommand:
-    """A command that is held for a time."""
-
-    ticks: int
-    speed: float
-    """Forward [m/s]; of the point between two robots."""
-    turn: float
-    """[rad/s], or the steering angle of a tricycle [rad]."""
-
-
-@dataclass(frozen=True, slots=True)
-class ReferenceDrive:
-    """All commands of a drive, from the first tick on."""
-
-    commands: tuple[DriveCommand, ...]
-    seconds: float = 0.0
-    """When it reaches the goal [simulated s]."""
 
 
 def drives_file() -> Path:
@@ -64,8 +44,13 @@ def load_drives() -> dict[str, ReferenceDrive]:
 
 def reference_seconds(level: GameLevel) -> float | None:
     """The time of a level's reference drive [s]; None for a level without one."""
-    drive = load_drives().get(level.reference_id)
+    drive = find_drive(level)
     return None if drive is None else drive.seconds
+
+
+def find_drive(level: GameLevel) -> ReferenceDrive | None:
+    """The reference drive of a level; None for a level without one."""
+    return level.drive or load_drives().get(level.reference_id)
 
 
 def drive_reference(
@@ -76,7 +61,7 @@ def drive_reference(
     """Drives a level's reference drive, or another one; calls ``on_second`` with the race's time [s] now and then.
     Raises LookupError for a level that has none."""
     if drive is None:
-        drive = load_drives().get(level.reference_id)
+        drive = find_drive(level)
         if drive is None:
             raise LookupError(f"There is no reference drive of {level.title}.")
     chosen = drive

@@ -71,6 +71,13 @@ def scenario_from(level: GameLevel, seed: int) -> Scenario:
     return scenario
 
 
+def film_scenario(level: GameLevel, seed: int) -> Scenario:
+    """The scenario of a drive as its film shows it, under the level's title. Raises as ``scenario_from``."""
+    scenario = scenario_from(level, seed)
+    case = None if scenario.case is None else replace(scenario.case, name=level.title)
+    return replace(scenario, case=case)
+
+
 def _disturbed(model: Model, phase: float) -> Model:
     """A model with noise on its lasers, and on its way since a while if it is a cart. ``phase``: as of ``LaterCurve``."""
     plugins = []

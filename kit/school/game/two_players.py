@@ -18,6 +18,7 @@ from kit.run.lockstep import Observer
 from kit.run.metrics import is_in_target
 from kit.run.scenario import Scenario
 from kit.school.game.levels import SPEED, TURN_RATE, GameLevel
+from kit.school.game.starts import scenario_from
 from kit.sim.simulation import Simulation
 
 if TYPE_CHECKING:
@@ -89,7 +90,7 @@ class SharedGameState:
 def recorded_scenario(level: GameLevel, recording: Recording) -> Scenario:
     """The scenario in which a drive of a level was recorded, for one player or for two. Raises as ``shared_scenario``."""
     is_shared = any(GUEST in names for _, names in recording.models)
-    return shared_scenario(level) if is_shared else level.find_scenario()
+    return shared_scenario(level) if is_shared else scenario_from(level, recording.seed)
 
 
 def shared_scenario(level: GameLevel) -> Scenario:

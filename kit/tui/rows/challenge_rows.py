@@ -6,23 +6,37 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from kit.document.rows import Row, row
+from kit.document.rows import Row, row, side_by_side
 from kit.plain_text import wrap
+from kit.school.game.board import Board
 from kit.school.game.challenge import AnswerComparison, Challenge, Judgement
 from kit.school.game.medal import Medal
 from kit.school.lessons.reading import lesson_number
 from kit.school.lessons.shell_lines import shell_path
-from kit.tui.rows.level_rows import MEDAL_SIGNS, MEDAL_STYLES, TITLE_WIDTH, medal_row
+from kit.tui.rows.level_rows import MEDAL_SIGNS, MEDAL_STYLES, TITLE_WIDTH, medal_row, share_bar
 
 TITLE_COLUMNS: Final = TITLE_WIDTH + 8
 HEADER: Final = f"  {'challenge':<{TITLE_COLUMNS}} medal  lesson"
 NAME_COLUMNS: Final = 14
 
 
-def challenge_list(challenges: Sequence[Challenge], medals: Mapping[str, Medal], chosen: str) -> list[Row]:
-    """One row for each challenge. ``medals``: the best of each that has one, by its id."""
+def first_shown(count: int, chosen: int, room: int) -> int:
+    """The number of the first of ``count`` rows that are shown in ``room`` rows, so that the chosen one is among them.
+
+    >>> first_shown(15, 2, 10), first_shown(15, 9, 10), first_shown(15, 14, 10), first_shown(5, 4, 10)
+    (0, 4, 5, 0)
+    """
+    return max(0, min(chosen - room // 2, count - room))
+
+
+def challenge_list(
+    challenges: Sequence[Challenge], medals: Mapping[str, Medal], chosen: str, room: int
+) -> list[Row]:
+    """One row for each challenge, of those for which there is room. ``medals``: the best of each that has one, by its id."""
     rows = [row((HEADER, "dim"))]
-    for each in challenges:
+    number = next(number for number, each in enumerate(challenges) if each.id == chosen)
+    top = first_shown(len(challenges), number, room)
+    for each in challenges[top : top + room]:
         medal, is_chosen = medals.get(each.id, Medal.NONE), each.id == chosen
         rows.append(
             row(
@@ -61,6 +75,75 @@ def challenge_page(challenge: Challenge, file: Path | None, width: int) -> list[
         *(row((line, "code")) for line in challenge.task.lines()),
         row((place, "bold")),
     ]
+
+
+def puzzle_page(
+    challenge: Challenge, board: Board, judgement: Judgement | str, width: int, height: int
+) -> list[Row]:
+    """A puzzle below each other: what it asks for, its board, what the answer is worth. ``judgement``: or why there is none.
+    Where there are too few rows, the story gives way first, then the sentence about the worth, then the task."""
+    story, task, keys = _about_puzzle(challenge, board, width)
+    worth, sentence = worth_now(judgement, width)
+    middle = [row(), *board.rows()]
+    left_out = 0
+    while True:
+        parts = [
+            *([] if left_out > 0 else story),
+            *([] if left_out > 2 else task),
+            *([] if left_out > 3 else keys),
+            *(middle[1:] if left_out > 4 else middle),
+            *worth,
+            *([] if left_out > 1 else sentence),
+        ]
+        if len(parts) <= height or left_out > 4:
+            return parts
+        left_out += 1
+
+
+def puzzle_beside(
+    challenge: Challenge, board: Board, judgement: Judgement | str, width: int, column: int
+) -> list[Row]:
+    """A puzzle with its board at the left, and the rest from a column on."""
+    story, task, keys = _about_puzzle(challenge, board, width - column)
+    worth, sentence = worth_now(judgement, width - column)
+    text = [row(), *story, row(), *task, row(), *keys, row(), *worth, *sentence]
+    return side_by_side([row(), *board.rows()], text, column)
+
+
+def _about_puzzle(challenge: Challenge, board: Board, width: int) -> tuple[list[Row], list[Row], list[Row]]:
+    """The story, the task and the keys of a puzzle."""
+    return (
+        _wrapped("", challenge.story, width),
+        _wrapped("task  ", challenge.task_text, width, "dim"),
+        _wrapped("keys  ", board.keys, width, "dim"),
+    )
+
+
+def worth_now(judgement: Judgement | str, width: int) -> tuple[list[Row], list[Row]]:
+    """What the answer on a board is worth, with a bar from the naive answer to the best one; and a sentence about it."""
+    if isinstance(judgement, str):
+        return [row(("  now   ", "dim"), "no answer yet")], _wrapped("  ", judgement, width, "dim")
+    rows = [
+        row(
+            ("  now   ", "dim"),
+            (MEDAL_SIGNS[judgement.medal] + " ", MEDAL_STYLES[judgement.medal]),
+            (judgement.medal.title, "bold"),
+        )
+    ]
+    comparison = judgement.comparison
+    if comparison is not None and comparison.others[0][1] != comparison.others[-1][1]:
+        (first, naive), (last, best) = comparison.others[0], comparison.others[-1]
+        share = (comparison.answer - naive) / (best - naive)
+        bar = share_bar(share)
+        rows.append(
+            row(
+                ("        ", ""),
+                (f"{first} {_number(naive)} ", "dim"),
+                (bar, "good" if judgement.medal is not Medal.NONE else "dim"),
+                (f" {last} {_number(best)} {comparison.unit}", "dim"),
+            )
+        )
+    return rows, _wrapped("  ", judgement.text, width, "dim")
 
 
 def judged(judgement: Judgement, previous: Medal, following: str | None, width: int) -> list[Row]:

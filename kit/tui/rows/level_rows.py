@@ -11,16 +11,18 @@ from typing import Final
 from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText
 from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row, spread
-from kit.plain_text import counted
+from kit.plain_text import counted, wrap
+from kit.school.game.daily import DAILY_PREFIX, daily_level, today
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.leaderboard import LeaderboardEntry, PlayerStanding
 from kit.school.game.levels import GameLevel, GameWorld, all_levels, all_worlds
 from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time
-from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of, daily_level, today
+from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.starts import SEEDS
 from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedGameState, SharedMode, SharedPhase
+from kit.tui.rows.readout_rows import title as ruled
 
 TITLE_WIDTH: Final = 24
 STAR, NO_STAR, SHUT = "*", ".", "-"
@@ -80,8 +82,8 @@ def game_progress(summary: GameSummary) -> list[Row]:
     return [row(f"  {medal_counts(summary)}"), row(), *rows_of([table], Page(margin=2))]
 
 
-BEST: Final = 3
-"""Rows of the leaderboard per level."""
+BEST, BEST_TODAY = 3, 10
+"""Rows of the leaderboard per level, and for that of the day."""
 
 
 def leaderboard_standings(standings: Sequence[PlayerStanding], offer: str = "") -> list[Block]:
@@ -124,7 +126,9 @@ def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
     rows = tuple(
         (title, _player(each.name, each.is_mine), f"{each.seconds:.2f} s", _driven(each))
         for level, title in titles.items()
-        for each in [each for each in entries if each.level == level][:BEST]
+        for each in [each for each in entries if each.level == level][
+            : BEST_TODAY if level.startswith(DAILY_PREFIX) else BEST
+        ]
     )
     columns = (Column("", CellStyle.TEXT), Column("", CellStyle.TEXT), Column(""), Column("", CellStyle.TEXT))
     return Table("times", "", columns, rows, grouped=True)
@@ -202,7 +206,7 @@ def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, widt
 
     >>> from kit.document.rows import row_text
     >>> row_text(ladder_bar(DriverKind.KEYS, 10.0, 15.0, 30))
-    'B━━━━━━━━━━━●──────S──────G──M'
+    'B━━━━━━━━━━━●─────S──────G──MR'
     """
     shares = SHARES[driver]
     widest = math.log(shares[Medal.BRONZE])
@@ -211,14 +215,39 @@ def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, widt
         return round((width - 1) * (1.0 - min(math.log(max(share, 1.0)) / widest, 1.0)))
 
     signs = ["─"] * width
-    for medal in RUNGS[:-1]:  # the record is to the right of all
-        at = column(shares[medal])
-        signs[at] = MEDAL_SIGNS[medal]
+    for medal in RUNGS:
+        below_record = 0 if medal is Medal.RECORD else 1
+        signs[min(column(shares[medal]), width - 1 - below_record)] = MEDAL_SIGNS[medal]
     if seconds is None or seconds > medal_time(Medal.BRONZE, reference, driver):
         return row(("".join(signs), "dim"))
     here = column(seconds / reference)
     passed = "".join("━" if sign == "─" else sign for sign in signs[:here])
     return row((passed, "good"), (HERE, "bold"), ("".join(signs[here + 1 :]), "dim"))
+
+
+def level_card(level: GameLevel, driver: DriverKind, reference: float | None, width: int) -> list[Row]:
+    """What a level is about: story, task, the rungs of its ladder, and the rules that earn stars."""
+    rows = [ruled("level", width), *(row(line) for line in wrap(level.story, width))]
+    rows += [row((line, "bold")) for line in wrap(level.hint, width)]
+    if level.skill:
+        rows += [row((line, "dim")) for line in wrap(f"skill: {level.skill}", width)]
+    if reference is None:
+        return rows
+    rows += [
+        ruled("ladder", width, driver.phrase),
+        row(*ladder_bar(driver, reference, None, min(width, RESULT_BAR))),
+    ]
+    rows += [
+        row(
+            (f"{MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]),
+            f"{medal.title:<8} {medal_time(medal, reference, driver):8.2f} s",
+        )
+        for medal in reversed(RUNGS)
+    ]
+    rows.append(ruled("stars", width))
+    for rule in ExtraRule:
+        rows += [row((line, "")) for line in wrap(f"{STAR} {rule.description(level)}", width, "", "  ")]
+    return rows
 
 
 def next_rung(driver: DriverKind, reference: float, seconds: float | None) -> Medal | None:
@@ -236,13 +265,10 @@ def ladder_words(driver: DriverKind, reference: float, seconds: float | None) ->
 
 def ladder_rows(driver: DriverKind, reference: float, seconds: float | None) -> list[Row]:
     """A ladder with the times of its rungs below it, and how far the next one is."""
-    times = [
-        (f"{MEDAL_SIGNS[medal]} {medal.title} {medal_time(medal, reference, driver):.2f}", medal)
-        for medal in RUNGS
-    ]
+    times = [f"{medal.title} {medal_time(medal, reference, driver):.2f}" for medal in RUNGS]
     rows = [
         row("   ", *ladder_bar(driver, reference, seconds, RESULT_BAR), (f"  {driver.phrase}", "dim")),
-        row(("   " + "  ".join(text for text, _ in times) + " s", "dim")),
+        row((f"   {'  '.join(times)} s", "dim")),
     ]
     rung = next_rung(driver, reference, seconds)
     if seconds is not None and rung is not None:
@@ -322,6 +348,8 @@ def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord) -> list[Ro
                 (f"   {NO_STAR} ", "dim"), "a controller of the kit drove: it shows the way and earns nothing"
             )
         ]
+    if record.is_practice:
+        return [row((f"   {NO_STAR} ", "dim"), "practice: the first run of the day has counted")]
     if not level.has_medals:
         return [row(("   your best time so far", "good"))] if record.is_best else []
     if not finish.reached:
@@ -337,6 +365,33 @@ def medal_row(medal: Medal, *, is_new: bool) -> Row:
     """A medal that was earned. ``is_new``: whether it is better than those before."""
     better = " (new)" if is_new else ""
     return row((f"   {MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]), (f"{medal.title}{better}", "bold"))
+
+
+MEDAL_PICTURE: Final = (
+    r"  \ \   / /",
+    r"   \ \ / /",
+    r"   .-'-'-.",
+    r"  /       \ ",
+    r" |    {}    |",
+    r"  \       /",
+    r"   '-----'",
+)
+SPARK_SIGNS: Final = "*.+'"
+
+
+def medal_drawing(medal: Medal, spark: int) -> list[Row]:
+    """A medal with its letter. ``spark``: the number of a picture of joy around it, 0 for none."""
+    rows = []
+    for number, line in enumerate(MEDAL_PICTURE):
+        sparks = "".join(
+            SPARK_SIGNS[(number + column) % len(SPARK_SIGNS)]
+            if (7 * column + 5 * number + 3 * spark) % 11 < 2
+            else " "
+            for column in range(30 if spark else 0)
+        )
+        drawn = f"   {line.format(MEDAL_SIGNS[medal]):<14}"
+        rows.append(row((drawn, MEDAL_STYLES[medal]), (sparks, "warn")))
+    return [*rows, row()]
 
 
 def compared(

@@ -139,12 +139,12 @@ def figures(status: RunStatus, width: int) -> Row:
     """Steps, speed, time left, and as much more as there is room for."""
     summary = status.summary
     parts = [row((f"{summary.steps:,}", "bold"), (f" of {status.plan.steps:,} steps", "dim"))]
+    if VALUE_MAX in status.measures:
+        parts.append(_largest_value(status.measures))
     if summary.state == "running" and status.rate:
         parts.append(row((f"{status.rate:,.0f}", "bold"), (" steps/s", "dim")))
     if status.remaining_s is not None:
         parts.append(row(("at most ", "dim"), (clock(status.remaining_s), "bold"), (" left", "dim")))
-    if VALUE_MAX in status.measures:
-        parts.append(_largest_value(status.measures))
     if status.adjacency:
         parts.append(row(("side by side ", "dim"), (f"{status.adjacency:.0%}", "bold")))
     if status.reward is not None:
@@ -163,7 +163,7 @@ def _largest_value(measures: Mapping[str, float]) -> Row:
     if not is_value_too_large(measures):
         return row((f"{told} ", "dim"), (number, "bold"))
     most = format_measure(measures[VALUE_PAYABLE])
-    return row((f"{told} {number}: rewards pay at most {most}", "bad"))
+    return row((f"{told} {number}, rewards pay {most}", "bad"))
 
 
 def note(name: str, status: RunStatus, width: int) -> Row:

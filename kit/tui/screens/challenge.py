@@ -85,9 +85,17 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         self._is_left.set()
 
     def on_resize(self, event: events.Resize) -> None:
-        width = event.size.width
-        self._rows = tuple(challenge_page(self._challenge, self._file, width))
+        self._rows = tuple(self._page(event.size.width))
         # Textual calls the inherited handler after this one.
+
+    def _page(self, width: int) -> list[Row]:
+        """What the challenge asks for, in rows of at most ``width`` columns."""
+        return challenge_page(self._challenge, self._file, width)
+
+    def _renew(self) -> None:
+        """The page has changed."""
+        self._rows, self._width = tuple(self._page(self.size.width)), 0
+        self._show()
 
     # What is shown
 
@@ -124,7 +132,10 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         if self._started_at is not None:
             self._show()
         elif self.is_active and self._watch is not None and self._watch.has_changed():
-            self.action_check()
+            self._file_was_saved()
+
+    def _file_was_saved(self) -> None:
+        self.action_check()
 
     @work(exclusive=True, group="check")
     async def action_check(self) -> None:
@@ -133,6 +144,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         answer = await self._choose_run() if self._file is None else ""
         if answer is None:
             return
+        self._prepare_check()
         self._doing, self._started_at = "", time.monotonic()
         self._show()
         try:
@@ -142,7 +154,10 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             self._result = [row((" No medal", "bold")), *wrapped(f" {error}")]
         finally:
             self._started_at = None
-        self._show()
+        self._renew()
+
+    def _prepare_check(self) -> None:
+        """What is to be done before an answer is checked."""
 
     def _judge(self, run: str) -> tuple[Judgement, Medal]:
         """Judges the answer, in a thread. Also returns the best medal before. ``run``: the training's name, where that is the answer."""

@@ -22,6 +22,7 @@ from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
 from kit.school.game.challenge import Challenge
 from kit.school.game.challenges import all_challenges, challenge_medals
+from kit.school.game.daily import daily_level, streak, today
 from kit.school.game.ghosts import Ghost, ghost_file, level_ghosts
 from kit.school.game.levels import CHALLENGES_WORLD, GameLevel, GameWorld, all_levels, all_worlds
 from kit.school.game.medal import Medal
@@ -32,14 +33,12 @@ from kit.school.game.player_progress import (
     LevelProgress,
     belt_of,
     completed_lessons,
-    daily_level,
     facts_of_program,
     level_progress,
-    streak,
-    today,
 )
 from kit.school.game.race import DriverKind, agent_controller
 from kit.school.game.references import reference_recording, reference_seconds
+from kit.school.game.starts import film_scenario
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
@@ -81,10 +80,10 @@ class LevelsScreen(RowsScreen[None]):
     AUTO_FOCUS = ""
     screen_actions = ScreenActions(
         "levels",
-        ("choose", "open", "hand_over", "agent", "replay", "hall_of_fame", "daily", "help", "back"),
+        ("choose", "open", "hand_over", "agent", "replay", "leaderboard", "daily", "help", "back"),
         own=(
             letter("agent", "a", "agent", "let an agent that you trained drive the level"),
-            letter("hall_of_fame", "f", "leaderboard", "show this machine's leaderboard"),
+            letter("leaderboard", "f", "leaderboard", "show this machine's leaderboard"),
             letter("daily", "d", "daily", "drive the level of the day, the same for everyone"),
         ),
     )  # fmt: skip
@@ -235,13 +234,18 @@ class LevelsScreen(RowsScreen[None]):
         medals = self._challenge_medals
         listed = [
             *self._world_heading([medals.get(each.id, Medal.NONE) for each in self._challenges]),
-            *challenge_rows.challenge_list(self._challenges, medals, chosen.id),
+            *challenge_rows.challenge_list(self._challenges, medals, chosen.id, self._challenge_room),
         ]
         drawing = [row(), *(row((f"  {line}", "code")) for line in chosen.task.lines())]
         if len(listed) + len(drawing) <= self._rows("map").size.height:
             listed += drawing
         medal = medals.get(chosen.id, Medal.NONE)
         return listed, challenge_rows.about_challenge(chosen, medal, self.size.width)
+
+    @property
+    def _challenge_room(self) -> int:
+        """Rows for the list of challenges."""
+        return max(1, self._rows("map").size.height - ROWS_ABOVE_LEVELS)
 
     def _doing_row(self) -> Row:
         share = self._prepared.get(self._doing_level, 0.0)
@@ -315,7 +319,9 @@ class LevelsScreen(RowsScreen[None]):
         if event.rows.id != "map" or number < 0:
             return
         if self.chosen_challenge is not None:
-            if number < len(self._challenges):
+            chosen, count = self._at - len(self._found), len(self._challenges)
+            number += challenge_rows.first_shown(count, chosen, self._challenge_room)
+            if number < count:
                 self._choose_or_open(len(self._found) + number)
             return
         levels = self._in_world(self.chosen.level.world)
@@ -361,11 +367,14 @@ class LevelsScreen(RowsScreen[None]):
     async def _open_challenges(self) -> None:
         """The chosen challenge, and after it the next one as long as the player wants it."""
         from kit.tui.screens.challenge import ChallengeScreen
+        from kit.tui.screens.puzzle import PuzzleScreen
 
         while (challenge := self.chosen_challenge) is not None and self.is_active and not self._doing:
             title = next((each.title for each in self._challenges[self._at - len(self._found) + 1 :]), None)
             try:
-                screen = ChallengeScreen(self._theme, challenge, self._progress, self._workspace, title)
+                is_played = challenge.task.board("") is not None
+                kind = PuzzleScreen if is_played else ChallengeScreen
+                screen = kind(self._theme, challenge, self._progress, self._workspace, title)
             except (ProgressError, OSError) as error:
                 self.app.push_screen(MessageDialog("The challenge could not start", wrapped(str(error))))
                 return
@@ -510,9 +519,11 @@ class LevelsScreen(RowsScreen[None]):
         except (RecordingError, OSError) as error:
             self.app.push_screen(MessageDialog("This drive cannot be replayed", wrapped(str(error))))
             return
-        await self.app.push_screen_wait(RecordingScreen(self._theme, level.film_scenario(), recording, who))
+        await self.app.push_screen_wait(
+            RecordingScreen(self._theme, film_scenario(level, recording.seed), recording, who)
+        )
 
-    def action_hall_of_fame(self) -> None:
+    def action_leaderboard(self) -> None:
         self.app.push_screen(LeaderboardScreen(self._progress, self._workspace))
 
     def _may_drive(self) -> bool:

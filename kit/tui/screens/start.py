@@ -16,7 +16,7 @@ from textual.screen import Screen
 from kit.dialogue.actions import ScreenAction, ScreenActions
 from kit.document.rows import Row, row, spread
 from kit.inspection.sockets import sockets_folder
-from kit.plain_text import wrap
+from kit.plain_text import counted, wrap
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import base_key
 from kit.tui.rows.key_rows import bindings
@@ -100,6 +100,10 @@ def _status(name: str, overview: StudentOverview | None) -> str:
         return ""
     if name == "lessons":
         return f"{overview.done} of {len(overview.shelf)} done"
+    if name == "levels":
+        if not overview.has_run_today:
+            return f"maze: day {overview.streak + 1}" if overview.streak else "today's maze"
+        return f"streak {counted(overview.streak, 'day')}" if overview.streak else ""
     if name == "quiz" and overview.due:
         return f"{overview.due} due today"
     return ""

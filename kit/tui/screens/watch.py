@@ -84,6 +84,8 @@ class WatchScreen(RowsScreen[None], DriveScreen):
     """Whether keys drive here, so that the panel says how."""
     has_instruments: ClassVar[bool] = True
     """Whether a large screen has charts, messages and the program in its panel."""
+    shows_program: ClassVar[bool] = True
+    """Whether the program's code is what fills the rest of it."""
 
     DEFAULT_CSS = f"""
     WatchScreen {{ layout: vertical; }}
@@ -369,7 +371,8 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         if view.program != self._program[0]:
             self._program = view.program, _lines_of(view.program)
         size = panel_width(self.size.width) - 2, self.query_one("#panel").size.height
-        return instruments(view, self._history, mode, self._program[1], size)
+        program = self._program[1] if self.shows_program else ()
+        return instruments(view, self._history, mode, program, size)
 
     def _newest_scene(self) -> Scene:
         assert self.view is not None  # nothing is offered before the first view

@@ -53,7 +53,9 @@ def bits(step: BatchStep, world: int) -> tuple[bytes, ...]:
     "wheelchairs-seed",
     "wheelchairs-seed-as-run",
     "wheelchairs-seed-49",
+    "wheelchairs-seed-49-as-run",
     "wheelchairs-seed-49-wide",
+    "wheelchairs-seed-49-wide-as-run",
 )
 @every_task
 def test_a_world_is_the_same_to_the_bit_alone_or_among_many(task: LearningTask) -> None:
@@ -77,7 +79,9 @@ def test_a_world_is_the_same_to_the_bit_alone_or_among_many(task: LearningTask) 
     "wheelchairs-seed",
     "wheelchairs-seed-as-run",
     "wheelchairs-seed-49",
+    "wheelchairs-seed-49-as-run",
     "wheelchairs-seed-49-wide",
+    "wheelchairs-seed-49-wide-as-run",
 )
 @every_task
 def test_a_seed_repeats_everything(task: LearningTask) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from kit.geometry import Pose
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.maps.ray_directions import ray_direction
 from kit.learning.tasks.actions import Move
@@ -21,6 +22,7 @@ from kit.learning.tasks.catalogue import (
     WHEELCHAIRS_SEED_49,
     find_task,
 )
+from kit.learning.tasks.disturbances import Disturbances
 from kit.learning.tasks.learning_task import LearningTask, UnknownTask
 from kit.learning.tasks.rewards import (
     ALGORITHM_1,
@@ -32,6 +34,7 @@ from kit.learning.tasks.rewards import (
 )
 from kit.learning.tasks.task_reader import read_task
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.sim.simulation import Simulation, load_world
 from kit.world.problems import WorldError
 from tests.cases import every_case
 
@@ -82,6 +85,85 @@ def test_as_it_was_run_a_whole_turn_is_charged_in_the_step_that_completes_it() -
     charged = [float(turn_completed_reward(batch.step(left).transition)[0]) for _ in range(62)]
     assert sorted(charged)[-3:] == [0.0, 1.0, 2.0]
     assert abs(charged.index(2.0) - charged.index(1.0)) == 30  # steps of 12 degrees
+
+
+PAIRS_AS_RUN = ("wheelchairs-seed-49-as-run", "wheelchairs-seed-49-wide-as-run", "wheelchairs-seed-as-run")
+
+
+@pytest.mark.parametrize("name", PAIRS_AS_RUN)
+def test_as_they_were_run_wheels_touch_nothing_and_the_other_robot_sees_them(name: str) -> None:
+    task = replace(find_task(name).on("pair_straight"), lidar_noise=0.0)
+    batch = BatchEnv(task, 1, seed=0)
+    robot = batch.map_of_case(0)[1].robot
+    assert [np.abs(np.array(hull)[:, 1]).max() for hull in robot.hull] == [0.055]
+    assert {np.abs(np.array(part)[:, 1]).max() for part in robot.untouched} == {0.085}
+    batch.reset()
+    stop = np.array([task.actions.encode(np.zeros((1, 2), dtype=np.int64), 2)[0]])  # type: ignore[union-attr]  # a table
+    ranges = batch.step(stop).transition.ranges[0]
+    gap = float(np.hypot(*(batch.state.pose[0, 0] - batch.state.pose[0, 1])[:2]))
+    right_of_left, left_of_right = ranges[0, 22], ranges[1, 68]  # straight across, 2 degrees off
+    for seen in (right_of_left, left_of_right):
+        assert seen == pytest.approx(gap - 0.085, abs=0.003)
+    card = task.map_cards[0]
+    world = load_world(card.world_file, root=card.root)
+    simulation = Simulation(world, step_size=0.01, has_subscribers=lambda topic: True)
+    for model, pose in zip(("left", "right"), batch.state.pose[0].tolist(), strict=True):
+        simulation.move_model(model, Pose(*pose))
+    for _ in range(30):
+        simulation.step()
+    scans = {view.model: np.minimum(view.ranges, 2.0) for view in simulation.latest_scans()}
+    for number, model in enumerate(("left", "right")):
+        # A ray that passes an edge by a hair may meet it in one of the engines only.
+        assert (np.abs(scans[model] - ranges[number]) > 0.08).sum() <= 2
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", PAIRS_AS_RUN)
+def test_as_they_were_run_nothing_can_happen_in_the_first_three_steps(name: str) -> None:
+    """The code ignored collisions and arrivals there, for what it still had of the last episode."""
+    task = replace(find_task(name).on("pair_straight"), disturbances=Disturbances(), lidar_noise=0.0)
+    count = task.actions.space(2).n  # type: ignore[union-attr]  # one number
+    batch = BatchEnv(task, count**3, seed=0, autoreset=False)
+    batch.reset()
+    every = np.arange(count**3)
+    for number in range(3):
+        step = batch.step(every // count**number % count).transition
+        assert not step.hit.any()
+        assert not step.in_target.any()
+
+
+def test_as_they_were_run_the_right_one_has_a_diagonal_twice() -> None:
+    for name in PAIRS_AS_RUN:
+        task = find_task(name)
+        left, right = task.observation.ray_tables(2)[0].tolist()
+        assert left[:5] == [45, 43, 47, 22, 68]
+        assert right[:5] == [45, 43, 43, 22, 68]
+        assert np.bincount(np.array(task.observation.sectors)).tolist() == [
+            13,
+            13,
+            6,
+            6,
+            6,
+            6,
+            5,
+            5,
+            6,
+            6,
+            6,
+            13,
+        ]
+        with pytest.raises(ValueError, match="different rays"):
+            task.observation.mirror_table(2)
+
+
+@pytest.mark.parametrize("rays", ["[45]", "[45, 43, 47, 22, 91]"])
+def test_other_rays_are_as_many(tmp_path: Path, rays: str) -> None:
+    text = find_task("wheelchairs-seed-as-run").file.read_text()  # type: ignore[union-attr]  # the kit's tasks are files
+    assert "other_rays: [45, 43, 43, 22, 68]" in text
+    file = tmp_path / "mine.yaml"
+    file.write_text(text.replace("other_rays: [45, 43, 43, 22, 68]", f"other_rays: {rays}"))
+    with pytest.raises(WorldError, match="other_rays"):
+        read_task(file)
 
 
 def test_a_task_names_another_world_file_of_its_maps(tmp_path: Path) -> None:

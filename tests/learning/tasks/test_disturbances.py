@@ -185,6 +185,72 @@ def test_late_commands_keep_to_the_motors_limits_as_in_the_single_world(tmp_path
     assert 0.9 * limit < fastest <= limit + 1e-9
 
 
+PAIR = replace(
+    WHEELCHAIRS, cases=("pair_straight",), start=StartVariation(gap=0.4), lidar_noise=0.0, max_steps=60
+)
+
+
+def test_each_robot_s_commands_are_late_by_themselves() -> None:
+    task = disturbed(PAIR, command_jitter=0.2)
+    batch = BatchEnv(task, 300, seed=2, autoreset=False)
+    batch.reset()
+    ahead = np.full((300, 2), task.actions.moves.index(Move.FORWARD))  # type: ignore[union-attr]  # a table
+    step = batch.step(ahead).transition
+    ways = np.hypot(*(step.pose - step.previous_pose)[:, :, :2].transpose(2, 0, 1)) / 0.3
+    late = 0.2 - ways
+    assert late.min() >= -1e-9
+    for robot in range(2):
+        assert late[:, robot].std() == pytest.approx(0.2 / math.sqrt(12), rel=0.1)
+    assert abs(np.corrcoef(late.T)[0, 1]) < 0.2
+
+
+def test_a_robot_that_stops_between_steps_loses_the_time_that_its_command_is_late() -> None:
+    moves = [Move.FORWARD, Move.FORWARD, Move.STOP]
+    going, stopping = (
+        poses(replace(disturbed(STRAIGHT, latency=0.05), stops_between=stops), moves)[:, 0]
+        for stops in (False, True)
+    )
+    for path, expected in ((going, [0.15, 0.2, 0.05]), (stopping, [0.15, 0.15, 0.0])):
+        assert np.hypot(*np.diff(path[:, :2], axis=0).T) / 0.3 == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("stops", [False, True])
+def test_two_robots_with_jitter_drive_as_in_the_single_world(*, stops: bool) -> None:
+    task = replace(disturbed(PAIR, latency=0.03, command_jitter=0.12), stops_between=stops)
+    batch, card, ticks = BatchEnv(task, 1, seed=4, autoreset=False), find_map("pair_straight"), 50
+    batch.reset()
+    world, names = load_world(card.world_file, root=card.root), task.robots_on(card)
+    topics = [model.topic("cmd_vel") for name in names for model in world.models if model.name == name]
+    length = task.step_time / ticks
+    simulation = Simulation(world, step_size=length, has_subscribers=lambda topic: False)
+    for name, pose in zip(names, batch.state.pose[0].tolist(), strict=True):
+        simulation.move_model(name, Pose(*pose))
+    moves = task.actions.moves  # type: ignore[union-attr]  # a table
+    forward, left, right = (moves.index(move) for move in (Move.FORWARD, Move.LEFT, Move.RIGHT))
+    sent: list[list[tuple[float, list[float]]]] = [[], []]
+    apart = []
+    for number in range(16):
+        actions = [{0: left, 3: right}.get(number, forward), forward]
+        step = batch.step(np.array([actions])).transition
+        due = batch.state.disturbed.due[0, 0] / length
+        apart.append(abs(due[0] - due[1]))
+        for robot in range(2):
+            if stops:
+                sent[robot].append((number * ticks, [0.0, 0.0]))
+            sent[robot].append((number * ticks + float(due[robot]), step.twist[0, robot].tolist()))
+        for tick in range(ticks):
+            for topic, commands in zip(topics, sent, strict=True):
+                twists = [twist for when, twist in commands if when <= number * ticks + tick + 0.5]
+                speed, turn = twists[-1] if twists else (0.0, 0.0)
+                simulation.accept(topic, Twist(linear=Vector3(x=speed), angular=Vector3(z=turn)))
+            simulation.step()
+        assert not step.hit.any()
+        for name, pose in zip(names, step.pose[0], strict=True):
+            away = np.abs(np.array(simulation.pose(name)) - pose)
+            assert away.max() < 2 * (number + 1) * length * max(task.actions.largest)
+    assert max(apart) > 10  # ticks
+
+
 def test_lost_rays_read_the_reach_and_others_each_time() -> None:
     task = disturbed(STRAIGHT, dropped_rays=0.25)
     plain, lossy = BatchEnv(STRAIGHT, 200, seed=1), BatchEnv(task, 200, seed=1)

@@ -121,3 +121,12 @@ def test_what_no_run_has_needs_no_column(run: TrainingRun) -> None:
     both = runs_table([plain, replace(waiting, reward="mine.py")])
     assert [column.title for column in both.columns[-2:]] == ["left", "reward"]
     assert all(len(each) == len(both.columns) for each in both.rows)
+
+
+def test_values_that_rewards_cannot_pay_are_marked_and_explained(run: TrainingRun) -> None:
+    measures = {"value_max": 57_123_456.0, "value_mean": 3.0, "value_payable": 1390.0}
+    with EventWriter(run.events_file) as events:
+        events.write(TrainingProgress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {}, measures=measures))
+    text = "\n".join(lines_of(runs_blocks(read_overviews([run]))))
+    assert "57,123,456!" in text
+    assert "rewards can" in " ".join(text.split())

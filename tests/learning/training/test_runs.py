@@ -126,6 +126,7 @@ def test_where_a_run_stands_follows_from_its_events() -> None:
         "last_evaluation",
         "best_evaluation",
         "reason",
+        "measures",
     ]
     assert summarise_events((*EVENTS, EVENTS[0]), alive=False, order="go").state == "interrupted"
 

@@ -28,7 +28,7 @@ from kit.school.game.race import (
     race_from_all_starts,
     run_race,
 )
-from kit.school.game.references import CommandPlayer, load_drives, reference_seconds
+from kit.school.game.references import CommandPlayer, find_drive, reference_seconds
 from kit.school.game.starts import OWN_SEED, scenario_from, seeds_of
 from tests.school.game.tidy import TidyDriver
 
@@ -83,7 +83,8 @@ def keys_drive(level: GameLevel, seed: int = OWN_SEED) -> tuple[RaceFinish, Reco
 
 def tape_drives(level: GameLevel) -> list[tuple[RaceFinish, Recording]]:
     """The reference's commands from all starts."""
-    reference = load_drives()[level.reference_id]
+    reference = find_drive(level)
+    assert reference is not None
     return [
         drive(
             level, seed, lambda session: session.runner.participants.append(CommandPlayer(session, reference))

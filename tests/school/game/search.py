@@ -26,9 +26,10 @@ from kit.geometry import convex_hull, wrap_angle
 from kit.kernels import grids
 from kit.learning.environment.distance_field import compute_distance_field
 from kit.msg.geometry_msgs import Twist, Vector3
+from kit.school.game.drive_commands import DriveCommand, ReferenceDrive
 from kit.school.game.levels import SPEED, TURN_RATE, GameLevel, all_levels
 from kit.school.game.race import DOCK_TIME, RaceReferee
-from kit.school.game.references import DriveCommand, ReferenceDrive, drive_reference, drives_file, load_drives
+from kit.school.game.references import drive_reference, drives_file, load_drives
 from kit.school.game.starts import OWN_SEED
 from kit.sim.simulation import Simulation
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,20 +13,12 @@ from kit.geometry import Pose, wrap_angle
 from kit.msg.nav_msgs import Odometry
 from kit.ros.node.node import create_graph_node
 from kit.run.session import Session
-from kit.school.game.levels import GameLevel, UnknownLevel, all_worlds, find_level
+from kit.school.game.levels import GameLevel, all_worlds, find_level
 from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time
-from kit.school.game.player_progress import (
-    BELTS,
-    LevelProgress,
-    belt_of,
-    daily_level,
-    find_playable_level,
-    streak,
-)
+from kit.school.game.player_progress import BELTS, LevelProgress, belt_of
 from kit.school.game.race import DriverKind, RaceFinish, judge_recording, run_race
 from kit.school.game.references import drive_reference, load_drives, reference_seconds
 from kit.school.lessons.reading import lesson_names
-from kit.school.progress import EventKind, ProgressEvent
 from tests.kit_content import kit_levels
 from tests.school.game.measured_drivers import judged, keys_drive, tape_drives, targets_of
 from tests.school.game.tidy import TidyDriver
@@ -169,9 +160,6 @@ def test_driving_to_one_place_finishes_no_level_that_asks_for_more(level: GameLe
     assert not finish.reached
 
 
-DAY = datetime.date(2026, 9, 1)
-
-
 def test_the_time_that_is_shown_for_a_medal_earns_it() -> None:
     for reference in (each.seconds for each in load_drives().values()):
         for driver in DriverKind:
@@ -196,39 +184,6 @@ def test_who_touches_something_gets_bronze_at_best(collisions: int, medal: Medal
     assert medal_of(RaceFinish(True, 10.0, collisions), 10.0) is medal
     assert medal_of(RaceFinish(False, 1.0, collisions), 10.0) is Medal.NONE
     assert medal_of(RaceFinish(True, 25.0, collisions), 10.0) is Medal.NONE
-
-
-def test_a_day_has_one_level_for_everybody_and_days_differ() -> None:
-    days = [DAY + datetime.timedelta(days=number) for number in range(30)]
-    levels = [daily_level(day) for day in days]
-    assert levels == [daily_level(day) for day in days]
-    assert len({level.reference for level in levels}) > 8
-    assert {level.conditions.fog for level in levels} == {True, False}
-    for level in levels:
-        assert level.opened_by == ()
-        assert reference_seconds(level) is not None
-        assert find_playable_level(level.id) == level
-    with pytest.raises(UnknownLevel, match="day"):
-        find_playable_level("daily-2026-13-01")
-
-
-def finish(day: datetime.date, level: str, *, reached: bool = True) -> ProgressEvent:
-    at = datetime.datetime.combine(day, datetime.time(12)).astimezone()
-    content = {"driver": "keys", "reached": reached, "seconds": 9.0, "bumps": 0, "medal": 1}
-    return ProgressEvent(f"{day}{level}{reached}", at.isoformat(), EventKind.FINISH, level, content)
-
-
-def test_a_streak_counts_days_in_a_row_on_their_day() -> None:
-    before = [DAY - datetime.timedelta(days=number) for number in range(5)]
-    events = [finish(day, f"daily-{day}") for day in before[1:3]]
-    assert streak(events, DAY) == 2  # today may still come
-    events.append(finish(DAY, f"daily-{DAY}"))
-    assert streak(events, DAY) == 3
-    events.append(finish(DAY, f"daily-{before[3]}"))  # a day late
-    events.append(finish(before[4], f"daily-{before[4]}", reached=False))
-    assert streak(events, DAY) == 3
-    assert streak(events, DAY + datetime.timedelta(days=2)) == 0
-    assert streak([finish(DAY, "first-drive")], DAY) == 0
 
 
 def test_belts_rise_with_the_medals_of_a_world() -> None:

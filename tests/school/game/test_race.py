@@ -17,6 +17,7 @@ from kit.run.episode import EndCondition, EndReason, run_until
 from kit.run.recording import Recording
 from kit.run.session import Session
 from kit.school.game import leaderboard, references
+from kit.school.game.daily import daily_level, today
 from kit.school.game.drive_records import join_leaderboard, record_drive
 from kit.school.game.ghosts import classmate_ghosts, load_ghosts, load_reference_ghost
 from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, find_level
@@ -26,10 +27,8 @@ from kit.school.game.player_progress import (
     DriverFacts,
     ExtraRule,
     completed_lessons,
-    daily_level,
     facts_of_program,
     level_progress,
-    today,
 )
 from kit.school.game.race import DriverKind, RaceFinish, RaceReferee, race_controller
 from kit.school.game.references import drive_reference

@@ -13,11 +13,12 @@ from kit.learning.tasks.catalogue import find_task, task_names
 from kit.mapmaking.map_drawing import read_drawing
 from kit.mapmaking.new_map import write_map
 from kit.run.recording import load_recording
+from kit.school.game.daily import find_playable_level
 from kit.school.game.drive_records import record_drive
 from kit.school.game.ghosts import load_ghosts
 from kit.school.game.levels import UnknownLevel, find_level
 from kit.school.game.medal import Medal
-from kit.school.game.player_progress import DriverFacts, find_playable_level
+from kit.school.game.player_progress import DriverFacts
 from kit.school.game.race import DriverKind, judge_recording, race_controller
 from kit.school.game.task_levels import MAX_ROBOTS, TaskLevel, task_level
 from kit.school.progress import ProgressJournal

@@ -154,3 +154,18 @@ def test_curves_for_little_and_for_much_room() -> None:
     assert training_rows.axes(found, "success").goal == 0.9
     assert training_rows.axes(found, "reward").goal is None
     assert training_rows.curves(found, "reward", 80)[0].y.tolist() == [-1234.5, -1234.5]
+
+
+def test_values_that_rewards_cannot_pay_are_told_at_once() -> None:
+    measures = {"value_max": 57_123_456.0, "value_mean": 3.0, "value_payable": 1390.0}
+    batch = TrainingProgress(10, 1.0, 10.0, {"a": [5, 3, 2]}, 0.0, 1.0, {}, measures=measures)
+    shown = row_text(training_rows.figures(status(batch), 80))
+    assert "57,123,456" in shown
+    assert "1,390" in shown
+    calm = replace(batch, measures={**measures, "value_max": 747.0})
+    shown = row_text(training_rows.figures(status(calm), 80))
+    assert "largest value 747" in shown
+    assert "1,390" not in shown
+    panel = "\n".join(row_text(each) for page in training_rows.pages(status(calm), 39, 20) for each in page)
+    assert "most that rewards pay" in panel
+    assert "largest value" in training_rows.curve_kinds(status(calm))

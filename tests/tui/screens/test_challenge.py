@@ -23,12 +23,14 @@ from kit.tui.screens import challenge as challenge_module
 from kit.tui.screens.challenge import ChallengeScreen
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.levels import LevelsScreen
+from kit.tui.screens.puzzle import PuzzleScreen
 from tests.tui.lesson_stage import rows, seen, stage, until
 from tests.waiting import wait_until_shown
 
 Scene = Callable[[Pilot[None], LevelsScreen], Awaitable[None]]
 FIRST = all_challenges()[0]
 SECOND = all_challenges()[1]
+PLAYED = [each for each in all_challenges() if each.task.board("") is not None]
 
 
 @pytest.fixture
@@ -97,6 +99,73 @@ def test_a_challenge_is_opened_answered_and_rewarded(journal: ProgressJournal, t
 
     visit(scene, journal, tmp_path)
     assert challenge_medals(journal.events())[FIRST.id] is Medal.GOLD
+
+
+def test_a_puzzle_is_played_by_keys_and_kept_in_its_file(journal: ProgressJournal, tmp_path: Path) -> None:
+    assert isinstance(FIRST.task, ExploitTask)
+    moves = best_moves(FIRST.task)
+    names = {"l": "left", "r": "right", "u": "up", "d": "down"}
+    file = answer_file(tmp_path, FIRST, "moves.txt")
+
+    async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, PuzzleScreen), "the puzzle")
+        await seen(pilot, FIRST.story[:40])
+        await pilot.press("left", *(names[each] for each in moves))
+        assert "u undo" in rows(pilot)[-1]
+        await pilot.press(*["u"] * (len(moves) + 1), *(names[each] for each in moves))
+        await seen(pilot, "gold")  # what it is worth now
+        assert challenge_medals(journal.events()) == {}, "nothing was handed in yet"
+        await pilot.press("c")
+        await seen(pilot, "gold (new)")
+        assert moves in file.read_text()
+        await pilot.press("u")
+        await pilot.press("escape")
+        await until(pilot, lambda: pilot.app.screen is levels, "the list")
+        assert f"\n{moves[:-1]}\n" in file.read_text()
+        await pilot.press("enter")
+        await seen(pilot, f"{len(moves) - 1} of {FIRST.task.max_moves} moves")
+        file.write_text("r")
+        await seen(pilot, f"1 of {FIRST.task.max_moves} moves")  # edited elsewhere
+
+    visit(scene, journal, tmp_path)
+    assert challenge_medals(journal.events())[FIRST.id] is Medal.GOLD
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("size", [(80, 24), (120, 35), (200, 50)], ids=str)
+@pytest.mark.parametrize("played", PLAYED, ids=lambda each: each.id)
+def test_every_board_fits_and_answers_every_key(
+    journal: ProgressJournal, tmp_path: Path, played: Challenge, size: tuple[int, int]
+) -> None:
+    async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
+        await pilot.press(*["down"] * all_challenges().index(played), "enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, PuzzleScreen), "the puzzle")
+        screen = pilot.app.screen
+        assert isinstance(screen, PuzzleScreen)
+        await seen(pilot, "now ")
+        for key in (
+            "right",
+            "down",
+            "space",
+            "tab",
+            "space",
+            "left",
+            "up",
+            "pagedown",
+            "u",
+            "u",
+            "u",
+            "u",
+            "u",
+        ):
+            await pilot.press(key)
+        assert screen._top == 0
+        assert len(screen._shown) <= size[1] - 2, "no row is out of sight"
+        await pilot.press("escape")
+        await until(pilot, lambda: pilot.app.screen is levels, "the list")
+
+    visit(scene, journal, tmp_path, size)
 
 
 def test_an_answer_that_cannot_be_judged_says_why(journal: ProgressJournal, tmp_path: Path) -> None:

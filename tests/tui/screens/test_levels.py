@@ -8,6 +8,7 @@ from collections.abc import Awaitable, Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from textual.app import App
 from textual.pilot import Pilot
@@ -19,20 +20,30 @@ from kit.mapmaking.map_drawing import read_drawing
 from kit.mapmaking.new_map import write_map
 from kit.school.game import ghosts, leaderboard, references
 from kit.school.game.challenges import all_challenges
+from kit.school.game.daily import daily_level, today
 from kit.school.game.drive_records import DriveRecord, record_drive
 from kit.school.game.levels import GameLevel, all_worlds
 from kit.school.game.medal import Medal
-from kit.school.game.player_progress import ExtraRule, daily_level, today
+from kit.school.game.player_progress import ExtraRule
 from kit.school.game.race import DriverKind
 from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.leaderboard import LeaderboardScreen
-from kit.tui.screens.level_drive import ROWS_AROUND, DriveResult, DriveResultDialog, LevelDrive
+from kit.tui.screens.level_drive import (
+    ROWS_AROUND,
+    WIDE,
+    DriveResult,
+    DriveResultScreen,
+    LevelDrive,
+    gain_color,
+    scene_of_drive,
+)
 from kit.tui.screens.levels import LevelsScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.widgets.text_rows import TextRows
+from kit.workspace import Workspace
 from tests.kit_content import kit_levels
 from tests.school.game.measured_drivers import keys_drive
 from tests.waiting import wait_until_shown
@@ -186,7 +197,7 @@ def test_a_task_of_ones_own_is_driven_by_hand_as_a_level(progress: ProgressJourn
         def drives() -> bool:
             if drive._referee is None:
                 drive.drive_keys_changed(("p_up",), drive.drive.state)
-            return isinstance(pilot.app.screen, DriveResultDialog)
+            return isinstance(pilot.app.screen, DriveResultScreen)
 
         await wait_until_shown(pilot, drives)
         await wait_until_shown(pilot, lambda: "your best time" in flat(pilot.app))
@@ -218,7 +229,7 @@ def test_a_drive_is_followed_by_its_result_and_the_next_level(
         def drives() -> bool:
             if drive._referee is None:
                 drive.drive_keys_changed(("p_up",), drive.drive.state)
-            return isinstance(pilot.app.screen, DriveResultDialog)
+            return isinstance(pilot.app.screen, DriveResultScreen)
 
         await wait_until_shown(pilot, drives)
         (event,) = progress.events(EventKind.FINISH)
@@ -226,7 +237,7 @@ def test_a_drive_is_followed_by_its_result_and_the_next_level(
         assert event.content["bumps"] == 0
         assert event.content["medal"] >= 1
         await pilot.press("up")
-        assert isinstance(pilot.app.screen, DriveResultDialog)
+        assert isinstance(pilot.app.screen, DriveResultScreen)
         await pilot.press("enter")  # everything at once
         await wait_until_shown(pilot, lambda: "opened: Left turn" in flat(pilot.app))
         await pilot.press("y")
@@ -272,7 +283,7 @@ def test_the_panel_speaks_of_the_target_that_is_next_and_of_all_bumps(
                 drive.drive_keys_changed(("p_up",), drive.drive.state)
             elif drive.view is not None and drive.view.scene.targets == (second,):
                 between.append(drive.view.metrics)
-            return isinstance(pilot.app.screen, DriveResultDialog)
+            return isinstance(pilot.app.screen, DriveResultScreen)
 
         await wait_until_shown(pilot, drives)
         assert between
@@ -341,7 +352,7 @@ def test_one_key_joins_the_leaderboard_and_leaves_it(progress: ProgressJournal, 
     play(scene, progress, tmp_path / "desk")
 
 
-@pytest.mark.parametrize("size", [(80, 24), (120, 36)])
+@pytest.mark.parametrize("size", [(80, 24), (120, 36), (200, 50)])
 def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
     progress: ProgressJournal, tmp_path: Path, size: tuple[int, int]
 ) -> None:
@@ -355,6 +366,7 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
         Medal.SILVER,
         tuple(ExtraRule)[:4],
         (),
+        False,
         False,
         True,
         9.0,
@@ -378,14 +390,18 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
     )
 
     async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
-        dialog = DriveResultDialog(screen._theme, result, prepare_workspace(tmp_path / "desk"))
+        dialog = DriveResultScreen(screen._theme, result, prepare_workspace(tmp_path / "desk"))
         await screen.app.push_screen(dialog)
         await pilot.pause()
         await pilot.press("enter")
         await pilot.pause()
-        (box,) = dialog.query("Vertical")
-        assert box.region.height <= size[1]
-        assert box.region.height >= len(dialog._revealed) + len(dialog._fixed) + ROWS_AROUND
+        await wait_until_shown(pilot, lambda: dialog._shown >= len(dialog._revealed))
+        shown_rows = len(dialog._revealed) + len(dialog._fixed) + len(dialog._medal) + ROWS_AROUND
+        assert shown_rows <= size[1]
+        has_map = dialog.has_class("-wide") or dialog.has_class("-high")
+        assert has_map is (size[0] >= WIDE)
+        if has_map:
+            await wait_until_shown(pilot, lambda: dialog._world._scene is not None)
         shown = flat(screen.app)
         assert all(each.title in shown for each in record.unlocked)
         assert "yellow belt" in shown
@@ -393,6 +409,75 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
         assert (dialog._photo_finish[0] in dialog._revealed) is (size[1] > 24)
 
     play(scene, progress, tmp_path / "desk", size)
+
+
+def result_of(workspace: Workspace, progress: ProgressJournal) -> DriveResult:
+    """A drive of the bend by an ordinary hand, which is gold."""
+    level = next(each for each in LEVELS if each.id == "left-turn")
+    finish, recording = keys_drive(level)
+    record = record_drive(progress, workspace, level, DriverKind.KEYS, [(finish, recording)])
+    ghost = ghosts.load_reference_ghost(level)
+    assert ghost is not None
+    return DriveResult(level, DriverKind.KEYS, finish, record, recording, [ghost], ghost.seconds, ())
+
+
+def test_the_way_is_coloured_by_what_it_gained(progress: ProgressJournal, tmp_path: Path) -> None:
+    result = result_of(prepare_workspace(tmp_path / "desk"), progress)
+    scene = scene_of_drive(result)
+    parts = ghosts.gains_along(
+        result.recording.track(result.level.find_scenario().partners[0]),
+        result.recording.step_size,
+        result.ghosts[0],
+    )
+    assert len(scene.strokes) == len(parts) > 10
+    known = parts[~np.isnan(parts[:, 4])]
+    assert known[:, 4].sum() == pytest.approx(result.ghosts[0].seconds - result.finish.seconds, abs=0.3)
+    assert {each.color for each in scene.strokes} >= {gain_color(-1.0), gain_color(0.0)}
+    assert len({gain_color(gain) for gain in (-1.0, 0.0, 1.0, float("nan"))}) == 4
+    assert scene.paths, "the ghost's way is beside it"
+
+
+@pytest.mark.long
+def test_sharing_writes_a_card_and_a_moving_picture_and_copies_the_card(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    workspace = prepare_workspace(tmp_path / "desk")
+    result = result_of(workspace, progress)
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        copied: list[str] = []
+        screen.app.copy_to_clipboard = copied.append  # type: ignore[method-assign]  # a pilot has no terminal
+        await screen.app.push_screen(DriveResultScreen(screen._theme, result, workspace))
+        await pilot.press("y")
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, MessageDialog))
+        assert "gold" in copied[0]
+        (film,) = (workspace.folder / "cards").glob("*.gif")
+        assert film.read_bytes().startswith(b"GIF8")
+        assert film.with_suffix(".txt").read_text().strip() == copied[0].strip()
+
+    play(scene, progress, tmp_path / "desk")
+
+
+@pytest.mark.parametrize("still", [False, True])
+def test_a_first_gold_has_a_second_of_joy_unless_motion_is_reduced(
+    progress: ProgressJournal, tmp_path: Path, still: bool
+) -> None:
+    workspace = prepare_workspace(tmp_path / "desk")
+    result = result_of(workspace, progress)
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        facts = screen._theme.terminal
+        theme = replace(
+            screen._theme, terminal=replace(facts, reduce_motion=replace(facts.reduce_motion, value=still))
+        )
+        dialog = DriveResultScreen(theme, result, workspace)
+        again = replace(result, record=replace(result.record, previous_medal=Medal.GOLD))
+        assert DriveResultScreen(theme, again, workspace)._spark == 0, "only once"
+        assert (dialog._spark > 0) is not still
+        await screen.app.push_screen(dialog)
+        await wait_until_shown(pilot, lambda: dialog._spark == 0)
+
+    play(scene, progress, tmp_path / "desk", (120, 36))
 
 
 @pytest.mark.long
@@ -410,7 +495,7 @@ def test_a_race_of_a_program_is_seen_and_a_controller_of_the_kit_earns_nothing(
         await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, LevelDrive))
         await wait_until_shown(pilot, lambda: "random_walk drives" in flat(pilot.app))
         await pilot.press("3")
-        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, DriveResultDialog))
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, DriveResultScreen))
         (event,) = progress.events(EventKind.FINISH)
         assert event.content["driver"] == "controller"
         assert event.content["shipped"]

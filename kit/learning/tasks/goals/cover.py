@@ -10,7 +10,6 @@ import numpy as np
 
 from kit.arrays import BoolArray, FloatArray, IntArray
 from kit.kernels import grids
-from kit.learning.maps.batch_map import FLOOR_CELL, hull_radius, hull_width, measure_floor
 from kit.learning.tasks.goals.goal import Goal, GoalCase, GoalCount
 from kit.learning.tasks.transition import Transition
 from kit.world.yaml_section import Section
@@ -46,10 +45,12 @@ class CoverGoal(Goal):
 
 
 class _CoverCount(GoalCount):
-    """The number of cells of the floor that have been covered; their middles lie ``FLOOR_CELL`` apart."""
+    """The number of cells of the floor that have been covered."""
 
     def __init__(self, goal: CoverGoal, cases: Sequence[GoalCase], n: int) -> None:
-        self._goal = goal
+        from kit.learning.maps.batch_map import FLOOR_CELL  # brings pymunk along
+
+        self._goal, self._cell = goal, FLOOR_CELL
         floors, origins = zip(*(_floor_to_cover(goal, case) for case in cases), strict=True)
         shape = [max(floor.shape[axis] for floor in floors) for axis in (0, 1)]
         self._floors = np.zeros((len(floors), *shape), dtype=np.bool_)
@@ -75,11 +76,13 @@ class _CoverCount(GoalCount):
 
     def _cover(self, cases: IntArray, poses: FloatArray, covered: BoolArray, counts: FloatArray) -> None:
         radius = self._goal.radius
-        grids.cover_cells(poses, cases, self._origins, FLOOR_CELL, self._floors, radius, covered, counts)
+        grids.cover_cells(poses, cases, self._origins, self._cell, self._floors, radius, covered, counts)
 
 
 def _floor_to_cover(goal: CoverGoal, case: GoalCase) -> tuple[BoolArray, tuple[float, float]]:
     """(rows, columns) the cells that a robot's radius of covering can reach, and the middle of the first one [m]."""
+    from kit.learning.maps.batch_map import hull_radius, hull_width, measure_floor  # likewise
+
     batch_map = case.batch_map
     floor = measure_floor(batch_map)
     reached = floor.reached_from(*case.start, hull_width(batch_map)) & (

@@ -10,15 +10,17 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from enum import Enum, auto
-from typing import ClassVar, Self
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
 from kit.arrays import FloatArray, IntArray
-from kit.learning.maps.batch_map import BatchMap, load_batch_map
 from kit.learning.tasks.transition import Array, Transition
 from kit.world.catalogue import MapCard
 from kit.world.yaml_section import Section
+
+if TYPE_CHECKING:
+    from kit.learning.maps.batch_map import BatchMap
 
 
 class CaseTargets(Enum):
@@ -47,6 +49,8 @@ class GoalCase:
     @property
     def batch_map(self) -> BatchMap:
         """Its map as arrays. Raises UnsupportedWorld and WorldError."""
+        from kit.learning.maps.batch_map import load_batch_map  # brings pymunk along
+
         return load_batch_map(self.card, self.robots)
 
 

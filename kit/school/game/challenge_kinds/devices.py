@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Final, Self, TypeAlias
+from typing import Final, Self
 
+from kit.document.rows import Row, row
 from kit.layers.cover import minimum_cover
+from kit.school.game.board import WALL, Board, Cell, History, free_cells, grid_rows
 from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn, Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
 
-WALL: Final = "#"
 STEPS_PER_SQUARE: Final = 10
 """A line of sight is looked at so often on the length of a square."""
 MAX_DEVICES: Final = 100
-
-Square: TypeAlias = tuple[int, int]
-"""Row and column, from 0."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +40,9 @@ class DevicesTask(ChallengeTask):
     def naive_answer(self) -> str:
         return "".join(f"{row},{column}\n" for row, column in naive_lasers(self))
 
+    def board(self, answer: str) -> Board:
+        return DevicesBoard(self, answer)
+
     def judge(self, handed_in: HandedIn) -> Judgement:
         """Judges by what is not seen, then by the number of lasers against the fewest and the naive plan's."""
         lasers = read_lasers(self, handed_in.answer)
@@ -52,16 +54,16 @@ class DevicesTask(ChallengeTask):
         return judge_count("lasers", text, count, fewest, naive)
 
     @property
-    def places(self) -> dict[str, Square]:
+    def places(self) -> dict[str, Cell]:
         """The places by their letters."""
         return {sign: square for square, sign in self._squares().items() if sign.islower()}
 
     @property
-    def floor(self) -> tuple[Square, ...]:
+    def floor(self) -> tuple[Cell, ...]:
         """The squares where a laser can be mounted."""
-        return tuple(square for square, sign in self._squares().items() if sign != WALL)
+        return free_cells(self.grid)
 
-    def sees(self, laser: Square, square: Square) -> bool:
+    def sees(self, laser: Cell, square: Cell) -> bool:
         """Whether no wall lies on the straight line between the middles of two squares."""
         steps = STEPS_PER_SQUARE * max(abs(laser[0] - square[0]), abs(laser[1] - square[1]), 1)
         for step in range(steps + 1):
@@ -70,22 +72,88 @@ class DevicesTask(ChallengeTask):
                 return False
         return True
 
-    def seen_from(self, lasers: tuple[Square, ...]) -> set[str]:
+    def seen_from(self, lasers: tuple[Cell, ...]) -> set[str]:
         """The letters of the places that at least one laser sees."""
         visible = _visible(self)
         return {name for laser in lasers for name in visible[laser]}
 
-    def _squares(self) -> dict[Square, str]:
+    def _squares(self) -> dict[Cell, str]:
         return {(row, column): sign for row, line in enumerate(self.grid) for column, sign in enumerate(line)}
 
 
-def naive_lasers(task: DevicesTask) -> tuple[Square, ...]:
+class DevicesBoard(Board):
+    """A cursor that mounts lasers; what they see is lit, and letters that are seen become capitals."""
+
+    keys = "Arrows move the cursor, Space mounts a laser or takes it away, u undoes it."
+
+    def __init__(self, task: DevicesTask, answer: str) -> None:
+        self._task = task
+        self._lasers: tuple[Cell, ...] = ()
+        self._cursor = task.floor[0]
+        self._history: History[tuple[Cell, ...]] = History()
+        with suppress(ChallengeError):
+            lasers = read_lasers(task, answer)
+            self._lasers = lasers if lasers != naive_lasers(task) else ()
+
+    @property
+    def answer(self) -> str:
+        return "".join(f"{row},{column}\n" for row, column in self._lasers)
+
+    def judgement(self) -> Judgement:
+        return self._task.judge(HandedIn(self.answer, Path()))
+
+    def move(self, columns: int, rows: int) -> None:
+        """To the next square of the floor in that direction; walls are passed over."""
+        row, column = self._cursor
+        grid = self._task.grid
+        for distance in range(1, max(len(grid), len(grid[0]))):
+            there = row + distance * _sign(rows), column + distance * _sign(columns)
+            if there in self._task.floor:
+                self._cursor = there
+                return
+
+    def mark(self) -> None:
+        self._history.note(self._lasers)
+        if self._cursor in self._lasers:
+            self._lasers = tuple(each for each in self._lasers if each != self._cursor)
+        else:
+            self._lasers = (*self._lasers, self._cursor)[:MAX_DEVICES]
+
+    def undo(self) -> None:
+        self._lasers = self._history.take(self._lasers)
+
+    def rows(self) -> list[Row]:
+        task, seen = self._task, self._task.seen_from(self._lasers)
+        signs: dict[Cell, tuple[str, str]] = {}
+        for square in task.floor:
+            is_lit = any(task.sees(laser, square) for laser in self._lasers)
+            signs[square] = ("·", "warn") if is_lit else (" ", "")
+        for name, square in task.places.items():
+            signs[square] = (name.upper(), "good") if name in seen else (name, "bold")
+        signs |= dict.fromkeys(self._lasers, ("*", "warn"))
+        under = signs[self._cursor][0]
+        signs[self._cursor] = ("+" if under in " ·" else under, "chosen")
+        return [
+            *grid_rows(task.grid, signs, self.scale),
+            row(),
+            row(
+                (f"  lasers {len(self._lasers)}", "bold"),
+                f"   {len(seen)} of {len(task.places)} letters seen",
+            ),
+        ]
+
+
+def _sign(number: int) -> int:
+    return (number > 0) - (number < 0)
+
+
+def naive_lasers(task: DevicesTask) -> tuple[Cell, ...]:
     """A laser at every place: the naive answer."""
     return tuple(task.places.values())
 
 
 @cache
-def _visible(task: DevicesTask) -> dict[Square, frozenset[str]]:
+def _visible(task: DevicesTask) -> dict[Cell, frozenset[str]]:
     """Computes which squares are seen from each square of the floor."""
     places = task.places
     return {
@@ -95,7 +163,7 @@ def _visible(task: DevicesTask) -> dict[Square, frozenset[str]]:
 
 
 @cache
-def fewest_lasers(task: DevicesTask) -> tuple[Square, ...]:
+def fewest_lasers(task: DevicesTask) -> tuple[Cell, ...]:
     """A plan than which none has fewer lasers."""
     places = list(task.places)
     columns = [
@@ -107,7 +175,7 @@ def fewest_lasers(task: DevicesTask) -> tuple[Square, ...]:
     return tuple(task.floor[column] for column in cover.chosen)
 
 
-def read_lasers(task: DevicesTask, answer: str) -> tuple[Square, ...]:
+def read_lasers(task: DevicesTask, answer: str) -> tuple[Cell, ...]:
     """Reads ``ROW,COLUMN ROW,COLUMN``. Raises ChallengeError."""
     words = answer.split()
     if not 0 < len(words) <= MAX_DEVICES:

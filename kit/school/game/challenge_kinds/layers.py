@@ -3,20 +3,29 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
-from typing import Self
+from typing import Final, Self
 
 import yaml
 
+from kit.document.rows import Row, row
 from kit.layers.assignment import LayerAssignment, NamedLayer, find_breaches
 from kit.layers.planning import solve_layers
 from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import read_requirements
+from kit.plain_files import is_file_there
+from kit.school.game.board import Board, History
 from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn, Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.world.documents import open_document
+from kit.world.problems import WorldError
 from kit.world.yaml_section import Section
+
+MAX_LAYERS: Final = 16
+"""That a world can have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,8 +50,90 @@ class LayersTask(ChallengeTask):
     def read_answer(self, file: Path) -> str:
         return str(file)  # read as a document, so that a mistake has its line
 
+    def board(self, answer: str) -> Board:
+        return LayersBoard(self, answer)
+
     def judge(self, handed_in: HandedIn) -> Judgement:
         return judge_assignment(self, read_plan(Path(handed_in.answer)))
+
+
+class LayersBoard(Board):
+    """A table of entities and lasers by layers: Space puts one into a layer, and what is still wrong is counted."""
+
+    keys = "Arrows move the cursor, Space puts into a layer or out of it, u undoes it."
+
+    def __init__(self, task: LayersTask, answer: str) -> None:
+        self._task = task
+        self._case = read_requirements(task.file).case
+        self._names = (*self._case.names, *(laser.name for laser in self._case.lasers))
+        self._layers: tuple[frozenset[str], ...] = ()
+        """Of each layer the entities in it, and the lasers that watch it."""
+        self._row = self._column = 0
+        self._history: History[tuple[frozenset[str], ...]] = History()
+        with suppress(ChallengeError, WorldError):
+            plan = read_plan(Path(answer))
+            if not find_breaches(self._case, plan) and len(plan.layers) < len(naive_plan(self._case).layers):
+                self._layers = tuple(
+                    layer.members
+                    | {laser for laser, watched in plan.watches.items() if layer.name in watched}
+                    for layer in plan.layers
+                )
+
+    @property
+    def _plan(self) -> LayerAssignment:
+        lasers = {laser.name for laser in self._case.lasers}
+        layers = tuple(
+            NamedLayer(f"layer {number}", members - lasers) for number, members in enumerate(self._layers, 1)
+        )
+        watches = {
+            laser: tuple(
+                layer.name for layer, members in zip(layers, self._layers, strict=True) if laser in members
+            )
+            for laser in sorted(lasers)
+        }
+        return LayerAssignment(layers, watches)
+
+    @property
+    def answer(self) -> str:
+        return format_plan(self._plan)
+
+    def judgement(self) -> Judgement:
+        return judge_assignment(self._task, self._plan)
+
+    def move(self, columns: int, rows: int) -> None:
+        self._row = max(0, min(self._row + rows, len(self._names) - 1))
+        self._column = max(0, min(self._column + columns, min(len(self._layers), MAX_LAYERS - 1)))
+
+    def mark(self) -> None:
+        self._history.note(self._layers)
+        layers = [*self._layers, frozenset()] if self._column == len(self._layers) else [*self._layers]
+        layers[self._column] ^= {self._names[self._row]}
+        self._layers = tuple(each for each in layers if each)
+        self._column = min(self._column, len(self._layers))
+
+    def undo(self) -> None:
+        self._layers = self._history.take(self._layers)
+        self._column = min(self._column, len(self._layers))
+
+    def rows(self) -> list[Row]:
+        width = max(len(name) for name in self._names) + 2
+        columns = min(len(self._layers) + 1, MAX_LAYERS)
+        wrong = find_breaches(self._case, self._plan)
+        about = {word for each in wrong for word in str(each).replace(",", " ").split()}
+        rows = [row(("  " + " " * width + "".join(f"{number + 1:>3}" for number in range(columns)), "dim"))]
+        for number, name in enumerate(self._names):
+            is_laser = number >= len(self._case.names)
+            cells: list[tuple[str, str]] = [
+                (f"  {'o ' if is_laser else '  '}{name:<{width - 2}}", "" if name in about else "good")
+            ]
+            for column in range(columns):
+                members = self._layers[column] if column < len(self._layers) else frozenset()
+                is_here = (number, column) == (self._row, self._column)
+                sign = ("o" if is_laser else "x") if name in members else "."
+                cells += [("  ", ""), (sign, "chosen" if is_here else "" if name in members else "dim")]
+            rows.append(tuple(cells))
+        count = "everything is as asked" if not wrong else f"{len(wrong)} still wrong: {wrong[0]}"
+        return [*rows, row(), row((f"  layers {len(self._layers)}", "bold"), f"   {count}")]
 
 
 def naive_plan(case: LayerCase) -> LayerAssignment:
@@ -69,7 +160,7 @@ def format_plan(plan: LayerAssignment) -> str:
 
 def read_plan(file: Path) -> LayerAssignment:
     """Reads the plan of an answer's file. Raises ChallengeError and WorldError."""
-    if not file.is_file():
+    if not is_file_there(file):
         raise ChallengeError(f"{file}: there is no such file.")
     with open_document(file.absolute(), is_partial=True) as section:
         layers = section.section("layers")
@@ -79,14 +170,20 @@ def read_plan(file: Path) -> LayerAssignment:
     return LayerAssignment(named, watches)
 
 
+@cache
+def _case_and_fewest(file: Path) -> tuple[LayerCase, int]:
+    """A case and the number of layers than which no plan for it has fewer."""
+    case = read_requirements(file).case
+    return case, len(solve_layers(case).assignment.layers)
+
+
 def judge_assignment(task: LayersTask, plan: LayerAssignment) -> Judgement:
     """Judges a plan by its breaches, and by its layers against the fewest and the naive plan's."""
-    case = read_requirements(task.file).case
+    case, fewest = _case_and_fewest(task.file)
     breaches = find_breaches(case, plan)
     if breaches:
         return Judgement(Medal.NONE, f"It does not do what is asked: {breaches[0]}.")
     count, naive = len(plan.layers), len(naive_plan(case).layers)
-    fewest = len(solve_layers(case).assignment.layers)
     text = f"{count} layers; a layer for every line takes {naive}, and {fewest} are enough."
     return judge_count("layers", text, count, fewest, naive)
 

@@ -49,3 +49,28 @@ def test_walls_are_not_seen_through() -> None:
     assert task.sees((2, 2), (2, 1))
     assert all(task.sees(a, b) == task.sees(b, a) for a in task.floor for b in task.floor)
     assert len(fewest_lasers(task)) == 1
+
+
+def test_the_board_mounts_lasers_and_passes_over_walls() -> None:
+    task = DevicesTask(("#####", "#a#b#", "#...#", "#####"))
+    board = task.board("")
+    board.move(1, 0)
+    board.mark()
+    assert board.answer == "1,3\n", "the cursor passes over the wall"
+    assert task.judge(HandedIn(board.answer, Path())).medal is Medal.NONE
+    board.mark()
+    board.move(-1, 0)
+    board.move(0, 1)
+    board.mark()
+    assert task.board(board.answer).answer == board.answer
+    board.undo()
+    assert board.answer == ""
+
+
+@pytest.mark.parametrize("challenge", DEVICES, ids=lambda each: each.id)
+def test_the_fewest_lasers_can_be_mounted_by_keys(challenge) -> None:
+    lasers = fewest_lasers(challenge.task)
+    board = challenge.task.board(" ".join(f"{row},{column}" for row, column in lasers))
+    assert board.judgement().medal is Medal.GOLD
+    shown = "".join(text for line in board.rows() for text, _ in line)
+    assert all(name.upper() in shown or place in lasers for name, place in challenge.task.places.items())

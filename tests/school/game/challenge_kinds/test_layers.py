@@ -32,3 +32,29 @@ def test_a_plan_with_a_layer_for_every_line_earns_nothing(challenge, tmp_path: P
     assert challenge.task.judge(HandedIn(str(file), tmp_path)).medal is Medal.GOLD
     with pytest.raises(ChallengeError, match="no such file"):
         challenge.task.judge(HandedIn(str(tmp_path / "none.yaml"), tmp_path))
+
+
+@pytest.mark.parametrize("challenge", PLANS, ids=lambda each: each.id)
+def test_a_plan_can_be_made_by_keys(challenge, tmp_path: Path) -> None:
+    """The best plan, entered mark by mark on the board."""
+    task = challenge.task
+    case = read_requirements(task.file).case
+    best = solve_layers(case).assignment
+    names = [*case.names, *(laser.name for laser in case.lasers)]
+    board = task.board("")
+    assert board.judgement().medal is Medal.NONE
+    for column, layer in enumerate(best.layers):
+        lasers = {laser for laser, watched in best.watches.items() if layer.name in watched}
+        for name in sorted(layer.members | lasers):
+            board.move(-1000, -1000)
+            board.move(column, names.index(name))
+            board.mark()
+    assert board.judgement().medal is Medal.GOLD
+    file = tmp_path / task.answer_file
+    file.write_text(board.answer)
+    assert task.judge(HandedIn(task.read_answer(file), tmp_path)).medal is Medal.GOLD
+    again = task.board(task.read_answer(file))
+    assert again.judgement().medal is Medal.GOLD
+    again.undo()
+    board.undo()
+    assert board.judgement().medal is not Medal.GOLD

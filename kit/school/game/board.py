@@ -1,0 +1,155 @@
+"""Puzzles played by keys: an answer that is made on a board, cell by cell, and judged after every key."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections import deque
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import groupby
+from typing import ClassVar, Final, Generic, TypeAlias, TypeVar
+
+from kit.document.rows import Row
+from kit.school.game.challenge import Judgement
+
+State = TypeVar("State")
+
+WALL: Final = "#"
+FULL: Final = "█"
+"""Fills a cell."""
+MOVES: Final = {"l": (0, -1), "r": (0, 1), "u": (-1, 0), "d": (1, 0)}
+"""The letter of each move, with its change of row and column."""
+ARROWS: Final = {"l": "←", "r": "→", "u": "↑", "d": "↓"}
+
+Cell: TypeAlias = tuple[int, int]
+"""Row and column, from 0."""
+Grid: TypeAlias = Sequence[str]
+"""Lines of signs, ``#`` a wall."""
+
+
+class Board(ABC):
+    """The state of one puzzle that is being solved. Keys change it; ``answer`` is what is handed in."""
+
+    keys: ClassVar[str]
+    """What the keys do, in one sentence."""
+    scale: int = 1
+    """How many times larger than usual a drawing is shown."""
+
+    @property
+    @abstractmethod
+    def answer(self) -> str:
+        """The answer as its file holds it."""
+
+    @abstractmethod
+    def rows(self) -> list[Row]:
+        """The board with its cursor, and what is to be counted."""
+
+    @abstractmethod
+    def judgement(self) -> Judgement:
+        """What the answer is worth now. Raises ChallengeError."""
+
+    @abstractmethod
+    def move(self, columns: int, rows: int) -> None:
+        """An arrow key: one column or row, or more for the keys that go farther."""
+
+    def mark(self) -> None:  # noqa: B027 - not every board has something to mark
+        """The space bar."""
+
+    def switch(self) -> None:  # noqa: B027 - likewise
+        """The tabulator: to another robot, where there are several."""
+
+    @abstractmethod
+    def undo(self) -> None:
+        """Takes the last change back."""
+
+
+class History(Generic[State]):
+    """States of a board before each change, so that changes can be taken back."""
+
+    def __init__(self) -> None:
+        self._states: list[State] = []
+
+    def note(self, state: State) -> None:
+        self._states.append(state)
+
+    def take(self, present: State) -> State:
+        """The state before the last change; the present one where there is none."""
+        return self._states.pop() if self._states else present
+
+
+def find_cell(grid: Grid, sign: str) -> Cell:
+    """The first cell with this sign. Raises StopIteration if there is none."""
+    return next((row, line.index(sign)) for row, line in enumerate(grid) if sign in line)
+
+
+def free_cells(grid: Grid) -> tuple[Cell, ...]:
+    """All cells that are no wall, row by row."""
+    return tuple(
+        (row, column) for row, line in enumerate(grid) for column, sign in enumerate(line) if sign != WALL
+    )
+
+
+def step(grid: Grid, cell: Cell, move: str) -> Cell:
+    """Where a move leads to: a wall, and the edge of the grid, stop it."""
+    row, column = cell[0] + MOVES[move][0], cell[1] + MOVES[move][1]
+    is_inside = 0 <= row < len(grid) and 0 <= column < len(grid[row])
+    return (row, column) if is_inside and grid[row][column] != WALL else cell
+
+
+def distances_to(grid: Grid, goal: Cell) -> dict[Cell, int]:
+    """The number of moves to a cell from every cell that leads there."""
+    found, waiting = {goal: 0}, deque([goal])
+    while waiting:
+        cell = waiting.popleft()
+        for move in MOVES:  # every move can be undone by its opposite
+            beside = step(grid, cell, move)
+            if beside not in found:
+                found[beside] = found[cell] + 1
+                waiting.append(beside)
+    return found
+
+
+def shortest_way(grid: Grid, start: Cell, goal: Cell) -> str:
+    """The moves of a shortest way. Raises KeyError where there is none."""
+    distances, cell, moves = distances_to(grid, goal), start, ""
+    while distances[cell]:
+        moves += next(move for move in MOVES if distances[step(grid, cell, move)] < distances[cell])
+        cell = step(grid, cell, moves[-1])
+    return moves
+
+
+def letters_of(columns: int, rows: int) -> str:
+    """The moves of an arrow key; none of keys that go farther.
+
+    >>> letters_of(-1, 0), letters_of(0, 10)
+    ('l', '')
+    """
+    return next((name for name, change in MOVES.items() if change == (rows, columns)), "")
+
+
+def grid_rows(grid: Grid, signs: Mapping[Cell, tuple[str, str]], scale: int = 1) -> list[Row]:
+    """A grid as rows, for each cell ``scale`` rows of twice as many columns. ``signs``: sign and style of cells that differ
+    from the drawing."""
+
+    def shown(row: int, column: int, part: int) -> tuple[str, str]:
+        sign, style = signs.get((row, column)) or _plain(grid[row][column])
+        if sign == FULL:
+            return sign * 2 * scale, style
+        return (sign if part == scale // 2 else " ").center(2 * scale - 1) + " ", style
+
+    return [
+        (("  ", ""), *_joined(shown(row, column, part) for column in range(len(line))))
+        for row, line in enumerate(grid)
+        for part in range(scale)
+    ]
+
+
+def _plain(sign: str) -> tuple[str, str]:
+    return (FULL, "dim") if sign == WALL else (sign, "")
+
+
+def _joined(cells: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Neighbours of one style as one text."""
+    return [
+        ("".join(text for text, _ in group), style)
+        for style, group in groupby(cells, key=lambda each: each[1])
+    ]

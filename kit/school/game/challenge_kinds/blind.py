@@ -1,0 +1,135 @@
+"""Bring a robot to its place that knows neither where it is nor what is around it: walls are all it has (conformant planning)."""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Self, TypeAlias
+
+from kit.document.rows import Row, row
+from kit.school.game.board import (
+    MOVES,
+    Board,
+    Cell,
+    find_cell,
+    free_cells,
+    grid_rows,
+    shortest_way,
+    step,
+)
+from kit.school.game.challenge import ChallengeTask, HandedIn, Judgement, judge_count
+from kit.school.game.medal import Medal
+from kit.school.game.moves_board import MovesBoard, read_moves
+from kit.world.yaml_section import Section
+
+MAX_MOVES = 200
+Belief: TypeAlias = frozenset[Cell]
+"""Where the robot may be."""
+
+
+@dataclass(frozen=True, slots=True)
+class BlindTask(ChallengeTask):
+    """A floor on which the robot may be anywhere; after the moves it has to be at ``G``, wherever it was."""
+
+    kind = "blind"
+    answer_file = "moves.txt"
+
+    grid: tuple[str, ...]
+    """``#`` wall, ``G`` target."""
+
+    @classmethod
+    def read(cls, section: Section, folder: Path) -> Self:
+        return cls(section.texts("map", at_least=1))
+
+    def lines(self) -> list[str]:
+        return [*self.grid]
+
+    def naive_answer(self) -> str:
+        return f"{naive_moves(self)}\n"
+
+    def board(self, answer: str) -> Board:
+        return BlindBoard(self, answer)
+
+    def judge(self, handed_in: HandedIn) -> Judgement:
+        moves = read_moves(handed_in.answer, MAX_MOVES)
+        belief = believed(self, moves)
+        goal = find_cell(self.grid, "G")
+        if belief != {goal}:
+            where = "1 place" if len(belief) == 1 else f"{len(belief)} places"
+            return Judgement(Medal.NONE, f"The robot may be in {where} then, and has to be at G for certain.")
+        count, fewest, naive = len(moves), len(fewest_moves(self)), len(naive_moves(self))
+        text = f"{count} moves; two places after another takes {naive}, and {fewest} are enough."
+        return judge_count("moves", text, count, fewest, naive)
+
+
+def believed(task: BlindTask, moves: str) -> Belief:
+    """Where a robot may be after moves that may have begun anywhere."""
+    belief: Belief = frozenset(free_cells(task.grid))
+    for name in moves:
+        belief = _moved(task, belief, name)
+    return belief
+
+
+def _moved(task: BlindTask, belief: Belief, move: str) -> Belief:
+    return frozenset(step(task.grid, cell, move) for cell in belief)
+
+
+def _search(task: BlindTask, belief: Belief, is_goal: Belief | None) -> str:
+    """The fewest moves that lead a belief to ``is_goal``, or to fewer places where that is None: breadth first."""
+    found, waiting = {belief: ""}, deque([belief])
+    while waiting:
+        present = waiting.popleft()
+        if present == is_goal or (is_goal is None and len(present) < len(belief)):
+            return found[present]
+        for name in MOVES:
+            following = _moved(task, present, name)
+            if following not in found:
+                found[following] = found[present] + name
+                waiting.append(following)
+    raise ValueError("No moves bring the robot to one place from everywhere.")
+
+
+@cache
+def fewest_moves(task: BlindTask) -> str:
+    """A plan than which none is shorter."""
+    return _search(task, frozenset(free_cells(task.grid)), frozenset({find_cell(task.grid, "G")}))
+
+
+@cache
+def naive_moves(task: BlindTask) -> str:
+    """A plan that brings two of the places together, then the next two, and the last one to the target."""
+    belief, moves = frozenset(free_cells(task.grid)), ""
+    while len(belief) > 1:
+        two = frozenset(sorted(belief)[-2:])
+        more = _search(task, two, None)
+        moves += more
+        for name in more:
+            belief = _moved(task, belief, name)
+    (cell,) = belief
+    return moves + shortest_way(task.grid, cell, find_cell(task.grid, "G"))
+
+
+class BlindBoard(MovesBoard):
+    """Arrows move the robot wherever it may be; each place shows where it may be now."""
+
+    def __init__(self, task: BlindTask, answer: str) -> None:
+        super().__init__(task, answer, MAX_MOVES)
+        self._blind = task
+
+    def rows(self) -> list[Row]:
+        task = self._blind
+        belief = believed(task, self.moves)
+        counts = Counter(belief)
+        signs = {cell: (("o", "warn") if counts[cell] else ("·", "dim")) for cell in free_cells(task.grid)}
+        goal = find_cell(task.grid, "G")
+        signs[goal] = ("@", "good") if goal in belief else ("G", "bold")
+        return [
+            *grid_rows(task.grid, signs, self.scale),
+            row(),
+            row((f"  moves {len(self.moves)}", "bold"), f"   the robot may be in {len(belief)} places"),
+        ]
+
+
+KIND = BlindTask

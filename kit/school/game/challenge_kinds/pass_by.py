@@ -1,0 +1,191 @@
+"""Let two robots pass each other where there is room for one: waiting is a move too (multi-agent path finding)."""
+
+from __future__ import annotations
+
+from collections import deque
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cache
+from itertools import zip_longest
+from pathlib import Path
+from typing import Final, Self
+
+from kit.document.rows import Row, row
+from kit.plain_text import quoted
+from kit.school.game.board import MOVES, Board, Cell, find_cell, grid_rows, letters_of, shortest_way, step
+from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn, Judgement, judge_count
+from kit.school.game.medal import Medal
+from kit.world.yaml_section import Section
+
+WAIT: Final = "."
+MAX_TICKS: Final = 100
+
+
+@dataclass(frozen=True, slots=True)
+class PassByTask(ChallengeTask):
+    """A floor with two robots, ``A`` and ``B``, that want to be where ``a`` and ``b`` are."""
+
+    kind = "pass_by"
+    answer_file = "moves.txt"
+
+    grid: tuple[str, ...]
+
+    @classmethod
+    def read(cls, section: Section, folder: Path) -> Self:
+        return cls(section.texts("map", at_least=1))
+
+    def lines(self) -> list[str]:
+        return [*self.grid]
+
+    def naive_answer(self) -> str:
+        """Each robot goes its own shortest way."""
+        ways = (
+            shortest_way(self.grid, start, goal) for start, goal in zip(self.starts, self.goals, strict=True)
+        )
+        return "\n".join(ways) + "\n"
+
+    def board(self, answer: str) -> Board:
+        return PassByBoard(self, answer)
+
+    def judge(self, handed_in: HandedIn) -> Judgement:
+        moves = read_two(handed_in.answer)
+        ticks = max(map(len, moves))
+        if meeting := first_meeting(self, moves):
+            return Judgement(Medal.NONE, f"The robots meet at tick {meeting}.")
+        if places(self, moves, ticks) != self.goals:
+            return Judgement(Medal.NONE, "Not both robots are where they want to be.")
+        fewest = len(fewest_ticks(self)[0])
+        naive = sum(len(way) for way in self.naive_answer().split()) * 2
+        text = f"{ticks} ticks; {fewest} are enough."
+        return judge_count("ticks", text, ticks, fewest, naive)
+
+    @property
+    def starts(self) -> tuple[Cell, Cell]:
+        return find_cell(self.grid, "A"), find_cell(self.grid, "B")
+
+    @property
+    def goals(self) -> tuple[Cell, Cell]:
+        return find_cell(self.grid, "a"), find_cell(self.grid, "b")
+
+
+def read_two(answer: str) -> tuple[str, str]:
+    """The moves of both robots, a word each: l, r, u, d and ``.`` to wait. Raises ChallengeError."""
+    words = answer.lower().split()
+    if len(words) != 2:
+        raise ChallengeError("Write two words: the moves of robot A, and those of robot B.")
+    if strange := sorted(set("".join(words)) - {*MOVES, WAIT}):
+        raise ChallengeError(f"{quoted(strange[0])} is not a move: write l, r, u, d, and . to wait.")
+    if max(map(len, words)) > MAX_TICKS:
+        raise ChallengeError(f"More than {MAX_TICKS} ticks are too many.")
+    return words[0], words[1]
+
+
+def places(task: PassByTask, moves: tuple[str, str], tick: int) -> tuple[Cell, Cell]:
+    """Where both robots are after so many ticks; one whose moves have ended stays."""
+    found = []
+    for start, own in zip(task.starts, moves, strict=True):
+        cell = start
+        for name in own[:tick]:
+            cell = cell if name == WAIT else step(task.grid, cell, name)
+        found.append(cell)
+    return found[0], found[1]
+
+
+def first_meeting(task: PassByTask, moves: tuple[str, str]) -> int:
+    """The first tick at which both are in one cell or change places; 0 if there is none."""
+    before = task.starts
+    for tick, _ in enumerate(zip_longest(*moves), 1):
+        after = places(task, moves, tick)
+        if after[0] == after[1] or after == (before[1], before[0]):
+            return tick
+        before = after
+    return 0
+
+
+@cache
+def fewest_ticks(task: PassByTask) -> tuple[str, str]:
+    """Plans than which none are over earlier: breadth first over the places of both."""
+    found: dict[tuple[Cell, Cell], tuple[str, str]] = {task.starts: ("", "")}
+    waiting = deque([task.starts])
+    while waiting:
+        present = waiting.popleft()
+        if present == task.goals:
+            return found[present]
+        for first in (*MOVES, WAIT):
+            for second in (*MOVES, WAIT):
+                following = (
+                    present[0] if first == WAIT else step(task.grid, present[0], first),
+                    present[1] if second == WAIT else step(task.grid, present[1], second),
+                )
+                meet = following[0] == following[1] or following == (present[1], present[0])
+                if not meet and following not in found:
+                    found[following] = found[present][0] + first, found[present][1] + second
+                    waiting.append(following)
+    raise ValueError("The robots cannot pass each other.")
+
+
+class PassByBoard(Board):
+    """Arrows plan one robot's way, the other one moves along by its own plan; Space lets it wait."""
+
+    keys = "Arrows move a robot, Space lets it wait, Tab changes to the other one, u takes back."
+
+    def __init__(self, task: PassByTask, answer: str) -> None:
+        self._task = task
+        self._moves = ["", ""]
+        self._active = 0
+        with suppress(ChallengeError):
+            if answer.split() != task.naive_answer().split():
+                self._moves = list(read_two(answer))
+
+    @property
+    def _both(self) -> tuple[str, str]:
+        return self._moves[0], self._moves[1]
+
+    @property
+    def answer(self) -> str:
+        return "\n".join(own or WAIT for own in self._moves) + "\n"
+
+    def judgement(self) -> Judgement:
+        return self._task.judge(HandedIn(self.answer, Path()))
+
+    def move(self, columns: int, rows: int) -> None:
+        self._add(letters_of(columns, rows))
+
+    def mark(self) -> None:
+        self._add(WAIT)
+
+    def switch(self) -> None:
+        self._active = 1 - self._active
+
+    def _add(self, name: str) -> None:
+        if len(self._moves[self._active]) < MAX_TICKS:
+            self._moves[self._active] += name
+
+    def undo(self) -> None:
+        self._moves[self._active] = self._moves[self._active][:-1]
+
+    def rows(self) -> list[Row]:
+        task, tick = self._task, len(self._moves[self._active])
+        signs = {goal: (name, "good") for name, goal in zip("ab", task.goals, strict=True)}
+        signs |= dict.fromkeys(task.starts, (" ", ""))
+        here = places(task, self._both, tick)
+        for number, cell in enumerate(here):
+            signs[cell] = ("AB"[number], "chosen" if number == self._active else "bold")
+        meeting = first_meeting(task, self._both)
+        if here[0] == here[1]:
+            signs[here[0]] = ("X", "bad")
+        plans = [
+            row((f"  {'>' if number == self._active else ' '} {name} ", "bold"), own)
+            for number, (name, own) in enumerate(zip("AB", self._moves, strict=True))
+        ]
+        state = f"they meet at tick {meeting}" if meeting else "they do not meet"
+        ticks = max(map(len, self._moves))
+        return [
+            *grid_rows(task.grid, signs, self.scale),
+            row(),
+            *plans,
+            row((f"  ticks {ticks}", "bold"), f"   shown: after tick {tick}   {state}"),
+        ]
+
+
+KIND = PassByTask

@@ -1,0 +1,138 @@
+"""Visit all places of a floor with the fewest moves: the order is the puzzle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from typing import Self
+
+from kit.document.rows import Row, row
+from kit.school.game.board import Board, Cell, distances_to, find_cell, grid_rows, shortest_way, step
+from kit.school.game.challenge import ChallengeTask, HandedIn, Judgement, judge_count
+from kit.school.game.medal import Medal
+from kit.school.game.moves_board import MovesBoard, read_moves
+from kit.world.yaml_section import Section
+
+MAX_MOVES = 400
+
+
+@dataclass(frozen=True, slots=True)
+class RoundTask(ChallengeTask):
+    """A floor with places to visit, from ``S`` and back."""
+
+    kind = "round"
+    answer_file = "moves.txt"
+
+    grid: tuple[str, ...]
+    """``#`` wall, ``S`` start and end, lower-case letters the places."""
+
+    @classmethod
+    def read(cls, section: Section, folder: Path) -> Self:
+        return cls(section.texts("map", at_least=1))
+
+    def lines(self) -> list[str]:
+        return [*self.grid]
+
+    def naive_answer(self) -> str:
+        return f"{naive_round(self)}\n"
+
+    def board(self, answer: str) -> Board:
+        return RoundBoard(self, answer)
+
+    def judge(self, handed_in: HandedIn) -> Judgement:
+        moves = read_moves(handed_in.answer, MAX_MOVES)
+        cell, left = walked(self, moves)
+        if left:
+            return Judgement(Medal.NONE, f"It does not come to {', '.join(sorted(left))}.")
+        if cell != find_cell(self.grid, "S"):
+            return Judgement(Medal.NONE, "It comes to all of them, but not home.")
+        count, fewest, naive = len(moves), len(best_round(self)), len(naive_round(self))
+        text = f"{count} moves; in the order of the letters it takes {naive}, and {fewest} are enough."
+        return judge_count("moves", text, count, fewest, naive, near=2)  # every round has an even number
+
+    @property
+    def places(self) -> dict[str, Cell]:
+        """The places by their letters."""
+        return {sign: find_cell(self.grid, sign) for line in self.grid for sign in line if sign.islower()}
+
+
+def walked(task: RoundTask, moves: str) -> tuple[Cell, set[str]]:
+    """Where moves lead to, and the places that they do not come to."""
+    cell = find_cell(task.grid, "S")
+    passed = {cell}
+    for name in moves:
+        cell = step(task.grid, cell, name)
+        passed.add(cell)
+    return cell, {name for name, place in task.places.items() if place not in passed}
+
+
+def _way(task: RoundTask, names: str) -> str:
+    """The moves from place to place in this order, from the start and home."""
+    home = find_cell(task.grid, "S")
+    stops = [home, *(task.places[name] for name in names), home]
+    return "".join(shortest_way(task.grid, a, b) for a, b in pairwise(stops))
+
+
+@cache
+def naive_round(task: RoundTask) -> str:
+    """The round in the order of the letters."""
+    return _way(task, "".join(sorted(task.places)))
+
+
+@cache
+def best_round(task: RoundTask) -> str:
+    """A round than which none has fewer moves: dynamic programming over the sets of visited places (Held and Karp, 1962)."""
+    places, home = task.places, find_cell(task.grid, "S")
+    names = sorted(places)
+    far = {name: distances_to(task.grid, place) for name, place in places.items()}
+    best: dict[tuple[frozenset[str], str], tuple[int, str]] = {
+        (frozenset(name), name): (far[name][home], name) for name in names
+    }
+    for size in range(2, len(names) + 1):
+        longer: dict[tuple[frozenset[str], str], tuple[int, str]] = {}
+        for (visited, last), (moves, order) in best.items():
+            if len(visited) != size - 1:
+                continue
+            for name in names:
+                if name not in visited:
+                    key = (visited | {name}, name)
+                    found = (moves + far[name][places[last]], order + name)
+                    longer[key] = min(longer.get(key, found), found)
+        best |= longer
+    ends = [
+        (moves + far[last][home], order)
+        for (visited, last), (moves, order) in best.items()
+        if len(visited) == len(names)
+    ]
+    return _way(task, min(ends)[1])
+
+
+class RoundBoard(MovesBoard):
+    """Arrows walk; places that have been visited become capitals."""
+
+    def __init__(self, task: RoundTask, answer: str) -> None:
+        super().__init__(task, answer, MAX_MOVES)
+        self._round = task
+
+    def rows(self) -> list[Row]:
+        task = self._round
+        cell, left = walked(task, self.moves)
+        signs = {
+            place: (name, "bold") if name in left else (name.upper(), "good")
+            for name, place in task.places.items()
+        }
+        signs[cell] = ("@", "chosen")
+        visited = len(task.places) - len(left)
+        return [
+            *grid_rows(task.grid, signs, self.scale),
+            row(),
+            row(
+                (f"  moves {len(self.moves)}", "bold"),
+                f"   {visited} of {len(task.places)} places, then home to S",
+            ),
+        ]
+
+
+KIND = RoundTask

@@ -1,0 +1,135 @@
+"""A challenge that is played on the screen: arrows and the space bar change its board, and what it is worth is shown at once."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, Final
+
+from textual.binding import BindingType
+
+from kit.dialogue.actions import ScreenActions, letter
+from kit.document.rows import Row
+from kit.school.game.board import Board
+from kit.school.game.challenge import Challenge, ChallengeError, Judgement, as_comments
+from kit.school.progress import ProgressJournal
+from kit.tui.rows.challenge_rows import puzzle_beside, puzzle_page
+from kit.tui.rows.key_rows import bindings
+from kit.tui.screens.challenge import ChallengeScreen
+from kit.tui.screens.dialogs import HelpDialog
+from kit.workspace import Workspace, write_atomically
+
+if TYPE_CHECKING:
+    from kit.tui.theme import Theme
+
+WIDE: Final = 118
+"""Columns from which on the text stands beside the board."""
+BOARD_COLUMN: Final = 62
+"""Where it then begins."""
+VERY_WIDE, HIGH = 180, 40
+"""Columns and rows from which on a drawing is shown twice as large."""
+LARGE_BOARD_COLUMN: Final = 92
+"""Where the text begins then."""
+
+
+class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
+    """Plays a challenge. The answer's file is written when it is checked or left, and read again when it was edited."""
+
+    screen_actions = ScreenActions(
+        "puzzle",
+        ("move_cursor", "mark_cell", "undo", "check", "next", "help", "back"),
+        ("switch_robot", "edit_file"),
+        own=(
+            letter("mark_cell", "Space", "mark", "mark the place of the cursor, or wait", name="space"),
+            letter("switch_robot", "Tab", "other robot", "plan the other robot's way", name="tab", has_priority=True),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
+
+    def __init__(
+        self,
+        theme: Theme,
+        challenge: Challenge,
+        journal: ProgressJournal,
+        workspace: Workspace,
+        following: str | None = None,
+    ) -> None:
+        """``challenge``: one that has a board. Raises ProgressError and OSError."""
+        super().__init__(theme, challenge, journal, workspace, following)
+        self._board = self._read_board()
+        self._written = self._board.answer
+
+    def _read_board(self) -> Board:
+        """The board with the answer that its file holds."""
+        assert self._file is not None  # a board's answer is a file
+        try:
+            answer = self._challenge.task.read_answer(self._file)
+        except ChallengeError:
+            answer = ""
+        board = self._challenge.task.board(answer)
+        assert board is not None  # only challenges that have one come here
+        return board
+
+    def _page(self, width: int) -> list[Row]:
+        judgement: Judgement | str
+        try:
+            judgement = self._board.judgement()
+        except ChallengeError as error:
+            judgement = str(error)
+        self._board.scale = 2 if width >= VERY_WIDE and self.size.height >= HIGH else 1
+        if width >= WIDE:
+            column = BOARD_COLUMN if self._board.scale == 1 else LARGE_BOARD_COLUMN
+            return puzzle_beside(self._challenge, self._board, judgement, width, column)
+        height = self.size.height - 2 - len(self._result_rows())
+        return puzzle_page(self._challenge, self._board, judgement, width, height)
+
+    def _changed(self) -> None:
+        self._result = []
+        self._renew()
+
+    def _prepare_check(self) -> None:
+        self._write()
+
+    def _write(self) -> None:
+        """Writes the answer's file, where the board has changed since it was read or written."""
+        if self._file is None or self._board.answer == self._written:
+            return
+        self._written = self._board.answer
+        about = as_comments([self._challenge.task_text, *self._challenge.task.lines()])
+        write_atomically(self._file, (about + self._written).encode())
+        if self._watch is not None:
+            self._watch.has_changed()  # by this screen itself
+
+    def _file_was_saved(self) -> None:
+        """In an editor: the board shows what it says now, and it is checked."""
+        self._board = self._read_board()
+        self._written = self._board.answer
+        self._renew()
+        self.action_check()
+
+    # Keys
+
+    def action_move(self, columns: int, rows: int) -> None:
+        self._board.move(columns, rows)
+        self._changed()
+
+    def action_mark_cell(self) -> None:
+        self._board.mark()
+        self._changed()
+
+    def action_undo(self) -> None:
+        self._board.undo()
+        self._changed()
+
+    def action_switch_robot(self) -> None:
+        self._board.switch()
+        self._changed()
+
+    def action_edit_file(self) -> None:
+        self._write()
+        super().action_edit_file()
+
+    def on_unmount(self) -> None:
+        self._write()
+        super().on_unmount()
+
+    def action_help(self) -> None:
+        self.app.push_screen(HelpDialog("A puzzle", self.screen_actions))

@@ -1,0 +1,41 @@
+"""Driving blind: certainty is what counts, the fewest moves earn gold, two places after another nothing."""
+
+from __future__ import annotations
+
+from itertools import product
+from pathlib import Path
+
+import pytest
+
+from kit.school.game.board import MOVES, find_cell
+from kit.school.game.challenge import HandedIn
+from kit.school.game.challenge_kinds.blind import BlindTask, believed, fewest_moves, naive_moves
+from kit.school.game.challenges import all_challenges
+from kit.school.game.medal import Medal
+
+BLINDS = [each for each in all_challenges() if isinstance(each.task, BlindTask)]
+
+
+@pytest.mark.parametrize("challenge", BLINDS, ids=lambda each: each.id)
+def test_certainty_with_the_fewest_moves_earns_gold(challenge) -> None:
+    task = challenge.task
+
+    def worth(moves: str) -> Medal:
+        return task.judge(HandedIn(moves, Path())).medal
+
+    best = fewest_moves(task)
+    assert believed(task, best) == {find_cell(task.grid, "G")}
+    assert worth(best) is Medal.GOLD
+    assert worth(best[:-1]) is Medal.NONE
+    assert worth(naive_moves(task)) is Medal.NONE
+    assert believed(task, naive_moves(task)) == {find_cell(task.grid, "G")}, "it does what is asked"
+    assert len(best) + 2 < len(naive_moves(task))
+
+
+def test_no_shorter_moves_do_it() -> None:
+    task = BlindTask(("#####", "#...#", "#.#G#", "#####"))
+    best = fewest_moves(task)
+    goal = {find_cell(task.grid, "G")}
+    assert believed(task, best) == goal
+    for length in range(len(best)):
+        assert not any(believed(task, "".join(moves)) == goal for moves in product(MOVES, repeat=length))
