@@ -263,7 +263,7 @@ def ci(service: str, folders: tuple[str, ...], kit: str, python: str, runner: st
 
     \b
     grader ci github --assignment tasks/one --kit https://HOST/PATH@v1
-    grader ci github --assignment one=a.py --assignment two=b.py --kit ADDRESS
+    grader ci github --assignment a=a.py --assignment b=b --kit https://HOST/PATH
     grader ci gradescope --assignment tasks/one --kit https://HOST/PATH@v1
 
     Anyone who can push can change the workflow and the assignment in a repository, so these results are only for practice.

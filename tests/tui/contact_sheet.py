@@ -69,7 +69,14 @@ class ScreenVisit:
     """How long the screen runs before the picture is taken."""
 
 
-OPENING: Final = ("opening ", "Opening ", "Getting ready", "Reading your progress", "reading ...")
+OPENING: Final = (
+    "opening ",
+    "Opening ",
+    "Getting ready",
+    "Compiling for",
+    "Reading your progress",
+    "reading ...",
+)
 """What a screen says while it is not yet what is to be seen."""
 LONGEST_WAIT: Final = 60.0
 """For a world to be open [s]."""
