@@ -174,9 +174,15 @@ def value_blocks(figure: PrintedFigure, results: Results) -> list[Block]:
     high = max(height for _, heights in bars for height in heights if not math.isnan(height))
     names = tuple(VALUE_TITLES[name] for name in sessions)
     title = f"{figure.title}: the largest value of the last 1,000 observations, seed 0"
+    missing = [
+        Text(f"{VALUE_TITLES[name]}: no recorded result; `{figure.run}` makes it.")
+        for name in ("seed", "no-limit")
+        if name not in sessions
+    ]
     return [
         Table(f"figure-{figure.id}-values", title, tuple(columns), tuple(rows)),
         BarChart(f"figure-{figure.id}", "Its decimal logarithm", names, tuple(bars), 0.0, math.ceil(high)),
+        *missing,
     ]
 
 

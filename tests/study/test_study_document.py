@@ -54,7 +54,7 @@ def test_logs_that_come_with_the_kit_are_small_and_say_how_they_were_made() -> N
         assert file.stat().st_size < 30_000
         found = read_recorded_result(file)
         assert found is not None
-        number = found.settings.table.replace(FIGURE, "figure ").replace("figure clip", "clip")
+        number = found.settings.table.replace(FIGURE, "figure ")
         parts = [number, *(part.id for part in parts_of(found.settings.table))]
         assert any(found.settings.command.startswith(f"kit study {part} --again") for part in parts)
         assert found.settings.commit
