@@ -37,6 +37,7 @@ MORE_MEMORY: Final = 2 * GIB
 """Bytes of address space besides what the grader has."""
 MAX_FILE_SIZE: Final = 256 * MIB
 FIRST_OWN_DESCRIPTOR: Final = 3
+UNINTELLIGIBLE: Final = "The assignment's own code said what is no answer."
 
 
 class AuthorCodeError(Exception):
@@ -72,10 +73,10 @@ def run_author_code(work: Callable[[], Json], folder: Path, level: Level, limit_
 def _read_answer(answer: bytes) -> Json:
     try:
         told = json.loads(answer)
-    except ValueError:
+    except (ValueError, RecursionError):  # nothing, a part, or what only looks like an answer
         raise AuthorCodeError("The assignment's own code ended before it had said all.") from None
-    if "error" in told:
-        raise AuthorCodeError(told["error"])
+    if not isinstance(told, dict) or "value" not in told:
+        raise AuthorCodeError(str(told.get("error", "")) if isinstance(told, dict) else UNINTELLIGIBLE)
     return told["value"]
 
 

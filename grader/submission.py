@@ -22,6 +22,7 @@ from grader.submitted_files import (
     YAML_ENDINGS,
     SubmissionRefused,
     SubmittedFiles,
+    hidden_code,
     is_plain_name,
     reading_submission,
     shown_name,
@@ -120,6 +121,8 @@ def _find_main_file(name: str, files: SubmittedFiles, main: str) -> Submission:
         if path == found:
             continue
         if path.startswith(top) and is_plain_name(inside) and inside != main:
+            if inside.endswith(".py") and (hidden := hidden_code(inside, content)):
+                raise SubmissionRefused(hidden)
             kept[inside] = content
         else:
             files.ignore(path)

@@ -7,8 +7,9 @@ from pathlib import Path
 
 from kit.geometry import Pose
 from kit.learning.tasks.catalogue import task_names
-from kit.learning.tasks.learning_task import LearningTask, TaskCase, UnknownTask
+from kit.learning.tasks.learning_task import LearningTask, UnknownTask
 from kit.learning.tasks.student_reward import RewardFileError
+from kit.learning.tasks.task_case import TaskCase
 from kit.learning.tasks.task_reader import read_task
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.plain_files import is_file_there

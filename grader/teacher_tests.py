@@ -197,13 +197,13 @@ def run_teacher_tests(
         told = run_author_code(
             lambda: _run_pytest(session, folder, files), folder, level, limit_s + PYTEST_START_S
         )
-    except AuthorCodeError as error:
+        return {
+            name: [TestOutcome(CriterionStatus(status), text, uses) for status, text, uses in each]
+            for name, each in told.items()
+        }
+    except (AuthorCodeError, AttributeError, TypeError, ValueError) as error:  # or what is no answer
         broken = TestOutcome(CriterionStatus.GRADER_ERROR, str(error), uses_secrets=True)
         return {test.id: [broken] for test in tests}
-    return {
-        name: [TestOutcome(CriterionStatus(status), text, uses) for status, text, uses in each]
-        for name, each in told.items()
-    }
 
 
 PYTEST_START_S: Final = 60.0

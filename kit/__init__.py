@@ -42,7 +42,7 @@ from kit.environment_ids import register_when_imported
 
 if TYPE_CHECKING:
     from kit.learning.policies.evaluation import evaluate_policy
-    from kit.learning.policies.policies import load_policy
+    from kit.learning.policies.policy_file import load_policy
     from kit.run.headless import run_episode
     from kit.run.recording import Recording, load_recording
     from kit.sim.simulation import load_world
@@ -66,7 +66,7 @@ _HOMES = {
     "all_maps": "kit.world.catalogue",
     "evaluate_policy": "kit.learning.policies.evaluation",
     "find_map": "kit.world.catalogue",
-    "load_policy": "kit.learning.policies.policies",
+    "load_policy": "kit.learning.policies.policy_file",
     "load_recording": "kit.run.recording",
     "load_world": "kit.sim.simulation",
     "run_episode": "kit.run.headless",

@@ -21,7 +21,8 @@ from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
 from kit.array_archives import MAX_UNPACKED_BYTES
 from kit.cli.replay import command as replay
-from kit.learning.policies.policies import PolicyError, load_policy
+from kit.learning.policies.policy import PolicyError
+from kit.learning.policies.policy_file import load_policy
 from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.tasks.task_reader import read_task
 from kit.learning.training.demonstrations import is_recording
@@ -108,7 +109,7 @@ def test_an_archive_that_unpacks_to_far_more_takes_no_memory(reader: str, tmp_pa
     assert file.stat().st_size < 2_000_000
     source = f"""
         import resource
-        from kit.learning.policies.policies import load_policy, PolicyError
+        from kit.learning.policies.policy import PolicyError; from kit.learning.policies.policy_file import load_policy
         from kit.run.recording import load_recording, RecordingError
         before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
         try: {reader}({str(file)!r})

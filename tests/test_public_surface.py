@@ -13,14 +13,9 @@ import pytest
 
 import kit
 from kit.help.topic import find_topic
-from kit.learning.policies.policies import (
-    ActionSampling,
-    LinearLayer,
-    Policy,
-    PolicyNetwork,
-    save_policy,
-    task_interface,
-)
+from kit.learning.policies.policy import ActionSampling, Policy, task_interface
+from kit.learning.policies.policy_file import save_policy
+from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.tasks.task_spec import TaskSpec
 
 ROOT = Path(__file__).parent.parent

@@ -422,7 +422,7 @@ def answered(drive: GradedDrive, params: AnswerParams) -> float:
 
 @check(none=0, full=1, unit="%")
 def goes_home(drive: GradedDrive, params: NoParams) -> float:
-    """After {actual} of its bumps the robot was sent home within a second, and not otherwise ({where}). A bump is a message
+    """After {actual} of its bumps the robot was sent home within half a second, and not otherwise ({where}). A bump is a message
     on collisions; going home is a request to the service /move_model."""
     # Before the first tick it is the grader who puts the robot at its start.
     sent = np.array([each.tick for each in drive.recording.inputs if each.kind == "move_model" and each.tick])
@@ -430,7 +430,7 @@ def goes_home(drive: GradedDrive, params: NoParams) -> float:
     if not len(sent) or not len(bumps):
         return 0.0
     waited = sent[None, :] - bumps[:, None]
-    soon = (waited >= 0) & (waited <= 1.0 / drive.recording.step_size)
+    soon = (waited >= 0) & (waited <= 0.5 / drive.recording.step_size)
     return float(min(soon.any(axis=1).mean(), soon.any(axis=0).mean()))
 
 
@@ -486,10 +486,17 @@ def hears(drive: GradedDrive, params: HeardTopicsParams) -> float:
 
 @check(none=0, full=1, unit="%", params=ProfilesParams)
 def profiles(drive: GradedDrive, params: ProfilesParams) -> float:
-    """Of the asked publishers and subscriptions {actual} are there with the asked quality of service ({where})."""
+    """Of the asked publishers and subscriptions {actual} are there with the asked quality of service, and with no other
+    ({where})."""
     found = [f"{line} " for line in drive.connections.profiles]
-    asked = [any(line.startswith(f"{end} ") for line in found) for end in params.ends]
+    asked = [_has_profile(found, end) for end in params.ends]
     return sum(asked) / len(asked) if asked else math.nan
+
+
+def _has_profile(found: Sequence[str], end: str) -> bool:
+    place = " ".join(end.split()[:3])
+    lines = [line for line in found if line.startswith(f"{place} ")]
+    return bool(lines) and all(line.startswith(f"{end} ") for line in lines)
 
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(

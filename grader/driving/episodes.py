@@ -343,6 +343,7 @@ class _EpisodeWorld:
     ) -> tuple[Failure | None, NodeConnections]:
         def before_tick(number: int) -> None:
             self._service_caller.call_due(number * STEP)
+            self._connections_reader.note()
             if number % TICKS_PER_SECOND == 0 and number:
                 printed.take(number // TICKS_PER_SECOND - 1)
 

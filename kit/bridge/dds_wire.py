@@ -39,6 +39,8 @@ TOPIC_PREFIX: Final = "rt/"
 MAX_TAKEN: Final = 100
 WRITE_WAIT_S: Final = 0.1
 """How long a reliable writer may wait for a reader that is behind."""
+UNREADABLE: Final = b""
+"""Passed on in place of a message whose bytes are none, so that this is said."""
 NO_SERVICES: Final = "services do not pass over DDS: each DDS middleware of ROS 2 implements them differently. Use topics, or kit bridge zenoh"
 
 
@@ -131,7 +133,7 @@ class DdsWire:
     def open_subscription(
         self, name: str, interface: InterfaceId, qos: QoSProfile, on_message: OnMessage
     ) -> None:
-        from cyclonedds.core import Listener
+        from cyclonedds.core import DDSException, Listener
         from cyclonedds.sub import DataReader
 
         delays = self._delays
@@ -140,12 +142,21 @@ class DdsWire:
             """Passes on what arrives."""
 
             def on_data_available(self, reader: DataReader[Any]) -> None:
-                for sample in reader.take(MAX_TAKEN):
-                    info = sample.sample_info
+                for _ in range(MAX_TAKEN):
+                    try:
+                        samples = reader.take(1)  # one by one: what cannot be read costs no other
+                    except DDSException:
+                        return
+                    except Exception:  # noqa: BLE001  # whatever its bytes make cyclonedds raise
+                        on_message(UNREADABLE, 0.0)
+                        continue
+                    if not samples:
+                        return
+                    info = samples[0].sample_info
                     if info.valid_data:
                         sender = str(info.publication_handle).encode()
                         late = delays.add(sender, info.source_timestamp, time.time_ns())
-                        on_message(sample.serialize(use_version_2=False), late)
+                        on_message(samples[0].serialize(use_version_2=False), late)
 
         _, topic, policies = self._make_topic(name, interface, qos)
         self._open.append(DataReader(self._participant, topic, qos=policies, listener=Receiver()))

@@ -12,9 +12,13 @@ import click
 
 from kit.cli import learning_options, options
 from kit.document.layout import Page, lines_of
-from kit.learning.policies.evaluation import Evaluator, build_paths_scene, derive_seed, record_paths
-from kit.learning.policies.policies import Policy
-from kit.learning.policies.policy_node import create_policy_package, format_policy_node
+from kit.learning.policies.episode_paths import record_paths
+from kit.learning.policies.evaluation import Evaluator
+from kit.learning.policies.paths_picture import build_paths_scene
+from kit.learning.policies.policy import Policy
+from kit.learning.policies.policy_node import format_policy_node
+from kit.learning.policies.policy_package import create_policy_package
+from kit.learning.policies.seeds import derive_seed
 from kit.learning.policies.sweep import PolicySweep, find_kinds, sweep_blocks, sweep_csv
 from kit.learning.tasks.disturbances import UniformRange
 from kit.learning.tasks.learning_task import LearningTask

@@ -22,7 +22,7 @@ from kit.plain_text import counted
 from kit.workspace import Workspace, WorkspaceError
 
 if TYPE_CHECKING:
-    from kit.learning.policies.policies import Policy
+    from kit.learning.policies.policy import Policy
     from kit.run.recording import Recording
     from kit.school.game.levels import GameLevel
     from kit.school.game.medal import Medal
@@ -145,7 +145,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
     target [x, y] and target_radius. On a level with several targets, target is the
     first, and targets [x1, y1, x2, y2, ...] lists all in order, lap by lap.
     """
-    from kit.learning.policies.policies import PolicyError
+    from kit.learning.policies.policy import PolicyError
     from kit.learning.training.runs import RunError
     from kit.school.game.player_progress import facts_of_program, find_playable_level
     from kit.school.game.race import DriverKind, agent_controller, race_from_all_starts
@@ -483,7 +483,7 @@ def _record_drive(
 
 def _find_policy(agent: str, opened_workspace: Workspace) -> tuple[Policy, DriverFacts]:
     """The policy of a training run or a file, and what is known of its training."""
-    from kit.learning.policies.policies import load_policy
+    from kit.learning.policies.policy_file import load_policy
     from kit.learning.training.runs import find_run
     from kit.school.game.player_progress import DriverFacts
 

@@ -21,8 +21,10 @@ from kit.document.blocks import labelled_table
 from kit.document.layout import lines_of
 from kit.layers import explain as words
 from kit.layers.assignment import LayerAssignment
+from kit.layers.assignment_tables import assignment_tables
 from kit.layers.case_sources import PlanningTask, UnknownPlanningTask, open_task, solve_task
-from kit.layers.drawing import GlyphStyle, assignment_tables, draw_case, to_plain_lines
+from kit.layers.drawing.case import draw_case
+from kit.layers.drawing.spans import GlyphStyle, to_plain_lines
 from kit.layers.examples import EXAMPLES
 from kit.layers.explain import greedy_end_text, patch_text, world_verdict_text
 from kit.layers.flatland.world_patch import PatchError, WorldPatch, apply_patch, build_patch, make_recheck

@@ -16,7 +16,8 @@ from kit.cli import options
 from kit.controllers import find_controller
 from kit.host.failure import StudentCodeError
 from kit.learning.maps.batch_map import UnsupportedWorld
-from kit.learning.policies.policies import Policy, PolicyError, load_policy
+from kit.learning.policies.policy import Policy, PolicyError
+from kit.learning.policies.policy_file import load_policy
 from kit.learning.tasks.disturbances import DISTURBANCE_KINDS, DisturbanceError, DisturbanceKind, UniformRange
 from kit.learning.tasks.learning_task import LearningTask, UnknownTask
 from kit.learning.tasks.student_reward import RewardFileError

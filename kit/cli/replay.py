@@ -11,7 +11,8 @@ import numpy as np
 
 from kit.cli import learning_options, options
 from kit.cli.full_screen import show_screen
-from kit.learning.policies.policies import Policy, load_policy
+from kit.learning.policies.policy import Policy
+from kit.learning.policies.policy_file import load_policy
 from kit.learning.training.runs import find_run
 from kit.plain_text import escape_controls
 from kit.run.animation import AnimationSettings, ExportError, count_frames, export_recording

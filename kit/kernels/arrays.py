@@ -224,8 +224,17 @@ class StepMoves(NamedTuple):
     """(n, r): by how much the robots turn in all [rad]."""
 
 
+class ScanDraws(NamedTuple):
+    """The random part of one scan of n worlds; see ``scan_worlds``. (n,) each."""
+
+    keys: IntArray
+    numbers: IntArray
+    noise_std: FloatArray
+    dropped: FloatArray
+
+
 class StepInputs(NamedTuple):
-    """What one step of n worlds with r robots each begins with."""
+    """What one step of n worlds needs to know besides the robots."""
 
     maps: IntArray
     """(n,)"""
@@ -236,32 +245,28 @@ class StepInputs(NamedTuple):
     """(n,): the numbers of the targets in ``ways``."""
     targets: FloatArray
     """(n, 2)"""
-    poses: FloatArray
-    """(n, r, 3) before the step."""
+    draws: ScanDraws
+
+
+class RobotStates(NamedTuple):
+    """The r robots of n worlds after a step."""
+
+    pose: FloatArray
+    """(n, r, 3)"""
     clearance: FloatArray
-    """(n, r) before the step; see ``step_worlds``."""
-    rotation: FloatArray
-    """(n, r) before the step; see ``add_rotations``."""
-    keys: IntArray
-    scan_numbers: IntArray
-    noise_std: FloatArray
-    dropped: FloatArray
-    """(n,) each; see ``scan_worlds``."""
-
-
-class StepOutputs(NamedTuple):
-    """What a step fills."""
-
-    poses: FloatArray
-    clearance: FloatArray
-    collided: BoolArray
+    """(n, r): no wall is nearer [m], for sure; 0 where unknown. See ``step_worlds``."""
+    hit: BoolArray
+    """(n, r) who met something."""
     to_go: FloatArray
-    inside: BoolArray
+    """(n, r)"""
+    in_target: BoolArray
+    """(n, r)"""
     rotation: FloatArray
-    full_turns: IntArray
-    previous_full_turns: IntArray
+    """(n, r) rad, since the robot last turned to the other side."""
     ranges: Float32Array
+    """(n, r, 96): what the lidars read, as far as agents see; what follows the last ray is the reach."""
     readings: Float32Array
+    """(n, r, frame size) the numbers of an observation; those of rays come first, the others are not written."""
 
 
 class StepScratch(NamedTuple):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kit.arrays import FloatArray
-from kit.kernels.arrays import StepInputs, StepOutputs, StepRules, StepScratch
+from kit.kernels.arrays import RobotStates, StepInputs, StepRules, StepScratch
 from kit.kernels.compilation import jit, jit_borrowing_without_gil, jit_inline
 from kit.kernels.grids import add_rotations, interpolate_tables
 from kit.kernels.kernels import allocate_scan_buffers, most_corners
@@ -44,14 +44,16 @@ def _copy_poses(poses: FloatArray, copies: FloatArray) -> None:
 
 
 @jit_inline
-def _move_robots(rules: StepRules, scratch: StepScratch, inputs: StepInputs, outputs: StepOutputs) -> None:
+def _move_robots(
+    rules: StepRules, scratch: StepScratch, inputs: StepInputs, before: RobotStates, after: RobotStates
+) -> None:
     """Moves all robots, and fills what follows from their poses."""
-    poses, clearance, collided = outputs.poses, outputs.clearance, outputs.collided
+    poses, clearance, hit = after.pose, after.clearance, after.hit
     moves, last = inputs.moves, scratch.last_poses
-    _copy_poses(inputs.poses, poses)
+    _copy_poses(before.pose, poses)
     for i in range(poses.shape[0]):
         for k in range(poses.shape[1]):
-            clearance[i, k], collided[i, k] = inputs.clearance[i, k], False
+            clearance[i, k], hit[i, k] = before.clearance[i, k], False
     for i in range(moves.order.shape[0]):
         if inputs.bodies.shape[2] and (i == 0 or moves.checks[i - 1] >= 0):
             _copy_poses(poses, last)
@@ -65,7 +67,7 @@ def _move_robots(rules: StepRules, scratch: StepScratch, inputs: StepInputs, out
             moves.durations[moves.order[i]],
             poses,
             clearance,
-            collided,
+            hit,
         )
         if moves.checks[i] >= 0 and inputs.bodies.shape[2]:
             stop_at_obstacles(
@@ -77,48 +79,46 @@ def _move_robots(rules: StepRules, scratch: StepScratch, inputs: StepInputs, out
                 last,
                 poses,
                 clearance,
-                collided,
+                hit,
             )
     if rules.has_ways:
-        interpolate_tables(
-            rules.ways, rules.ways_corners, rules.cell, inputs.target_rows, poses, outputs.to_go
-        )
-    find_arrivals(rules.fleet, poses, inputs.targets, rules.radius, rules.is_by_hull, outputs.inside)
-    add_rotations(
-        inputs.rotation, moves.turn, outputs.rotation, outputs.full_turns, outputs.previous_full_turns
-    )
+        interpolate_tables(rules.ways, rules.ways_corners, rules.cell, inputs.target_rows, poses, after.to_go)
+    find_arrivals(rules.fleet, poses, inputs.targets, rules.radius, rules.is_by_hull, after.in_target)
+    add_rotations(before.rotation, moves.turn, after.rotation)
 
 
 @jit_inline
-def _scan(rules: StepRules, scratch: StepScratch, inputs: StepInputs, outputs: StepOutputs) -> None:
+def _scan(rules: StepRules, scratch: StepScratch, inputs: StepInputs, after: RobotStates) -> None:
     """Scans from the new poses of all robots."""
-    lidars = outputs.poses
+    lidars, draws = after.pose, inputs.draws
     if rules.is_lidar_offset:
         lidars = scratch.lidars
-        carry_lidars(rules.lidar, outputs.poses, lidars)
+        carry_lidars(rules.lidar, after.pose, lidars)
     scan_worlds(
         scratch.buffers,
         scratch.seen_hulls,
         rules.seen_fleet,
         inputs.maps,
         lidars,
-        inputs.keys,
-        inputs.scan_numbers,
-        inputs.noise_std,
-        inputs.dropped,
+        draws.keys,
+        draws.numbers,
+        draws.noise_std,
+        draws.dropped,
         rules.obstacles,
         inputs.bodies[inputs.bodies.shape[0] - 1],
         rules.max_sensed,
         rules.scale,
         rules.single_rays,
         rules.sectors,
-        outputs.ranges,
-        outputs.readings,
+        after.ranges,
+        after.readings,
     )
 
 
 @jit_borrowing_without_gil
-def step_batch(rules: StepRules, scratch: StepScratch, inputs: StepInputs, outputs: StepOutputs) -> None:
-    """Makes one step of all worlds: fills ``outputs``."""
-    _move_robots(rules, scratch, inputs, outputs)
-    _scan(rules, scratch, inputs, outputs)
+def step_batch(
+    rules: StepRules, scratch: StepScratch, inputs: StepInputs, before: RobotStates, after: RobotStates
+) -> None:
+    """Makes one step of all worlds: fills ``after``."""
+    _move_robots(rules, scratch, inputs, before, after)
+    _scan(rules, scratch, inputs, after)

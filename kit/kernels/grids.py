@@ -90,22 +90,12 @@ def relax_path_lengths(lengths: FloatArray, price: FloatArray, cell: float) -> N
 
 
 @jit_without_gil
-def add_rotations(
-    before: FloatArray,
-    turn: FloatArray,
-    rotation: FloatArray,
-    full_turns: IntArray,
-    previous_full_turns: IntArray,
-) -> None:
-    """Fills ``rotation`` (n, r) [rad] since each robot last turned to the other side, and how many ``full_turns`` that is and
-    was ``before`` (n, r) a step that turned them by ``turn`` (n, r).
-    """
+def add_rotations(before: FloatArray, turn: FloatArray, rotation: FloatArray) -> None:
+    """Fills ``rotation`` (n, r) [rad] since each robot last turned to the other side; that was ``before`` (n, r) a step that
+    turned them by ``turn`` (n, r)."""
     for i in range(before.shape[0]):
         for k in range(before.shape[1]):
-            turned = turn[i, k] if before[i, k] * turn[i, k] < 0.0 else before[i, k] + turn[i, k]
-            rotation[i, k] = turned
-            full_turns[i, k] = int(abs(turned) / (2.0 * math.pi))
-            previous_full_turns[i, k] = int(abs(before[i, k]) / (2.0 * math.pi))
+            rotation[i, k] = turn[i, k] if before[i, k] * turn[i, k] < 0.0 else before[i, k] + turn[i, k]
 
 
 @jit_without_gil

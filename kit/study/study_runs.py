@@ -15,15 +15,11 @@ import numpy as np
 from kit.controllers import find_controller
 from kit.document.blocks import ScenePlot
 from kit.learning.environment.episode_stats import EpisodeOutcome
-from kit.learning.policies.evaluation import (
-    EpisodePath,
-    EpisodeShare,
-    Evaluator,
-    build_paths_scene,
-    derive_seed,
-    record_paths,
-)
-from kit.learning.policies.policies import Policy
+from kit.learning.policies.episode_paths import EpisodePath, record_paths
+from kit.learning.policies.evaluation import EpisodeShare, Evaluator
+from kit.learning.policies.paths_picture import build_paths_scene
+from kit.learning.policies.policy import Policy
+from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.training.algorithms import versions

@@ -25,7 +25,7 @@ from kit.arrays import FloatArray, IntArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.env import TaskEnv
 from kit.learning.maps.batch_map import load_batch_map
-from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS
+from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS, find_task
 from kit.learning.tasks.learning_task import LearningTask, StartVariation
 from kit.learning.tasks.rewards import PROGRESS
 from kit.learning.tasks.transition import Array, Transition
@@ -208,6 +208,8 @@ def main() -> None:
     shown("batch of 1024: the hallway study's, two looks, algorithm 1", ours(SLALOM_2, 1024))
     shown("batch of 1024: all fifteen hallways at once", ours(HALLWAY, 1024))
     shown("batch of 1024: two wheelchairs on nine cases", ours(WHEELCHAIRS, 1024))
+    for goal in ("night-watch", "vacuum-cleaner", "wall-follower", "behind-the-cart"):
+        shown(f"batch of 1024: {goal}", ours(find_task(goal), 1024))
     shown("batch of 1024: tutorial 2's robot, a student's reward", ours(SLALOM, 1024, students))
     shown("one world of Gymnasium", single())
     with suppress(KeyboardInterrupt):

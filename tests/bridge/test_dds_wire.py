@@ -104,11 +104,11 @@ class Robot:
 
 
 @contextmanager
-def robot_at(address: DdsAddress) -> Iterator[Robot]:
+def robot_at(address: DdsAddress, program: Path = PEER) -> Iterator[Robot]:
     configuration = address.configuration()
     assert configuration is not None
     process = subprocess.Popen(
-        [sys.executable, str(PEER), str(address.domain), configuration],
+        [sys.executable, str(program), str(address.domain), configuration],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
@@ -142,6 +142,22 @@ def test_a_program_with_types_of_its_own_talks_with_the_kit_both_ways() -> None:
         assert said[-1][1].data.startswith("hello ")
         side.bridge.stop()
         wait_until(lambda: robot.commands[-1] == {"forward": 0.0, "turn": 0.0}, "the robot to stand")
+
+
+@pytest.mark.long
+def test_nonsense_of_a_robot_is_said_once_and_sense_passes(capfd: pytest.CaptureFixture[str]) -> None:
+    address = loopback()
+    with (
+        robot_at(address, PEER.with_name("dds_hostile_peer.py")),
+        Side(DdsWire(address), routes(receive="/chatter")) as side,
+    ):
+        said = side.heard(String, "/chatter")
+        wait_until(lambda: len(said) >= 5, lambda: str(side.lines))
+        assert "sense" in {message.data for _, message in said}
+        assert sum("cannot be read" in line for line in side.lines) == 1
+    told = capfd.readouterr()
+    # cyclonedds itself writes a line in hexadecimal digits for each packet that is none.
+    assert "Traceback" not in told.out + told.err
 
 
 @pytest.mark.long

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.learning.policies.policies import load_policy
+from kit.learning.policies.policy_file import load_policy
 from kit.learning.training.algorithms import IMITATION_ALGORITHMS, algorithms_for
 from tests.cli.verbs import kit
 

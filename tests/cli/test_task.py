@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from kit.layers.case_sources import open_task
-from kit.learning.policies.policies import load_policy
+from kit.learning.policies.policy_file import load_policy
 from kit.learning.tasks.catalogue import find_task, task_names
 from kit.learning.tasks.rewards import TERMS
 from kit.learning.tasks.transition import TRANSITION_FIELDS

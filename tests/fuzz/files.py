@@ -33,7 +33,7 @@ from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused, SubmissionUnreadable
 from kit.host.failure import Failure
 from kit.host.sandbox.confinement import Level
-from kit.learning.policies.policies import PolicyError
+from kit.learning.policies.policy import PolicyError
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run, list_runs
 from kit.learning.training.training import train

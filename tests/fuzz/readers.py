@@ -25,7 +25,8 @@ from kit.document.markdown import document_to_markdown
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox.confinement import Level
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.policies.policies import Policy, PolicyError, load_policy, policy_bytes
+from kit.learning.policies.policy import Policy, PolicyError
+from kit.learning.policies.policy_file import load_policy, policy_bytes
 from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.tasks.task_reader import read_task
 from kit.learning.tasks.task_spec import TaskSpec
@@ -42,7 +43,7 @@ from kit.world.problems import WorldError
 from tests.fuzz.damage import Files, damage_bytes, damage_files, damage_json, nudge_json
 from tests.fuzz.files import ROOT, clear, damaged_archive, members_of
 from tests.grader.conftest import FORWARD, write_assignment
-from tests.learning.policies.test_policies import made, table
+from tests.learning.policies.test_policy import made, table
 from tests.school.report.class_builder import diaries, export_of
 
 

@@ -259,7 +259,10 @@ THIRD_ROUND: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingProx
         ),
         "memory in pipes": (NO_ATTACK, ("host/sandbox/test_promises.py::test_a_promise_is_broken_where_its_defence_is_taken_away",)),
         "a disk of files that are mapped and unlinked": (
-            ("host/sandbox/test_confinement.py::test_files_that_nobody_sees_are_limited_too",),
+            (
+                "host/sandbox/test_confinement.py::test_files_that_nobody_sees_are_limited_too",
+                "host/sandbox/test_promises.py::test_files_that_nobody_sees_fill_a_disk_that_is_not_their_own",
+            ),
             ("host/sandbox/test_promises.py::test_files_that_nobody_sees_fill_a_disk_that_is_not_their_own",),
         ),
         "a lesson that is checked at its own level": (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import socket
 import subprocess
@@ -90,6 +91,36 @@ def test_what_it_returns_and_raises_comes_back(tmp_path: Path) -> None:
         run_author_code(lambda: os._exit(0), tmp_path, Level.FILTERED, LIMIT_S)
     with pytest.raises(AuthorCodeError, match="more than 64 MB"):
         run_author_code(lambda: "x" * 65_000_000, tmp_path, Level.FILTERED, LIMIT_S)
+
+
+@pytest.mark.parametrize(
+    "answer", [b"", b"7", b"[1]", b'{"value"', b'{"error": []}', b"[" * 100_000, b"\xff", b"null"]
+)
+def test_what_it_writes_itself_is_no_error_of_the_graders(answer: bytes, tmp_path: Path) -> None:
+    """It has the pipe open, and may write what it likes."""
+
+    def forge() -> Json:
+        for descriptor in range(3, 64):
+            with contextlib.suppress(OSError):
+                os.write(descriptor, answer)
+        os._exit(0)
+
+    with pytest.raises(AuthorCodeError):
+        run_author_code(forge, tmp_path, Level.FILTERED, LIMIT_S)
+
+
+@pytest.mark.parametrize("value", [7, [], [7], [[["x"]]], {"a": 1}, None])
+def test_a_reference_that_answers_nonsense_costs_no_student_a_point(
+    value: Json, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "assignment.yaml").write_text(
+        "title: T\nkind: function\nsubmit: work.py\nfunctions: [{name: f}]\nchecks: [{check: agrees, points: 1}]\n"
+    )
+    (tmp_path / "reference.py").write_text("def f(x): return x\ndef f_cases(chance): yield {'x': 1}\n")
+    monkeypatch.setattr("grader.kinds.function.kind.run_author_code", lambda *given: value)
+    work = Submission("ada", "work.py", {"work.py": b"def f(x): return x\n"})
+    result = grade(read_assignment(tmp_path), work, GradingOptions(Level.FILTERED))
+    assert result.tests[0].status is CriterionStatus.GRADER_ERROR
 
 
 def test_what_goes_on_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

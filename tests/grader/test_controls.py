@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 
 import pytest
@@ -25,6 +24,5 @@ def test_each_takes_away_what_is_there_once() -> None:
 @pytest.mark.nightly
 @pytest.mark.long
 @pytest.mark.parametrize("control", CONTROLS, ids=lambda control: control.name)
-def test_its_test_fails_without_it(control: Control) -> None:
-    with tempfile.TemporaryDirectory(dir=ROOT.parent, prefix="kit-control-") as folder:
-        assert is_held(control, Path(folder))
+def test_its_test_fails_without_it(control: Control, tmp_path: Path) -> None:
+    assert is_held(control, tmp_path)

@@ -500,3 +500,36 @@ def test_a_hard_link_in_a_folder_of_another_user_is_not_read(tmp_path: Path) -> 
     os.chown(folder, 65_534, 65_534)
     with pytest.raises(SubmissionRefused, match="another name of a file"):
         read_submission(folder, "ada.py")
+
+
+HIDDEN = (
+    b"# -*- coding: utf-7 -*-\n# harmless: +AAoAaQBtAHAAbwByAHQAIABvAHM-\n",
+    b"# coding: unicode_escape\n# harmless \\nimport os\n",
+    "ok = 1  # \u202e }if admin\u2066 begin\n".encode(),
+    b"import math  # harmless\rimport os\nok = 1\n",
+)
+SHOWN = (
+    b"# -*- coding: latin-1 -*-\nname = 'Jos\xe9'\n",
+    "\ufeffname = 'José'\r\nok = 1\r\n".encode(),
+    "name = '\u05e9\u05dc\u05d5\u05dd'  # read from right to left, without marks\n".encode(),
+    b"ok = 1\rfine = 2\r",
+    b"ok = 1\r\r\nfine = 2\r\r\n",
+    b"# coding: no-such-thing\n",
+)
+
+
+@pytest.mark.parametrize("inside", [False, True])
+@pytest.mark.parametrize("source", HIDDEN)
+def test_what_reads_otherwise_than_it_runs_is_refused(source: bytes, inside: bool, tmp_path: Path) -> None:
+    folder = tmp_path / "ada"
+    folder.mkdir()
+    (folder / "controller.py").write_bytes(b"import other\n" if inside else source)
+    (folder / "other.py").write_bytes(source)
+    with pytest.raises(SubmissionRefused, match=r"encoding|direction|line ends"):
+        read_submission(folder if inside else folder / "controller.py", "controller.py")
+
+
+@pytest.mark.parametrize("source", SHOWN)
+def test_what_reads_as_it_runs_is_taken(source: bytes, tmp_path: Path) -> None:
+    (tmp_path / "controller.py").write_bytes(source)
+    assert read_submission(tmp_path / "controller.py", "controller.py").files["controller.py"] == source

@@ -12,7 +12,7 @@ from grader.reading import default_submission_limit_s, read_assignment
 from grader.submission import Submission, read_submission
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
-from kit.learning.policies.policies import policy_bytes
+from kit.learning.policies.policy_file import policy_bytes
 from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.grader.conftest import FORWARD, TEMPLATES, write_assignment
 from tests.grader.kinds import (

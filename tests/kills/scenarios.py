@@ -22,7 +22,7 @@ from typing import Final, Protocol
 
 from kit.host.private_folder import PREFIX
 from kit.inspection.sockets import SUFFIX, UNREADY_SUFFIX
-from kit.learning.policies.policies import PolicyError
+from kit.learning.policies.policy import PolicyError
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.events import TrainingEvent, TrainingStarted
 from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run

@@ -9,18 +9,12 @@ import pytest
 
 from kit.document.layout import lines_of
 from kit.layers.assignment import LayerAssignment, NamedLayer
-from kit.layers.drawing import (
-    MAX_ENTITIES_IN_PICTURE,
-    DrawingLine,
-    DrawingSpan,
-    GlyphStyle,
-    assignment_tables,
-    draw_case,
-    draw_graph,
-    draw_layer_grid,
-    draw_matrix,
-    to_plain_lines,
-)
+from kit.layers.assignment_tables import assignment_tables
+from kit.layers.drawing.case import draw_case
+from kit.layers.drawing.graph import MAX_ENTITIES_IN_PICTURE, draw_graph
+from kit.layers.drawing.layer_grid import draw_layer_grid
+from kit.layers.drawing.matrix import draw_matrix
+from kit.layers.drawing.spans import DrawingLine, DrawingSpan, GlyphStyle, to_plain_lines
 from kit.layers.examples import EXAMPLES
 from kit.layers.greedy import run_greedy
 from kit.layers.planning import solve_layers

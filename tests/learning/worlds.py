@@ -11,12 +11,13 @@ import numpy as np
 from kit.arrays import IntArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
-from kit.learning.environment.grid_world import GridWorld
+from kit.learning.grid.grid_learner import GridLearner, GridLearnerSettings
+from kit.learning.grid.grid_world import GridWorld
+from kit.learning.grid.registry import make_grid_learner
 from kit.learning.tasks.actions import Move
 from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS, WHEELCHAIRS_SEED
 from kit.learning.tasks.learning_task import LearningTask
-from kit.learning.tasks.transition import COMMON_FIELDS, Transition
-from kit.learning.training.grid_learner import GridLearner, GridLearnerSettings
+from kit.learning.tasks.transition import EpisodeState, Transition
 
 TASKS = {"turn": TURN, "hallway": HALLWAY, "wheelchairs": WHEELCHAIRS}
 """One of each kind."""
@@ -59,13 +60,20 @@ def sampled(name: str) -> Transition:
 
 def joined(transitions: list[Transition]) -> Transition:
     """Those of all of them, one after the other."""
-    columns = {
-        field.name: np.concatenate([getattr(each, field.name) for each in transitions])
-        for field in fields(Transition)
-        if field.name not in COMMON_FIELDS
-    }
-    common = {name: getattr(transitions[0], name) for name in COMMON_FIELDS}
-    return Transition(**common, **columns)
+    before, after = (
+        EpisodeState(
+            *(
+                np.concatenate([getattr(each, field.name) for each in states])
+                for field in fields(EpisodeState)
+            )
+        )
+        for states in ([each.before for each in transitions], [each.after for each in transitions])
+    )
+    return replace(transitions[0], before=before, after=after)
+
+
+COMMON_FIELDS = ("max_steps", "collision_ends", "robots")
+"""Facts of a transition that are the same for all worlds."""
 
 
 def short(task: LearningTask, case: str) -> LearningTask:
@@ -75,7 +83,7 @@ def short(task: LearningTask, case: str) -> LearningTask:
 
 def trained(world: GridWorld, settings: GridLearnerSettings, episodes: int) -> GridLearner:
     """A learner after so many episodes."""
-    learner = GridLearner(world, settings)
+    learner = make_grid_learner(world, settings)
     while learner.episodes < episodes:
         learner.step()
     return learner

@@ -24,7 +24,7 @@ from kit.host.node_process import NodeProcess
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.learning.tasks.catalogue import find_task
-from kit.learning.tasks.learning_task import PatrolGoal
+from kit.learning.tasks.goals.patrol import PatrolGoal
 from kit.ros.execution.arguments import parse_ros_arguments
 from kit.run.episode import (
     EndCondition,
@@ -40,7 +40,8 @@ from kit.run.metrics import DriveMetrics, MetricsRecorder
 from kit.run.scenario import Scenario, find_scenario, scenario_in_file
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel, all_levels
-from kit.school.game.race import PatrolObjective, race_controller
+from kit.school.game.objective import Objective
+from kit.school.game.race import race_controller
 from tests.cases import every_case
 from tests.kit_content import kit_maps
 
@@ -143,8 +144,8 @@ def test_patrols_of_the_game_and_of_tasks_say_where_they_go() -> None:
     for level in all_levels():
         scenario = level.find_scenario()
         values = values_of(controller_arguments(scenario))
-        if isinstance(level.goal, PatrolGoal):
-            discs = PatrolObjective(replace(level, any_order=True), scenario).discs
+        if level.goal.is_route:
+            discs = Objective(replace(level, any_order=True), scenario, 0.01).discs
             assert values["targets"] == [each for disc in discs for each in (disc.x, disc.y)], level.id
             ways += 1
         else:

@@ -63,6 +63,9 @@ MAX_BYTES: Final = 64 << 20
 """Bytes of the file, unpacked."""
 MAX_INPUTS_PER_S: Final = 100
 """Inputs per second on average; no manual drive has more."""
+HAND_SPEED: Final = 0.5
+HAND_TURN_RATE: Final = 1.5
+"""m/s, rad/s: the keys give no more, as ``kit/controllers/teleop.py`` has it."""
 HOME_TOLERANCE: Final = 1e-6
 """A robot may be reset to within this distance of its home [m, rad], and nowhere else."""
 HEADER: Final = "header.npy"
@@ -247,6 +250,9 @@ class _Rerun:
             raise ValueError(f"no robot is driven by messages on {topic}")
         if not all(map(math.isfinite, (message.linear.x, message.linear.y, message.angular.z))):
             raise ValueError("a speed that is not a number")
+        fastest = max(abs(message.linear.x), abs(message.linear.y))
+        if fastest > HAND_SPEED or abs(message.angular.z) > HAND_TURN_RATE:
+            raise ValueError("faster than the keys drive")
         self._runner.accept(topic, message)
 
     def _call_service(self, service: str, *arguments: Any) -> None:

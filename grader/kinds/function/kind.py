@@ -34,7 +34,7 @@ from types import ModuleType
 from typing import Any, Final, Self
 
 from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, SeedSet, counterpart_seed, read_seed
-from grader.author_code import AuthorCodeError, run_author_code
+from grader.author_code import UNINTELLIGIBLE, AuthorCodeError, run_author_code
 from grader.check import check
 from grader.evidence.contract import (
     CachingCollector,
@@ -297,11 +297,17 @@ class FunctionCollector(CachingCollector):
             answers = run_author_code(
                 lambda: answer_cases(file, ordered), file.parent, self.level, REFERENCE_LIMIT_S
             )
-            self._known.update(zip(ordered, answers, strict=True))
+            try:
+                self._known.update(zip(ordered, answers, strict=True))
+            except (TypeError, ValueError):
+                raise AuthorCodeError(UNINTELLIGIBLE) from None
         known = self._known[name, seed]
         if isinstance(known, str):
             raise AuthorCodeError(known)
-        return [(case, answer) for case, answer in known]
+        try:
+            return [(dict(case), answer) for case, answer in known]
+        except (TypeError, ValueError):
+            raise AuthorCodeError(UNINTELLIGIBLE) from None
 
     def _compare(self, spec: FunctionSpec, seed: int, blank: EvidenceRecord) -> EvidenceRecord:
         """Calls the function with the cases of a seed. ``blank``: what the record is called."""

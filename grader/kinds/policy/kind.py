@@ -31,8 +31,10 @@ from kit.document.layout import lines_of
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable
 from kit.learning.policies.confidence_intervals import lower_bound
-from kit.learning.policies.evaluation import EvaluationResult, Evaluator, derive_seed
-from kit.learning.policies.policies import Policy, PolicyError, load_policy
+from kit.learning.policies.evaluation import EvaluationResult, Evaluator
+from kit.learning.policies.policy import Policy, PolicyError
+from kit.learning.policies.policy_file import load_policy
+from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.plain_files import read_plain_file
 

@@ -10,7 +10,10 @@ from typing import Final
 from grader.evidence.submission_clock import SubmissionClock, TrainingProgressReport
 from grader.task_files import assignment_task
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.policies.evaluation import Evaluator, PathRecorder, derive_seed, worst_drive
+from kit.learning.policies.episode_paths import PathRecorder
+from kit.learning.policies.evaluation import Evaluator
+from kit.learning.policies.paths_picture import worst_drive
+from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.rewards import RewardFunction
 from kit.learning.training.algorithms import find_algorithm, require_learn_extra
 from kit.learning.training.learner import Learner

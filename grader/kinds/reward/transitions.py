@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
@@ -12,7 +12,7 @@ from grader.kinds.reward.task_model import CELL, LAST_MOVES, MOVES, GridModel
 from kit.arrays import BoolArray, IntArray
 from kit.learning.maps.ray_directions import RAY_COUNT
 from kit.learning.tasks.actions import Move
-from kit.learning.tasks.transition import FAR, Transition
+from kit.learning.tasks.transition import FAR, EpisodeState, Transition
 
 MODEL_FACTS: Final = (
     "collided",
@@ -83,30 +83,37 @@ class TransitionBatch:
 def to_transition(steps: TransitionBatch) -> Transition:
     """Returns the kit's record of these transitions, for one robot."""
     model, count = steps.model, len(steps)
-    before, after = model.cell_of(steps.states), model.cell_of(steps.next_states)
-    front = np.minimum(model.ahead[after, model.heading_of(steps.next_states)], AGENT_SIGHT)
-    zeros = np.zeros((count, 1), dtype=np.int64)
-    return Transition(
+    front = np.minimum(
+        model.ahead[model.cell_of(steps.next_states), model.heading_of(steps.next_states)], AGENT_SIGHT
+    )
+    standing = EpisodeState(
         case=np.zeros(count, dtype=np.int64),
-        step=np.ones(count, dtype=np.int64),
-        max_steps=model.task.max_steps,
-        hit=steps.hit[:, None],
-        in_target=steps.reached[:, None],
-        was_in_target=zeros.astype(np.bool_),
-        move=KIT_MOVES[steps.moves][:, None],
-        previous_move=KIT_MOVES[steps.states % LAST_MOVES][:, None],
-        pose=model.pose(steps.next_states)[:, None, :],
-        previous_pose=model.pose(steps.states)[:, None, :],
-        target=np.broadcast_to((model.cells[model.target] + 0.5) * CELL, (count, 2)),
-        to_go=model.to_go[after][:, None],
-        previous_to_go=model.to_go[before][:, None],
-        full_turns=zeros,
-        previous_full_turns=zeros,
-        forward_steps=zeros.astype(np.float64),
+        step=np.zeros(count, dtype=np.int64),
+        pose=model.pose(steps.states)[:, None, :],
+        hit=np.zeros((count, 1), dtype=np.bool_),
+        in_target=np.zeros((count, 1), dtype=np.bool_),
+        to_go=model.to_go[model.cell_of(steps.states)][:, None],
+        rotation=np.zeros((count, 1)),
         ranges=np.repeat(front[:, None, None], RAY_COUNT, axis=2),
-        twist=KIT_TWISTS[steps.moves][:, None, :],
+        move=KIT_MOVES[steps.states % LAST_MOVES][:, None],
+        twist=np.zeros((count, 1, 2)),
+        forward_steps=np.zeros((count, 1)),
+        target=np.broadcast_to((model.cells[model.target] + 0.5) * CELL, (count, 2)),
         target_heading=np.zeros(count),
         obstacle_distance=np.full((count, 1), FAR),
-        achieved=1.0 * steps.reached,
-        previous_achieved=np.zeros(count),
+        count=np.zeros(count),
+        achieved=np.zeros(count),
     )
+    moved = replace(
+        standing,
+        step=np.ones(count, dtype=np.int64),
+        pose=model.pose(steps.next_states)[:, None, :],
+        hit=steps.hit[:, None],
+        in_target=steps.reached[:, None],
+        to_go=model.to_go[model.cell_of(steps.next_states)][:, None],
+        move=KIT_MOVES[steps.moves][:, None],
+        twist=KIT_TWISTS[steps.moves][:, None, :],
+        count=1.0 * steps.reached,
+        achieved=1.0 * steps.reached,
+    )
+    return Transition(standing, moved, model.task.max_steps)

@@ -34,7 +34,8 @@ from grader.submitted_files import reading_submission
 from kit.host.failure import StudentCodeError
 from kit.host.wire import printable
 from kit.learning.tasks.actions import DiscreteActions
-from kit.learning.tasks.learning_task import TargetGoal, UnknownTask
+from kit.learning.tasks.goals.goal import CaseTargets
+from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.tasks.task_reader import read_task
 from kit.plain_text import quoted
 from kit.world.problems import WorldError
@@ -195,7 +196,7 @@ def _problem(file: Path) -> str:
     if (
         task.robots != 1
         or not isinstance(task.actions, DiscreteActions)
-        or not isinstance(task.goal, TargetGoal)
+        or task.goal.case_targets is not CaseTargets.PLACE
     ):
         return f"{file.name}: this needs one robot, discrete actions (twists) and a target."
     if task.target_radius > MAX_RADIUS:

@@ -31,10 +31,12 @@ from kit.arrays import IntArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.policies.confidence_intervals import lower_bound
-from kit.learning.policies.evaluation import EvaluationResult, Evaluator, derive_seed
-from kit.learning.policies.policies import Policy, PolicyError
+from kit.learning.policies.evaluation import EvaluationResult, Evaluator
+from kit.learning.policies.policy import Policy, PolicyError
+from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.actions import DiscreteActions
-from kit.learning.tasks.learning_task import LearningTask, TaskCase
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.task_case import TaskCase
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.presets import LinearSchedule, find_preset

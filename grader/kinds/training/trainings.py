@@ -19,14 +19,11 @@ from grader.evidence.training_results import (
     TrainingTest,
 )
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.policies.evaluation import (
-    EvaluationResult,
-    Evaluator,
-    PathRecorder,
-    derive_seed,
-    worst_drive,
-)
-from kit.learning.policies.policies import Policy
+from kit.learning.policies.episode_paths import PathRecorder
+from kit.learning.policies.evaluation import EvaluationResult, Evaluator
+from kit.learning.policies.paths_picture import worst_drive
+from kit.learning.policies.policy import Policy
+from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.training.algorithms import find_algorithm, require_learn_extra
 from kit.learning.training.learner import Learner, StopLearning

@@ -8,6 +8,8 @@ from pathlib import Path
 
 from kit.learning.maps.batch_map import BatchMap, hull_radius, hull_width, load_batch_map, measure_floor
 from kit.learning.tasks.catalogue import task_names, tasks_folder
+from kit.learning.tasks.goals.registry import goal_kinds
+from kit.learning.tasks.goals.target import REACH_TARGET
 from kit.learning.tasks.task_reader import TASK_FILE
 from kit.plain_text import quoted
 from kit.run.scenario import own_map_folder
@@ -34,7 +36,7 @@ reward:
     elapsed: -0.01
     collided: -2.0
     reached: 2.0
-goal: {{kind: target}}          # or patrol, cover, wall, follow, avoid
+goal: {{kind: {goal}}}          # or {other_goals}
 target: {{radius: 0.2}}
 step: {{time: 0.2, collision_checks: 2, limit: 400}}
 start: {{noise: 0.05, max_rotation: 0.3}}
@@ -92,7 +94,11 @@ def _standard(batch_map: BatchMap) -> str:
     """What every new task begins with, with actions that the robot's motors can do."""
     robot = batch_map.robot
     return STANDARD.format(
-        fast=min(0.4, robot.max_speed), slow=min(0.3, robot.max_speed), turn=min(1.2, robot.max_turn_rate)
+        goal=REACH_TARGET.kind,
+        other_goals=", ".join(kind for kind in goal_kinds() if kind != REACH_TARGET.kind),
+        fast=min(0.4, robot.max_speed),
+        slow=min(0.3, robot.max_speed),
+        turn=min(1.2, robot.max_turn_rate),
     )
 
 

@@ -17,7 +17,7 @@ from kit.learning.maps.batch_map import (
     measure_floor,
 )
 from kit.learning.tasks.case_reader import START_KEYS, TARGET_KEYS, PlacedCase
-from kit.learning.tasks.learning_task import FollowGoal, LearningTask, PatrolGoal, TargetGoal
+from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.student_reward import reward_parameters
 from kit.learning.tasks.task_reader import ReadTask
 
@@ -49,8 +49,7 @@ def _check_case(task: LearningTask, placed: PlacedCase, batch_map: BatchMap) -> 
                 f"the start ({x:g}, {y:g}, {theta:g} rad) is inside a wall or another robot, or touches one",
                 (("other_starts",) if robot else ()) + START_KEYS,
             )
-    needs_target = isinstance(task.goal, TargetGoal | PatrolGoal | FollowGoal)
-    if case.targets.model is None and needs_target and is_free:
+    if case.targets.model is None and task.goal.needs_target and is_free:
         _check_targets(task, placed, batch_map)
 
 

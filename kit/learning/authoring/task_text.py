@@ -16,17 +16,12 @@ from kit.learning.environment.batch import BatchEnv
 from kit.learning.maps.batch_map import hull_radius, load_batch_map, measure_floor
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.catalogue import tasks_folder
-from kit.learning.tasks.learning_task import (
-    EpisodePlaces,
-    FollowGoal,
-    LearningTask,
-    PatrolGoal,
-    TargetGoal,
-    TaskCase,
-    practices,
-)
+from kit.learning.tasks.curriculum import practices
+from kit.learning.tasks.goals.registry import goal_kinds
+from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.observations import PART_NAMES, ObservationSpec
 from kit.learning.tasks.rewards import TERMS, TermWeight, term_settings
+from kit.learning.tasks.task_case import EpisodePlaces, TaskCase
 from kit.learning.tasks.transition import TRANSITION_FIELDS, Transition
 from kit.plain_text import counted, join_names
 from kit.render.scene import Disc, Scene, SceneMark
@@ -79,6 +74,10 @@ def key_tables() -> list[Table]:
     ]
     cases = " ".join(written[written.index("A case has") :].split())
     terms = [(f"{term}{_usual_settings(term)}", term_summary(term).replace("``", "")) for term in TERMS]
+    goals = [
+        (f"{kind} {goal.usual_settings()}".rstrip(), (inspect.getdoc(goal) or "").partition("\n")[0])
+        for kind, goal in goal_kinds().items()
+    ]
     asked = _transition_docs()
     facts = [(name, SHAPE.sub("", asked[name])) for name in TRANSITION_FIELDS]
     facts_title = (
@@ -86,6 +85,7 @@ def key_tables() -> list[Table]:
     )
     return [
         labelled_table(keys, "Keys of a task file:", indent=2),
+        labelled_table(goals, "Kinds of goal, with their settings:", indent=2),
         labelled_table(terms, "Terms that reward: {terms: ...} weighs, with their settings:", indent=2),
         labelled_table(facts, facts_title, indent=2),
         labelled_table([(cases,)], "Cases:", indent=2),
@@ -214,7 +214,7 @@ def _ends(task: LearningTask) -> Iterator[str]:
     yield f"goal reached: {task.goal_ending}"
     yield f"collision: {task.collision_ending}"
     yield f"after {task.max_steps} steps ({task.max_steps * task.step_time:g} s): {time}"
-    if isinstance(task.goal, TargetGoal | PatrolGoal):
+    if task.goal.has_standing_targets:
         measured = "hull" if task.measured_to == "hull" else "axle's middle"
         yield f"the target is reached within {task.target_radius:g} m of the {measured}"
 
@@ -230,15 +230,13 @@ def _randomness(task: LearningTask) -> Iterator[str]:
 def describe_case(task: LearningTask, case: TaskCase) -> str:
     """One line: where its episodes start and end."""
     starts = " and ".join(places.description for places in case.starts[: task.robots])
-    needs_target = isinstance(task.goal, TargetGoal | PatrolGoal | FollowGoal)
-    target = f" to {case.targets.description}" if needs_target else ""
+    target = f" to {case.targets.description}" if task.goal.needs_target else ""
     return f"{case.name}: from {starts}{target}"
 
 
 def build_case_scene(task: LearningTask, card: MapCard, case: TaskCase) -> Scene:
     """The map of a case with its starts (S) and targets."""
     batch_map = load_batch_map(card, task.robots_on(card))
-    needs_target = isinstance(task.goal, TargetGoal | PatrolGoal | FollowGoal)
     radius = hull_radius(batch_map)
 
     def drawn(places: EpisodePlaces) -> list[Pose]:
@@ -250,7 +248,7 @@ def build_case_scene(task: LearningTask, card: MapCard, case: TaskCase) -> Scene
         return [Pose(x, y) for x, y in chosen.tolist()]
 
     starts = [pose for places in case.starts[: task.robots] for pose in drawn(places)]
-    targets = drawn(case.targets) if needs_target else []
+    targets = drawn(case.targets) if task.goal.needs_target else []
     return Scene(
         walls=batch_map.walls,
         targets=tuple(Disc(pose.x, pose.y, task.target_radius) for pose in targets),

@@ -2,36 +2,30 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
+from kit.arrays import Float32Array, FloatArray, IntArray
 from kit.kernels import grids, kernels
-from kit.kernels.arrays import StepInputs, StepMoves
+from kit.kernels.arrays import ScanDraws, StepInputs, StepMoves
+from kit.learning.environment.agent_observations import AgentObservations
 from kit.learning.environment.batch_loops import BatchLoops
-from kit.learning.environment.batch_state import NO_MOVE, BatchState, BatchStep, DisturbanceState
-from kit.learning.environment.case_arrays import CaseArrays, GoalCount
+from kit.learning.environment.batch_state import BatchState, BatchStep
+from kit.learning.environment.case_arrays import CaseArrays
+from kit.learning.environment.disturbance_state import DisturbanceState
 from kit.learning.maps.batch_map import BatchMap
-from kit.learning.maps.ray_directions import RAY_COUNT
-from kit.learning.tasks.actions import Commands, DiscreteActions, TwistTable
-from kit.learning.tasks.learning_task import (
-    AvoidGoal,
-    CoverGoal,
-    FollowGoal,
-    LearningTask,
-    PatrolGoal,
-    TargetGoal,
-    TaskCase,
-    WallGoal,
-)
-from kit.learning.tasks.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE
+from kit.learning.tasks.actions import DiscreteActions, TwistTable
+from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.rewards import FORWARD_SHARE, Reward, RewardFunction
+from kit.learning.tasks.task_case import TaskCase
 from kit.learning.tasks.transition import (
     FAR,
+    NO_MOVE,
     Array,
     Transition,
     average_speeds,
-    bearing_of_target,
     distance_to_target,
 )
 from kit.world.catalogue import MapCard
@@ -86,16 +80,16 @@ class BatchEnv:
         self.action_space = task.actions.space(task.robots)
         self._reward_function: RewardFunction = task.reward if reward is None else reward
         self._case_arrays = CaseArrays(task)
-        self._goal = GoalCount(task, self._case_arrays)
+        self._goal_count = task.goal.make_count(self._case_arrays.goal_cases, n, task.step_time)
+        self._needed = self._goal_count.needed
+        self._is_share = bool((self._needed == 1.0).all())
+        """Whether the goal's count is its share already."""
         self._is_disturbed = bool(task.disturbances)
-        self._is_told_later = isinstance(task.goal, WallGoal)
-        """Whether what is seen is counted, and told in the next step; else what is counted is seen at once."""
         self._has_obstacles = self._case_arrays.motions.most > 0
         self._has_leaders = bool((self._case_arrays.leaders >= 0).any())
-        self._wants_heading = self._goal.wants_heading
-        self._has_ways = self._goal.has_targets and not self._has_leaders
-        self._far, self._no_heading = np.full((n, task.robots), FAR), np.zeros(n)
-        self._parts, self._frames = task.observation.part_slices(), task.observation.frames
+        self._has_ways = task.goal.has_standing_targets and not self._has_leaders
+        self._far = np.full((n, task.robots), FAR)
+        self._observations = AgentObservations(task)
         self._loops = BatchLoops(task, self._case_arrays, n, has_ways=self._has_ways)
         self._maps = np.zeros(n, dtype=np.int64)
         """(n,) the map of each world's present case."""
@@ -110,7 +104,7 @@ class BatchEnv:
         self._autoreset = autoreset
         self._assigned: IntArray | None = (first + np.arange(n)) % len(self.cases) if fixed_cases else None
         self._random_keys = self._seed(seed)
-        self._state = BatchState.allocate(task, n, self._goal.covered_shape)
+        self._state = BatchState.allocate(task, self._loops.allocate_robots(n))
         self._state.episode -= 1  # the first reset leads to number 0
 
     @property
@@ -125,7 +119,7 @@ class BatchEnv:
     @property
     def shows_target(self) -> bool:
         """Whether episodes have a target."""
-        return self._goal.has_targets or self._has_leaders
+        return self.task.goal.has_standing_targets or self._has_leaders
 
     def obstacle_poses(self, world: int) -> FloatArray:
         """(k, 3) where the obstacles of a world are now."""
@@ -177,7 +171,7 @@ class BatchEnv:
         return np.array(keys, dtype=np.int64)
 
     def _begin_episodes(self, which: IntArray, cases: IntArray | None = None) -> None:
-        """Puts the worlds ``which`` at the start of their present episodes."""
+        """Puts the worlds ``which`` at the start of their present episodes. The state's arrays must be nobody else's."""
         state, case_arrays = self._state, self._case_arrays
         turns = (self._first_world + which + state.episode[which]) % len(self.cases)
         dealt = turns if self._assigned is None else self._assigned[which]
@@ -190,22 +184,20 @@ class BatchEnv:
         state.target_row[which] = start.rows
         state.phase[which] = start.phases if self.task.random_phase else 0.0
         state.step[which] = 0
-        state.target[which] = self._leading_targets(which, start.targets)
+        state.target[which] = self._first_targets(which, start.targets)
+        state.target_heading[which] = case_arrays.targets[start.rows, 2]
         state.pose[which] = start.poses
-        state.clearance[which] = 0.0
-        state.to_go[which] = self._to_go(start.poses, start.rows, state.target[which])
+        state.robots.clearance[which] = 0.0
+        state.to_go[which] = self._measure_ways(start.poses, start.rows, state.target[which])
         state.rotation[which] = 0.0
         state.forward_steps[which] = 0.0
         state.move[which] = NO_MOVE
         state.twist[which] = 0.0
         state.speed[which] = 0.0
-        state.in_target[which] = self._is_in_target(start.poses, state.target[which], start.rows)
-        state.count[which] = 0.0
-        if isinstance(self.task.goal, CoverGoal):
-            covered = np.zeros((len(which), *state.covered.shape[1:]), dtype=np.bool_)
-            counts = np.zeros(len(which))
-            self._goal.cover(case, start.poses, covered, counts)
-            state.covered[which], state.count[which] = covered, counts
+        state.in_target[which] = self._find_arrivals(start.poses, state.target[which], start.rows)
+        state.count[which] = self._goal_count.begin(which, case, start.poses)
+        state.achieved[which] = state.count[which] / self._needed[case]
+        state.told_achieved[which] = state.achieved[which]
         first = (state.episode[which] << EPISODE_BITS) + DISTURBANCE_DRAWS
         state.disturbed.begin(which, self._random_keys[which], first)
 
@@ -218,95 +210,51 @@ class BatchEnv:
         """
         if len(actions) != self.n:
             raise ValueError(f"{self.n} worlds need {self.n} actions, not {len(actions)}")
-        transition, seen = self._simulate(self._actions.commands(actions, self.task.robots))
+        transition = self._simulate(actions)
+        observations = self._observe_step()
         terminated, truncated = self.task.endings(transition)
         over = transition.ended.nonzero()[0]
-        fresh = self._begin_next(over) if len(over) and self._autoreset else None
+        last_observations = observations[over]
+        if len(over) and self._autoreset:
+            observations[over] = self._reset_worlds(over)
         rewards, terms = self._reward(transition)
-        last = seen[over]
-        if fresh is not None:
-            seen[over] = fresh
-        return BatchStep(seen, rewards, terminated, truncated, last, transition, terms)
+        return BatchStep(observations, rewards, terminated, truncated, last_observations, transition, terms)
 
-    def _simulate(self, commands: Commands) -> tuple[Transition, Float32Array]:
-        """Moves every world by these commands; what happened, and what agents see then."""
-        task, old = self.task, self._state
-        step, twists, move = old.step + 1, np.ascontiguousarray(commands.twists), commands.moves
+    def _simulate(self, actions: NDArray[np.generic]) -> Transition:
+        """Moves every world, scans, and counts what it has achieved."""
+        before, commands = self._state, self._actions.commands(actions, self.task.robots)
+        twists = np.ascontiguousarray(commands.twists)
         disturbed, moves = self._drive(twists)
-        bodies = self._bodies_at_checks()
-        target = self._followed(old.target, bodies[-1])
-        noise, dropped = self._scan_disturbances(ALL_WORLDS, disturbed, self.n)
-        inputs = StepInputs(
-            maps=self._maps,
-            moves=moves,
-            bodies=bodies,
-            target_rows=old.target_row,
-            targets=target,
-            poses=old.pose,
-            clearance=old.clearance,
-            rotation=old.rotation,
-            keys=self._random_keys,
-            scan_numbers=self._scan_numbers(old.episode, step),
-            noise_std=noise,
-            dropped=dropped,
-        )
-        made = self._loops.step(inputs)
-        pose, hit = made.poses, made.collided
-        self._state = new = BatchState(
-            episode=old.episode,
-            case=old.case,
-            target=target,
+        bodies, step = self._bodies_at_checks(), before.step + 1
+        target = self._follow_leaders(before.target, bodies[-1])
+        draws = self._scan_draws(ALL_WORLDS, self.n, before.episode, step, disturbed)
+        inputs = StepInputs(self._maps, moves, bodies, before.target_row, target, draws)
+        robots = self._loops.step(before.robots, inputs)
+        after = replace(
+            before,
+            robots=robots._replace(
+                to_go=self._limited_ways(robots.to_go, robots.pose, target),
+                in_target=self.task.goal.is_arrived(robots.in_target, robots.pose, before.target_heading),
+            ),
             step=step,
-            pose=pose,
-            clearance=made.clearance,
-            to_go=self._limited_ways(made.to_go, pose, target),
-            rotation=made.rotation,
-            forward_steps=old.forward_steps + FORWARD_SHARE.take(move, mode="clip"),
-            move=move,
+            target=target,
+            forward_steps=before.forward_steps + FORWARD_SHARE.take(commands.moves, mode="clip"),
+            move=commands.moves,
             twist=twists,
-            speed=average_speeds(old.pose, pose, task.step_time) if task.observation.speeds else old.speed,
-            frames=old.frames,
-            in_target=self._facing(made.inside, pose, old.target_row),
-            target_row=old.target_row,
-            phase=old.phase,
-            count=old.count,
-            covered=old.covered,
+            speed=self._measure_speeds(before.pose, robots.pose),
+            obstacle_distance=self._nearest_obstacles(bodies[-1], robots.pose),
             disturbed=disturbed,
         )
-        nearest = self._nearest_obstacles(bodies[-1], pose)
-        in_target, to_go = new.in_target, new.to_go  # of this step's target; the next one's may follow
-        if self._is_told_later:
-            seen = self._complete(made.readings, ALL_WORLDS, is_fresh=False)
-            self._count(new, old.pose, hit, nearest, made.ranges)
-        else:
-            self._count(new, old.pose, hit, nearest, made.ranges)
-            seen = self._complete(made.readings, ALL_WORLDS, is_fresh=False)
-        transition = Transition(
-            case=new.case,
-            step=step,
-            max_steps=task.max_steps,
-            hit=hit,
-            in_target=in_target,
-            was_in_target=old.in_target,
-            move=move,
-            previous_move=old.move,
-            pose=pose,
-            previous_pose=old.pose,
-            target=target,
-            to_go=to_go,
-            previous_to_go=old.to_go,
-            full_turns=made.full_turns,
-            previous_full_turns=made.previous_full_turns,
-            forward_steps=new.forward_steps,
-            ranges=made.ranges[:, :, :RAY_COUNT],
-            twist=twists,
-            target_heading=self._target_headings(old.target_row),
-            obstacle_distance=nearest,
-            achieved=self._achieved(new),
-            previous_achieved=self._achieved(old),
-            collision_ends=task.collision_ending != "continues",
-        )
-        return transition, seen
+        transition = Transition(before, after, self.task.max_steps, self.task.collision_ending != "continues")
+        self._count(transition, after)
+        self._state = self._with_next_targets(before, after)
+        return transition
+
+    def _count(self, transition: Transition, after: BatchState) -> None:
+        """Counts in the state after a step what it has achieved."""
+        after.count = self._goal_count.count(transition)
+        after.achieved = after.count if self._is_share else after.count / self._needed[after.case]
+        after.told_achieved = transition.previous_achieved if self.task.goal.is_told_later else after.achieved
 
     def _drive(self, twists: FloatArray) -> tuple[DisturbanceState, StepMoves]:
         """The state of the disturbances once ``twists`` are sent, and how the robots move in this step."""
@@ -320,7 +268,21 @@ class BatchEnv:
         disturbed = old.disturbed.after_command(twists, self._random_keys, number)
         return disturbed, disturbed.moves(task.collision_checks)
 
-    # Things that move, and the goal
+    def _measure_speeds(self, before: FloatArray, after: FloatArray) -> FloatArray:
+        """(n, robots, 2) of this step, where agents are told; else what it was."""
+        if not self.task.observation.speeds:
+            return self._state.speed
+        speeds: FloatArray = average_speeds(before, after, self.task.step_time)
+        return speeds
+
+    def _reset_worlds(self, over: IntArray) -> Float32Array:
+        """Begins the next episodes of the worlds ``over`` (m); (m, size) what agents see of them."""
+        self._state = self._state.copy()
+        self._state.episode[over] += 1
+        self._begin_episodes(over)
+        return self._observe(over, len(over), is_fresh=True)
+
+    # Things that move, and targets
 
     def _bodies(self, which: IntArray | slice, steps: Array) -> FloatArray:
         """(m, k, 3) where the obstacles of the worlds ``which`` are after so many steps (m)."""
@@ -338,37 +300,6 @@ class BatchEnv:
         parts: Array = (self._checks + 1) / len(self._checks)
         return np.stack([self._bodies(ALL_WORLDS, self._state.step + part) for part in parts])
 
-    def _followed(self, targets: FloatArray, bodies: FloatArray) -> FloatArray:
-        """(n, 2) the targets, those that move where they are by now."""
-        if not self._has_leaders:
-            return targets
-        leaders = self._case_arrays.leaders[self._state.case]
-        places = bodies[np.arange(len(leaders)), np.maximum(leaders, 0), :2]
-        return np.where((leaders >= 0)[:, None], places, targets)
-
-    def _leading_targets(self, which: IntArray, targets: FloatArray) -> FloatArray:
-        """(m, 2) the first targets of the worlds ``which``."""
-        if not self._has_leaders:
-            return targets
-        leaders = self._case_arrays.leaders[self._state.case[which]]
-        bodies = self._bodies(which, self._state.step[which])
-        places = bodies[np.arange(len(leaders)), np.maximum(leaders, 0), :2]
-        return np.where((leaders >= 0)[:, None], places, targets)
-
-    def _to_go(self, poses: FloatArray, rows: IntArray, targets: FloatArray) -> FloatArray:
-        """(m, robots) the ways to the targets; straight ones to a target that moves, none where there is no target."""
-        found = self._loops.measure_ways(rows, poses) if self._has_ways else self._far
-        return self._limited_ways(found, poses, targets)
-
-    def _limited_ways(self, found: FloatArray, poses: FloatArray, targets: FloatArray) -> FloatArray:
-        """(m, robots) the same, where tables have ``found`` the ways to targets that stand."""
-        if self._has_ways:
-            return np.maximum(found, self.task.path_end)
-        if isinstance(self.task.goal, FollowGoal) or self._goal.has_targets:
-            distances: FloatArray = distance_to_target(poses, targets)
-            return distances
-        return np.zeros(poses.shape[:2])
-
     def _nearest_obstacles(self, bodies: FloatArray, poses: FloatArray) -> FloatArray:
         """(n, robots) [m], FAR where there is none."""
         if not self._has_obstacles:
@@ -378,152 +309,88 @@ class BatchEnv:
         grids.find_nearest_obstacles(self._case_arrays.obstacles, maps, bodies, poses, nearest)
         return nearest
 
-    def _count(
-        self,
-        new: BatchState,
-        before: FloatArray,
-        hit: BoolArray,
-        nearest: FloatArray,
-        ranges: Float32Array | None,
-    ) -> None:
-        """Counts in the new state what this step has achieved; a step with a collision achieves nothing."""
-        if isinstance(self.task.goal, TargetGoal):
-            inside: Array = new.in_target[:, 0] if self.task.robots == 1 else new.in_target.all(axis=1)
-            new.count = inside.astype(np.float64)
-            return
-        sound: Array = ~hit.any(axis=1)
-        goal = self._goal
-        match self.task.goal:
-            case PatrolGoal():
-                self._go_on_patrol(new, new.in_target.all(axis=1) & sound)
-            case CoverGoal():
-                new.count, new.covered = new.count.copy(), new.covered.copy()
-                goal.cover(new.case, new.pose, new.covered, new.count)
-            case FollowGoal():
-                seconds = goal.seconds_near_leader(distance_to_target(new.pose, new.target))
-                new.count = new.count + np.where(sound, seconds, 0.0)
-            case AvoidGoal():
-                new.count = new.count + np.where(sound, goal.seconds_away(nearest), 0.0)
-            case WallGoal():
-                assert ranges is not None
-                forward = average_speeds(before, new.pose, self.task.step_time)[:, :, 0] * self.task.step_time
-                metres = goal.metres_along_wall(ranges[:, :, :RAY_COUNT], forward)
-                new.count = new.count + np.where(sound, metres, 0.0)
+    def _first_targets(self, which: IntArray, targets: FloatArray) -> FloatArray:
+        """(m, 2) the targets of the worlds ``which`` at the start of their episodes, of which ``targets`` (m, 2) stand."""
+        if not self._has_leaders:
+            return targets
+        return self._follow_leaders(targets, self._bodies(which, self._state.step[which]), which)
 
-    def _achieved(self, state: BatchState) -> FloatArray:
-        """(n,) the share of the goal."""
-        if isinstance(self.task.goal, TargetGoal):
-            return state.count
-        share: FloatArray = state.count / self._goal.needed[state.case]
-        return share
+    def _follow_leaders(
+        self, targets: FloatArray, bodies: FloatArray, which: IntArray | slice = ALL_WORLDS
+    ) -> FloatArray:
+        """(m, 2) the targets of the worlds ``which``, those that move where ``bodies`` (m, k, 3) are."""
+        if not self._has_leaders:
+            return targets
+        leaders = self._case_arrays.leaders[self._state.case[which]]
+        places = bodies[np.arange(len(leaders)), np.maximum(leaders, 0), :2]
+        return np.where((leaders >= 0)[:, None], places, targets)
 
-    def _target_headings(self, rows: IntArray) -> FloatArray:
-        """(n,) of the targets ``rows`` (n); 0 where the goal asks for none."""
-        return self._case_arrays.targets[rows, 2] if self._wants_heading else self._no_heading
+    def _measure_ways(self, poses: FloatArray, rows: IntArray, targets: FloatArray) -> FloatArray:
+        """(m, robots) the ways to the targets ``rows`` (m), which lie at ``targets`` (m, 2)."""
+        found = self._loops.measure_ways(rows, poses) if self._has_ways else self._far
+        return self._limited_ways(found, poses, targets)
 
-    def _go_on_patrol(self, new: BatchState, arrived: BoolArray) -> None:
-        """Makes the next target of a case the target where all robots have arrived."""
-        case_arrays, which = self._case_arrays, np.flatnonzero(arrived)
-        new.count = new.count + arrived
+    def _limited_ways(self, found: FloatArray, poses: FloatArray, targets: FloatArray) -> FloatArray:
+        """(m, robots) the ways to targets that tables have ``found``; straight ones to a target that moves, none where there is
+        no target."""
+        if self._has_ways:
+            return np.maximum(found, self.task.path_end)
+        if self.task.goal.needs_target:
+            distances: FloatArray = distance_to_target(poses, targets)
+            return distances
+        return np.zeros(poses.shape[:2])
+
+    def _find_arrivals(self, poses: FloatArray, targets: FloatArray, rows: IntArray) -> Array:
+        """(m, robots) who is in the target ``rows`` (m), which lies at ``targets`` (m, 2)."""
+        inside = self._loops.find_arrivals(poses, targets)
+        return self.task.goal.is_arrived(inside, poses, self._case_arrays.targets[rows, 2])
+
+    def _with_next_targets(self, before: BatchState, after: BatchState) -> BatchState:
+        """The state that the next step begins with: where a route's target was reached, with the next one."""
+        if not self.task.goal.is_route:
+            return after
+        which = np.flatnonzero(after.count > before.count)
         if not len(which):
-            return
-        cases = new.case[which]
-        place = (new.count[which].astype(np.int64)) % case_arrays.target_count[cases]
+            return after
+        case_arrays, cases = self._case_arrays, after.case[which]
+        place = after.count[which].astype(np.int64) % case_arrays.target_count[cases]
         rows = case_arrays.target_first[cases] + place
-        targets = case_arrays.targets[rows, :2]
-        new.target_row, new.target = new.target_row.copy(), new.target.copy()
-        new.to_go, new.in_target = new.to_go.copy(), new.in_target.copy()
-        new.target_row[which], new.target[which] = rows, targets
-        new.to_go[which] = case_arrays.to_go(rows, new.pose[which])
-        new.in_target[which] = self._is_in_target(new.pose[which], targets, rows)
-
-    def _begin_next(self, over: IntArray) -> Float32Array:
-        """Begins the next episodes of the worlds ``over`` (m); (m, size) what agents see of them."""
-        self._state.unshare_arrays()
-        self._state.episode[over] += 1
-        self._begin_episodes(over)
-        return self._observe(over, len(over), is_fresh=True)
-
-    def _is_in_target(self, poses: FloatArray, targets: FloatArray, rows: IntArray) -> BoolArray:
-        """(m, robots): who is in the target, of the number ``rows`` (m)."""
-        return self._facing(self._loops.find_arrivals(poses, targets), poses, rows)
-
-    def _facing(self, inside: BoolArray, poses: FloatArray, rows: IntArray) -> BoolArray:
-        """(m, robots): who of those ``inside`` the target has the heading that the goal asks for."""
-        return inside & self._goal.is_facing(poses, rows) if self._wants_heading else inside
+        going_on = after.copy()
+        going_on.target_row[which], going_on.target[which] = rows, case_arrays.targets[rows, :2]
+        going_on.to_go[which] = case_arrays.to_go(rows, after.pose[which])
+        going_on.in_target[which] = self._find_arrivals(after.pose[which], going_on.target[which], rows)
+        return going_on
 
     # What agents see and earn
+
+    def _observe_step(self) -> Float32Array:
+        """(n, size) what agents see of all worlds after a step."""
+        return self._observations.complete(
+            self._state.robots.readings, self._state, ALL_WORLDS, is_fresh=False
+        )
 
     def _observe(self, which: IntArray | slice, m: int, *, is_fresh: bool) -> Float32Array:
         """(m, size) what agents see of the worlds ``which`` (m) as they are; ``is_fresh``: whether their episodes have just begun."""
         state = self._state
-        noise, dropped = self._scan_disturbances(which, state.disturbed, m)
-        scan = self._loops.scan(
-            self._maps[which],
-            state.pose[which],
-            self._random_keys[which],
-            self._scan_numbers(state.episode[which], state.step[which]),
-            noise,
-            dropped,
-            self._bodies(which, state.step[which]),
-        )
-        return self._complete(scan.frame, which, is_fresh=is_fresh)
+        draws = self._scan_draws(which, m, state.episode[which], state.step[which], state.disturbed)
+        bodies = self._bodies(which, state.step[which])
+        scan = self._loops.scan(self._maps[which], state.pose[which], draws, bodies)
+        return self._observations.complete(scan.frame, state, which, is_fresh=is_fresh)
 
-    def _scan_numbers(self, episodes: IntArray, steps: IntArray) -> IntArray:
-        """(m,) of the first random numbers of scans after ``steps`` (m) steps of ``episodes`` (m)."""
-        return (episodes << EPISODE_BITS) + steps * self.task.robots
-
-    def _scan_disturbances(
-        self, which: IntArray | slice, disturbed: DisturbanceState, m: int
-    ) -> tuple[FloatArray, FloatArray]:
-        """(m,) each: the standard deviation of the ranges [m], and the share of rays that read nothing."""
+    def _scan_draws(
+        self,
+        which: IntArray | slice,
+        m: int,
+        episodes: IntArray,
+        steps: IntArray,
+        disturbed: DisturbanceState,
+    ) -> ScanDraws:
+        """The random part of the scans of the worlds ``which`` (m) after ``steps`` (m) steps of ``episodes`` (m)."""
+        keys, numbers = self._random_keys[which], (episodes << EPISODE_BITS) + steps * self.task.robots
         if not self._is_disturbed:
-            return self._usual_noise[:m], self._no_dropped[:m]
-        return disturbed.noise_std(self._case_arrays.fleet.noise_std, which), disturbed.dropped(which)
-
-    def _complete(self, frame: Float32Array, which: IntArray | slice, *, is_fresh: bool) -> Float32Array:
-        """(m, size) what agents see of the worlds ``which``: ``frame`` (m, robots, size), with what is not of their rays."""
-        for name, place in self._parts.items():
-            frame[:, :, place] = self._part(name, which)
-        flat = frame.reshape(len(frame), -1)
-        return flat if self._frames == 1 else self._stacked(flat, which, is_fresh=is_fresh)
-
-    def _part(self, name: str, which: IntArray | slice) -> Array:
-        """(m, robots, size) the numbers of one part of the observation."""
-        state, scale = self._state, self.task.observation.scale
-        pose, target = state.pose[which], state.target[which]
-        match name:
-            case "target":
-                distance = np.minimum(distance_to_target(pose, target), MAX_TARGET_DISTANCE) * scale
-                return np.stack([distance, bearing_of_target(pose, target) / np.pi], axis=2)
-            case "target_heading":
-                off = self._case_arrays.targets[state.target_row[which], 2][:, None] - pose[:, :, 2]
-                return np.stack([np.cos(off), np.sin(off)], axis=2)
-            case "achieved":
-                share = np.minimum(state.count[which] / self._goal.needed[state.case[which]], 1.0)
-                return np.repeat(share[:, None, None], self.task.robots, axis=1)
-            case "arrived":
-                return state.in_target[which][:, :, None]
-            case "speeds":
-                return state.speed[which]
-            case "last_action":
-                return state.twist[which]
-            case "own_pose":
-                place = np.clip(pose[:, :, :2], -MAX_COORDINATE, MAX_COORDINATE) * scale
-                heading = pose[:, :, 2:]
-                return np.concatenate([place, np.cos(heading), np.sin(heading)], axis=2)
-            case _:
-                raise AssertionError(name)  # a part without numbers is a mistake in this class
-
-    def _stacked(self, frame: Float32Array, which: IntArray | slice, *, is_fresh: bool) -> Float32Array:
-        """(m, frames * size) the last frames, the newest last; of a fresh episode all are its first one."""
-        state, count = self._state, self.task.observation.frames
-        past = np.repeat(frame[:, None], count - 1, axis=1) if is_fresh else state.frames[which]
-        stack = np.concatenate([past, frame[:, None]], axis=1)
-        kept = state.frames.copy()
-        kept[which] = stack[:, 1:]
-        state.frames = kept
-        return stack.reshape(len(frame), -1)
+            return ScanDraws(keys, numbers, self._usual_noise[:m], self._no_dropped[:m])
+        noise = disturbed.noise_std(self._case_arrays.fleet.noise_std, which)
+        return ScanDraws(keys, numbers, noise, disturbed.dropped(which))
 
     def _reward(self, transition: Transition) -> tuple[Float32Array, dict[str, Array]]:
         """(n,) rewards, and what each term adds; of code from outside its metrics."""

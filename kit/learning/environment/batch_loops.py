@@ -9,8 +9,9 @@ import numpy as np
 from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
 from kit.kernels import batch_step, compilation, grids, world_kernels
-from kit.kernels.arrays import StepInputs, StepOutputs, StepRules
-from kit.learning.environment.case_arrays import CELL, CaseArrays
+from kit.kernels.arrays import RobotStates, ScanDraws, StepInputs, StepRules
+from kit.learning.environment.case_arrays import CaseArrays
+from kit.learning.environment.distance_field import CELL
 from kit.learning.maps.batch_map import geometry_for_scans
 from kit.learning.maps.ray_directions import RAY_COUNT
 from kit.learning.tasks.learning_task import LearningTask
@@ -62,24 +63,25 @@ class BatchLoops:
         self._carry = compilation.TypedKernel(world_kernels.carry_lidars)
         self._scan = compilation.TypedKernel(world_kernels.scan_worlds)
 
-    def step(self, inputs: StepInputs) -> StepOutputs:
-        """Makes one step of all ``n`` worlds."""
-        n = len(inputs.maps)
+    def allocate_robots(self, n: int) -> RobotStates:
+        """Arrays for the robots of ``n`` worlds, not filled."""
         shape, scan = (n, self._robots), self._allocate_scan(n)
-        outputs = StepOutputs(
-            poses=np.empty((*shape, 3)),
+        return RobotStates(
+            pose=np.empty((*shape, 3)),
             clearance=np.empty(shape),
-            collided=np.empty(shape, dtype=np.bool_),
+            hit=np.empty(shape, dtype=np.bool_),
             to_go=np.empty(shape),
-            inside=np.empty(shape, dtype=np.bool_),
+            in_target=np.empty(shape, dtype=np.bool_),
             rotation=np.empty(shape),
-            full_turns=np.empty(shape, dtype=np.int64),
-            previous_full_turns=np.empty(shape, dtype=np.int64),
             ranges=scan.ranges,
             readings=scan.frame,
         )
-        self._step(self.rules, self._scratch, inputs, outputs)
-        return outputs
+
+    def step(self, robots: RobotStates, inputs: StepInputs) -> RobotStates:
+        """Makes one step of all ``n`` worlds; returns the robots after it. Ways are filled where tables have them."""
+        after = self.allocate_robots(len(inputs.maps))
+        self._step(self.rules, self._scratch, inputs, robots, after)
+        return after
 
     def _allocate_scan(self, m: int) -> BatchScan:
         """Arrays for the scans of ``m`` worlds."""
@@ -100,16 +102,7 @@ class BatchLoops:
         self._interpolate(rules.ways, rules.ways_corners, rules.cell, rows, poses, found)
         return found
 
-    def scan(
-        self,
-        maps: IntArray,
-        poses: FloatArray,
-        keys: IntArray,
-        numbers: IntArray,
-        noise: FloatArray,
-        dropped: FloatArray,
-        bodies: FloatArray,
-    ) -> BatchScan:
+    def scan(self, maps: IntArray, poses: FloatArray, draws: ScanDraws, bodies: FloatArray) -> BatchScan:
         """What robots at ``poses`` scan; see ``world_kernels.scan_worlds``."""
         rules, scan, lidars = self.rules, self._allocate_scan(len(poses)), poses
         if rules.is_lidar_offset:
@@ -121,10 +114,7 @@ class BatchLoops:
             rules.seen_fleet,
             maps,
             lidars,
-            keys,
-            numbers,
-            noise,
-            dropped,
+            *draws,
             rules.obstacles,
             bodies,
             rules.max_sensed,

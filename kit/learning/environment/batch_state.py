@@ -1,55 +1,39 @@
-"""The state of many worlds of one task, with their disturbances, and the results of their steps, as arrays."""
+"""The state of many worlds of one task, and the results of their steps, as arrays."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
-from kit.kernels import world_kernels
-from kit.kernels.arrays import StepMoves
+from kit.kernels.arrays import RobotStates
+from kit.learning.environment.disturbance_state import DisturbanceState
+from kit.learning.maps.ray_directions import RAY_COUNT
 from kit.learning.tasks.learning_task import LearningTask
-from kit.learning.tasks.transition import Array, Transition
-
-NO_MOVE = -1
-TRANSITION_ARRAYS = (
-    "case",
-    "target",
-    "step",
-    "pose",
-    "to_go",
-    "forward_steps",
-    "move",
-    "twist",
-    "in_target",
-    "count",
-)
-"""Those that a transition shows as they are: its receiver may keep them."""
+from kit.learning.tasks.transition import FAR, NO_MOVE, Array, Transition
 
 
 @dataclass(slots=True, eq=False)
 class BatchState:
-    """The state of ``n`` worlds with r robots each. A step makes a new one; only a reset writes into it."""
+    """The state of ``n`` worlds with r robots each. A step makes a new one; only the beginning of episodes writes into its
+    arrays, and then into copies."""
 
+    robots: RobotStates
     episode: IntArray
     """(n,)"""
     case: IntArray
     """(n,)"""
+    target_row: IntArray
+    """(n,) the target's number among those of all cases."""
+    phase: FloatArray
+    """(n,) 0 to 1: where on their ways moving models began."""
     target: FloatArray
     """(n, 2)"""
+    target_heading: FloatArray
+    """(n,) of the target, where the goal asks for one; else 0."""
     step: IntArray
     """(n,) steps of this episode so far."""
-    pose: FloatArray
-    """(n, r, 3)"""
-    clearance: FloatArray
-    """(n, r): no wall is nearer [m], for sure; 0 where unknown."""
-    to_go: FloatArray
-    """(n, r)"""
-    rotation: FloatArray
-    """(n, r) rad, since the robot last turned to the other side."""
     forward_steps: FloatArray
     """(n, r)"""
     move: IntArray
@@ -60,52 +44,90 @@ class BatchState:
     """(n, r, 2) how fast the robots really moved in the last step; only where agents are told."""
     frames: Float32Array
     """(n, frames - 1, size): what agents saw before, where they see more than one frame."""
-    in_target: BoolArray
+    obstacle_distance: FloatArray
     """(n, r)"""
-    target_row: IntArray
-    """(n,) the target's number among those of all cases."""
-    phase: FloatArray
-    """(n,) 0 to 1: where on their ways moving models began."""
     count: FloatArray
     """(n,) how much of the goal is achieved, in the goal's own unit."""
-    covered: BoolArray
-    """(n, rows, columns): the cells that have been covered, where the goal is to cover."""
+    achieved: FloatArray
+    """(n,) the share of the goal."""
+    told_achieved: FloatArray
+    """(n,) the same as agents are told."""
     disturbed: DisturbanceState
 
+    @property
+    def pose(self) -> FloatArray:
+        """(n, r, 3)"""
+        return self.robots.pose
+
+    @property
+    def hit(self) -> BoolArray:
+        """(n, r)"""
+        return self.robots.hit
+
+    @property
+    def to_go(self) -> FloatArray:
+        """(n, r)"""
+        return self.robots.to_go
+
+    @property
+    def in_target(self) -> BoolArray:
+        """(n, r)"""
+        return self.robots.in_target
+
+    @property
+    def rotation(self) -> FloatArray:
+        """(n, r)"""
+        return self.robots.rotation
+
+    @property
+    def ranges(self) -> Float32Array:
+        """(n, r, 91)"""
+        return self.robots.ranges[:, :, :RAY_COUNT]
+
     @classmethod
-    def allocate(cls, task: LearningTask, n: int, covered_shape: tuple[int, int] = (0, 0)) -> BatchState:
-        """Arrays for ``n`` worlds of a task, all zero, without a last move."""
-        robots, seen = task.robots, task.observation
-        shape = n, robots
+    def allocate(cls, task: LearningTask, robots: RobotStates) -> BatchState:
+        """The state of worlds of a task with these robots, all zero, without a last move."""
+        n, r = shape = robots.hit.shape
+        seen = task.observation
+        for array in robots:
+            array[:] = 0
         return cls(
+            robots,
             episode=np.zeros(n, dtype=np.int64),
             case=np.zeros(n, dtype=np.int64),
+            target_row=np.zeros(n, dtype=np.int64),
+            phase=np.zeros(n),
             target=np.zeros((n, 2)),
+            target_heading=np.zeros(n),
             step=np.zeros(n, dtype=np.int64),
-            pose=np.zeros((n, robots, 3)),
-            clearance=np.zeros(shape),
-            to_go=np.zeros(shape),
-            rotation=np.zeros(shape),
             forward_steps=np.zeros(shape),
             move=np.full(shape, NO_MOVE, dtype=np.int64),
             twist=np.zeros((*shape, 2)),
             speed=np.zeros((*shape, 2)),
-            frames=np.zeros((n, seen.frames - 1, robots * seen.frame_size), dtype=np.float32),
-            in_target=np.zeros(shape, dtype=np.bool_),
-            target_row=np.zeros(n, dtype=np.int64),
-            phase=np.zeros(n),
+            frames=np.zeros((n, seen.frames - 1, r * seen.frame_size), dtype=np.float32),
+            obstacle_distance=np.full(shape, FAR),
             count=np.zeros(n),
-            covered=np.zeros((n, *covered_shape), dtype=np.bool_),
+            achieved=np.zeros(n),
+            told_achieved=np.zeros(n),
             disturbed=DisturbanceState.allocate(task, n),
         )
 
     def copy(self) -> BatchState:
-        return BatchState(*(getattr(self, field.name).copy() for field in fields(self)))
+        """The same, of which the beginning of episodes may write into every array that it writes into: the others are shared."""
+        robots = self.robots
+        return replace(
+            self,
+            robots=robots._replace(**{name: getattr(robots, name).copy() for name in BEGUN_ROBOT_ARRAYS}),
+            **{name: getattr(self, name).copy() for name in BEGUN_ARRAYS},
+        )
 
-    def unshare_arrays(self) -> None:
-        """Replaces the arrays that the last transition shows by copies, so that they can be written to."""
-        for name in TRANSITION_ARRAYS:
-            setattr(self, name, getattr(self, name).copy())
+
+BEGUN_ROBOT_ARRAYS = ("pose", "clearance", "to_go", "in_target", "rotation")
+"""Those of the robots that the beginning of an episode writes into."""
+BEGUN_ARRAYS = tuple(
+    field.name for field in fields(BatchState) if field.name not in ("robots", "frames", "obstacle_distance")
+)
+"""Those of a state. ``frames`` is replaced; nothing is seen of the other before the first step."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -140,124 +162,3 @@ class BatchStep:
         found = self.observations.copy()
         found[self.transition.ended] = self.last_observations
         return found
-
-
-SHARED_KINDS = ("lidar_noise", "dropped_rays", "latency", "command_jitter")
-"""Drawn once for all robots of a world."""
-WHEEL_KINDS = ("wheel_radius", "drift")
-"""Drawn for each robot."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class DisturbanceState:
-    """The disturbances of ``n`` worlds with r robots each, in their present episodes. Only ``begin`` writes into it."""
-
-    task: LearningTask
-    shared: FloatArray
-    """(n, 4): the values of SHARED_KINDS."""
-    wheels: FloatArray
-    """(n, r, 2): those of WHEEL_KINDS."""
-    commands: FloatArray
-    """(n, depth, r, 2): twists at the wheels, the newest first. All that are older than the last one are in the past."""
-    due: FloatArray
-    """(n, depth, r): in how many seconds each takes effect; at most 0 where it has already."""
-
-    @classmethod
-    def allocate(cls, task: LearningTask, n: int) -> DisturbanceState:
-        """Arrays for ``n`` worlds, all zero."""
-        depth = 1 + math.ceil(task.disturbances.longest_delay / task.step_time - 1e-9)
-        return cls(
-            task,
-            shared=np.zeros((n, len(SHARED_KINDS))),
-            wheels=np.zeros((n, task.robots, len(WHEEL_KINDS))),
-            commands=np.zeros((n, depth, task.robots, 2)),
-            due=np.zeros((n, depth, task.robots)),
-        )
-
-    def copy(self) -> DisturbanceState:
-        return DisturbanceState(
-            self.task, self.shared.copy(), self.wheels.copy(), self.commands.copy(), self.due.copy()
-        )
-
-    def begin(self, which: IntArray, keys: IntArray, first: IntArray) -> None:
-        """Draws the disturbances of new episodes in the worlds ``which`` (m), whose robots stand.
-
-        World ``which[i]`` takes number ``first[i]`` and following of ``keys[i]``.
-        """
-        disturbances, robots, shared = self.task.disturbances, self.task.robots, len(SHARED_KINDS)
-        if not disturbances:
-            return
-        drawn = np.empty((len(which), shared + len(WHEEL_KINDS) * robots))
-        world_kernels.fill_uniform(keys, first, drawn)
-        kinds = (*SHARED_KINDS, *WHEEL_KINDS * robots)
-        low, high = np.array([disturbances.range_of(kind) for kind in kinds]).T
-        drawn = low + drawn * (high - low)
-        self.shared[which] = drawn[:, :shared]
-        self.wheels[which] = drawn[:, shared:].reshape(len(which), robots, len(WHEEL_KINDS))
-        self.commands[which] = 0.0
-        self.due[which] = 0.0
-
-    def after_command(self, twists: FloatArray, keys: IntArray, numbers: IntArray) -> DisturbanceState:
-        """The state once ``twists`` (n, r, 2), forward [m/s] and turn [rad/s], are sent; a later command never
-        overtakes an earlier one. The jitter of robot k is number ``numbers[i] + k`` of ``keys[i]``."""
-        disturbances = self.task.disturbances
-        if not disturbances:
-            return replace(self, commands=twists[:, None])
-        factor = 1.0 + self.wheels[:, :, 0]
-        forward, turn = twists[:, :, 0] * factor, twists[:, :, 1] * factor
-        driven = np.stack([forward, turn + forward * self.wheels[:, :, 1]], axis=2)
-        late = self.shared[:, 2, None]
-        if disturbances.command_jitter.high > 0.0:
-            drawn = np.empty((len(keys), self.task.robots))
-            world_kernels.fill_uniform(keys, numbers, drawn)
-            late = late + self.shared[:, 3, None] * drawn
-        before, earlier = self.commands[:, :-1], self.due - self.task.step_time
-        if self.task.stops_between:
-            before = np.where(earlier[:, :-1, :, None] > 0.0, before, 0.0)
-        due = np.maximum(late, earlier[:, 0])
-        return replace(
-            self,
-            commands=np.concatenate([driven[:, None], before], axis=1),
-            due=np.concatenate([due[:, None], earlier[:, :-1]], axis=1),
-        )
-
-    def moves(self, checks: int) -> StepMoves:
-        """The commands in force during a step with so many checks for collisions, one after each equal part of it."""
-        length = self.task.step_time / checks
-        twists, lasts, after = [], [], []
-        for check in range(checks):
-            parts = [
-                (driven, seconds) for driven, seconds in self._parts(check * length, length) if seconds.any()
-            ]
-            twists += [driven for driven, _ in parts]
-            lasts += [seconds for _, seconds in parts]
-            after += [-1] * (len(parts) - 1) + [check]
-        turn = np.zeros(twists[0].shape[:2])
-        for driven, seconds in zip(twists, lasts, strict=True):
-            turn += driven[:, :, 1] * seconds[:, None]
-        return StepMoves(np.stack(twists), np.stack(lasts), np.arange(len(after)), np.array(after), turn)
-
-    def _parts(self, start: float, length: float) -> Iterator[tuple[FloatArray, FloatArray]]:
-        """The twists (n, r, 2) of the parts of the ``length`` seconds after ``start``, one after the other, and how long each
-        part takes (n,): in none of them does a robot change its command."""
-        n, depth, robots = self.due.shape
-        if depth == 1:
-            yield self.commands[:, 0], np.full(n, length)
-            return
-        end = np.full((n, 1), start + length)
-        begins = np.clip(self.due, start, start + length)
-        begins[:, -1] = start
-        changes = np.sort(begins.reshape(n, -1), axis=1)
-        seconds = np.diff(changes, axis=1, append=end)
-        worlds, own = np.arange(n)[:, None], np.arange(robots)
-        for place in range(changes.shape[1]):
-            later: IntArray = (begins[:, :-1] > changes[:, place, None, None]).sum(axis=1)
-            yield self.commands[worlds, later, own], seconds[:, place]
-
-    def noise_std(self, usual: float, which: IntArray | slice) -> FloatArray:
-        """(m,) standard deviation of the ranges [m] in the worlds ``which``, whose lidars' own is ``usual``."""
-        return np.hypot(usual, self.shared[which, 0])
-
-    def dropped(self, which: IntArray | slice) -> FloatArray:
-        """(m,) the share of rays that read nothing."""
-        return np.ascontiguousarray(self.shared[which, 1])

@@ -1,19 +1,16 @@
-"""A task's cases as arrays: where episodes start and end, how far it is from anywhere, and how much of the goal is
-achieved."""
+"""A task's cases as arrays: where episodes start and end, and how far it is from anywhere."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 
-from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
-from kit.fields.adjacency import wrap_angles
-from kit.fields.occupancy_grid import wall_distances
+from kit.arrays import BoolArray, FloatArray, IntArray
 from kit.kernels import compilation, grids, kernels, world_kernels
+from kit.learning.environment.distance_field import CELL, DistanceField, compute_distance_field
 from kit.learning.maps.batch_map import (
     FLOOR_CELL,
     BatchMap,
@@ -25,17 +22,10 @@ from kit.learning.maps.batch_map import (
     measure_floor,
 )
 from kit.learning.maps.obstacles import ObstacleMotions, make_obstacle_parts
-from kit.learning.maps.ray_directions import LEFT_RAYS, RAY_COUNT, RIGHT_RAYS
-from kit.learning.tasks.learning_task import (
-    AvoidGoal,
-    CoverGoal,
-    FollowGoal,
-    LearningTask,
-    PatrolGoal,
-    TargetGoal,
-    TaskCase,
-    WallGoal,
-)
+from kit.learning.maps.ray_directions import RAY_COUNT
+from kit.learning.tasks.goals.goal import GoalCase
+from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.task_case import TaskCase
 
 MAX_AREA_TARGETS = 64
 """Number of evenly spread targets taken from a target area; the distance to each is computed from everywhere."""
@@ -113,7 +103,6 @@ class CaseArrays:
         """(targets, 3): all targets' places and headings."""
         start_count = np.array([len(each.starts) for each in places], dtype=np.int64)
         jitter, shifted = np.array([each.target_jitter for each in places]), task.start.shifted
-        is_patrol = isinstance(task.goal, PatrolGoal)  # it begins with the first target
         self._start_tables = kernels.StartTables(
             starts=np.ascontiguousarray(np.concatenate([each.starts for each in places]), dtype=np.float64),
             start_first=np.cumsum([0, *start_count], dtype=np.int64)[:-1],
@@ -124,7 +113,7 @@ class CaseArrays:
             any_heading=np.array([float(case.is_heading_random and shifted) for case in cases]),
             targets=self.targets,
             target_first=self.target_first,
-            target_choices=np.ones_like(self.target_count) if is_patrol else self.target_count,
+            target_choices=np.ones_like(self.target_count) if task.goal.is_route else self.target_count,
             target_shift=np.array([case.target_shift for case in cases]) * shifted + jitter[:, None],
             noise=np.array([task.start.noise, task.start.noise, task.start.max_rotation]),
             cell_size=FLOOR_CELL,
@@ -185,12 +174,22 @@ class CaseArrays:
             grids.find_nearest_obstacles(self.obstacles, maps, bodies, found.poses, nearest)
             reach = self.obstacles.reach.max(initial=0.0)
             bad |= (nearest <= radius + reach + START_ROOM).any(axis=1)
-        if isinstance(self.task.goal, TargetGoal):
+        if self.task.goal.begins_outside_target:
             away = np.hypot(*np.moveaxis(found.poses[:, :, :2] - found.targets[:, None], 2, 0))
             bad |= (away <= self.task.target_radius + radius).any(axis=1)
         return bad
 
-    def first_start(self, case: int) -> tuple[float, float]:
+    @property
+    def goal_cases(self) -> tuple[GoalCase, ...]:
+        """What a goal knows of each case."""
+        return tuple(
+            GoalCase(
+                card, self.task.robots_on(card), self._first_start(number), int(self.target_count[number])
+            )
+            for number, (card, _) in enumerate(self.maps)
+        )
+
+    def _first_start(self, case: int) -> tuple[float, float]:
         """A place where episodes of a case start [m]."""
         x, y, _ = self._start_tables.starts[self._start_tables.start_first[case], 0].tolist()
         return x, y
@@ -291,7 +290,7 @@ def _leader(case: TaskCase, batch_map: BatchMap) -> int:
 
 def _distance_field(task: LearningTask, batch_map: BatchMap, target: tuple[float, float]) -> DistanceField:
     """The ways to a target; nothing where the goal has none that stands."""
-    if isinstance(task.goal, TargetGoal | PatrolGoal):
+    if task.goal.has_standing_targets:
         return compute_distance_field(batch_map, target)
     return DistanceField(np.zeros((2, 2), dtype=np.float32), (0.0, 0.0))
 
@@ -314,161 +313,3 @@ def _start_poses(case: TaskCase, task: LearningTask) -> list[list[tuple[float, f
             [(x + wide * (each.x - x), y + wide * (each.y - y), each.theta) for each in (left, right)]
         )
     return found
-
-
-# Ways to a target
-
-CELL = 0.025
-"""Side of the cells of a distance field [m]."""
-CLEARANCE = 0.13
-"""Nearer to a wall than this [m] a metre counts for more: the reach of the robot's hull."""
-WALL_PRICE = 4.0
-"""Cost of one metre along a wall, in metres."""
-NEIGHBOURS = tuple((dx, dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1) if dx or dy)
-
-
-class DistanceField(NamedTuple):
-    """Lengths of ways, at the middles of square cells."""
-
-    values: Float32Array
-    """(rows, columns) [m]"""
-    origin: tuple[float, float]
-    """The middle of the first cell."""
-
-
-@cache
-def compute_distance_field(
-    batch_map: BatchMap,
-    target: tuple[float, float],
-    clearance: float = CLEARANCE,
-    wall_price: float = WALL_PRICE,
-) -> DistanceField:
-    """The length of the way to ``target`` from everywhere on the map, keeping ``clearance`` [m] of walls where it can.
-
-    Bellman's equation on a grid with eight neighbours, iterated to its fixed point; a step counts for its length
-    times the mean price of its ends.
-    """
-    points = np.concatenate([batch_map.walls.reshape(-1, 2), np.array([target])])
-    origin = points.min(axis=0) - 2 * CELL
-    columns, rows = np.ceil((points.max(axis=0) + 2 * CELL - origin) / CELL).astype(int) + 1
-    x, y = origin[0] + CELL * np.arange(columns), origin[1] + CELL * np.arange(rows)
-    room = wall_distances(x, y, batch_map.walls, clearance)
-    price = 1.0 + (wall_price - 1.0) * np.maximum(0.0, 1.0 - room / clearance)
-    # A way from cell to cell cannot slip through a wall when the cells that a wall comes so near are blocked.
-    price[room < CELL / math.sqrt(2)] = math.inf
-    lengths = np.full((rows, columns), math.inf)
-    start = round((target[1] - origin[1]) / CELL), round((target[0] - origin[0]) / CELL)
-    lengths[start] = 0.0
-    grids.relax_path_lengths(lengths, price, CELL)
-    return DistanceField(_fill_walls(lengths).astype(np.float32), (float(origin[0]), float(origin[1])))
-
-
-def _fill_walls(lengths: FloatArray) -> FloatArray:
-    """Cells beside walls take their neighbours' lengths, so that one can interpolate there; others the greatest."""
-    rows, columns = lengths.shape
-    for _ in range(4):
-        padded = np.pad(lengths, 1, constant_values=math.inf)
-        around = [padded[1 + dy : 1 + dy + rows, 1 + dx : 1 + dx + columns] for dx, dy in NEIGHBOURS]
-        lengths = np.where(np.isinf(lengths), np.min(around, axis=0) + WALL_PRICE * CELL, lengths)
-    finite = np.isfinite(lengths)
-    return np.where(finite, lengths, lengths[finite].max())
-
-
-# What is achieved
-
-
-class GoalCount:
-    """The goal of a task, and how much of it makes it reached."""
-
-    def __init__(self, task: LearningTask, case_arrays: CaseArrays) -> None:
-        self.task = task
-        self._case_arrays = case_arrays
-        cases = len(case_arrays.maps)
-        self.needed = np.ones(cases)
-        """(cases): the count at which the goal is reached."""
-        self._floors = np.zeros((cases, 0, 0), dtype=np.bool_)
-        self._origins = np.zeros((cases, 2))
-        match task.goal:
-            case PatrolGoal(rounds):
-                self.needed = rounds * case_arrays.target_count.astype(np.float64)
-            case WallGoal():
-                self.needed[:] = task.goal.length
-            case FollowGoal() | AvoidGoal():
-                self.needed[:] = task.goal.time
-            case CoverGoal():
-                self._lay_floors(task.goal)
-            case TargetGoal():
-                pass
-
-    def _lay_floors(self, goal: CoverGoal) -> None:
-        """Which cells are to be covered: those that a robot's radius of covering can reach."""
-        floors, origins = [], []
-        for number, (_, batch_map) in enumerate(self._case_arrays.maps):
-            floor, (x, y) = measure_floor(batch_map), self._case_arrays.first_start(number)
-            reached = floor.reached_from(x, y, hull_width(batch_map)) & (
-                floor.clearance > max(hull_radius(batch_map) - goal.radius, 0.0)
-            )
-            floors.append(reached)
-            origins.append(floor.origin)
-        rows, columns = (max(floor.shape[axis] for floor in floors) for axis in (0, 1))
-        self._floors = np.zeros((len(floors), rows, columns), dtype=np.bool_)
-        for whole, floor_cells in zip(self._floors, floors, strict=True):
-            whole[: floor_cells.shape[0], : floor_cells.shape[1]] = floor_cells
-        self._origins = np.array(origins)
-        self.needed = goal.share * self._floors.sum(axis=(1, 2))
-
-    @property
-    def covered_shape(self) -> tuple[int, int]:
-        """(rows, columns) of the cells that a world remembers as covered."""
-        return self._floors.shape[1:]
-
-    @property
-    def has_targets(self) -> bool:
-        """Whether episodes have a target that stands somewhere."""
-        return isinstance(self.task.goal, TargetGoal | PatrolGoal)
-
-    @property
-    def wants_heading(self) -> bool:
-        """Whether being in the target takes a heading."""
-        goal = self.task.goal
-        return isinstance(goal, TargetGoal) and goal.heading_tolerance is not None
-
-    def is_facing(self, poses: FloatArray, rows: IntArray) -> BoolArray:
-        """(m, robots): whose heading is that of its target, of the targets ``rows`` (m), as the goal asks."""
-        goal = self.task.goal
-        if not isinstance(goal, TargetGoal) or goal.heading_tolerance is None:
-            return np.ones(poses.shape[:2], dtype=np.bool_)
-        headings = self._case_arrays.targets[rows, 2]
-        facing: BoolArray = np.abs(wrap_angles(poses[:, :, 2] - headings[:, None])) <= goal.heading_tolerance
-        return facing
-
-    def cover(self, cases: IntArray, poses: FloatArray, covered: BoolArray, counts: FloatArray) -> None:
-        """Marks in ``covered`` (m, rows, columns) what robots cover at ``poses``, and adds new cells to ``counts`` (m,)."""
-        goal = self.task.goal
-        if isinstance(goal, CoverGoal):
-            grids.cover_cells(
-                poses, cases, self._origins, FLOOR_CELL, self._floors, goal.radius, covered, counts
-            )
-
-    def seconds_near_leader(self, distances: FloatArray) -> FloatArray:
-        """(n,) for how long every robot was near its leader in a step that ended at these distances (n, robots)."""
-        goal = self.task.goal
-        assert isinstance(goal, FollowGoal)
-        near = (distances >= goal.nearest) & (distances <= goal.farthest)
-        return np.where(near.all(axis=1), self.task.step_time, 0.0)
-
-    def seconds_away(self, nearest: FloatArray) -> FloatArray:
-        """(n,) for how long every robot was far enough from everything that moves, ``nearest`` (n, robots) [m]."""
-        goal = self.task.goal
-        assert isinstance(goal, AvoidGoal)
-        return np.where((nearest > goal.distance).all(axis=1), self.task.step_time, 0.0)
-
-    def metres_along_wall(self, ranges: Float32Array, forward: FloatArray) -> FloatArray:
-        """(n,) how far robots drove beside a wall, on average; ``ranges`` (n, robots, rays), ``forward`` (n, robots) [m]."""
-        goal = self.task.goal
-        assert isinstance(goal, WallGoal)
-        rays = LEFT_RAYS if goal.side == "left" else RIGHT_RAYS
-        beside = ranges[:, :, rays].min(axis=2)
-        counts = np.abs(beside - goal.distance) <= goal.tolerance
-        metres: FloatArray = (counts * np.maximum(forward, 0.0)).mean(axis=1)
-        return metres

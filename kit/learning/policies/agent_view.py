@@ -18,7 +18,7 @@ from kit.arrays import Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.maps.ray_directions import RAY_COUNT, ray_direction
-from kit.learning.policies.policies import Policy, PolicyError, PolicyPlayer
+from kit.learning.policies.policy import Policy, PolicyError, PolicyPlayer
 from kit.learning.policies.policy_node import NODE_PARTS, ray_angles
 from kit.learning.tasks.actions import ContinuousActions, DiscreteActions
 from kit.learning.tasks.learning_task import LearningTask

@@ -1,38 +1,29 @@
-"""Evaluates policies: success by case, on episodes of their own, with confidence intervals; and the paths of a few episodes."""
+"""Evaluates policies: success by case, on episodes of their own, with confidence intervals."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final, Literal, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from kit.arrays import FloatArray, IndexArray
 from kit.document.blocks import Cell, CellStyle, Column, Table
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_state import BatchStep
-from kit.learning.environment.env import obstacle_outlines
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
-from kit.learning.maps.batch_map import load_batch_map
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
-from kit.learning.policies.policies import Policy, load_policy
-from kit.learning.tasks.learning_task import Area, LearningTask, PatrolGoal, TargetGoal, TaskCase
+from kit.learning.policies.episode_paths import PathRecorder
+from kit.learning.policies.policy import Policy
+from kit.learning.policies.policy_file import load_policy
+from kit.learning.policies.seeds import derive_seed
+from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.rewards import RewardFunction
-from kit.render.drive_playback import DrivenPlace, DrivePlayback
-from kit.render.scene import Disc, Scene, SceneMark, ScenePath
-from kit.world.catalogue import MapCard
+from kit.learning.tasks.task_case import TaskCase
 
 PARALLEL_WORLDS = 1024
 """About so many worlds side by side: more is not faster."""
-
-
-def derive_seed(seed: int, purpose: str, number: int = 0) -> int:
-    """A seed of its own for each use of a run's seed, so that no two uses see the same episodes."""
-    words = np.random.SeedSequence((seed, number, *purpose.encode())).generate_state(1)
-    return int(words[0])
 
 
 class EpisodeShare(NamedTuple):
@@ -318,189 +309,3 @@ def evaluate_policy(
     policy = policy if isinstance(policy, Policy) else load_policy(policy)
     evaluator = Evaluator(policy.trained_on.resolve() if task is None else task)
     return evaluator.test(policy, episodes, seed, greedy=greedy)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class EpisodePath:
-    """One episode's way."""
-
-    case: str
-    outcome: EpisodeOutcome
-    poses: FloatArray
-    """(steps + 1, robots, 3), from the start on."""
-    target: tuple[float, float]
-    interval: float
-    """Between two poses [s]."""
-
-
-class PathRecorder:
-    """Records the ways of the first ``episodes`` episodes of each case, among worlds that run side by side.
-
-    Call ``begin`` after a reset, then ``add`` for each step of all worlds.
-    """
-
-    def __init__(self, episodes: int = 1) -> None:
-        self._episodes = episodes
-        self._names: list[str] = []
-        self._interval = 0.0
-        self._targets: FloatArray = np.empty((0, 2))
-        self._running: IndexArray = np.empty(0, dtype=np.intp)
-        """The worlds whose first episode is recorded and has not ended."""
-        self._trails: dict[int, list[FloatArray]] = {}
-        self._paths: dict[int, EpisodePath] = {}
-
-    @property
-    def is_complete(self) -> bool:
-        """Whether every episode that is recorded has ended."""
-        return not len(self._running)
-
-    @property
-    def paths(self) -> tuple[EpisodePath, ...]:
-        """The episodes that have ended, in the order of the task's cases."""
-        found = (self._paths[world] for world in sorted(self._paths))
-        return tuple(sorted(found, key=lambda path: self._names.index(path.case)))
-
-    def begin(self, batch: BatchEnv) -> None:
-        """Takes the start of every world."""
-        cases = batch.state.case
-        chosen = [np.flatnonzero(cases == case)[: self._episodes] for case in range(len(batch.cases))]
-        self._names = [case.name for case in batch.cases]
-        self._interval = batch.task.step_time
-        self._running = np.sort(np.concatenate(chosen))
-        self._targets = batch.state.target.copy()
-        self._trails = {int(world): [batch.state.pose[world].copy()] for world in self._running}
-        self._paths = {}
-
-    def add(self, step: BatchStep) -> None:
-        """Takes one step of all worlds."""
-        if self.is_complete:
-            return
-        transition, ended = step.transition, step.ended
-        for world, pose in zip(self._running.tolist(), transition.pose[self._running], strict=True):
-            self._trails[world].append(pose)
-            if ended[world]:
-                x, y = self._targets[world].tolist()
-                self._paths[world] = EpisodePath(
-                    self._names[int(transition.case[world])],
-                    EpisodeOutcome.of(transition, world),
-                    np.array(self._trails[world]),
-                    (x, y),
-                    self._interval,
-                )
-        self._running = self._running[~ended[self._running]]
-
-
-def record_paths(
-    policy: Policy, task: LearningTask, episodes: int, seed: int, *, greedy: bool = True
-) -> tuple[EpisodePath, ...]:
-    """The ways of ``episodes`` episodes of each case, in the order of the task's cases.
-
-    PolicyError if the policy does not fit.
-    """
-    policy.check_fits(task)
-    batch = BatchEnv(task, episodes * len(task.map_cases()), seed)
-    player = policy.make_player(
-        batch.n, None if greedy else np.random.default_rng(derive_seed(seed, "moves"))
-    )
-    observations, fresh = batch.reset(seed=seed), np.ones(batch.n, dtype=np.bool_)
-    recorder = PathRecorder(episodes)
-    recorder.begin(batch)
-    while not recorder.is_complete:
-        step = batch.step(player.act(observations, fresh))
-        recorder.add(step)
-        observations, fresh = step.observations, step.ended
-    return recorder.paths
-
-
-ROBOT_MARKS = "•o"
-"""Where the first robot was at every full second, and where the second was."""
-ROBOT_LINES: tuple[Literal["solid"], Literal["dashed"]] = ("solid", "dashed")
-
-
-def build_paths_scene(
-    task: LearningTask, card: MapCard, case: TaskCase, ways: tuple[EpisodePath, ...]
-) -> Scene:
-    """The ways of one case over its map, with a mark for every second: solid with ``•`` for the first robot, dashed with
-    ``o`` for the second, dotted where the goal was not reached. Areas in which starts (S) and targets (T) are drawn are
-    dashed rectangles.
-    """
-    mine = [way for way in ways if way.case == case.name]
-    is_fixed = len(case.targets.poses) == 1 and case.targets.model is None
-    targets = [case.target] if is_fixed else sorted({way.target for way in mine})
-    targets = targets if isinstance(task.goal, TargetGoal | PatrolGoal) else []
-    starts = [(case.start.x, case.start.y)]
-    if case.starts[0].is_area or len(case.starts[0].poses) > 1:
-        starts = [(x, y) for x, y in (way.poses[0, 0, :2].tolist() for way in mine)]
-    ends = [way for way in mine if way.outcome is not EpisodeOutcome.REACHED]
-    contacts = [way.poses[-1, 0, :2] for way in ends if way.outcome is EpisodeOutcome.COLLIDED]
-    areas = [(places.area, "S") for places in case.starts] + ([(case.targets.area, "T")] if targets else [])
-    known_areas = dict.fromkeys((area, label) for area, label in areas if area is not None)
-    return Scene(
-        walls=load_batch_map(card, task.robots_on(card)).walls,
-        targets=tuple(Disc(x, y, task.target_radius) for x, y in targets),
-        paths=(
-            *(ScenePath(_rectangle(area), "dashed") for area, _ in known_areas),
-            *(_robot_path(way, robot) for way in mine for robot in range(way.poses.shape[1])),
-        ),
-        contacts=np.array(contacts).reshape(-1, 2),
-        marks=(
-            *(mark for way in mine for mark in _second_marks(way)),
-            *(SceneMark(min(area[0], area[2]), max(area[1], area[3]), label) for area, label in known_areas),
-            *(SceneMark(x, y, "S") for x, y in starts),
-        ),
-    )
-
-
-def _rectangle(area: Area) -> FloatArray:
-    x1, y1, x2, y2 = area
-    return np.array([(x1, y1), (x2, y1), (x2, y2), (x1, y2), (x1, y1)])
-
-
-def _robot_path(way: EpisodePath, robot: int) -> ScenePath:
-    line = ROBOT_LINES[robot % len(ROBOT_LINES)]
-    style = line if way.outcome is EpisodeOutcome.REACHED else "dotted"
-    return ScenePath(way.poses[:, robot, :2], style, robot if way.poses.shape[1] > 1 else None)
-
-
-def _second_marks(way: EpisodePath) -> list[SceneMark]:
-    """A mark where each robot was at every full second, the start left out."""
-    seconds = range(1, int((len(way.poses) - 1) * way.interval + 1e-9) + 1)
-    times = np.arange(len(way.poses)) * way.interval
-    marks = []
-    for robot in range(way.poses.shape[1]):
-        across, up = (np.interp(seconds, times, way.poses[:, robot, axis]).tolist() for axis in (0, 1))
-        label = ROBOT_MARKS[robot % len(ROBOT_MARKS)]
-        marks += [SceneMark(x, y, label) for x, y in zip(across, up, strict=True)]
-    return marks
-
-
-def worst_drive(task: LearningTask, result: EvaluationResult, recorder: PathRecorder) -> DrivePlayback:
-    """The first episode of the case that went worst in an evaluation, of those that ``recorder`` has recorded."""
-    return playback_of(next(each for each in recorder.paths if each.case == result.worst.case), task)
-
-
-def playback_of(path: EpisodePath, task: LearningTask) -> DrivePlayback:
-    """An episode of a task as a drive that can be drawn without the task. Things that move are left out."""
-    card = next(card for card, each in task.map_cases() if each.name == path.case)
-    batch_map = load_batch_map(card, task.robots_on(card))
-    still = [each for each in batch_map.obstacles if each.motion is None]
-    outlines = [outline for each in still for outline in obstacle_outlines(each, each.pose)]
-    edges = [np.concatenate((corners, np.roll(corners, -1, axis=0)), axis=1) for corners in outlines]
-    has_target = isinstance(task.goal, TargetGoal | PatrolGoal)
-    place = DrivenPlace(
-        np.concatenate((batch_map.walls, *edges)),
-        tuple(np.array(polygon) for polygon in batch_map.robot.hull),
-        Disc(*path.target, task.target_radius) if has_target else None,
-    )
-    seconds = (len(path.poses) - 1) * path.interval
-    return DrivePlayback(path.case, _result_text(path, seconds, has_target), path.poses, seconds, place)
-
-
-def _result_text(path: EpisodePath, seconds: float, has_target: bool) -> str:
-    if path.outcome is EpisodeOutcome.REACHED:
-        return f"reached the {'target' if has_target else 'goal'} in {seconds:.1f} s"
-    is_single = path.poses.shape[1] == 1
-    collided = "hit a wall" if is_single else "collided"
-    what = collided if path.outcome is EpisodeOutcome.COLLIDED else "ran out of time"
-    x, y = (path.poses[-1, 0, :2].round(1) + 0.0).tolist()  # no -0.0
-    return f"{what} after {seconds:.1f} s" + (f" at ({x:.1f}, {y:.1f})" if is_single else "")

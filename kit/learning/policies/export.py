@@ -9,7 +9,8 @@ import numpy as np
 from torch import nn
 
 from kit.arrays import Float32Array
-from kit.learning.policies.policies import ActionSampling, Activation, LinearLayer, LstmLayer, PolicyNetwork
+from kit.learning.policies.policy import ActionSampling
+from kit.learning.policies.policy_network import Activation, LinearLayer, LstmLayer, PolicyNetwork
 
 
 def export_network(model: Any) -> PolicyNetwork:

@@ -1,8 +1,6 @@
 """A policy as a ROS 2 node: one Python file with the arrays in it, which needs rclpy and numpy, and not the kit.
 
 It runs in the kit's worlds as any controller does, and on a robot with a lidar.
-
-A policy as a ROS 2 package: a node, launch files, parameters and a world, for `kit launch` and for colcon on a robot.
 """
 
 from __future__ import annotations
@@ -11,14 +9,11 @@ import base64
 import zlib
 from dataclasses import replace
 from importlib.resources import files
-from pathlib import Path
-from string import Template
 from textwrap import wrap
-from typing import Final
 
-from kit.launch.package_creation import PackageFrame, copy_world, new_package_folder, write_package_frame
 from kit.learning.environment.case_arrays import CaseArrays
-from kit.learning.policies.policies import Policy, PolicyError, policy_bytes
+from kit.learning.policies.policy import Policy, PolicyError
+from kit.learning.policies.policy_file import policy_bytes
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE
@@ -26,8 +21,12 @@ from kit.plain_text import join_names
 
 TOPIC_PREFIXES = {1: ("",), 2: ("left/", "right/")}
 """Before each robot's ``cmd_vel`` and ``static_laser``."""
+
+
 NODE_PARTS = ("speeds", "last_action", "own_pose", "target")
 """Parts of the observation beside the scan that a node knows: from odometry, from what it has sent, from a parameter."""
+
+
 LEARNED_MARK = "# --- what was learned ---\n"
 
 
@@ -44,6 +43,11 @@ def format_policy_node(policy: Policy) -> str:
         raise PolicyError(
             f"this policy sees what a node does not know: {', '.join(unknown)}. A node knows rays, sectors and "
             f"{join_names(NODE_PARTS)}: leave the rest out of the task's observation, and train again."
+        )
+    if seen.target and task.goal.node_refusal:
+        raise PolicyError(
+            f"this policy sees its target, which a node cannot tell it: {task.goal.node_refusal}. Leave the target out of "
+            "the task's observation, and train again."
         )
     if task.robots not in TOPIC_PREFIXES or not seen.sectors:
         raise PolicyError("a node can be written for one robot or two that see sectors of a scan.")
@@ -99,62 +103,3 @@ def _usual_target(task: LearningTask) -> list[float]:
     found = {tuple(case.target) for _, case in task.map_cases() if len(case.targets.poses) == 1}
     is_one = len(found) == 1 and all(len(case.targets.poses) == 1 for _, case in task.map_cases())
     return [float(each) for each in found.pop()] if is_one else []
-
-
-PROGRAM: Final = "policy"
-DEPENDENCIES: Final = (
-    "rclpy",
-    "geometry_msgs",
-    "nav_msgs",
-    "sensor_msgs",
-    "python3-numpy",
-    "launch_ros",
-)
-TEMPLATES: Final = "policy_package_files"
-LIDAR: Final = "static_laser"
-"""What the kit's robots call their lidar's topic."""
-
-
-def create_policy_package(policy: Policy, name: str, destination: Path) -> Path:
-    """Creates the package ``name`` in ``destination``, completely or not at all; returns its folder.
-
-    Its program needs rclpy and numpy alone. Raises PackageError for a name that cannot be or a folder that is there, and
-    PolicyError for a policy that no node can carry out.
-    """
-    program = format_policy_node(policy)
-    task = policy.trained_on.resolve()
-    used = [(LIDAR, "scan_topic", "scan"), ("cmd_vel", "cmd_vel_topic", "cmd_vel")]
-    seen = task.observation
-    used += [("odom", "odom_topic", "odom")] * (seen.speeds or seen.own_pose or seen.target)
-    topics = [
-        (f"{prefix}{topic}", f"{prefix.replace('/', '_')}{argument}", f"{prefix}{usual}")
-        for prefix in TOPIC_PREFIXES[task.robots]
-        for topic, argument, usual in used
-    ]
-    words = {
-        "name": name,
-        "topics": repr(topics),
-        "simulated": repr({argument: topic for topic, argument, _ in topics}),
-        "max_scan_age": f"{max(0.5, 3 * task.step_time):g}",
-    }
-    frame = PackageFrame(
-        name,
-        PROGRAM,
-        f"A policy trained on {policy.trained_on.title}, {policy.steps:,} steps",
-        DEPENDENCIES,
-        ("launch", "config", "world"),
-    )
-    with new_package_folder(name, destination, PROGRAM) as folder:
-        write_package_frame(folder, frame)
-        (folder / name / f"{PROGRAM}.py").write_text(program, encoding="utf-8")
-        for template, file in (
-            ("robot.launch.py", f"launch/{name}.launch.py"),
-            ("simulation.launch.py", "launch/simulation.launch.py"),
-            ("parameters.yaml", f"config/{name}.yaml"),
-        ):
-            path = folder / file
-            path.parent.mkdir(exist_ok=True)
-            text = files("kit.learning.policies").joinpath(TEMPLATES, f"{template}.template").read_text()
-            path.write_text(Template(text).substitute(words), encoding="utf-8")
-        copy_world(task.map_cases()[0][0].world_file, folder / "world")
-    return destination / name

@@ -21,7 +21,8 @@ import numpy as np
 from kit.document.blocks import Block, CellStyle, Column, Picture, Table, Text
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
 from kit.learning.policies.evaluation import EvaluationResult, Evaluator
-from kit.learning.policies.policies import Policy, policy_bytes
+from kit.learning.policies.policy import Policy
+from kit.learning.policies.policy_file import policy_bytes
 from kit.learning.tasks.disturbances import (
     DISTURBANCE_KINDS,
     DisturbanceError,

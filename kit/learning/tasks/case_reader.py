@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 
 from kit.geometry import Pose
-from kit.learning.tasks.learning_task import EpisodePlaces, FollowGoal, Goal, PatrolGoal, TargetGoal, TaskCase
+from kit.learning.tasks.goals.goal import Goal
+from kit.learning.tasks.task_case import EpisodePlaces, TaskCase
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import MapCard
 from kit.world.yaml_section import Section
@@ -104,12 +105,12 @@ class CaseReader:
         return tuple(EpisodePlaces(poses[robot::others]) for robot in range(others))
 
     def _targets(self, section: Section) -> EpisodePlaces:
-        is_needed = isinstance(self._goal, TargetGoal | PatrolGoal | FollowGoal)
-        key = _only_key(section, TARGET_KEYS, needed=is_needed)
-        if isinstance(self._goal, FollowGoal) and key not in ("target_model", None):
-            section.error('the goal follow needs a "target_model": a model that moves', key)
-        if isinstance(self._goal, PatrolGoal) and key not in ("targets", "target", None):
-            section.error('the goal patrol needs "targets": a list of points', key)
+        goal = self._goal
+        key = _only_key(section, TARGET_KEYS, needed=goal.needs_target)
+        if goal.needs_leader and key not in ("target_model", None):
+            section.error(f'the goal {goal.kind} needs a "target_model": a model that moves', key)
+        if goal.is_route and key not in ("targets", "target", None):
+            section.error(f'the goal {goal.kind} needs "targets": a list of points', key)
         if key == "target_model":
             return EpisodePlaces(model=section.name(key))
         if key == "target_area":
@@ -126,8 +127,7 @@ class CaseReader:
         return EpisodePlaces((Pose(x, y, self._target_heading(section)),))
 
     def _target_heading(self, section: Section) -> float:
-        wants = isinstance(self._goal, TargetGoal) and self._goal.heading_tolerance is not None
-        if wants:
+        if self._goal.heading_tolerance is not None:
             return section.number("target_heading")
         if section.has("target_heading"):
             section.error('a heading at the target needs a goal with "heading_tolerance"', "target_heading")

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -16,21 +16,10 @@ from typing import Literal
 from kit.learning.maps.ray_directions import RAY_COUNT
 from kit.learning.tasks.actions import MAX_SPEED, MAX_TURN_RATE, Actions, ContinuousActions, DiscreteActions
 from kit.learning.tasks.case_reader import CaseReader, PlacedCase
+from kit.learning.tasks.curriculum import read_curriculum
 from kit.learning.tasks.disturbances import UNDISTURBED, DisturbanceError, Disturbances
-from kit.learning.tasks.learning_task import (
-    PRESET_NAMES,
-    AvoidGoal,
-    CoverGoal,
-    Ending,
-    FollowGoal,
-    Goal,
-    LearningTask,
-    PatrolGoal,
-    StartVariation,
-    TargetGoal,
-    WallGoal,
-    read_curriculum,
-)
+from kit.learning.tasks.goals.registry import read_goal
+from kit.learning.tasks.learning_task import PRESET_NAMES, Ending, LearningTask, StartVariation
 from kit.learning.tasks.observations import PART_NAMES, ObservationSpec
 from kit.learning.tasks.rewards import REWARDS, TERMS, Reward, TermWeight, UnknownRewardTerm, term_settings
 from kit.plain_files import is_file_there
@@ -118,7 +107,7 @@ class _TaskReader:
         maps, cards = self._maps()
         robot_names = self._robot_names(cards)
         robots = len(robot_names) or (1 if not cards or cards[0].partner is None else 2)
-        goal = _read_goal(section.section("goal", None))
+        goal = read_goal(section.section("goal", None))
         cases = CaseReader(cards, robots, goal).read(section)
         reward, reward_file = self._reward(section.section("reward"))
         step, target = section.section("step", None), section.section("target", None)
@@ -423,76 +412,3 @@ def _read_disturbances(section: Section | None) -> Disturbances:
         except DisturbanceError as error:
             section.error(str(error), name)
     return Disturbances.from_dict(found)
-
-
-# Goals
-
-
-def _read_goal(section: Section | None) -> Goal:
-    if section is None:
-        return TargetGoal()
-    reader = section.choice("kind", GOAL_READERS)
-    goal: Goal = TargetGoal() if reader is None else reader(section)
-    section.finish(ignore_unknown=reader is None)
-    return goal
-
-
-def _read_target_goal(section: Section) -> TargetGoal:
-    if not section.has("heading_tolerance"):
-        return TargetGoal()
-    return TargetGoal(section.number("heading_tolerance", above=0, maximum=math.pi))
-
-
-def _read_patrol_goal(section: Section) -> PatrolGoal:
-    return PatrolGoal(section.integer("rounds", 1, minimum=1, maximum=100))
-
-
-def _read_cover_goal(section: Section) -> CoverGoal:
-    usual = CoverGoal()
-    return CoverGoal(
-        section.number("share", usual.share, above=0, maximum=1),
-        section.number("radius", usual.radius, minimum=0.05, maximum=2),
-    )
-
-
-def _read_wall_goal(section: Section) -> WallGoal:
-    usual = WallGoal()
-    sides: Mapping[str, Literal["left", "right"]] = {"left": "left", "right": "right"}
-    return WallGoal(
-        section.choice("side", sides, usual.side),
-        section.number("distance", usual.distance, above=0),
-        section.number("tolerance", usual.tolerance, above=0),
-        section.number("length", usual.length, above=0),
-    )
-
-
-def _read_follow_goal(section: Section) -> FollowGoal:
-    usual = FollowGoal()
-    goal = FollowGoal(
-        section.number("nearest", usual.nearest, minimum=0),
-        section.number("farthest", usual.farthest, above=0),
-        section.number("time", usual.time, above=0),
-    )
-    if goal.nearest >= goal.farthest:
-        section.error(f"farthest must be greater than nearest, {goal.nearest:g}", "farthest")
-    return goal
-
-
-def _read_avoid_goal(section: Section) -> AvoidGoal:
-    usual = AvoidGoal()
-    return AvoidGoal(
-        section.number("distance", usual.distance, minimum=0), section.number("time", usual.time, above=0)
-    )
-
-
-GOAL_READERS: Mapping[str, Callable[[Section], Goal]] = MappingProxyType(
-    {
-        "target": _read_target_goal,
-        "patrol": _read_patrol_goal,
-        "cover": _read_cover_goal,
-        "wall": _read_wall_goal,
-        "follow": _read_follow_goal,
-        "avoid": _read_avoid_goal,
-    }
-)
-"""Readers by the word after ``kind`` in a file."""

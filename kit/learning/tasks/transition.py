@@ -1,10 +1,11 @@
-"""Defines the record of one step, from which rewards are computed."""
+"""One step of worlds, the states before and after it: what rewards are computed from and goals are counted by."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+import math
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 
@@ -16,8 +17,108 @@ Array: TypeAlias = Any
 
 FAR = 100.0
 """Distance [m] to what is not there."""
+NO_MOVE = -1
 DIAGONAL_RAYS = 2
 """Number of rays (4 degrees each) beside straight ahead."""
+
+
+class StateView(Protocol):
+    """The state of worlds before or after a step, as far as rewards and goals may depend on it. Shapes as in ``Transition``."""
+
+    @property
+    def case(self) -> Array:
+        """(...) int"""
+
+    @property
+    def step(self) -> Array:
+        """(...) int: steps of this episode so far."""
+
+    @property
+    def pose(self) -> Array:
+        """(..., R, 3) ``x y theta``"""
+
+    @property
+    def hit(self) -> Array:
+        """(..., R) bool: who met a wall or another robot in the last step."""
+
+    @property
+    def in_target(self) -> Array:
+        """(..., R) bool"""
+
+    @property
+    def to_go(self) -> Array:
+        """(..., R)"""
+
+    @property
+    def rotation(self) -> Array:
+        """(..., R) since the robot last turned to the other side."""
+
+    @property
+    def ranges(self) -> Array:
+        """(..., R, 91) of the last step; meaningless before the first."""
+
+    @property
+    def move(self) -> Array:
+        """(..., R) int: that of the last step, NO_MOVE before the first."""
+
+    @property
+    def twist(self) -> Array:
+        """(..., R, 2) forward and turn, of the last step."""
+
+    @property
+    def forward_steps(self) -> Array:
+        """(..., R)"""
+
+    @property
+    def target(self) -> Array:
+        """(..., 2)"""
+
+    @property
+    def target_heading(self) -> Array:
+        """(...)"""
+
+    @property
+    def obstacle_distance(self) -> Array:
+        """(..., R)"""
+
+    @property
+    def count(self) -> Array:
+        """(...) how much of the goal is achieved, in the goal's own unit."""
+
+    @property
+    def achieved(self) -> Array:
+        """(...) the share of the goal."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EpisodeState:
+    """A ``StateView`` by itself, for transitions that come from elsewhere than the batch engine."""
+
+    case: Array
+    step: Array
+    pose: Array
+    hit: Array
+    in_target: Array
+    to_go: Array
+    rotation: Array
+    ranges: Array
+    move: Array
+    twist: Array
+    forward_steps: Array
+    target: Array
+    target_heading: Array
+    obstacle_distance: Array
+    count: Array
+    achieved: Array
+
+    @classmethod
+    def of(cls, state: StateView) -> EpisodeState:
+        """What is seen of a state; ``replace`` then changes it."""
+        return cls(*(getattr(state, field.name) for field in fields(cls)))
+
+    def select(self, index: Any) -> EpisodeState:
+        """The state of one world, or of some, out of many."""
+        return EpisodeState(*(getattr(self, field.name)[index] for field in fields(self)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,52 +128,117 @@ class Transition:
     Shapes: ``...`` is ``()`` for one world and ``(n,)`` for many; R is the number of robots, the left one first.
     """
 
-    case: Array
-    """(...) int: number of the case."""
-    step: Array
-    """(...) int: steps of this episode, this one included."""
+    before: StateView
+    after: StateView
     max_steps: int
     """Steps after which an episode is over."""
-    hit: Array
-    """(..., R) bool: who met a wall or the other robot."""
-    in_target: Array
-    """(..., R) bool: who is in the target."""
-    was_in_target: Array
-    """(..., R) bool: who was in the target before the step."""
-    move: Array
-    """(..., R) int: what each robot did: 0 nothing, 1 forward, 2 back, 3 left, 4 right, 5 forward_left, 6 forward_right."""
-    previous_move: Array
-    """(..., R) int: what each robot did the step before; -1 in the first."""
-    pose: Array
-    """(..., R, 3) ``x y theta``"""
-    previous_pose: Array
-    """(..., R, 3) ``x y theta`` before the step."""
-    target: Array
-    """(..., 2) ``x y``"""
-    to_go: Array
-    """(..., R) to the target's usual place, along the shortest way that keeps clear of walls."""
-    previous_to_go: Array
-    """(..., R) the same before the step."""
-    full_turns: Array
-    """(..., R) int: whole turns, without ever turning to the other side."""
-    previous_full_turns: Array
-    """(..., R) int: whole turns before the step."""
-    forward_steps: Array
-    """(..., R) steps forward in this episode, this one included; one along a curve counts half."""
-    ranges: Array
-    """(..., R, 91) what each robot's lidar reads, as far as the agent sees."""
-    twist: Array
-    """(..., R, 2) what the action asked for: forward [m/s] and turn [rad/s]."""
-    target_heading: Array
-    """(...) of the target, where the goal asks for one; else 0."""
-    obstacle_distance: Array
-    """(..., R) to the middle of the nearest thing that is neither wall nor robot, such as a cart; 100 where there is none."""
-    achieved: Array
-    """(...) share of the goal that is achieved; 1 and more where it is reached."""
-    previous_achieved: Array
-    """(...) share of the goal that was achieved before the step."""
     collision_ends: bool = True
     """Whether a collision ends the episode."""
+
+    @property
+    def case(self) -> Array:
+        """(...) int: number of the case."""
+        return self.after.case
+
+    @property
+    def step(self) -> Array:
+        """(...) int: steps of this episode, this one included."""
+        return self.after.step
+
+    @property
+    def hit(self) -> Array:
+        """(..., R) bool: who met a wall or the other robot."""
+        return self.after.hit
+
+    @property
+    def in_target(self) -> Array:
+        """(..., R) bool: who is in the target."""
+        return self.after.in_target
+
+    @property
+    def was_in_target(self) -> Array:
+        """(..., R) bool: who was in the target before the step."""
+        return self.before.in_target
+
+    @property
+    def move(self) -> Array:
+        """(..., R) int: what each robot did: 0 nothing, 1 forward, 2 back, 3 left, 4 right, 5 forward_left, 6 forward_right."""
+        return self.after.move
+
+    @property
+    def previous_move(self) -> Array:
+        """(..., R) int: what each robot did the step before; -1 in the first."""
+        return self.before.move
+
+    @property
+    def pose(self) -> Array:
+        """(..., R, 3) ``x y theta``"""
+        return self.after.pose
+
+    @property
+    def previous_pose(self) -> Array:
+        """(..., R, 3) ``x y theta`` before the step."""
+        return self.before.pose
+
+    @property
+    def target(self) -> Array:
+        """(..., 2) ``x y``"""
+        return self.after.target
+
+    @property
+    def to_go(self) -> Array:
+        """(..., R) to the target's usual place, along the shortest way that keeps clear of walls."""
+        return self.after.to_go
+
+    @property
+    def previous_to_go(self) -> Array:
+        """(..., R) the same before the step."""
+        return self.before.to_go
+
+    @cached_property
+    def full_turns(self) -> Array:
+        """(..., R) int: whole turns, without ever turning to the other side."""
+        return _whole_turns(self.after.rotation)
+
+    @cached_property
+    def previous_full_turns(self) -> Array:
+        """(..., R) int: whole turns before the step."""
+        return _whole_turns(self.before.rotation)
+
+    @property
+    def forward_steps(self) -> Array:
+        """(..., R) steps forward in this episode, this one included; one along a curve counts half."""
+        return self.after.forward_steps
+
+    @property
+    def ranges(self) -> Array:
+        """(..., R, 91) what each robot's lidar reads, as far as the agent sees."""
+        return self.after.ranges
+
+    @property
+    def twist(self) -> Array:
+        """(..., R, 2) what the action asked for: forward [m/s] and turn [rad/s]."""
+        return self.after.twist
+
+    @property
+    def target_heading(self) -> Array:
+        """(...) of the target, where the goal asks for one; else 0."""
+        return self.after.target_heading
+
+    @property
+    def obstacle_distance(self) -> Array:
+        """(..., R) to the middle of the nearest thing that is neither wall nor robot, such as a cart; 100 where there is none."""
+        return self.after.obstacle_distance
+
+    @property
+    def achieved(self) -> Array:
+        """(...) share of the goal that is achieved; 1 and more where it is reached."""
+        return self.after.achieved
+
+    @property
+    def previous_achieved(self) -> Array:
+        """(...) share of the goal that was achieved before the step."""
+        return self.before.achieved
 
     @property
     def robots(self) -> int:
@@ -178,20 +344,22 @@ class Transition:
 
     def select(self, index: Any) -> Transition:
         """The transition of one world, or of some, out of many."""
-        values = {field.name: getattr(self, field.name) for field in fields(self)}
-        return Transition(**{name: v if name in COMMON_FIELDS else v[index] for name, v in values.items()})
+        before, after = (EpisodeState.of(state).select(index) for state in (self.before, self.after))
+        return replace(self, before=before, after=after)
 
-
-COMMON_FIELDS = ("max_steps", "collision_ends")
-"""Fields that are the same for all worlds."""
 
 TRANSITION_FIELDS = tuple(
     sorted(
-        {field.name for field in fields(Transition)}
+        {field.name for field in fields(Transition) if field.name not in ("before", "after")}
         | {name for name, value in vars(Transition).items() if isinstance(value, property | cached_property)}
     )
 )
 """Everything that a transition tells, by name."""
+
+
+def _whole_turns(rotation: Array) -> Array:
+    """(..., R) int"""
+    return (np.abs(rotation) / (2.0 * math.pi)).astype(np.int64)
 
 
 def distance_to_target(pose: Array, target: Array) -> Array:

@@ -22,15 +22,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
-from kit.learning.policies.policies import (
-    ActionSampling,
-    Activation,
-    LinearLayer,
-    Policy,
-    PolicyNetwork,
-    action_counts,
-    task_interface,
-)
+from kit.learning.policies.policy import ActionSampling, Policy, action_counts, task_interface
+from kit.learning.policies.policy_network import Activation, LinearLayer, PolicyNetwork
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.deep import LEARNING_RATE_FACTOR, EpisodeReporter

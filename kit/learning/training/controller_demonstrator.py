@@ -16,7 +16,8 @@ import numpy as np
 from kit.arrays import Float32Array, FloatArray
 from kit.controllers import ControllerFile, controller_title
 from kit.geometry import Pose
-from kit.learning.policies.policies import Policy, load_policy
+from kit.learning.policies.policy import Policy
+from kit.learning.policies.policy_file import load_policy
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.training.demonstrations import (
     DemonstrationError,

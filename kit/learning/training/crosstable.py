@@ -11,7 +11,8 @@ from typing import Any, Final
 import numpy as np
 
 from kit.document.blocks import Cell, CellStyle, Column, Table
-from kit.learning.policies.evaluation import Evaluator, derive_seed
+from kit.learning.policies.evaluation import Evaluator
+from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import RunConfig, RunError, TrainingRun
 from kit.learning.training.training_sweep import ALL_CASES, TrainingSweep

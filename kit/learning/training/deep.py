@@ -23,7 +23,7 @@ from torch import nn
 from kit.arrays import FloatArray
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
 from kit.learning.policies.export import export_critic, export_network, export_sampling
-from kit.learning.policies.policies import Policy, action_counts, task_interface
+from kit.learning.policies.policy import Policy, action_counts, task_interface
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.learner import TrainingCallback

@@ -15,7 +15,7 @@ from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.env import build_batch_scene, lidar_places
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.policies.agent_view import AgentView, ExpectedReturns, build_agent_view
-from kit.learning.policies.policies import Policy, PolicyPlayer
+from kit.learning.policies.policy import Policy, PolicyPlayer
 from kit.learning.training.runs import TrainingRun
 from kit.render.scene import Scene, Trail
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from kit.arrays import Float32Array, FloatArray
 from kit.learning.environment.batch import ALL_WORLDS, BatchEnv
-from kit.learning.policies.policies import Policy
+from kit.learning.policies.policy import Policy
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.transition import average_speeds
@@ -95,7 +95,7 @@ class PoseObserver(BatchEnv):
         state.pose[0] = poses
         state.speed[:] = state.twist[:] = 0.0
         state.step[:] = 0
-        self._find_arrivals()
+        self._note_arrivals()
         return self._observe(ALL_WORLDS, 1, is_fresh=True)
 
     def follow(self, poses: FloatArray, twists: FloatArray) -> Float32Array:
@@ -105,7 +105,7 @@ class PoseObserver(BatchEnv):
         state.twist[:] = twists
         state.pose[0] = poses
         state.step += 1
-        self._find_arrivals()
+        self._note_arrivals()
         return self._observe(ALL_WORLDS, 1, is_fresh=False)
 
     def twists_to(self, poses: FloatArray) -> FloatArray:
@@ -116,11 +116,11 @@ class PoseObserver(BatchEnv):
     @property
     def has_arrived(self) -> bool:
         """Whether every robot is in the target."""
-        return self._goal.has_targets and bool(self._state.in_target.all())
+        return self.task.goal.has_standing_targets and bool(self._state.in_target.all())
 
-    def _find_arrivals(self) -> None:
+    def _note_arrivals(self) -> None:
         state = self._state
-        state.in_target[:] = self._is_in_target(state.pose, state.target, state.target_row)
+        state.in_target[:] = self._find_arrivals(state.pose, state.target, state.target_row)
 
 
 class RecordedDemonstrator:

@@ -19,9 +19,9 @@ from torch import nn
 from torch.nn import functional
 
 from kit.arrays import FloatArray
-from kit.learning.policies.evaluation import derive_seed
 from kit.learning.policies.export import convert_modules
-from kit.learning.policies.policies import ActionSampling, Policy, action_counts, task_interface
+from kit.learning.policies.policy import ActionSampling, Policy, action_counts, task_interface
+from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import Algorithm

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 from kit.arrays import FloatArray
 from kit.learning.environment.episode_stats import EpisodeStats
-from kit.learning.policies.policies import Policy
+from kit.learning.policies.policy import Policy
 
 
 class StopLearning(Exception):

@@ -12,7 +12,7 @@ from dataclasses import dataclass, fields, replace
 from types import MappingProxyType, UnionType
 from typing import Any, Final, TypeAlias, get_args, get_origin, get_type_hints
 
-from kit.learning.policies.policies import Activation
+from kit.learning.policies.policy_network import Activation
 from kit.learning.tasks.learning_task import PRESET_NAMES
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.runs import PresetName, RunError

@@ -17,7 +17,7 @@ from kit.learning.tasks.catalogue import task_names
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.student_reward import StudentReward
 from kit.learning.tasks.task_reader import read_task
-from kit.learning.tasks.transition import Transition
+from kit.learning.tasks.transition import EpisodeState, Transition
 from kit.learning.training.algorithms import (
     IMITATION_ALGORITHMS,
     Algorithm,
@@ -82,19 +82,14 @@ def check_reward(file: Path, task: LearningTask) -> None:
 
 def _endings(transition: Transition) -> Iterator[Transition]:
     """The step as a collision, as an arrival and as the last one."""
-    yield replace(transition, hit=np.ones_like(transition.hit))
-    yield replace(
-        transition,
-        hit=np.zeros_like(transition.hit),
-        in_target=np.ones_like(transition.in_target),
-        achieved=np.ones_like(transition.achieved),
+    after = EpisodeState.of(transition.after)
+    unhurt = replace(after, hit=np.zeros_like(after.hit))
+    arrived = replace(unhurt, in_target=np.ones_like(after.in_target), achieved=np.ones_like(after.achieved))
+    last = replace(
+        unhurt, achieved=np.zeros_like(after.achieved), step=np.full_like(after.step, transition.max_steps)
     )
-    yield replace(
-        transition,
-        hit=np.zeros_like(transition.hit),
-        achieved=np.zeros_like(transition.achieved),
-        step=np.full_like(transition.step, transition.max_steps),
-    )
+    for state in (replace(after, hit=np.ones_like(after.hit)), arrived, last):
+        yield replace(transition, after=state)
 
 
 def _check_demonstrations(config: RunConfig, algorithm: Algorithm, task: LearningTask) -> None:

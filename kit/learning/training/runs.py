@@ -23,7 +23,8 @@ from typing import IO, Any, Final, Literal, get_args
 
 from kit.array_archives import READ_ERRORS, check_arrays, check_stored
 from kit.field_types import check_field_types
-from kit.learning.policies.policies import Policy, load_policy
+from kit.learning.policies.policy import Policy
+from kit.learning.policies.policy_file import load_policy
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.events import (
     Evaluated,

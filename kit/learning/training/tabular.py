@@ -21,13 +21,8 @@ from kit.arrays import FloatArray, IntArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.episode_stats import EpisodeStatsRecorder
-from kit.learning.policies.policies import (
-    ActionSampling,
-    ActionValueTable,
-    Policy,
-    action_counts,
-    task_interface,
-)
+from kit.learning.policies.policy import ActionSampling, Policy, action_counts, task_interface
+from kit.learning.policies.policy_network import ActionValueTable
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.learner import TrainingCallback

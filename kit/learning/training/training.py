@@ -24,10 +24,13 @@ from kit.host.failure import StudentCodeError
 from kit.learning.environment.batch import BatchEnv, RewardError
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
 from kit.learning.maps.batch_map import UnsupportedWorld
-from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator, derive_seed
-from kit.learning.policies.policies import Policy, PolicyError, save_policy
+from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator
+from kit.learning.policies.policy import Policy, PolicyError
+from kit.learning.policies.policy_file import save_policy
+from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.actions import DiscreteActions
-from kit.learning.tasks.learning_task import CasePractice, LearningTask, practices
+from kit.learning.tasks.curriculum import CasePractice, practices
+from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.rewards import RewardFunction
 from kit.learning.tasks.student_reward import RewardFileError, StudentReward
 from kit.learning.tasks.task_spec import TaskSpec

@@ -29,7 +29,8 @@ from kit.document.blocks import Cell, CellStyle, Column, Table
 from kit.field_types import check_field_types
 from kit.host.job_executors import in_shard, read_result
 from kit.learning.policies.confidence_intervals import wilson_interval
-from kit.learning.policies.evaluation import Evaluator, derive_seed
+from kit.learning.policies.evaluation import Evaluator
+from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import (
     PresetName,

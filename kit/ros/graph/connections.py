@@ -15,20 +15,22 @@ UNHEARD_BY_DESIGN: Final = frozenset({"/rosout", "/parameter_events"})
 """Topics that every node has and that need no other end."""
 MAX_MISTAKES: Final = 3
 MAX_NAMES: Final = 6
+MAX_NOTED: Final = 1000
+"""Publishers and subscriptions of all time that are noted."""
 
 
 @dataclass(frozen=True, slots=True)
 class NodeConnections:
-    """The nodes that a program had when its episode ended."""
+    """The nodes that a program had when its episode ended, and what they and others connected to before."""
 
     nodes: tuple[str, ...] = ()
-    """Their full names, sorted."""
+    """Full names of the nodes at the end, sorted."""
     mistakes: tuple[str, ...] = ()
     """Sentences about connections without another end, such as a subscription of a topic that nobody publishes."""
     heard: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """Topics to which each node subscribes, sorted, without those that every node has."""
+    """Topics to which each node has subscribed at any time, sorted, without those that every node has."""
     profiles: tuple[str, ...] = ()
-    """One line for each publisher and subscription, ``/node publishes /topic RELIABLE VOLATILE 10``, sorted."""
+    """One line for each publisher and subscription of any time, ``/node publishes /topic RELIABLE VOLATILE 10``, sorted."""
 
 
 class ConnectionsReader:
@@ -37,22 +39,37 @@ class ConnectionsReader:
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
         self._others = frozenset(graph.directory.nodes)
+        self._noted_version = -1
+        self._heard: dict[str, set[str]] = {}
+        self._profiles: set[str] = set()
+
+    def note(self) -> None:
+        """Takes note of the connections of this moment, if they have changed. Of very many, the first are noted."""
+        directory = self._graph.directory
+        if directory.version == self._noted_version or len(self._profiles) > MAX_NOTED:
+            return
+        with self._graph.lock:
+            self._noted_version = directory.version
+            for handle in directory.nodes:
+                if handle not in self._others:
+                    self._heard.setdefault(handle.full_name, set()).update(_heard_topics(handle))
+                    self._profiles.update(_profiles(handle))
 
     def read(self) -> NodeConnections:
+        self.note()
         with self._graph.lock:
             directory = self._graph.directory
             handles = [handle for handle in directory.nodes if handle not in self._others]
             mistakes = [mistake for handle in handles for mistake in _mistakes(directory, handle)]
-            heard = {handle.full_name: _heard_topics(handle) for handle in handles}
-            profiles = [line for handle in handles for line in _profiles(handle)]
+            names = sorted({handle.full_name for handle in handles})
+        heard = {name: tuple(sorted(topics)) for name, topics in self._heard.items()}
         return NodeConnections(
-            tuple(sorted(heard)), tuple(mistakes[:MAX_MISTAKES]), heard, tuple(sorted(profiles))
+            tuple(names), tuple(mistakes[:MAX_MISTAKES]), heard, tuple(sorted(self._profiles))
         )
 
 
-def _heard_topics(handle: NodeEntry) -> tuple[str, ...]:
-    topics = {subscription.topic_name for subscription in handle.subscriptions}
-    return tuple(sorted(topics - UNHEARD_BY_DESIGN))
+def _heard_topics(handle: NodeEntry) -> set[str]:
+    return {subscription.topic_name for subscription in handle.subscriptions} - UNHEARD_BY_DESIGN
 
 
 def _profiles(handle: NodeEntry) -> Iterator[str]:

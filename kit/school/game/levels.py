@@ -9,7 +9,9 @@ from pathlib import Path
 from typing import Final
 
 from kit.geometry import Pose
-from kit.learning.tasks.learning_task import REACH_TARGET, CoverGoal, FollowGoal, Goal, PatrolGoal
+from kit.learning.tasks.goals.goal import Goal
+from kit.learning.tasks.goals.registry import read_goal
+from kit.learning.tasks.goals.target import REACH_TARGET
 from kit.plain_text import quoted, suggestion
 from kit.run.scenario import Scenario, find_scenario
 from kit.school.lessons.reading import lesson_number, lessons_folder
@@ -176,11 +178,11 @@ class GameLevel:
     """A drive ends after this time [s]."""
     goal: Goal = REACH_TARGET
     targets: tuple[tuple[float, float], ...] = ()
-    """Targets of a ``PatrolGoal`` [m, m]."""
+    """Those of a route [m, m]."""
     any_order: bool = False
     """Whether the targets may be reached in any order."""
     leader: str = ""
-    """The model that a ``FollowGoal`` follows."""
+    """The model that is followed, by a goal that needs one."""
     reference: str = ""
     """The level whose reference drive is this one's too; empty: it has its own."""
     conditions: LevelConditions = UNCHANGED
@@ -214,7 +216,7 @@ class GameLevel:
     def find_scenario(self) -> Scenario:
         """Loads the scenario that is driven, under the level's conditions. Raises LookupError and WorldError."""
         scenario = replace(find_scenario(self.map_name, self.case, None), level=self.id)
-        if isinstance(self.goal, PatrolGoal) and scenario.case is not None:
+        if self.targets and scenario.case is not None:
             first = replace(scenario.case, target=self.targets[0])
             scenario = replace(scenario, case=first, targets=self.goal.route(self.targets))
         return apply_conditions(scenario, self.conditions)
@@ -312,7 +314,8 @@ def _read_levels(section: Section, worlds: Mapping[str, GameWorld]) -> Iterator[
 
 def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) -> GameLevel:
     targets = each.points("targets", at_least=1) if each.has("targets") else ()
-    goal = _read_goal(each, bool(targets))
+    leader, goal = each.text("leader", ""), read_goal(each.section("goal", None))
+    _check_goal(each, goal, targets, leader)
     return GameLevel(
         id=identity,
         title=each.name("title"),
@@ -329,7 +332,7 @@ def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) 
         goal=goal,
         targets=targets,
         any_order=each.flag("any_order", False),
-        leader=each.text("leader", ""),
+        leader=leader,
         conditions=_read_conditions(each),
         rules=ExtraRules(
             each.integer("max_lines", MAX_LINES, minimum=1, maximum=1000),
@@ -338,14 +341,16 @@ def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) 
     )
 
 
-def _read_goal(each: Section, has_targets: bool) -> Goal:
-    if has_targets:
-        return PatrolGoal(each.integer("rounds", 1, minimum=1, maximum=100))
-    if each.has("cover"):
-        return CoverGoal(share=each.number("cover", above=0, maximum=1), radius=0.2)
-    if each.has("follow"):
-        return FollowGoal(time=each.number("follow", above=0, maximum=3600))
-    return REACH_TARGET
+def _check_goal(each: Section, goal: Goal, targets: tuple[tuple[float, float], ...], leader: str) -> None:
+    """Notes what a level's goal needs and the level does not give, or the other way round."""
+    for needs, given, key, what in (
+        (goal.is_route, bool(targets), "targets", "a list of points"),
+        (goal.needs_leader, bool(leader), "leader", "a model that moves"),
+    ):
+        if needs and not given:
+            each.error(f'the goal {goal.kind} needs "{key}": {what}', "goal")
+        if given and not needs:
+            each.error(f'the goal {goal.kind} has no "{key}"', key)
 
 
 def _read_conditions(each: Section) -> LevelConditions:

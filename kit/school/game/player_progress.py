@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Final
 
 from kit.controllers import kit_controllers
-from kit.learning.tasks.learning_task import PatrolGoal
 from kit.school.game.levels import (
     CHALLENGES_WORLD,
     GameLevel,
@@ -277,7 +276,7 @@ def today() -> datetime.date:
 def daily_level(day: datetime.date) -> GameLevel:
     """The level of a day: one of the levels with a single robot, on every second day in fog. It is always open."""
     chance = random.Random(day.toordinal())
-    levels = [each for each in all_levels() if each.world != "pair" and not isinstance(each.goal, PatrolGoal)]
+    levels = [each for each in all_levels() if each.world != "pair" and not each.goal.is_route]
     level = chance.choice(levels)
     fog = level.conditions.fog or chance.random() < 0.5
     title = f"{day.isoformat()}: {level.title}{' in fog' if fog else ''}"

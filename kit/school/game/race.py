@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -13,30 +12,25 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
-
 from kit.controllers import ControllerFile, find_controller, kit_controllers
 from kit.host.failure import Failure, FailureKind
 from kit.host.private_folder import private_folder
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.probe import is_level_available
-from kit.learning.maps.batch_map import FLOOR_CELL, hull_radius, hull_width, load_batch_map, measure_floor
-from kit.learning.tasks.learning_task import CoverGoal, FollowGoal, PatrolGoal
-from kit.render.scene import Disc
 from kit.run.episode import EndCondition, EndReason, run_until, when, when_failed
 from kit.run.lockstep import Observer
-from kit.run.metrics import MetricsRecorder, is_in_target
+from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel, LevelConditions
+from kit.school.game.objective import Objective
 from kit.school.game.starts import OWN_SEED, scenario_from, seeds_of
-from kit.sim.simulation import Simulation
-from kit.world.catalogue import MapCard
+from kit.sim.simulation import STEP_SIZE_S, Simulation
 
 if TYPE_CHECKING:
-    from kit.learning.policies.policies import Policy
+    from kit.learning.policies.policy import Policy
 
 
 DOCK_RADIUS: Final = 0.25
@@ -45,159 +39,6 @@ DOCK_TIME: Final = 1.0
 """Standing still for this time charges the battery [s]."""
 STILL: Final = 1e-4
 """A robot that moves less than this in a tick stands still [m]."""
-
-
-class Objective(ABC):
-    """What is to be achieved. ``on_step`` is called after every tick until it is."""
-
-    reached_s: float | None = None
-    """When it was achieved [simulated s]."""
-    splits: tuple[float, ...] = ()
-    """When each part of it was achieved [simulated s]."""
-    target_m: float | None = None
-    """From the hull of the robot that is farthest to the nearest target that is left [m]; None where there is none."""
-
-    @abstractmethod
-    def on_step(self, simulation: Simulation) -> None: ...
-
-    def put_back(self) -> None:  # noqa: B027 - only where what was achieved lies along a way
-        """A robot has bumped and was put back to its start."""
-
-    @property
-    @abstractmethod
-    def progress(self) -> str:
-        """How much of it is achieved, in a few words; empty where there is nothing to count."""
-
-    @property
-    def discs(self) -> tuple[Disc, ...]:
-        """The targets that are still to be reached."""
-        return ()
-
-
-class TargetObjective(Objective):
-    """All robots are in the case's target at the same time."""
-
-    progress = ""
-
-    def __init__(self, metrics: MetricsRecorder, scenario: Scenario) -> None:
-        self._metrics = metrics
-        case = scenario.case
-        self._discs = () if case is None else (Disc(*case.target, case.target_radius),)
-
-    def on_step(self, simulation: Simulation) -> None:
-        self.reached_s = self._metrics.all_reached_s
-        self.target_m = self._metrics.metrics.target_m
-
-    @property
-    def discs(self) -> tuple[Disc, ...]:
-        return self._discs
-
-
-class PatrolObjective(Objective):
-    """All robots are in each target at the same time, one target after the other or in any order."""
-
-    def __init__(self, level: GameLevel, scenario: Scenario) -> None:
-        assert isinstance(level.goal, PatrolGoal)
-        radius = 0.25 if scenario.case is None else scenario.case.target_radius
-        self._all = [Disc(x, y, radius) for x, y in level.goal.route(level.targets)]
-        self._left = list(self._all)
-        self._any_order = level.any_order
-        self._count = len(self._all)
-        self._partners = scenario.partners
-
-    def on_step(self, simulation: Simulation) -> None:
-        if not self._left:
-            return
-        self.target_m = min(
-            max(simulation.hull_distance(name, (disc.x, disc.y)) for name in self._partners)
-            for disc in self.discs
-        )
-        for disc in self.discs:
-            if all(is_in_target(simulation, name, (disc.x, disc.y), disc.radius) for name in self._partners):
-                self._left.remove(disc)
-                now = simulation.time_ns / 1e9
-                self.splits = (*self.splits, now)
-                if not self._left:
-                    self.reached_s = now
-                return
-
-    def put_back(self) -> None:
-        """All targets are to be reached again: else a bump would be the shortest way home."""
-        self._left, self.splits = list(self._all), ()
-
-    @property
-    def progress(self) -> str:
-        return f"{self._count - len(self._left)} of {self._count} targets"
-
-    @property
-    def discs(self) -> tuple[Disc, ...]:
-        return tuple(self._left) if self._any_order else tuple(self._left[:1])
-
-
-class CoverObjective(Objective):
-    """A share of the floor is driven over."""
-
-    def __init__(self, goal: CoverGoal, card: MapCard, scenario: Scenario) -> None:
-        assert scenario.robot is not None  # a level has one
-        batch_map = load_batch_map(card, scenario.partners)
-        floor, start = measure_floor(batch_map), scenario.starts[0]
-        self._floor = floor.reached_from(start.x, start.y, hull_width(batch_map)) & (
-            floor.clearance > max(hull_radius(batch_map) - goal.radius, 0.0)
-        )
-        self._x, self._y = np.meshgrid(floor.x, floor.y)
-        self._covered = np.zeros_like(self._floor)
-        self._robot = scenario.robot
-        self._goal = goal
-
-    @property
-    def share(self) -> float:
-        """The share of the floor that is covered."""
-        return float((self._covered & self._floor).sum() / self._floor.sum())
-
-    def on_step(self, simulation: Simulation) -> None:
-        if simulation.tick % 5:  # 25 mm at full speed, half a cell
-            return
-        pose, radius = simulation.pose(self._robot), self._goal.radius
-        column = round((pose.x - self._x[0, 0]) / FLOOR_CELL)
-        row = round((pose.y - self._y[0, 0]) / FLOOR_CELL)
-        reach = math.ceil(radius / FLOOR_CELL)
-        window = (
-            slice(max(row - reach, 0), max(row + reach + 1, 0)),
-            slice(max(column - reach, 0), max(column + reach + 1, 0)),
-        )
-        self._covered[window] |= np.hypot(self._x[window] - pose.x, self._y[window] - pose.y) <= radius
-        if self.share >= self._goal.share:
-            self.reached_s = simulation.time_ns / 1e9
-
-    @property
-    def uncovered(self) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-        """(k, 2) the middles of the floor's cells that are still to be covered [m]."""
-        left = self._floor & ~self._covered
-        return np.stack([self._x[left], self._y[left]], axis=1)
-
-    @property
-    def progress(self) -> str:
-        return f"{self.share:.0%} of {self._goal.share:.0%} covered"
-
-
-class FollowObjective(Objective):
-    """The robot stays near a leader for a time."""
-
-    def __init__(self, goal: FollowGoal, leader: str, scenario: Scenario) -> None:
-        self._goal, self._leader, self._partners = goal, leader, scenario.partners
-        self._seconds = 0.0
-
-    def on_step(self, simulation: Simulation) -> None:
-        leader = simulation.pose(self._leader)
-        distances = [math.dist(simulation.pose(name)[:2], leader[:2]) for name in self._partners]
-        if all(self._goal.nearest <= each <= self._goal.farthest for each in distances):
-            self._seconds += simulation.step_size
-        if self._seconds >= self._goal.time:
-            self.reached_s = simulation.time_ns / 1e9
-
-    @property
-    def progress(self) -> str:
-        return f"{self._seconds:.1f} of {self._goal.time:g} s near the leader"
 
 
 class Battery:
@@ -223,19 +64,6 @@ class Battery:
         is_docked = any(math.dist((x, y), dock) <= DOCK_RADIUS for dock in self._conditions.docks)
         if is_docked and self._still_s >= DOCK_TIME:
             self.charge = self._conditions.charge
-
-
-def objective_of(level: GameLevel, scenario: Scenario, metrics: MetricsRecorder) -> Objective:
-    """The objective of a level's drive."""
-    match level.goal:
-        case PatrolGoal():
-            return PatrolObjective(level, scenario)
-        case CoverGoal():
-            return CoverObjective(level.goal, level.map_card, scenario)
-        case FollowGoal():
-            return FollowObjective(level.goal, level.leader, scenario)
-        case _:
-            return TargetObjective(metrics, scenario)
 
 
 STANDING_SPEED: Final = 0.02
@@ -293,16 +121,17 @@ class RaceFinish:
 class RaceReferee(Observer):
     """Observes a runner: when all driven robots have reached the target, how often they collided, and any foul."""
 
-    def __init__(self, level: GameLevel, scenario: Scenario) -> None:
-        """``scenario``: the level's own, as it was loaded."""
+    def __init__(self, level: GameLevel, scenario: Scenario, step_size: float = STEP_SIZE_S) -> None:
+        """``scenario``: the level's own, as it was loaded; ``step_size``: of the runner's ticks [s]."""
         self._level = level
         self._scenario = scenario
+        self._step_size = step_size
         self._last_tick = -1
         self._reset()
 
     def _reset(self) -> None:
         self._metrics = MetricsRecorder.for_scenario(self._scenario)
-        self.objective: Objective = objective_of(self._level, self._scenario, self._metrics)
+        self.objective = Objective(self._level, self._scenario, self._step_size)
         self.battery = Battery(self._level.conditions, self._scenario.partners[0])
         self._seconds = 0.0
         self._foul = ""
@@ -456,7 +285,7 @@ def run_again(level: GameLevel, recording: Recording) -> tuple[RaceFinish, Recor
     if (recording.place, recording.case) != (scenario.name, level.case):
         raise ValueError(f"this is a drive of {recording.place} {recording.case or ''}, not of {level.title}")
     with Session(scenario, seed=recording.seed, step_size=recording.step_size) as session:
-        referee = RaceReferee(level, scenario)
+        referee = RaceReferee(level, scenario, recording.step_size)
         recorder = Recorder.for_scenario(scenario, session.runner.simulation)
         session.runner.observers += [referee, recorder]
         session.play_back(recording)

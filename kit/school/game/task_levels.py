@@ -14,16 +14,8 @@ from kit.geometry import Pose
 from kit.learning.authoring.task_check import check_task
 from kit.learning.maps.batch_map import UnsupportedWorld
 from kit.learning.tasks.catalogue import find_task_file, task_names, tasks_folder
-from kit.learning.tasks.learning_task import (
-    AvoidGoal,
-    FollowGoal,
-    LearningTask,
-    PatrolGoal,
-    TargetGoal,
-    TaskCase,
-    UnknownTask,
-    WallGoal,
-)
+from kit.learning.tasks.learning_task import LearningTask, UnknownTask
+from kit.learning.tasks.task_case import TaskCase
 from kit.learning.tasks.task_reader import read_task
 from kit.plain_text import quoted
 from kit.run.scenario import BEACON, Scenario
@@ -150,10 +142,8 @@ def task_level(file: Path) -> TaskLevel:
         skill=f"no more than {limit:g} s; then it is over",
         time_limit=limit,
         goal=task.goal,
-        targets=tuple((each.x, each.y) for each in case.targets.poses)
-        if isinstance(task.goal, PatrolGoal)
-        else (),
-        leader=case.targets.model or "" if isinstance(task.goal, FollowGoal) else "",
+        targets=tuple((each.x, each.y) for each in case.targets.poses) if task.goal.is_route else (),
+        leader=case.targets.model or "" if task.goal.needs_leader else "",
         task=task,
     )
 
@@ -168,11 +158,11 @@ def _refused(task: LearningTask, case: TaskCase) -> Iterator[str]:
     """Names the features that the task asks for and a level cannot have."""
     if task.robots > MAX_ROBOTS:
         yield f"{task.robots} robots, only {MAX_ROBOTS} that are driven as one"
-    if isinstance(task.goal, WallGoal | AvoidGoal):
-        yield f'the goal "{task.goal.description}": it measures targets, covered floor and a leader only'
-    if isinstance(task.goal, TargetGoal) and task.goal.heading_tolerance is not None:
+    if task.goal.race_refusal:
+        yield f'the goal "{task.goal.description}": {task.goal.race_refusal}'
+    if task.goal.heading_tolerance is not None:
         yield '"heading_tolerance": any heading counts as arrived'
-    if isinstance(task.goal, TargetGoal | PatrolGoal):
+    if task.goal.has_standing_targets:
         if task.measured_to == "axle":
             yield '"measured_to: axle": it measures from the hull to the target'
         if case.targets.model is not None:

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Final
 
 from kit.fields.occupancy_grid import occupancy_grid_of
 from kit.geometry import Pose
-from kit.learning.tasks.learning_task import CoverGoal, FollowGoal
 from kit.msg.geometry_msgs import Twist
 from kit.run.lockstep import Observer
 from kit.run.metrics import is_in_target
@@ -96,7 +95,7 @@ def recorded_scenario(level: GameLevel, recording: Recording) -> Scenario:
 def shared_scenario(level: GameLevel) -> Scenario:
     """A level's scenario with a second robot beside the first. Raises CannotShare, LookupError, WorldError."""
     scenario = level.find_scenario()
-    if len(scenario.partners) != 1 or isinstance(level.goal, CoverGoal | FollowGoal) or scenario.case is None:
+    if len(scenario.partners) != 1 or not level.goal.has_standing_targets or scenario.case is None:
         raise CannotShare(f"{level.title} is not a race to a target for one robot: choose another level.")
     first = scenario.driven
     assert first is not None  # it has a partner

@@ -7,8 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from kit.learning.environment.grid_world import CLIFF, GridCell, GridWorld
-from kit.learning.training.grid_learner import GridLearner, GridLearnerSettings, NetworkLearner, PolicyLearner
+from kit.learning.grid.grid_learner import GridLearner
+from kit.learning.grid.grid_world import CLIFF, GridCell
+from kit.learning.grid.registry import make_grid_learner
 from kit.plain_text import counted, wrap
 from kit.render.curve import Axes, Curve, draw_curves, paste_frame, write_text
 from kit.render.encode import AsciiEncoder, Encoder, Frame
@@ -199,7 +200,7 @@ def _described(name: str, learner: GridLearner) -> str:
 
 
 def _new_learners(scene: LearningScene) -> tuple[GridLearner, ...]:
-    return tuple(_make_learner(scene.world, settings) for settings in scene.learners)
+    return tuple(make_grid_learner(scene.world, settings) for settings in scene.learners)
 
 
 def _updates_of(learner: GridLearner, episodes: int) -> int:
@@ -216,9 +217,3 @@ def _smoothed(values: Sequence[float], window: int) -> np.ndarray[tuple[int, ...
     starts = np.maximum(0, ends - window)
     means: np.ndarray[tuple[int, ...], np.dtype[np.float64]] = (sums[ends] - sums[starts]) / (ends - starts)
     return means
-
-
-def _make_learner(world: GridWorld, settings: GridLearnerSettings) -> GridLearner:
-    """The learner that the settings name: with a table, with a network, or of a policy."""
-    classes: dict[str, type[GridLearner]] = {"dqn": NetworkLearner, "ppo": PolicyLearner}
-    return classes.get(settings.algorithm, GridLearner)(world, settings)

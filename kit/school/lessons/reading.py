@@ -12,8 +12,9 @@ from string import ascii_uppercase
 from typing import Final
 
 from kit.document.markup import BLOCK_INDENT, MarkupError, parse_markup, wrap_blocks
-from kit.learning.environment.grid_world import GridMapError, GridRewards, GridWorld
-from kit.learning.training.grid_learner import GRID_ALGORITHMS, GridLearnerSettings
+from kit.learning.grid.grid_learner import GridLearnerSettings
+from kit.learning.grid.grid_world import GridMapError, GridRewards, GridWorld
+from kit.learning.grid.registry import GRID_LEARNERS
 from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.school.lessons.markdown import markdown_to_markup
@@ -484,7 +485,7 @@ def _read_learners(scene: Section) -> Iterator[tuple[GridLearnerSettings, str]]:
         scene.error(f"at most {MAX_LEARNERS} learners fit beside each other", "learners")
     known = GridLearnerSettings()
     for each in sections:
-        algorithm = each.choice("algorithm", {name: name for name in GRID_ALGORITHMS}, known.algorithm)
+        algorithm = each.choice("algorithm", {name: name for name in GRID_LEARNERS}, known.algorithm)
         settings = GridLearnerSettings(
             algorithm,
             each.number("alpha", known.alpha, above=0, maximum=10),

@@ -8,8 +8,8 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal
 
-from kit.learning.environment.grid_world import GridWorld
-from kit.learning.training.grid_learner import GridLearnerSettings
+from kit.learning.grid.grid_learner import GridLearnerSettings
+from kit.learning.grid.grid_world import GridWorld
 
 if TYPE_CHECKING:
     from kit.host.sandbox.confinement import Level

@@ -7,13 +7,9 @@ from types import MappingProxyType
 from typing import Final
 
 from kit.document.rows import PLAIN, Row, row
-from kit.layers.drawing import (
-    MAX_ENTITIES_IN_PICTURE,
-    DrawingLine,
-    GlyphStyle,
-    draw_graph,
-    draw_layer_grid,
-)
+from kit.layers.drawing.graph import MAX_ENTITIES_IN_PICTURE, draw_graph
+from kit.layers.drawing.layer_grid import draw_layer_grid
+from kit.layers.drawing.spans import DrawingLine, GlyphStyle
 from kit.layers.guided_tour import TourPage
 from kit.layers.requirements import LayerCase
 

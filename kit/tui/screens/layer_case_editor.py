@@ -15,11 +15,8 @@ from textual.widgets import Input
 from kit.dialogue.actions import ScreenAction, ScreenActions, letter
 from kit.document.rows import row, spread
 from kit.layers.case_table import CaseTable, RowKind
-from kit.layers.drawing import (
-    GlyphStyle,
-    draw_matrix,
-    to_plain_lines,
-)
+from kit.layers.drawing.matrix import draw_matrix
+from kit.layers.drawing.spans import GlyphStyle, to_plain_lines
 from kit.layers.guided_tour import TourPage as Step
 from kit.layers.requirements import LayerCase, LayerCaseError
 from kit.tui.rows.key_rows import bindings, footer

@@ -17,10 +17,8 @@ from textual.widgets import Input
 from kit.dialogue.actions import ScreenAction, ScreenActions, digits, letter
 from kit.document.rows import Row, row, spread, window
 from kit.layers.case_sources import PlanningTask, UnknownPlanningTask, open_task, solve_task
-from kit.layers.drawing import (
-    MAX_ENTITIES_IN_PICTURE,
-    GlyphStyle,
-)
+from kit.layers.drawing.graph import MAX_ENTITIES_IN_PICTURE
+from kit.layers.drawing.spans import GlyphStyle
 from kit.layers.examples import EXAMPLES
 from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.guided_tour import GreedyTour, TourPart, case_page, method_pages, plan_pages

@@ -22,7 +22,7 @@ from kit.tui.theme import Theme
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:
-    from kit.learning.policies.policies import Policy
+    from kit.learning.policies.policy import Policy
     from kit.run.recording_file import RecordingFile
     from kit.run.session import Session
     from kit.school.lessons.records import LessonScene

@@ -55,7 +55,7 @@ from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:
-    from kit.learning.policies.policies import Policy
+    from kit.learning.policies.policy import Policy
 
 
 REVEAL_INTERVAL: Final = 0.3

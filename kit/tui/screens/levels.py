@@ -53,7 +53,7 @@ from kit.tui.widgets.world_view import WorldView
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:
-    from kit.learning.policies.policies import Policy
+    from kit.learning.policies.policy import Policy
     from kit.learning.training.runs import TrainingRun
 
 ABOUT_ROWS: Final = 6
@@ -421,7 +421,7 @@ class LevelsScreen(RowsScreen[None]):
             await self._drive_agent(runs[picked])
 
     async def _drive_agent(self, run: TrainingRun) -> None:
-        from kit.learning.policies.policies import PolicyError
+        from kit.learning.policies.policy import PolicyError
         from kit.learning.training.runs import RunError
 
         with ExitStack() as stack:

@@ -24,7 +24,7 @@ from kit.tui.widgets.world_view import FloorClicked
 from kit.workspace import write_atomically
 
 if TYPE_CHECKING:
-    from kit.learning.policies.policies import Policy
+    from kit.learning.policies.policy import Policy
     from kit.run.lockstep import Observer
     from kit.run.place_driver import PlaceDriver
     from kit.run.recording import RecordingStore

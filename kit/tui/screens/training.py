@@ -158,7 +158,7 @@ class TrainingFollower:
     # The driver's thread
 
     def _drive(self, plan: RunPlan) -> None:
-        from kit.learning.policies.policies import PolicyError
+        from kit.learning.policies.policy import PolicyError
         from kit.learning.training.demonstration import Demonstration
         from kit.learning.training.runs import RunError
 

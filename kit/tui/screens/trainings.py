@@ -338,7 +338,8 @@ def _read_tasks() -> Sequence[LearningTask]:
 
 def _test_rows(run: TrainingRun, columns: int) -> list[str]:
     from kit.document.layout import Page, lines_of
-    from kit.learning.policies.evaluation import Evaluator, derive_seed
+    from kit.learning.policies.evaluation import Evaluator
+    from kit.learning.policies.seeds import derive_seed
 
     policy = run.policy()
     result = Evaluator(policy.trained_on.resolve()).test(policy, EPISODES, derive_seed(1, "evaluate"))
@@ -349,7 +350,8 @@ def _test_rows(run: TrainingRun, columns: int) -> list[str]:
 
 def _comparison_rows(runs: Sequence[TrainingRun], theme: Theme, columns: int) -> list[str]:
     from kit.document.layout import Page, lines_of
-    from kit.learning.policies.evaluation import Evaluator, derive_seed
+    from kit.learning.policies.evaluation import Evaluator
+    from kit.learning.policies.seeds import derive_seed
     from kit.learning.training.run_text import comparison_tables
     from kit.learning.training.run_upkeep import draw_test_curves
 
@@ -391,7 +393,7 @@ def _sweep_table(folder: Path, columns: int) -> list[str]:
 
 def _robustness_rows(run: TrainingRun, theme: Theme, columns: int) -> list[str]:
     from kit.document.layout import Page, lines_of
-    from kit.learning.policies.evaluation import derive_seed
+    from kit.learning.policies.seeds import derive_seed
     from kit.learning.policies.sweep import PolicySweep, find_kinds, sweep_blocks
 
     policy = run.policy()

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
     from kit.arrays import FloatArray
     from kit.learning.policies.agent_view import AgentView
-    from kit.learning.policies.policies import Policy
+    from kit.learning.policies.policy import Policy
     from kit.render.scene import Scene, SceneCells
     from kit.run.laser_map import LaserMapper
     from kit.run.lockstep import Observer

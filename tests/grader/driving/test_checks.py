@@ -213,7 +213,7 @@ def test_a_circle_is_driven_one_way_round() -> None:
         ((101,), (), 0.0),
         ((101,), (100, 500), 0.5),
         ((101, 301, 501), (100,), 1 / 3),  # by the clock
-        ((320,), (100,), 0.0),
+        ((160,), (100,), 0.0),
     ],
 )
 def test_home_after_a_bump_and_not_otherwise(

@@ -17,7 +17,7 @@ from grader.reading import read_assignment
 from grader.submission import Submission, read_submission
 from grader.submitted_files import SubmissionRefused
 from kit.host.sandbox.confinement import Level
-from kit.learning.policies.policies import policy_bytes
+from kit.learning.policies.policy_file import policy_bytes
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.school.result import GradingVerdict
 from tests.learning.policies.test_evaluation import always

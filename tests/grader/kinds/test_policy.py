@@ -13,7 +13,8 @@ from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
-from kit.learning.policies.policies import Policy, policy_bytes, task_interface
+from kit.learning.policies.policy import Policy, task_interface
+from kit.learning.policies.policy_file import policy_bytes
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.school.result import GradingResult, GradingVerdict
 from kit.world.problems import WorldError

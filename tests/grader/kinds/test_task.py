@@ -16,7 +16,8 @@ from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
-from kit.learning.policies.policies import policy_bytes, task_interface
+from kit.learning.policies.policy import task_interface
+from kit.learning.policies.policy_file import policy_bytes
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.school.lessons.reading import lessons_folder, solutions_folder
 from kit.school.result import CriterionStatus, GradingResult

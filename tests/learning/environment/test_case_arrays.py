@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kit.learning.environment.case_arrays import CELL, CLEARANCE, CaseArrays, compute_distance_field
+from kit.learning.environment.case_arrays import CaseArrays
+from kit.learning.environment.distance_field import CELL, CLEARANCE, compute_distance_field
 from kit.learning.maps.batch_map import UnsupportedWorld, load_batch_map
 from kit.learning.tasks.catalogue import HALLWAY, TASKS, WHEELCHAIRS
 from kit.learning.tasks.learning_task import LearningTask, StartVariation

@@ -10,15 +10,8 @@ import pytest
 
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.policies.agent_view import AgentObserver, AgentView, ExpectedReturns, build_agent_view
-from kit.learning.policies.policies import (
-    ActionSampling,
-    LinearLayer,
-    Policy,
-    PolicyError,
-    PolicyNetwork,
-    action_counts,
-    task_interface,
-)
+from kit.learning.policies.policy import ActionSampling, Policy, PolicyError, action_counts, task_interface
+from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.tasks.actions import ContinuousActions
 from kit.learning.tasks.catalogue import find_task, task_names
 from kit.learning.tasks.learning_task import StartVariation

@@ -11,25 +11,22 @@ import pytest
 from kit.document.layout import lines_of
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
-from kit.learning.policies.evaluation import Evaluator, build_paths_scene, derive_seed, record_paths
-from kit.learning.policies.policies import (
-    ActionSampling,
-    LinearLayer,
-    Policy,
-    PolicyError,
-    PolicyNetwork,
-    action_counts,
-    task_interface,
-)
+from kit.learning.policies.episode_paths import record_paths
+from kit.learning.policies.evaluation import Evaluator
+from kit.learning.policies.paths_picture import build_paths_scene
+from kit.learning.policies.policy import ActionSampling, Policy, PolicyError, action_counts, task_interface
+from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.policies.policy_node import format_policy_node
+from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.catalogue import find_task
-from kit.learning.tasks.learning_task import EpisodePlaces, StartVariation
+from kit.learning.tasks.learning_task import StartVariation
 from kit.learning.tasks.student_reward import (
     RewardFileError,
     StudentReward,
     metric_parameters,
     reward_parameters,
 )
+from kit.learning.tasks.task_case import EpisodePlaces
 from kit.learning.tasks.task_spec import TaskSpec
 
 STRAIGHT = TaskSpec("hallway", ("straight", "center_door"))

@@ -17,21 +17,17 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.policies.policies import (
-    ActionSampling,
-    Policy,
-    PolicyError,
-    PolicyNetwork,
-    save_policy,
-    task_interface,
-)
-from kit.learning.policies.policy_node import create_policy_package, format_policy_node
+from kit.learning.policies.policy import ActionSampling, Policy, PolicyError, task_interface
+from kit.learning.policies.policy_file import save_policy
+from kit.learning.policies.policy_network import PolicyNetwork
+from kit.learning.policies.policy_node import format_policy_node
+from kit.learning.policies.policy_package import create_policy_package
 from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.ros.packages import PackageError
 from tests.launch.test_package_creation import install_with_setuptools
 from tests.learning.policies.test_evaluation import always
-from tests.learning.policies.test_policies import SEEN, continuous, layer, made, noisy, squashed, table
+from tests.learning.policies.test_policy import SEEN, continuous, layer, made, noisy, squashed, table
 
 CONTINUOUS_TASK = """
 maps: [turn]

@@ -13,7 +13,7 @@ import pytest
 from kit.document.layout import lines_of
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.policies.evaluation import Evaluator
-from kit.learning.policies.policies import Policy
+from kit.learning.policies.policy import Policy
 from kit.learning.policies.sweep import PolicySweep, SweepPoint, find_kinds, sweep_blocks, sweep_csv
 from kit.learning.tasks.disturbances import DISTURBANCE_KINDS, DisturbanceError, Disturbances
 from kit.learning.tasks.learning_task import StartVariation

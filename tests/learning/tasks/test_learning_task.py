@@ -16,7 +16,7 @@ from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.maps.batch_map import UnsupportedWorld
 from kit.learning.tasks.catalogue import find_task
-from kit.learning.tasks.learning_task import CurriculumStage, practices
+from kit.learning.tasks.curriculum import CurriculumStage, practices
 from kit.learning.tasks.task_reader import read_task
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm

@@ -11,7 +11,8 @@ from kit.learning.authoring.task_check import check_task
 from kit.learning.tasks.actions import MAX_SPEED, MAX_TURN_RATE, ContinuousActions
 from kit.learning.tasks.case_reader import MAX_PLACES
 from kit.learning.tasks.catalogue import all_tasks, find_task, task_names, tasks_folder
-from kit.learning.tasks.learning_task import CoverGoal, LearningTask, UnknownTask
+from kit.learning.tasks.goals.cover import CoverGoal
+from kit.learning.tasks.learning_task import LearningTask, UnknownTask
 from kit.learning.tasks.task_reader import MAX_ACTIONS, MAX_FRAMES, read_task
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.world.problems import WorldError

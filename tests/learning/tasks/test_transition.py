@@ -10,44 +10,38 @@ import pytest
 from kit.fields.adjacency import wrap_angles
 from kit.learning.tasks.actions import Move
 from kit.learning.tasks.transition import (
-    COMMON_FIELDS,
     TRANSITION_FIELDS,
+    EpisodeState,
     Transition,
     bearing_of_target,
     distance_to_target,
 )
 from tests.cases import every_case
-from tests.learning.worlds import TASKS, sampled
+from tests.learning.worlds import COMMON_FIELDS, TASKS, sampled
 
 
 def pair(left: tuple[float, float, float], right: tuple[float, float, float]) -> Transition:
     """Two robots at these poses, 0.3 m from whatever their rays look at."""
-    pose, flags, numbers = np.array([left, right]), np.zeros(2, dtype=np.bool_), np.zeros(2)
-    moves = np.full(2, Move.FORWARD)
-    return Transition(
+    flags, numbers = np.zeros(2, dtype=np.bool_), np.zeros(2)
+    state = EpisodeState(
         case=np.int64(0),
         step=np.int64(1),
-        max_steps=300,
+        pose=np.array([left, right]),
         hit=flags,
         in_target=flags,
-        was_in_target=flags,
-        move=moves,
-        previous_move=moves,
-        pose=pose,
-        previous_pose=pose,
-        target=np.array([1.0, 1.0]),
         to_go=numbers,
-        previous_to_go=numbers,
-        full_turns=numbers,
-        previous_full_turns=numbers,
-        forward_steps=numbers,
+        rotation=numbers,
         ranges=np.full((2, 91), 0.3),
+        move=np.full(2, Move.FORWARD),
         twist=np.zeros((2, 2)),
+        forward_steps=numbers,
+        target=np.array([1.0, 1.0]),
         target_heading=np.float64(0.0),
         obstacle_distance=numbers,
+        count=np.float64(0.0),
         achieved=np.float64(0.0),
-        previous_achieved=np.float64(0.0),
     )
+    return Transition(state, state, max_steps=300)
 
 
 def test_facts_are_what_a_reward_may_ask_for() -> None:
@@ -65,7 +59,7 @@ def test_a_fact_is_the_same_of_one_world_and_of_many(task: str, fact: str) -> No
     of_all = getattr(many, fact)
     for i in (0, 7, len(many.step) - 1):
         of_one = getattr(many.select(i), fact)
-        expected = of_all if fact in (*COMMON_FIELDS, "robots") else of_all[i]
+        expected = of_all if fact in COMMON_FIELDS else of_all[i]
         assert np.array_equal(np.asarray(of_one), np.asarray(expected))
 
 

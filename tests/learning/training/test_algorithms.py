@@ -13,7 +13,7 @@ import pytest
 
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.policies.evaluation import Evaluator
-from kit.learning.policies.policies import ActionValueTable
+from kit.learning.policies.policy_network import ActionValueTable
 from kit.learning.tasks.actions import ContinuousActions
 from kit.learning.tasks.catalogue import TASKS, find_task
 from kit.learning.tasks.learning_task import LearningTask, StartVariation

@@ -8,15 +8,9 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.episode_stats import EpisodeOutcome
-from kit.learning.policies.policies import (
-    ActionSampling,
-    LinearLayer,
-    Policy,
-    PolicyError,
-    PolicyNetwork,
-    save_policy,
-    task_interface,
-)
+from kit.learning.policies.policy import ActionSampling, Policy, PolicyError, task_interface
+from kit.learning.policies.policy_file import save_policy
+from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.demonstration import Demonstration
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run

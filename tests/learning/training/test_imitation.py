@@ -12,14 +12,9 @@ import pytest
 from kit.controllers import find_controller
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.policies.evaluation import Evaluator
-from kit.learning.policies.policies import (
-    ActionSampling,
-    LinearLayer,
-    Policy,
-    PolicyNetwork,
-    save_policy,
-    task_interface,
-)
+from kit.learning.policies.policy import ActionSampling, Policy, task_interface
+from kit.learning.policies.policy_file import save_policy
+from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm

@@ -16,7 +16,6 @@ from typing import Final
 
 from kit.controllers import find_controller
 from kit.geometry import Pose
-from kit.learning.tasks.learning_task import PatrolGoal
 from kit.run.recording import Recording
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel, all_levels
@@ -59,8 +58,8 @@ class OrdinaryDriver(TidyDriver):
 
 def targets_of(level: GameLevel) -> list[tuple[float, float]]:
     """The targets in the order of the file, whatever order would be best."""
-    if isinstance(level.goal, PatrolGoal):
-        return list(level.targets) * level.goal.rounds
+    if level.goal.is_route:
+        return list(level.goal.route(level.targets))
     case = level.find_scenario().case
     assert case is not None
     return [case.target]
@@ -135,7 +134,7 @@ def main() -> None:
 
 
 def _agent(level: GameLevel, place: Path) -> tuple[RaceFinish, Medal]:
-    from kit.learning.policies.policies import load_policy
+    from kit.learning.policies.policy_file import load_policy
     from kit.learning.training.runs import find_run
 
     policy = load_policy(place) if place.is_file() else find_run(place.parent, place.name).policy()

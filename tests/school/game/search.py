@@ -24,8 +24,7 @@ import numpy as np
 from kit.fields.occupancy_grid import wall_distances
 from kit.geometry import convex_hull, wrap_angle
 from kit.kernels import grids
-from kit.learning.environment.case_arrays import compute_distance_field
-from kit.learning.tasks.learning_task import FollowGoal, PatrolGoal
+from kit.learning.environment.distance_field import compute_distance_field
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.school.game.levels import SPEED, TURN_RATE, GameLevel, all_levels
 from kit.school.game.race import DOCK_TIME, RaceReferee
@@ -351,10 +350,10 @@ def legs_of(level: GameLevel, scenario):
     radius = scenario.case.target_radius
     if level.id in ROUTES:
         return [[(x, y, 0.06, 0.0) for x, y in ROUTES[level.id]]]
-    if not isinstance(level.goal, PatrolGoal):
+    if not level.goal.is_route:
         orders = [[(*scenario.case.target, radius, 0.0)]]
     else:
-        targets = [(x, y, radius, 0.0) for x, y in level.targets] * level.goal.rounds
+        targets = [(x, y, radius, 0.0) for x, y in level.goal.route(level.targets)]
         orders = [list(each) for each in itertools.permutations(targets)] if level.any_order else [targets]
     if level.conditions.charge:
         docks = [(x, y, 0.2, DOCK_TIME) for x, y in level.conditions.docks]
@@ -615,7 +614,7 @@ def main(names: list[str]) -> None:
         if names and level.id not in names:
             continue
         begin = time.perf_counter()
-        if isinstance(level.goal, FollowGoal) or level.conditions.acceleration:
+        if level.goal.needs_leader or level.conditions.acceleration:
             found = search_pursuit(level, PURSUIT_S)
             candidates = [] if found is None else [found]
         else:

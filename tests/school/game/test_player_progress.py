@@ -11,7 +11,6 @@ from functools import cache
 import pytest
 
 from kit.geometry import Pose, wrap_angle
-from kit.learning.tasks.learning_task import CoverGoal, FollowGoal
 from kit.msg.nav_msgs import Odometry
 from kit.ros.node.node import create_graph_node
 from kit.run.session import Session
@@ -34,7 +33,7 @@ from tests.school.game.measured_drivers import judged, keys_drive, tape_drives, 
 from tests.school.game.tidy import TidyDriver
 
 LEVELS = kit_levels()
-TIDY_LEVELS = [each for each in LEVELS if not isinstance(each.goal, CoverGoal | FollowGoal)]
+TIDY_LEVELS = [each for each in LEVELS if each.goal.has_standing_targets]
 """Where there is a way to follow."""
 
 
@@ -156,7 +155,7 @@ def test_who_believes_wheels_that_lie_gets_lost() -> None:
 @pytest.mark.long
 @pytest.mark.parametrize(
     "level",
-    [each for each in LEVELS if each.targets or isinstance(each.goal, CoverGoal | FollowGoal)],
+    [each for each in LEVELS if each.targets or not each.goal.has_standing_targets],
     ids=lambda each: each.id,
 )
 def test_driving_to_one_place_finishes_no_level_that_asks_for_more(level: GameLevel) -> None:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from types import SimpleNamespace
 
 from kit.geometry import Pose, wrap_angle
-from kit.learning.environment.case_arrays import CELL, DistanceField, compute_distance_field
+from kit.learning.environment.distance_field import CELL, DistanceField, compute_distance_field
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.session import Session
 

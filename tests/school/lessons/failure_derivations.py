@@ -19,11 +19,12 @@ from click.testing import CliRunner
 from kit.arrays import FloatArray
 from kit.cli import main
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.grid_world import GridWorld
+from kit.learning.grid.dqn import DqnLearner
+from kit.learning.grid.grid_learner import GridLearnerSettings
+from kit.learning.grid.grid_world import GridWorld
 from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import UnsuitableAlgorithm, check_suits, find_algorithm
-from kit.learning.training.grid_learner import GridLearnerSettings, NetworkLearner
 from kit.learning.training.presets import ReplayParams, find_preset
 from kit.learning.training.training import make_learner
 from kit.school.lessons.records import LessonStep
@@ -42,8 +43,8 @@ EXPLODING_STEPS: Final = (10_000, 20_000, 30_000, 50_000)
 
 
 @cache
-def limited_learner(world: GridWorld, settings: GridLearnerSettings, updates: int) -> NetworkLearner:
-    learner = NetworkLearner(world, settings)
+def limited_learner(world: GridWorld, settings: GridLearnerSettings, updates: int) -> DqnLearner:
+    learner = DqnLearner(world, settings)
     while learner.updates < updates:
         learner.step()
     return learner

@@ -12,7 +12,8 @@ import numpy as np
 
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.environment.mirror import TaskMirror
-from kit.learning.policies.evaluation import Evaluator, derive_seed
+from kit.learning.policies.evaluation import Evaluator
+from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.actions import Move
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm

@@ -10,14 +10,9 @@ from typing import Final
 
 import numpy as np
 
-from kit.learning.environment.grid_world import MOVES, GridWorld
-from kit.learning.training.grid_learner import (
-    BATCH,
-    HIDDEN,
-    GridLearnerSettings,
-    NetworkLearner,
-    ValueNetwork,
-)
+from kit.learning.grid.dqn import BATCH, HIDDEN, DqnLearner, ValueNetwork
+from kit.learning.grid.grid_learner import GridLearnerSettings
+from kit.learning.grid.grid_world import MOVES, GridWorld
 from kit.learning.training.presets import TabularParams
 from kit.school.lessons.records import LearningScene, LessonStep
 from tests.kit_content import kit_lesson
@@ -32,7 +27,7 @@ def solved_after_each(
     world: GridWorld, settings: GridLearnerSettings, updates: int
 ) -> tuple[tuple[bool, ...], int]:
     """After each episode: whether the best moves lead to the target. And how many updates there were."""
-    learner, found = NetworkLearner(world, settings), []
+    learner, found = DqnLearner(world, settings), []
     while learner.updates < updates:
         if learner.step().ended:
             found.append(learner.is_solved)
@@ -52,7 +47,7 @@ def network_rewards(words: str, step: LessonStep, folder: Path) -> str:
 
 def one_network_update(words: str, step: LessonStep, folder: Path) -> str:
     scene = scene_of(step)
-    learner = NetworkLearner(scene.world, scene.learners[0])
+    learner = DqnLearner(scene.world, scene.learners[0])
     before = learner.values.copy()
     learner.step()
     assert (learner.values != before).all()
@@ -75,7 +70,7 @@ def weight_count(words: str, step: LessonStep, folder: Path) -> str:
 def first_overshoot(words: str, step: LessonStep, folder: Path) -> str:
     """The first update of the lesson's first scene, as its line says it."""
     scene = scene_of(kit_lesson("22-inside-dqn").steps[0])
-    update = NetworkLearner(scene.world, scene.learners[0]).step()
+    update = DqnLearner(scene.world, scene.learners[0]).step()
     assert (update.after - update.target) * (update.before - update.target) < 0, "it stays on its side"
     return (
         f"the first update of the film took a value from {update.before:.2f} past its target, "

@@ -9,17 +9,11 @@ from typing import Final
 
 import numpy as np
 
-from kit.learning.environment.grid_world import GridWorld
+from kit.learning.grid.chances import softmax
+from kit.learning.grid.grid_learner import MAX_EPISODE_STEPS, GridLearnerSettings
+from kit.learning.grid.grid_world import GridWorld
+from kit.learning.grid.ppo import EPOCHS, GAE_LAMBDA, HORIZON, PpoLearner
 from kit.learning.training.algorithms import find_algorithm
-from kit.learning.training.grid_learner import (
-    EPOCHS,
-    GAE_LAMBDA,
-    HORIZON,
-    MAX_EPISODE_STEPS,
-    GridLearnerSettings,
-    PolicyLearner,
-    softmax,
-)
 from kit.learning.training.presets import find_preset
 from kit.school.lessons.records import LessonStep
 from tests.kit_content import lesson_reference
@@ -30,22 +24,22 @@ SEEDS: Final = 4
 
 
 @cache
-def policy_of(world: GridWorld, settings: GridLearnerSettings, updates: int) -> PolicyLearner:
+def policy_of(world: GridWorld, settings: GridLearnerSettings, updates: int) -> PpoLearner:
     """After so many steps; not to be changed."""
-    learner = PolicyLearner(world, settings)
+    learner = PpoLearner(world, settings)
     while learner.updates < updates:
         learner.step()
     return learner
 
 
-def policies_of(step: LessonStep) -> list[PolicyLearner]:
+def policies_of(step: LessonStep) -> list[PpoLearner]:
     scene = scene_of(step)
     return [policy_of(scene.world, each, scene.updates) for each in scene.learners]
 
 
 def equal_chances(words: str, step: LessonStep, folder: Path) -> str:
     scene = scene_of(step)
-    chances = PolicyLearner(scene.world, scene.learners[0]).values
+    chances = PpoLearner(scene.world, scene.learners[0]).values
     assert chances.min() == chances.max()
     shown = f"{chances.min():g}"
     return f"At first all four are {shown}" if words.startswith("At") else f"Still about {shown}"
@@ -125,7 +119,7 @@ def entropy_of_certain(words: str, step: LessonStep, folder: Path) -> str:
 
 def steps_between_updates(words: str, step: LessonStep, folder: Path) -> str:
     scene = scene_of(step)
-    learner, count = PolicyLearner(scene.world, scene.learners[0]), 0
+    learner, count = PpoLearner(scene.world, scene.learners[0]), 0
     before = learner.logits.copy()
     while (learner.logits == before).all():
         learner.step()

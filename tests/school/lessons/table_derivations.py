@@ -11,12 +11,13 @@ from typing import Final
 import numpy as np
 
 from kit.learning.environment.env import TurnEnv
-from kit.learning.environment.grid_world import SMALL_TARGET, GridCell, GridWorld
-from kit.learning.policies.policies import ActionValueTable
+from kit.learning.grid.grid_learner import GridLearner, GridLearnerSettings
+from kit.learning.grid.grid_world import SMALL_TARGET, GridCell, GridWorld
+from kit.learning.grid.registry import make_grid_learner
+from kit.learning.policies.policy_network import ActionValueTable
 from kit.learning.tasks.catalogue import TURN
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm
-from kit.learning.training.grid_learner import GridAlgorithm, GridLearner, GridLearnerSettings
 from kit.learning.training.presets import TabularParams, find_preset
 from kit.learning.training.tabular import MAX_STATES
 from kit.learning.training.training import make_learner
@@ -72,7 +73,7 @@ def grid_rewards(words: str, step: LessonStep, folder: Path) -> str:
 
 def grid_zeros(words: str, step: LessonStep, folder: Path) -> str:
     (settings,) = scene_of(step).learners
-    values = GridLearner(scene_of(step).world, settings).values
+    values = make_grid_learner(scene_of(step).world, settings).values
     assert values.min() == values.max()
     return f"All of them begin at {values[0, 0, 0]:g}"
 
@@ -80,7 +81,7 @@ def grid_zeros(words: str, step: LessonStep, folder: Path) -> str:
 def first_success(words: str, step: LessonStep, folder: Path) -> str:
     """The step's own learner, until its first episode has ended at the target."""
     (settings,) = scene_of(step).learners
-    learner = GridLearner(scene_of(step).world, settings)
+    learner = make_grid_learner(scene_of(step).world, settings)
     updates = [learner.step()]
     while not updates[-1].ended:
         updates.append(learner.step())
@@ -188,7 +189,7 @@ def scene_alpha(words: str, step: LessonStep, folder: Path) -> str:
 def found_first(words: str, step: LessonStep, folder: Path) -> str:
     """The first end that the learner without exploration came to is the one it leads to."""
     scene = scene_of(step)
-    learner = GridLearner(scene.world, scene.learners[0])
+    learner = make_grid_learner(scene.world, scene.learners[0])
     while not learner.returns or learner.returns[-1] == 0:
         update = learner.step()
     assert learner.settings.epsilon == 0
@@ -356,7 +357,7 @@ def row_away(words: str, step: LessonStep, folder: Path) -> str:
 
 
 @cache
-def cliff_returns(algorithm: GridAlgorithm) -> tuple[float, float]:
+def cliff_returns(algorithm: str) -> tuple[float, float]:
     """Mean returns over several seeds: of the last episodes of a training, and of the best moves alone."""
     scene = cliff_step_scene()
     (settings,) = (each for each in scene.learners if each.algorithm == algorithm)

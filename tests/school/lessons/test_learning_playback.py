@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from kit.learning.environment.grid_world import GridWorld
-from kit.learning.training.grid_learner import GridLearnerSettings
+from kit.learning.grid.grid_learner import GridLearnerSettings
+from kit.learning.grid.grid_world import GridWorld
 from kit.render.encode import AsciiEncoder
 from kit.school.lessons.learning_playback import (
     MAX_CURVE_COLUMNS,

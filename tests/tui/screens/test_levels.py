@@ -14,7 +14,7 @@ from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
 from kit.learning.authoring.new_task import new_task_file
-from kit.learning.tasks.learning_task import REACH_TARGET
+from kit.learning.tasks.goals.target import REACH_TARGET
 from kit.mapmaking.map_drawing import read_drawing
 from kit.mapmaking.new_map import write_map
 from kit.school.game import ghosts, leaderboard, references

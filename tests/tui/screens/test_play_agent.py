@@ -9,14 +9,9 @@ import pytest
 from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
-from kit.learning.policies.policies import (
-    ActionSampling,
-    LinearLayer,
-    Policy,
-    PolicyNetwork,
-    save_policy,
-    task_interface,
-)
+from kit.learning.policies.policy import ActionSampling, Policy, task_interface
+from kit.learning.policies.policy_file import save_policy
+from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import RunConfig, create_run
 from kit.run.headless import run_episode

@@ -10,14 +10,9 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
-from kit.learning.policies.policies import (
-    ActionSampling,
-    LinearLayer,
-    Policy,
-    PolicyNetwork,
-    save_policy,
-    task_interface,
-)
+from kit.learning.policies.policy import ActionSampling, Policy, task_interface
+from kit.learning.policies.policy_file import save_policy
+from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run
 from kit.render.curve import Axes, Curve

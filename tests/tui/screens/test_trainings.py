@@ -11,14 +11,9 @@ import pytest
 from textual.pilot import Pilot
 
 from kit.learning.authoring.new_task import new_task_file
-from kit.learning.policies.policies import (
-    ActionSampling,
-    LinearLayer,
-    Policy,
-    PolicyNetwork,
-    save_policy,
-    task_interface,
-)
+from kit.learning.policies.policy import ActionSampling, Policy, task_interface
+from kit.learning.policies.policy_file import save_policy
+from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run, find_run, list_runs
 from kit.learning.training.training_sweep import TrainingSweep

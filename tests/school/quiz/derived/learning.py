@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import fields, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
@@ -16,7 +16,7 @@ from kit.learning.environment.env import TaskEnv, TurnEnv
 from kit.learning.policies.confidence_intervals import lower_bound
 from kit.learning.tasks.catalogue import TURN
 from kit.learning.tasks.rewards import ALGORITHM_3, Reward, TermWeight
-from kit.learning.tasks.transition import Transition
+from kit.learning.tasks.transition import EpisodeState, Transition
 from kit.learning.training.presets import LinearSchedule
 from kit.learning.training.tabular import QLearning, Sarsa, TableLearner
 from kit.school.quiz.items import QuizItem
@@ -107,18 +107,15 @@ def _returned(rewards: Sequence[float], discount: float) -> float:
 # Rewards
 
 
-def _transition(**changes: object) -> Transition:
-    """One of one world, in which nothing happens but what is said."""
+def _transition(before: Mapping[str, object] | None = None, **after: object) -> Transition:
+    """One of one world, in which nothing happens but what is said of the states before and after it."""
     one = sampled("turn").select(0)
-    still: dict[str, object] = {
-        "hit": np.array([False]),
-        "in_target": np.array([False]),
-        "was_in_target": np.array([False]),
-        "max_steps": 200,
-        "step": np.array(10),
-    }
-    values = {field.name: getattr(one, field.name) for field in fields(Transition)}
-    return Transition(**{**values, **still, **changes})
+    still = {"hit": np.array([False]), "in_target": np.array([False]), "step": np.array(10)}
+    states = (
+        replace(EpisodeState.of(state), **{**still, **changes})
+        for state, changes in ((one.before, before or {}), (one.after, after))
+    )
+    return Transition(*states, max_steps=200)
 
 
 def entering_loop(item: QuizItem, folder: Path) -> Finding:
@@ -127,7 +124,7 @@ def entering_loop(item: QuizItem, folder: Path) -> Finding:
 
     def earned(inside: Sequence[bool]) -> float:
         return sum(
-            float(reward(_transition(was_in_target=np.array([before]), in_target=np.array([after]))))
+            float(reward(_transition({"in_target": np.array([before])}, in_target=np.array([after]))))
             for before, after in pairwise([False, *inside])
         )
 
@@ -149,7 +146,7 @@ def round_trip(item: QuizItem, folder: Path) -> Finding:
     reward = Reward("progress", (TermWeight("progress", 1.0),))
     to_go = [3.0, 2.5, 2.0, 2.5, 3.0]
     earned = sum(
-        float(reward(_transition(previous_to_go=np.array([before]), to_go=np.array([after]))))
+        float(reward(_transition({"to_go": np.array([before])}, to_go=np.array([after]))))
         for before, after in pairwise(to_go)
     )
     return Finding(

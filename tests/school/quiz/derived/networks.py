@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from kit.learning.environment.grid_world import GridRewards, GridWorld
-from kit.learning.training.grid_learner import GridLearnerSettings, NetworkLearner
+from kit.learning.grid.dqn import DqnLearner
+from kit.learning.grid.grid_learner import GridLearnerSettings
+from kit.learning.grid.grid_world import GridRewards, GridWorld
 from kit.school.quiz.items import QuizItem
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 
@@ -18,7 +19,7 @@ UPDATES = 2500
 
 
 def _solved(settings: GridLearnerSettings) -> list[bool]:
-    learner, found = NetworkLearner(WORLD, settings), []
+    learner, found = DqnLearner(WORLD, settings), []
     while learner.updates < UPDATES:
         if learner.step().ended:
             found.append(learner.is_solved)
@@ -26,7 +27,7 @@ def _solved(settings: GridLearnerSettings) -> list[bool]:
 
 
 def network_update(item: QuizItem, folder: Path) -> Finding:
-    learner = NetworkLearner(WORLD, SETTINGS)
+    learner = DqnLearner(WORLD, SETTINGS)
     before = learner.values.copy()
     update = learner.step()
     changed = learner.values != before
@@ -77,7 +78,7 @@ def descent_step(item: QuizItem, folder: Path) -> Finding:
 
 
 def full_buffer(item: QuizItem, folder: Path) -> Finding:
-    learner = NetworkLearner(WORLD, replace(SETTINGS, replay=5))
+    learner = DqnLearner(WORLD, replace(SETTINGS, replay=5))
     steps = [learner.step() for _ in range(8)]
     kept = sorted((each.cell, each.move) for each in learner._replay)
     columns = WORLD.shape[1]

@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.grid_world import GridRewards, GridWorld
+from kit.learning.grid.grid_learner import GridLearnerSettings
+from kit.learning.grid.grid_world import GridRewards, GridWorld
+from kit.learning.grid.registry import make_grid_learner
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.grid_learner import GridLearner, GridLearnerSettings
 from kit.school.lessons.reading import lessons_folder
 from kit.school.quiz.items import QuizItem
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
@@ -18,7 +19,7 @@ from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 def small_pay_for_living(item: QuizItem, folder: Path) -> Finding:
     """A table learns it, on a corridor."""
     world = GridWorld(("S.G", "..."), GridRewards(step=0.05))
-    learner = GridLearner(world, GridLearnerSettings(alpha=0.5, gamma=0.9, epsilon=0.5, seed=0))
+    learner = make_grid_learner(world, GridLearnerSettings(alpha=0.5, gamma=0.9, epsilon=0.5, seed=0))
     while learner.episodes < 200:
         learner.step()
     return Finding(

@@ -7,13 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from kit.learning.environment.grid_world import GridRewards, GridWorld
-from kit.learning.training.grid_learner import (
-    MAX_EPISODE_STEPS,
-    GridLearnerSettings,
-    PolicyLearner,
-    advantages_of,
-)
+from kit.learning.grid.grid_learner import MAX_EPISODE_STEPS, GridLearnerSettings
+from kit.learning.grid.grid_world import GridRewards, GridWorld
+from kit.learning.grid.ppo import PpoLearner, advantages_of
 from kit.school.quiz.items import QuizItem
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 
@@ -30,7 +26,7 @@ def one_advantage(item: QuizItem, folder: Path) -> Finding:
 
 def what_an_advantage_does(item: QuizItem, folder: Path) -> Finding:
     """A move with a positive reward that was worse than expected."""
-    learner = PolicyLearner(WORLD, replace(SETTINGS, alpha=0.1, entropy=0.0))
+    learner = PpoLearner(WORLD, replace(SETTINGS, alpha=0.1, entropy=0.0))
     before = learner.logits[0].copy()
     chances = np.array([0.25])
     learner._climb(np.array([0]), np.array([2]), np.array([0.2 - 0.8]), chances)
@@ -47,7 +43,7 @@ def what_an_advantage_does(item: QuizItem, folder: Path) -> Finding:
 
 
 def not_clipped(item: QuizItem, folder: Path) -> Finding:
-    learner = PolicyLearner(WORLD, replace(SETTINGS, clip=0.0))
+    learner = PpoLearner(WORLD, replace(SETTINGS, clip=0.0))
     while learner.updates < 1500:
         learner.step()
     is_stuck = not learner.is_solved and set(learner.lengths[-2:]) == {MAX_EPISODE_STEPS}
@@ -64,7 +60,7 @@ def not_clipped(item: QuizItem, folder: Path) -> Finding:
 
 def outside_the_range(item: QuizItem, folder: Path) -> Finding:
     """A positive advantage, and a chance that has grown from 0.2 to 0.3: is there a slope?"""
-    learner = PolicyLearner(WORLD, replace(SETTINGS, clip=0.2, entropy=0.0))
+    learner = PpoLearner(WORLD, replace(SETTINGS, clip=0.2, entropy=0.0))
     learner.logits[0] = np.log([0.3, 0.3, 0.2, 0.2])
     before = learner.logits[0].copy()
     learner._climb(np.array([0]), np.array([0]), np.array([1.0]), np.array([0.2]))

@@ -6,13 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from kit.learning.environment.grid_world import GridCell, GridRewards, GridWorld
-from kit.learning.training.grid_learner import (
-    TABLE_ALGORITHMS,
-    GridAlgorithm,
-    GridLearner,
-    GridLearnerSettings,
-)
+from kit.learning.grid.grid_learner import GridLearner, GridLearnerSettings
+from kit.learning.grid.grid_world import GridCell, GridRewards, GridWorld
+from kit.learning.grid.registry import make_grid_learner
 from kit.school.quiz.items import QuizItem
 from tests.learning.worlds import trained
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
@@ -22,7 +18,7 @@ RIGHT = 0
 
 def second_success(item: QuizItem, folder: Path) -> Finding:
     """A cell beside the target, whose move into it has the value 0.5."""
-    learner = GridLearner(GridWorld(("SG",)), GridLearnerSettings(alpha=0.5, epsilon=0.0))
+    learner = make_grid_learner(GridWorld(("SG",)), GridLearnerSettings(alpha=0.5, epsilon=0.0))
     learner.values[0, 0, RIGHT] = 0.5
     learner.step()
     while not learner.episodes:
@@ -37,7 +33,7 @@ def three_moves_away(item: QuizItem, folder: Path) -> Finding:
 
 def never_explores(item: QuizItem, folder: Path) -> Finding:
     """The small target is known, the other one is not."""
-    learner = GridLearner(GridWorld(("g..S..G",)), GridLearnerSettings(epsilon=0.0))
+    learner = make_grid_learner(GridWorld(("g..S..G",)), GridLearnerSettings(epsilon=0.0))
     learner.values[0, 1:4, 2] = 0.2
     ends = [_episode_reward(learner) for _ in range(1000)]
     small = np.mean(np.array(ends) == 0.3)
@@ -109,7 +105,7 @@ CLIFF = GridWorld((*("........",) * 3, "SCCCCCCG"), GridRewards(-1, -1, 0, -100)
 SEEDS = 6
 
 
-def _cliff(algorithm: GridAlgorithm, epsilon: float) -> list[GridLearner]:
+def _cliff(algorithm: str, epsilon: float) -> list[GridLearner]:
     settings = [GridLearnerSettings(algorithm, 0.1, 1.0, epsilon, seed) for seed in range(SEEDS)]
     return [trained(CLIFF, each, 300) for each in settings]
 
@@ -117,7 +113,7 @@ def _cliff(algorithm: GridAlgorithm, epsilon: float) -> list[GridLearner]:
 def falls_while_learning(item: QuizItem, folder: Path) -> Finding:
     falls = {
         algorithm: sum(reward <= -100 for each in _cliff(algorithm, 0.1) for reward in each.returns[-100:])
-        for algorithm in TABLE_ALGORITHMS
+        for algorithm in ("q-learning", "sarsa")
     }
     is_alike = max(falls.values()) < 1.1 * min(falls.values())
     truth: str = "alike" if is_alike else min(falls, key=lambda name: falls[name])
@@ -132,7 +128,9 @@ def falls_while_learning(item: QuizItem, folder: Path) -> Finding:
 
 
 def sarsa_without_exploring(item: QuizItem, folder: Path) -> Finding:
-    steps = {tuple(len(each.greedy_path()) - 1 for each in _cliff(name, 0.0)) for name in TABLE_ALGORITHMS}
+    steps = {
+        tuple(len(each.greedy_path()) - 1 for each in _cliff(name, 0.0)) for name in ("q-learning", "sarsa")
+    }
     ((first, *rest),) = steps
     assert set(rest) <= {first}
     truth = "edge" if first == CLIFF.shortest_path_length else "away"
@@ -148,7 +146,7 @@ def sarsa_without_exploring(item: QuizItem, folder: Path) -> Finding:
 
 def sarsa_target_needs(item: QuizItem, folder: Path) -> Finding:
     """Which change of the next step changes the target: another best move, or another move made?"""
-    learner = GridLearner(CLIFF, GridLearnerSettings("sarsa", epsilon=1.0, gamma=1.0, seed=1))
+    learner = make_grid_learner(CLIFF, GridLearnerSettings("sarsa", epsilon=1.0, gamma=1.0, seed=1))
     learner.values[:] = np.random.default_rng(1).normal(size=learner.values.shape)
     update = learner.step()
     while update.ended or update.reached == update.cell:
@@ -184,7 +182,9 @@ def edge_step(item: QuizItem, folder: Path) -> Finding:
 
 
 def tested_on_the_cliff(item: QuizItem, folder: Path) -> Finding:
-    steps = {name: {len(each.greedy_path()) - 1 for each in _cliff(name, 0.1)} for name in TABLE_ALGORITHMS}
+    steps = {
+        name: {len(each.greedy_path()) - 1 for each in _cliff(name, 0.1)} for name in ("q-learning", "sarsa")
+    }
     truth = "q-learning" if max(steps["q-learning"]) < min(steps["sarsa"]) else "sarsa"
     return Finding(
         truth,

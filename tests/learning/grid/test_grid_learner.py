@@ -7,30 +7,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kit.learning.environment.grid_world import GridRewards, GridWorld
-from kit.learning.training.grid_learner import (
-    GAE_LAMBDA,
-    MAX_EPISODE_STEPS,
-    TABLE_ALGORITHMS,
-    GridAlgorithm,
-    GridLearner,
-    GridLearnerSettings,
-    NetworkLearner,
-    PolicyLearner,
-    ValueNetwork,
-    advantages_of,
-    softmax,
-)
+from kit.learning.grid.chances import softmax
+from kit.learning.grid.dqn import DqnLearner, ValueNetwork
+from kit.learning.grid.grid_learner import MAX_EPISODE_STEPS, GridLearnerSettings
+from kit.learning.grid.grid_world import GridRewards, GridWorld
+from kit.learning.grid.ppo import GAE_LAMBDA, PpoLearner, advantages_of
+from kit.learning.grid.registry import make_grid_learner
 from tests.learning.worlds import trained
 
 CLIFF = GridWorld((*("........",) * 3, "SCCCCCCG"), GridRewards(-1, -1, 0, -100))
 
 
-@pytest.mark.parametrize("algorithm", TABLE_ALGORITHMS)
-def test_each_update_goes_alpha_of_the_way_to_its_target(algorithm: GridAlgorithm) -> None:
+@pytest.mark.parametrize("algorithm", ["q-learning", "sarsa"])
+def test_each_update_goes_alpha_of_the_way_to_its_target(algorithm: str) -> None:
     """The target is worked out again from the table before the update; SARSA's from the move that comes next."""
     settings = GridLearnerSettings(algorithm, alpha=0.25, gamma=0.8, epsilon=0.3, seed=4)
-    learner = GridLearner(CLIFF, settings)
+    learner = make_grid_learner(CLIFF, settings)
     before, first = learner.values.copy(), learner.step()
     for _ in range(2000):
         kept = learner.values.copy()
@@ -60,7 +52,7 @@ def test_the_values_become_those_of_the_bellman_equation() -> None:
 
 def test_sarsa_keeps_away_from_the_cliff_and_q_learning_does_not() -> None:
     lengths, falls = {}, {}
-    for algorithm in TABLE_ALGORITHMS:
+    for algorithm in ("q-learning", "sarsa"):
         learner = trained(CLIFF, GridLearnerSettings(algorithm, 0.5, 1.0, 0.1, seed=3), 300)
         assert learner.is_solved
         lengths[algorithm] = len(learner.greedy_path()) - 1
@@ -72,7 +64,7 @@ def test_sarsa_keeps_away_from_the_cliff_and_q_learning_does_not() -> None:
 
 def test_an_episode_that_never_ends_is_truncated_and_its_estimate_counts() -> None:
     world = GridWorld(("S" + "." * 30 + "G",), GridRewards(step=-1))
-    learner = GridLearner(world, GridLearnerSettings(epsilon=1.0, seed=2))
+    learner = make_grid_learner(world, GridLearnerSettings(epsilon=1.0, seed=2))
     while True:
         update = learner.step()
         if update.ended:
@@ -110,14 +102,14 @@ def test_the_gradient_is_that_of_the_squared_error() -> None:
 
 
 def test_one_update_changes_the_values_of_every_cell() -> None:
-    learner = NetworkLearner(WORLD, settings())
+    learner = DqnLearner(WORLD, settings())
     before = learner.values.copy()
     learner.step()
     assert (learner.values != before).all()
 
 
 def test_targets_rest_between_two_copies_of_the_network() -> None:
-    learner = NetworkLearner(WORLD, settings(target_interval=10))
+    learner = DqnLearner(WORLD, settings(target_interval=10))
     kept = [each.copy() for each in learner.target_parameters]
     for _ in range(9):
         learner.step()
@@ -131,7 +123,7 @@ def test_targets_rest_between_two_copies_of_the_network() -> None:
 def test_it_learns_the_way_with_all_its_parts_and_not_without_a_buffer() -> None:
     solved = {}
     for replay in (1000, 1):
-        learner, counts = NetworkLearner(WORLD, settings(replay=replay)), []
+        learner, counts = DqnLearner(WORLD, settings(replay=replay)), []
         while learner.updates < 2000:
             ended = learner.step().ended
             if ended:
@@ -155,7 +147,7 @@ def test_advantages_add_up_errors_until_the_episode_ends() -> None:
 @pytest.mark.parametrize("clip", [0.0, 0.2])
 def test_an_update_goes_up_the_slope_of_the_clipped_objective(clip: float) -> None:
     """Compared with differences of the objective, cell by cell."""
-    learner = PolicyLearner(WORLD, replace(SETTINGS, clip=clip, entropy=0.1, alpha=1e-3))
+    learner = PpoLearner(WORLD, replace(SETTINGS, clip=clip, entropy=0.1, alpha=1e-3))
     rng = np.random.default_rng(2)
     learner.logits[:] = rng.normal(size=learner.logits.shape)
     cells, moves, weights = rng.integers(5, size=40), rng.integers(4, size=40), rng.normal(size=40)
@@ -183,7 +175,7 @@ def test_an_update_goes_up_the_slope_of_the_clipped_objective(clip: float) -> No
 
 
 def test_every_number_shown_is_a_chance() -> None:
-    learner = PolicyLearner(WORLD, SETTINGS)
+    learner = PpoLearner(WORLD, SETTINGS)
     for _ in range(100):
         learner.step()
     assert learner.values.sum(axis=-1) == pytest.approx(np.ones(WORLD.shape))
@@ -194,7 +186,7 @@ def test_every_number_shown_is_a_chance() -> None:
 def test_without_clipping_it_gets_stuck() -> None:
     solved = {}
     for clip in (0.2, 0.0):
-        learner = PolicyLearner(WORLD, replace(SETTINGS, clip=clip))
+        learner = PpoLearner(WORLD, replace(SETTINGS, clip=clip))
         while learner.updates < 1500:
             learner.step()
         solved[clip] = learner.is_solved

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from kit.learning.environment.grid_world import MOVES, GridCell, GridMapError, GridRewards, GridWorld
+from kit.learning.grid.grid_world import MOVES, GridCell, GridMapError, GridRewards, GridWorld
 from tests.cases import every_case
 
 RIGHT, UP, LEFT, DOWN = range(len(MOVES))

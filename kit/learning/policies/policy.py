@@ -6,186 +6,38 @@ a way to choose by these scores: the best (greedy), or by chance (sampled), as t
 
 from __future__ import annotations
 
-import io
 import json
 import math
 import sys
-import zipfile
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import numpy as np
 from gymnasium import spaces
-from numpy.typing import NDArray
 
-from kit.array_archives import read_arrays
 from kit.arrays import BoolArray, Float32Array, IntArray
+from kit.learning.policies.policy_network import ActionValueTable, PolicyNetwork
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.workspace import write_atomically
 
-Activation = Literal["tanh", "relu"]
 SamplingKind = Literal["softmax", "epsilon", "normal", "tanh-normal", "noisy-tanh"]
+
+
 DEVIATION_KINDS = ("normal", "noisy-tanh")
 """Continuous actions that scatter alike for everything that is seen."""
+
+
 CONTINUOUS_KINDS = (*DEVIATION_KINDS, "tanh-normal")
+
+
 LOG_DEVIATION_RANGE = (-20.0, 2.0)
 """Within this stays the logarithm of a standard deviation that a network gives, as in stable-baselines3."""
 
 
 class PolicyError(Exception):
     """A policy's file is damaged, or the policy does not fit the task; the message says which and what to do."""
-
-
-def _check_numbers(array: NDArray[Any], dimensions: int) -> None:
-    """Raises ValueError unless it is an array of finite floating-point numbers with this many dimensions."""
-    if array.ndim != dimensions or array.dtype.kind != "f":
-        raise ValueError(f"an array of shape {array.shape} and type {array.dtype}")
-    if not np.isfinite(array).all():
-        raise ValueError("an array with numbers that are not finite")
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class LinearLayer:
-    """A linear layer: ``x @ weights + bias``."""
-
-    weights: Float32Array
-    """(inputs, outputs)"""
-    bias: Float32Array
-    """(outputs,)"""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class LstmLayer:
-    """A layer with memory (Hochreiter and Schmidhuber 1997), its gates in torch's order: in, forget, cell, out."""
-
-    input_layer: LinearLayer
-    """(inputs, 4 * h)"""
-    recurrent_layer: LinearLayer
-    """(h, 4 * h)"""
-
-    @property
-    def size(self) -> int:
-        return len(self.recurrent_layer.weights)
-
-    def step(self, x: Float32Array, memory: Float32Array) -> tuple[Float32Array, Float32Array]:
-        """(n, h) outputs and the next memory, from inputs (n, inputs) and memory (n, 2, h): hidden, cell."""
-        gates = (
-            x @ self.input_layer.weights
-            + self.input_layer.bias
-            + memory[:, 0] @ self.recurrent_layer.weights
-            + self.recurrent_layer.bias
-        )
-        enter, forget, cell, out = np.split(gates, 4, axis=1)
-        kept = _sigmoid(forget) * memory[:, 1] + _sigmoid(enter) * np.tanh(cell)
-        hidden = _sigmoid(out) * np.tanh(kept)
-        return hidden, np.stack((hidden, kept), axis=1)
-
-
-def _sigmoid(x: Float32Array) -> Float32Array:
-    """Written with tanh, which does not overflow."""
-    y: Float32Array = (np.tanh(x * np.float32(0.5)) + np.float32(1)) * np.float32(0.5)
-    return y
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PolicyNetwork:
-    """A feed-forward network, perhaps with a memory in front."""
-
-    layers: tuple[LinearLayer, ...]
-    activation: Activation
-    """Between the layers, not after the last."""
-    lstm: LstmLayer | None = None
-
-    @property
-    def inputs(self) -> int:
-        return len((self.lstm.input_layer if self.lstm else self.layers[0]).weights)
-
-    @property
-    def outputs(self) -> int:
-        return len(self.layers[-1].bias)
-
-    @property
-    def memory(self) -> int:
-        return self.lstm.size if self.lstm else 0
-
-    def check_shapes(self) -> None:
-        """Raises ValueError unless the layers are arrays of numbers and fit one another."""
-        layers = [*((self.lstm.input_layer, self.lstm.recurrent_layer) if self.lstm else ()), *self.layers]
-        for layer in layers:
-            _check_numbers(layer.weights, 2)
-            _check_numbers(layer.bias, 1)
-            if layer.weights.shape[1:] != layer.bias.shape:
-                raise ValueError(f"weights of shape {layer.weights.shape} with {len(layer.bias)} biases")
-        size = self.inputs
-        if self.lstm is not None:
-            size = self.lstm.size
-            if {len(layer.bias) for layer in layers[:2]} != {4 * size}:
-                raise ValueError(f"a memory of {size} numbers with gates of other sizes")
-        for layer in self.layers:
-            if len(layer.weights) != size:
-                raise ValueError(f"a layer for {len(layer.weights)} numbers after one that gives {size}")
-            size = len(layer.bias)
-
-    def scores(self, observations: Float32Array, memory: Float32Array) -> tuple[Float32Array, Float32Array]:
-        """(n, outputs) and the next memory (n, 2, h), from (n, inputs) and the last one."""
-        with np.errstate(over="ignore", invalid="ignore"):  # weights of a damaged file may be as large as any
-            return self._scores(observations, memory)
-
-    def _scores(self, observations: Float32Array, memory: Float32Array) -> tuple[Float32Array, Float32Array]:
-        x = observations
-        if self.lstm is not None:
-            x, memory = self.lstm.step(x, memory)
-        for layer in self.layers[:-1]:
-            x = x @ layer.weights + layer.bias
-            x = np.tanh(x) if self.activation == "tanh" else np.maximum(x, np.float32(0))
-        last = self.layers[-1]
-        return x @ last.weights + last.bias, memory
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ActionValueTable:
-    """One row of scores for each state; a state is in which bins a few of the inputs lie."""
-
-    used: IntArray
-    """(k,) which inputs count."""
-    edges: Float32Array
-    """(b - 1,) between the bins, rising."""
-    values: Float32Array
-    """(b ** k, outputs)"""
-    inputs: int
-
-    @property
-    def outputs(self) -> int:
-        return int(self.values.shape[1])
-
-    @property
-    def memory(self) -> int:
-        return 0
-
-    def check_shapes(self) -> None:
-        """Raises ValueError unless the arrays hold numbers and fit one another."""
-        _check_numbers(self.edges, 1)
-        _check_numbers(self.values, 2)
-        used = self.used
-        if used.ndim != 1 or used.dtype.kind != "i" or ((used < 0) | (used >= self.inputs)).any():
-            raise ValueError(f"it looks at inputs that are not among its {self.inputs}")
-        if not (np.diff(self.edges) > 0).all() or len(self.values) != (len(self.edges) + 1) ** len(used):
-            raise ValueError(f"a table of {len(self.values)} rows for {len(used)} inputs")
-
-    def states(self, observations: Float32Array) -> IntArray:
-        """(n,) row numbers, from (n, inputs)."""
-        bins = self.edges.searchsorted(observations[:, self.used], side="right")
-        weights = (len(self.edges) + 1) ** np.arange(len(self.used))[::-1]
-        states: IntArray = bins @ weights
-        return states
-
-    def scores(self, observations: Float32Array, memory: Float32Array) -> tuple[Float32Array, Float32Array]:
-        """(n, outputs); a table has no memory."""
-        return self.values[self.states(observations)], memory
 
 
 @dataclass(frozen=True, slots=True)
@@ -401,110 +253,3 @@ class PolicyPlayer:
         # The greatest of score plus Gumbel noise is drawn in proportion to exp(score).
         noisy: IntArray = (scores / chance.amount + self._rng.gumbel(size=scores.shape)).argmax(axis=1)
         return noisy
-
-
-FORMAT_VERSION = 1
-
-
-def save_policy(policy: Policy, file: Path) -> None:
-    """Writes it, atomically, as an ``.npz`` of plain arrays and one text. OSError if it cannot be written."""
-    write_atomically(file, policy_bytes(policy))
-
-
-def policy_bytes(policy: Policy) -> bytes:
-    """The bytes that ``save_policy`` writes."""
-    about = {
-        "format": FORMAT_VERSION,
-        "choices": policy.choices,
-        "chance": [policy.sampling.kind, policy.sampling.amount],
-        **({"deviations": policy.sampling.deviations} if policy.sampling.deviations else {}),
-        "task": policy.trained_on.as_dict(),
-        "steps": policy.steps,
-        "activation": getattr(policy.model, "activation", None),
-        "inputs": policy.model.inputs,
-        "interface": policy.interface,
-        **({} if policy.critic is None else {"critic": policy.critic.activation}),
-    }
-    text = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w") as archive:  # what numpy.savez does, but always with the same bytes
-        for name, array in {"about": text, **_arrays_of(policy.model), **_critic_arrays(policy)}.items():
-            with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w") as member:
-                np.lib.format.write_array(member, array, allow_pickle=False)
-    return buffer.getvalue()
-
-
-def _arrays_of(model: PolicyNetwork | ActionValueTable) -> dict[str, NDArray[Any]]:
-    if isinstance(model, ActionValueTable):
-        return {"used": model.used, "edges": model.edges, "values": model.values}
-    layers = [*((model.lstm.input_layer, model.lstm.recurrent_layer) if model.lstm else ()), *model.layers]
-    names = [*(("seen", "kept") if model.lstm else ()), *(str(number) for number in range(len(model.layers)))]
-    named: dict[str, NDArray[Any]] = {}
-    for name, layer in zip(names, layers, strict=True):
-        named[f"weights_{name}"], named[f"bias_{name}"] = layer.weights, layer.bias
-    return named
-
-
-def _critic_arrays(policy: Policy) -> dict[str, NDArray[Any]]:
-    if policy.critic is None:
-        return {}
-    return {f"critic_{name}": array for name, array in _arrays_of(policy.critic).items()}
-
-
-def load_policy(file: Path | str) -> Policy:
-    """Reads a trained policy, such as a run's ``best.npz``; needs no torch.
-
-    Raises PolicyError if the file is damaged and FileNotFoundError if there is none.
-
-    >>> policy = kit.load_policy("best.npz")
-    >>> policy.trained_on.task
-    'turn'
-    """
-    file = Path(file)
-    try:
-        return _policy_from_arrays(read_arrays(file))
-    except FileNotFoundError:
-        raise
-    except Exception as error:  # noqa: BLE001 - whatever a damaged archive makes numpy raise
-        raise PolicyError(f"{file}: not a policy, or damaged ({error}). `kit runs` lists the runs.") from None
-
-
-def _policy_from_arrays(arrays: dict[str, NDArray[Any]]) -> Policy:
-    about = json.loads(arrays["about"].tobytes())
-    if about["format"] != FORMAT_VERSION:
-        raise ValueError(f"format {about['format']}, this kit reads {FORMAT_VERSION}")
-    kind, amount = about["chance"]
-    known_kind = next(each for each in get_args(SamplingKind) if each == kind)
-    policy = Policy(
-        _table_from_arrays(arrays, about["inputs"])
-        if "values" in arrays
-        else _network_from_arrays(arrays, about["activation"]),
-        tuple(map(int, about["choices"])),
-        ActionSampling(known_kind, float(amount), tuple(map(float, about.get("deviations", ())))),
-        TaskSpec.from_dict(about["task"]),
-        int(about["steps"]),
-        about["interface"],
-        _network_from_arrays(_critics_own(arrays), about["critic"]) if "critic" in about else None,
-    )
-    policy.check_consistent()
-    return policy
-
-
-def _critics_own(arrays: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    return {
-        name.removeprefix("critic_"): array for name, array in arrays.items() if name.startswith("critic_")
-    }
-
-
-def _table_from_arrays(arrays: dict[str, NDArray[Any]], inputs: int) -> ActionValueTable:
-    return ActionValueTable(arrays["used"], arrays["edges"], arrays["values"], inputs)
-
-
-def _network_from_arrays(arrays: dict[str, NDArray[Any]], activation: str) -> PolicyNetwork:
-    def layer(name: str) -> LinearLayer:
-        return LinearLayer(arrays[f"weights_{name}"], arrays[f"bias_{name}"])
-
-    count = sum(name.removeprefix("weights_").isdigit() for name in arrays)
-    known: Activation = next(each for each in get_args(Activation) if each == activation)
-    lstm = LstmLayer(layer("seen"), layer("kept")) if "weights_seen" in arrays else None
-    return PolicyNetwork(tuple(layer(str(number)) for number in range(count)), known, lstm)

@@ -7,19 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.learning.policies.policies import (
-    ActionSampling,
-    ActionValueTable,
-    LinearLayer,
-    LstmLayer,
-    Policy,
-    PolicyError,
-    PolicyNetwork,
-    load_policy,
-    policy_bytes,
-    save_policy,
-    task_interface,
-)
+from kit.learning.policies.policy import ActionSampling, Policy, PolicyError, task_interface
+from kit.learning.policies.policy_file import load_policy, policy_bytes, save_policy
+from kit.learning.policies.policy_network import ActionValueTable, LinearLayer, LstmLayer, PolicyNetwork
 from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.tasks.task_spec import TaskSpec

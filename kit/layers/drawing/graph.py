@@ -1,0 +1,150 @@
+"""The collision graph of a case as a picture in characters."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+from itertools import combinations
+
+from kit.layers.drawing.canvas import BOX_ROWS, EntityBox, TextCanvas
+from kit.layers.drawing.spans import STYLE_RANK, DrawingLine, DrawingStyle, GlyphStyle
+from kit.layers.requirements import ContactRequirement, LayerCase
+
+MAX_ENTITIES_IN_PICTURE = 16
+"""With more entities than this, lines cross too often to follow: draw the matrix."""
+
+
+def draw_graph(
+    case: LayerCase,
+    *,
+    struck: Collection[ContactRequirement] = (),
+    group: Collection[str] = (),
+    laser: str | None = None,
+    width: int = 80,
+    height: int = 17,
+    glyphs: GlyphStyle = "braille",
+    boxes: bool = False,
+) -> list[DrawingLine]:
+    """The collision graph as a picture of ``width`` x ``height`` characters.
+
+    Edges are lines; a struck one is faint dots; one inside the ``group`` is drawn thick, and the names of the
+    group stand in ``[ ]``. Maps stand between ``# #``. A ``laser``, in ``< >``, sends a dotted beam to everything
+    it must see. ``boxes``: where no two would touch, each name stands in a box that says what it is.
+    """
+    names = [*_reduce_crossings(case), *([laser] if laser else [])]
+    canvas = TextCanvas(width, height, glyphs)
+    if boxes and (placed := _place_boxes(case, names, group, laser, width, height)):
+        _draw_boxed_graph(canvas, case, placed, struck, group, laser)
+        return canvas.lines()
+    positions = dict(zip(names, _ellipse_points(len(case.names), width, height), strict=False))
+    if laser:
+        positions[laser] = ((width - 1) / 2, (height - 1) / 2)
+        for name in sorted(case.laser[laser].sees):
+            canvas.line(positions[laser], positions[name], "beam")
+    for edge in sorted(case.edges(), key=lambda e: STYLE_RANK[_edge_style(e, struck, group)]):
+        canvas.line(positions[edge.a], positions[edge.b], _edge_style(edge, struck, group))
+    for name in names:
+        canvas.label(positions[name], *_entity_label(case, name, group))
+    return canvas.lines()
+
+
+def _place_boxes(
+    case: LayerCase,
+    names: Sequence[str],
+    group: Collection[str],
+    laser: str | None,
+    width: int,
+    height: int,
+) -> dict[str, EntityBox] | None:
+    """A box for every name on an ellipse that grows with their number; None where two boxes would touch."""
+    count = len(case.names)
+    widest = max((len(_entity_label(case, name, names)[0]) for name in names), default=0) + 4
+    across = min((width - widest - 1) / 2, 20.0 + 8 * count)
+    down = min((height - 1 - BOX_ROWS) / 2, 6.0 + 3 * count)
+    if across <= 0 or down <= 0:
+        return None
+    first = math.pi if count == 2 else -math.pi / 2
+    middle = (width - 1) // 2, (height - 2) // 2 + 0.5  # a box of four rows has its middle between two
+    placed: dict[str, EntityBox] = {}
+    for i, name in enumerate(names):
+        turn = first + math.tau * i / max(count, 1)
+        x, y = middle[0] + across * math.cos(turn), middle[1] + math.floor(down * math.sin(turn) + 0.5)
+        if name == laser:  # in the middle, but not on the only edge
+            x, y = middle[0], middle[1] + (math.floor(down) if count == 2 else 0)
+        label, style = _entity_label(case, name, group)
+        is_map = name != laser and case.by_name[name].kind == "map"
+        kind = "laser" if name == laser else "map" if is_map else "body"
+        placed[name] = EntityBox((x, y), label, kind, style)
+    apart = not any(one.touches(other) for one, other in combinations(placed.values(), 2))
+    return placed if apart else None
+
+
+def _draw_boxed_graph(
+    canvas: TextCanvas,
+    case: LayerCase,
+    placed: Mapping[str, EntityBox],
+    struck: Collection[ContactRequirement],
+    group: Collection[str],
+    laser: str | None,
+) -> None:
+    for edge in sorted(case.edges(), key=lambda e: STYLE_RANK[_edge_style(e, struck, group)]):
+        canvas.line(placed[edge.a].middle, placed[edge.b].middle, _edge_style(edge, struck, group))
+    seen = sorted(case.laser[laser].sees) if laser else []
+    for name in seen:
+        canvas.line(placed[laser or ""].middle, placed[name].middle, "beam")
+    for box in placed.values():
+        canvas.box(box)
+    for name in seen:
+        canvas.arrow(placed[laser or ""], placed[name])
+
+
+def _edge_style(
+    edge: ContactRequirement, struck: Collection[ContactRequirement], group: Collection[str]
+) -> DrawingStyle:
+    if edge.a in group and edge.b in group:
+        return "group edge"
+    return "struck" if edge in struck else "edge"
+
+
+def _entity_label(case: LayerCase, name: str, group: Collection[str]) -> tuple[str, DrawingStyle]:
+    if name in group:
+        return f"[{name}]", "group"
+    entity = case.by_name.get(name)
+    if entity is None:
+        return f"<{name}>", "laser"
+    return (f"#{name}#", "map") if entity.kind == "map" else (f" {name} ", "body")
+
+
+def _ellipse_points(count: int, width: int, height: int) -> list[tuple[float, float]]:
+    """Points on an ellipse as wide and high as the picture, from the top clockwise: (column, row)."""
+    turns = [math.tau * i / max(count, 1) - math.pi / 2 for i in range(count)]
+    across, down = max(1.0, (width - 1) / 2 - 6), (height - 1) / 2
+    return [((width - 1) / 2 + across * math.cos(t), down + down * math.sin(t)) for t in turns]
+
+
+def _reduce_crossings(case: LayerCase) -> list[str]:
+    """The entities around the ellipse, two swapped as long as that makes fewer edges cross."""
+    order = list(case.names)
+    edges = [(edge.a, edge.b) for edge in case.edges()]
+    if len(order) > MAX_ENTITIES_IN_PICTURE:
+        return order
+    best = _crossing_cost(order, edges)
+    improved = True
+    while improved and best > (0, 0):
+        improved = False
+        for i, j in combinations(range(len(order)), 2):
+            order[i], order[j] = order[j], order[i]
+            crossings = _crossing_cost(order, edges)
+            if crossings < best:
+                best, improved = crossings, True
+            else:
+                order[i], order[j] = order[j], order[i]
+    return order
+
+
+def _crossing_cost(order: Sequence[str], edges: Sequence[tuple[str, str]]) -> tuple[int, int]:
+    """Returns the number of crossing pairs of chords and the total length of the chords (in steps around the circle)."""
+    place = {name: i for i, name in enumerate(order)}
+    chords = [tuple(sorted((place[a], place[b]))) for a, b in edges]
+    crossing = sum(a < c < b < d or c < a < d < b for (a, b), (c, d) in combinations(chords, 2))
+    return crossing, sum(min(b - a, len(order) - b + a) for a, b in chords)

@@ -1,0 +1,38 @@
+"""Lines of text whose parts say what they stand for: a face may colour them, and joined they are plain characters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Final, Literal
+
+DrawingStyle = Literal[
+    "space", "edge", "struck", "group edge", "beam", "map", "body", "group", "laser", "text", "cursor"
+]
+
+
+GlyphStyle = Literal["braille", "ascii"]
+
+
+@dataclass(frozen=True, slots=True)
+class DrawingSpan:
+    text: str
+    style: DrawingStyle
+
+
+DrawingLine = tuple[DrawingSpan, ...]
+
+
+_STYLE_ORDER: Final[tuple[DrawingStyle, ...]] = (
+    "space", "struck", "beam", "edge", "group edge", "text", "map", "body", "laser", "group",
+    "cursor",
+)  # fmt: skip
+"""Where two items meet in one character, the later style is shown."""
+
+
+STYLE_RANK: Final = {style: rank for rank, style in enumerate(_STYLE_ORDER)}
+
+
+def to_plain_lines(lines: Iterable[DrawingLine]) -> list[str]:
+    """The lines as text, without what trails behind."""
+    return ["".join(span.text for span in line).rstrip() for line in lines]

@@ -1,0 +1,130 @@
+"""Policies as files: arrays and a description, without anything that could run."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from pathlib import Path
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kit.array_archives import read_arrays
+from kit.learning.policies.policy import ActionSampling, Policy, PolicyError, SamplingKind
+from kit.learning.policies.policy_network import (
+    ActionValueTable,
+    Activation,
+    LinearLayer,
+    LstmLayer,
+    PolicyNetwork,
+)
+from kit.learning.tasks.task_spec import TaskSpec
+from kit.workspace import write_atomically
+
+FORMAT_VERSION = 1
+
+
+def save_policy(policy: Policy, file: Path) -> None:
+    """Writes it, atomically, as an ``.npz`` of plain arrays and one text. OSError if it cannot be written."""
+    write_atomically(file, policy_bytes(policy))
+
+
+def policy_bytes(policy: Policy) -> bytes:
+    """The bytes that ``save_policy`` writes."""
+    about = {
+        "format": FORMAT_VERSION,
+        "choices": policy.choices,
+        "chance": [policy.sampling.kind, policy.sampling.amount],
+        **({"deviations": policy.sampling.deviations} if policy.sampling.deviations else {}),
+        "task": policy.trained_on.as_dict(),
+        "steps": policy.steps,
+        "activation": getattr(policy.model, "activation", None),
+        "inputs": policy.model.inputs,
+        "interface": policy.interface,
+        **({} if policy.critic is None else {"critic": policy.critic.activation}),
+    }
+    text = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:  # what numpy.savez does, but always with the same bytes
+        for name, array in {"about": text, **_arrays_of(policy.model), **_critic_arrays(policy)}.items():
+            with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w") as member:
+                np.lib.format.write_array(member, array, allow_pickle=False)
+    return buffer.getvalue()
+
+
+def _arrays_of(model: PolicyNetwork | ActionValueTable) -> dict[str, NDArray[Any]]:
+    if isinstance(model, ActionValueTable):
+        return {"used": model.used, "edges": model.edges, "values": model.values}
+    layers = [*((model.lstm.input_layer, model.lstm.recurrent_layer) if model.lstm else ()), *model.layers]
+    names = [*(("seen", "kept") if model.lstm else ()), *(str(number) for number in range(len(model.layers)))]
+    named: dict[str, NDArray[Any]] = {}
+    for name, layer in zip(names, layers, strict=True):
+        named[f"weights_{name}"], named[f"bias_{name}"] = layer.weights, layer.bias
+    return named
+
+
+def _critic_arrays(policy: Policy) -> dict[str, NDArray[Any]]:
+    if policy.critic is None:
+        return {}
+    return {f"critic_{name}": array for name, array in _arrays_of(policy.critic).items()}
+
+
+def load_policy(file: Path | str) -> Policy:
+    """Reads a trained policy, such as a run's ``best.npz``; needs no torch.
+
+    Raises PolicyError if the file is damaged and FileNotFoundError if there is none.
+
+    >>> policy = kit.load_policy("best.npz")
+    >>> policy.trained_on.task
+    'turn'
+    """
+    file = Path(file)
+    try:
+        return _policy_from_arrays(read_arrays(file))
+    except FileNotFoundError:
+        raise
+    except Exception as error:  # noqa: BLE001 - whatever a damaged archive makes numpy raise
+        raise PolicyError(f"{file}: not a policy, or damaged ({error}). `kit runs` lists the runs.") from None
+
+
+def _policy_from_arrays(arrays: dict[str, NDArray[Any]]) -> Policy:
+    about = json.loads(arrays["about"].tobytes())
+    if about["format"] != FORMAT_VERSION:
+        raise ValueError(f"format {about['format']}, this kit reads {FORMAT_VERSION}")
+    kind, amount = about["chance"]
+    known_kind = next(each for each in get_args(SamplingKind) if each == kind)
+    policy = Policy(
+        _table_from_arrays(arrays, about["inputs"])
+        if "values" in arrays
+        else _network_from_arrays(arrays, about["activation"]),
+        tuple(map(int, about["choices"])),
+        ActionSampling(known_kind, float(amount), tuple(map(float, about.get("deviations", ())))),
+        TaskSpec.from_dict(about["task"]),
+        int(about["steps"]),
+        about["interface"],
+        _network_from_arrays(_critics_own(arrays), about["critic"]) if "critic" in about else None,
+    )
+    policy.check_consistent()
+    return policy
+
+
+def _critics_own(arrays: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    return {
+        name.removeprefix("critic_"): array for name, array in arrays.items() if name.startswith("critic_")
+    }
+
+
+def _table_from_arrays(arrays: dict[str, NDArray[Any]], inputs: int) -> ActionValueTable:
+    return ActionValueTable(arrays["used"], arrays["edges"], arrays["values"], inputs)
+
+
+def _network_from_arrays(arrays: dict[str, NDArray[Any]], activation: str) -> PolicyNetwork:
+    def layer(name: str) -> LinearLayer:
+        return LinearLayer(arrays[f"weights_{name}"], arrays[f"bias_{name}"])
+
+    count = sum(name.removeprefix("weights_").isdigit() for name in arrays)
+    known: Activation = next(each for each in get_args(Activation) if each == activation)
+    lstm = LstmLayer(layer("seen"), layer("kept")) if "weights_seen" in arrays else None
+    return PolicyNetwork(tuple(layer(str(number)) for number in range(count)), known, lstm)

@@ -1,0 +1,1 @@
+"""Goals of a task: each is one file with one subclass of ``Goal``, found by its ``kind``."""

@@ -1,0 +1,155 @@
+"""The contract of a goal: what a task asks for, and how much of it many worlds have achieved.
+
+A goal is a count that grows until it is full: then the episode has reached it. Whoever drives, trains, watches, races or
+draws a task asks this contract; nobody else tells goals apart.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from enum import Enum, auto
+from typing import ClassVar, Self
+
+import numpy as np
+
+from kit.arrays import FloatArray, IntArray
+from kit.learning.maps.batch_map import BatchMap, load_batch_map
+from kit.learning.tasks.transition import Array, Transition
+from kit.world.catalogue import MapCard
+from kit.world.yaml_section import Section
+
+
+class CaseTargets(Enum):
+    """What a goal takes the targets of a case for."""
+
+    NONE = auto()
+    """It has none."""
+    PLACE = auto()
+    """Robots are to be in one of them."""
+    ROUTE = auto()
+    """Robots are to be in all of them, one after the other."""
+    LEADER = auto()
+    """It is a model that moves."""
+
+
+@dataclass(frozen=True, slots=True)
+class GoalCase:
+    """What a goal knows of a case: its map, who drives there, and where they start."""
+
+    card: MapCard
+    robots: tuple[str, ...]
+    start: tuple[float, float]
+    """A place where episodes start [m]."""
+    target_count: int
+
+    @property
+    def batch_map(self) -> BatchMap:
+        """Its map as arrays. Raises UnsupportedWorld and WorldError."""
+        return load_batch_map(self.card, self.robots)
+
+
+class GoalCount(ABC):
+    """Counts how much of a goal is achieved in n worlds, in the goal's own unit."""
+
+    needed: FloatArray
+    """(cases,) the count at which the goal is reached."""
+
+    def begin(self, which: IntArray, cases: IntArray, poses: FloatArray) -> FloatArray:
+        """(m,) the counts of new episodes of ``cases`` (m) in the worlds ``which`` (m), with robots at ``poses`` (m, r, 3)."""
+        return np.zeros(len(which))
+
+    @abstractmethod
+    def count(self, transition: Transition) -> FloatArray:
+        """(n,) the counts after a step; before it they were ``transition.before.count``."""
+
+
+class Goal(ABC):
+    """What a task asks for. A subclass is a frozen dataclass: its fields are the settings that a file may give."""
+
+    kind: ClassVar[str]
+    """Its name in files."""
+    case_targets: ClassVar[CaseTargets] = CaseTargets.NONE
+    is_told_later: ClassVar[bool] = False
+    """Whether agents that see ``achieved`` are told it one step later: where the newest scan is what is counted."""
+    is_lost_at_start: ClassVar[bool] = False
+    """Whether a robot that is put back to its start, as a race does after a bump, begins again."""
+
+    @classmethod
+    @abstractmethod
+    def read(cls, section: Section) -> Self:
+        """Reads the goal's settings from a file; what is wrong is noted in the section."""
+
+    @property
+    @abstractmethod
+    def description(self) -> str:
+        """What is to be done, ``be in the target``."""
+
+    @abstractmethod
+    def make_count(self, cases: Sequence[GoalCase], n: int, step_time: float) -> GoalCount:
+        """A count for ``n`` worlds of these cases, whose steps take ``step_time`` [s]."""
+
+    @abstractmethod
+    def progress(self, count: float, needed: float) -> str:
+        """How much of it is achieved, in a few words; empty where there is nothing to count."""
+
+    @property
+    def heading_tolerance(self) -> float | None:
+        """The target's heading must be kept within this [rad]; None: any heading will do."""
+        return None
+
+    @property
+    def race_refusal(self) -> str:
+        """Why it cannot be raced in the simulator; empty if it can."""
+        return ""
+
+    @property
+    def node_refusal(self) -> str:
+        """Why a node on a robot cannot tell an agent its target, where agents see it; empty if it can."""
+        return ""
+
+    @property
+    def needs_target(self) -> bool:
+        """Whether a case must have a target."""
+        return self.case_targets is not CaseTargets.NONE
+
+    @property
+    def has_standing_targets(self) -> bool:
+        """Whether robots are to be in targets that stand somewhere: there are ways to them, and pictures show them."""
+        return self.case_targets in (CaseTargets.PLACE, CaseTargets.ROUTE)
+
+    @property
+    def is_route(self) -> bool:
+        """Whether all targets of a case are reached, one after the other."""
+        return self.case_targets is CaseTargets.ROUTE
+
+    @property
+    def begins_outside_target(self) -> bool:
+        """Whether episodes that begin in the target would be over at once."""
+        return self.case_targets is CaseTargets.PLACE
+
+    @property
+    def needs_leader(self) -> bool:
+        """Whether the target must be a model that moves."""
+        return self.case_targets is CaseTargets.LEADER
+
+    def route(self, targets: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
+        """Where robots are to be, one place after the other [m, m]; ``targets``: those of the case."""
+        return targets[:1] if self.case_targets is CaseTargets.PLACE else ()
+
+    def is_arrived(self, inside: Array, poses: Array, headings: Array) -> Array:
+        """(n, r) who is in the target, of those ``inside`` it at ``poses`` (n, r, 3); ``headings`` (n,): the targets'."""
+        return inside
+
+    @classmethod
+    def usual_settings(cls) -> str:
+        """The settings that a file may give with what they usually are, ``share 0.9, radius 0.15``."""
+        told = ((each.name, each.default) for each in fields(cls))  # type: ignore[arg-type]  # a dataclass, by contract
+        return ", ".join(f"{name} {_plain(usual)}".rstrip() for name, usual in told)
+
+
+def _plain(value: object) -> str:
+    if value is None:
+        return ""
+    return f"{value:g}" if isinstance(value, float) else str(value)

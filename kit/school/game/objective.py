@@ -1,0 +1,135 @@
+"""Measures in the simulator, tick by tick, how much of a level's goal is achieved: the same count as in training."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from kit.arrays import FloatArray
+from kit.learning.tasks.goals.goal import GoalCase
+from kit.learning.tasks.transition import FAR, EpisodeState, Transition
+from kit.render.scene import Disc
+from kit.run.metrics import is_in_target
+from kit.run.scenario import BEACON, Scenario
+from kit.school.game.levels import GameLevel
+from kit.sim.simulation import Simulation
+
+USUAL_RADIUS = 0.25
+"""Of targets on levels whose map has no case [m]."""
+
+
+class Objective:
+    """The goal of one drive. ``on_step`` is called after every tick until it is achieved."""
+
+    def __init__(self, level: GameLevel, scenario: Scenario, step_size: float) -> None:
+        """``scenario``: the level's own, as it was loaded; ``step_size``: of its ticks [s]."""
+        self._goal, self._any_order, self._leader = level.goal, level.any_order, level.leader
+        self._robots = scenario.partners
+        self._obstacles = [
+            model.name
+            for model in scenario.world.models
+            if model.name not in (*self._robots, BEACON) and any(body.footprints for body in model.bodies)
+        ]
+        case = scenario.case
+        places = self._goal.route(level.targets or (() if case is None else (case.target,)))
+        radius = USUAL_RADIUS if case is None else case.target_radius
+        self._all = tuple(Disc(x, y, radius) for x, y in places)
+        start = scenario.starts[0]
+        goal_case = GoalCase(level.map_card, self._robots, (start.x, start.y), len(level.targets))
+        self._count = self._goal.make_count([goal_case], 1, step_size)
+        self._needed = float(self._count.needed[0])
+        self._begin(np.array([scenario.starts], dtype=np.float64))
+
+    def _begin(self, poses: FloatArray) -> None:
+        """Nothing is achieved yet; ``poses`` (1, robots, 3)."""
+        self.reached_s: float | None = None
+        """When it was achieved [simulated s]."""
+        self.splits: tuple[float, ...] = ()
+        """When each target of a route was reached [simulated s]."""
+        self.target_m: float | None = None
+        """From the hull of the robot that is farthest to the nearest target that is left [m]; None where there is none."""
+        self._left = list(self._all)
+        world = np.zeros(1, dtype=np.int64)
+        self._state = _unknown_state(poses, self._count.begin(world, world, poses))
+
+    def on_step(self, simulation: Simulation) -> None:
+        """Counts one tick."""
+        arrived = next((disc for disc in self.discs if self._is_inside(simulation, disc)), None)
+        if self.discs:
+            self.target_m = min(
+                max(simulation.hull_distance(name, (disc.x, disc.y)) for name in self._robots)
+                for disc in self.discs
+            )
+        before = self._state
+        after = replace(
+            before,
+            step=before.step + 1,
+            pose=np.array([[simulation.pose(name) for name in self._robots]], dtype=np.float64),
+            in_target=np.full((1, len(self._robots)), arrived is not None),
+            target=self._target(simulation),
+        )
+        if self._obstacles:
+            after = replace(after, obstacle_distance=self._nearest_obstacles(simulation, after.pose))
+        counts = self._count.count(Transition(before, after, max_steps=0))
+        self._state = replace(after, count=counts, achieved=counts / self._needed)
+        if arrived is not None and self._goal.is_route:
+            self._left.remove(arrived)
+            self.splits = (*self.splits, simulation.time_ns / 1e9)
+        if self._state.achieved[0] >= 1.0:
+            self.reached_s = simulation.time_ns / 1e9
+
+    def put_back(self) -> None:
+        """A robot has bumped and was put back to its start: on a route that would be the shortest way home."""
+        if self._goal.is_lost_at_start:
+            self._begin(self._state.pose)
+
+    @property
+    def progress(self) -> str:
+        """How much of it is achieved, in a few words; empty where there is nothing to count."""
+        return self._goal.progress(float(self._state.count[0]), self._needed)
+
+    @property
+    def discs(self) -> tuple[Disc, ...]:
+        """The targets that may be reached next."""
+        return tuple(self._left) if self._any_order else tuple(self._left[:1])
+
+    def _is_inside(self, simulation: Simulation, disc: Disc) -> bool:
+        return all(is_in_target(simulation, name, (disc.x, disc.y), disc.radius) for name in self._robots)
+
+    def _target(self, simulation: Simulation) -> FloatArray:
+        """(1, 2)"""
+        if self._leader:
+            return np.array([simulation.pose(self._leader)[:2]])
+        return np.array([(disc.x, disc.y) for disc in self.discs[:1]] or [(0.0, 0.0)])
+
+    def _nearest_obstacles(self, simulation: Simulation, poses: FloatArray) -> FloatArray:
+        """(1, robots) [m]"""
+        places = np.array([simulation.pose(name)[:2] for name in self._obstacles])
+        nearest: FloatArray = np.hypot(*np.moveaxis(poses[:, :, None, :2] - places, -1, 0)).min(axis=-1)
+        return nearest
+
+
+def _unknown_state(poses: FloatArray, count: FloatArray) -> EpisodeState:
+    """The state of one world with robots at ``poses`` (1, robots, 3), of which a race knows nothing else."""
+    shape = poses.shape[:2]
+    unknown: Any = np.full(shape, np.nan)
+    return EpisodeState(
+        case=np.zeros(1, dtype=np.int64),
+        step=np.zeros(1, dtype=np.int64),
+        pose=poses,
+        hit=np.zeros(shape, dtype=np.bool_),
+        in_target=np.zeros(shape, dtype=np.bool_),
+        to_go=unknown,
+        rotation=unknown,
+        ranges=np.full((*shape, 91), np.nan),
+        move=unknown,
+        twist=np.full((*shape, 2), np.nan),
+        forward_steps=unknown,
+        target=np.zeros((1, 2)),
+        target_heading=np.zeros(1),
+        obstacle_distance=np.full(shape, FAR),
+        count=count,
+        achieved=np.zeros(1),
+    )
