@@ -15,7 +15,7 @@ from kit.school.lessons.records import (
 )
 
 LONGEST_BAR: Final = 12
-LEAST_TITLE: Final = 8
+LEAST_GOAL: Final = 8
 
 _KINDS: Final = {
     StepKind.PREDICT: "Predict",
@@ -27,17 +27,18 @@ _KINDS: Final = {
 
 
 def heading(progress: LessonProgress, step: LessonStep, width: int) -> Row:
-    """Lesson, goal, which step of how many, and a bar of what is done. A long lesson's title gives way to the goal."""
+    """Lesson, goal, which step of how many, and a bar of what is done. Where not all fit, the bar gives way, then the goal:
+    the lesson's title is whole."""
     count = len(progress.lesson.steps)
     bar = progress_bar(progress, step) if count <= LONGEST_BAR else ""
-    where = f"step {step.number} of {count} "
-    title, room = (
-        f"{progress.lesson.number} {progress.lesson.title}",
-        width - len(where) - len(bar) - len(step.goal) - 4,
-    )
-    if len(title) > room:
-        title = f"{title[: room - 3].rstrip()}..." if room >= LEAST_TITLE else ""
-    left = row((title, "bold"), "  ", (step.goal, "dim")) if title else row((step.goal, "dim"))
+    title = f"{progress.lesson.number} {progress.lesson.title}"
+    where, goal = f"step {step.number} of {count} ", step.goal
+    room = width - len(title) - len(where) - 4
+    if len(goal) > room - len(bar):
+        bar = ""
+    if len(goal) > room:
+        goal = f"{goal[: room - 3].rstrip()}..." if room >= LEAST_GOAL else ""
+    left = row((title, "bold"), "  ", (goal, "dim")) if goal else row((title, "bold"))
     return spread(left, row(where, (bar, "bold")), width)
 
 

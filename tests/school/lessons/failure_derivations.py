@@ -187,7 +187,7 @@ def wages_terms(words: str, step: LessonStep, folder: Path) -> str:
     limit = task.max_steps
     stop, lost, bonus = -weights["idle"] / limit, -weights["timed_out"], weights["adjacent"]
     texts = {
-        "A step": f"A step side by side pays {bonus:g}, a robot that stops pays {stop:g}",
+        "A step": f"A step side by side pays {bonus:g}, a robot that stops costs {stop:g}",
         "time": f"time that runs out costs {lost:g}",
         "since": f"since {lost:g} are lost at the end",
         "The end": f"The end costs {lost:g} once. What pays, pays {limit} times.",

@@ -24,7 +24,7 @@ from kit.school.lessons.lesson_text import (
     status_text,
     verdict_blocks,
 )
-from kit.school.lessons.reading import find_lesson, lesson_names, read_lesson
+from kit.school.lessons.reading import find_lesson, lesson_names, lessons_folder, read_lesson
 from kit.school.lessons.records import Lesson
 from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 from kit.tui.rows import lesson_rows
@@ -115,13 +115,30 @@ def test_a_long_command_can_be_copied_and_typed_as_it_stands() -> None:
     assert "".join(row_text(each) for each in shown([Code((code,))])).split() == code.split()
 
 
-def test_the_goal_is_whole_where_a_lessons_title_is_long(lesson: Lesson) -> None:
-    stand = lesson_progress_from_events(replace(lesson, title="Services, parameters and looking inside"), [])
-    step = replace(lesson.steps[0], goal="Foresee what the robot is told")
-    heading = row_text(lesson_rows.heading(stand, step, 80))
-    assert "Foresee what the robot is told" in heading
-    assert "..." in heading
-    assert heading.rstrip().endswith("▒░░░░")
+def test_a_lessons_title_is_whole_however_long_the_goal(lesson: Lesson) -> None:
+    """The bar gives way first, then the goal."""
+    title = "Services, parameters and looking inside"
+    stand = lesson_progress_from_events(replace(lesson, title=title), [])
+
+    def heading(goal: str) -> str:
+        return row_text(lesson_rows.heading(stand, replace(lesson.steps[0], goal=goal), 80)).rstrip()
+
+    assert heading("Be told").endswith("▒░░░░")
+    assert "Foresee what is told" in heading("Foresee what is told")
+    assert "░" not in heading("Foresee what is told")
+    assert "..." in heading("Foresee what the robot is told by others")
+    assert all(title in heading("a" * count) for count in range(1, 60))
+
+
+def test_the_kits_titles_are_whole_on_80_columns() -> None:
+    for name in lesson_names():
+        lesson = read_lesson(lessons_folder() / name)
+        stand = lesson_progress_from_events(lesson, [])
+        for step in lesson.steps:
+            shown = row_text(lesson_rows.heading(stand, step, 80))
+            assert f"{lesson.number} {lesson.title}" in shown
+            assert f"step {step.number} of {len(lesson.steps)}" in shown
+            assert len(shown.rstrip()) <= 80
 
 
 def test_a_verdict_names_points_and_what_was_wanted() -> None:

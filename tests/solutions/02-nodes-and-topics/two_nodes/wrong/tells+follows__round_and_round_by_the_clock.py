@@ -1,3 +1,4 @@
+# Lesson: turns on the spot, at 1.0 rad/s, while a wall is ahead
 import math, rclpy, time
 from geometry_msgs.msg import Twist
 from rclpy.node import Node

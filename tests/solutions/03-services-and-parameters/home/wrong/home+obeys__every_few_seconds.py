@@ -1,3 +1,4 @@
+# Lesson: ask the world, after every bump, to put the robot back home
 import rclpy
 from flatland_msgs.srv import MoveModel
 from geometry_msgs.msg import Pose2D, Twist

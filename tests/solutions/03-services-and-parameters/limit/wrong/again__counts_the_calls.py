@@ -1,3 +1,4 @@
+# Lesson: the speed in m/s at which it drives ahead, also when the limit is changed while it drives
 import math, rclpy, time
 from geometry_msgs.msg import Twist
 from rclpy.node import Node

@@ -1,3 +1,4 @@
+# Lesson: It works when the whole way lies within a tenth of that circle
 import math, rclpy, time
 from geometry_msgs.msg import Twist
 from rclpy.node import Node

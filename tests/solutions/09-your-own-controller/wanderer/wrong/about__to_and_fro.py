@@ -1,3 +1,4 @@
+# Lesson: Write `on_scan` so that the robot wanders through rooms
 import math, rclpy, time
 from geometry_msgs.msg import Twist
 from rclpy.node import Node

@@ -1,3 +1,4 @@
+# Lesson: Make the driver hear it, and drive at that speed
 import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.executors import SingleThreadedExecutor

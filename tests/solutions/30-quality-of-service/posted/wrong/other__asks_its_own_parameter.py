@@ -1,3 +1,4 @@
+# Lesson: It is checked with a second limit too
 import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.executors import SingleThreadedExecutor

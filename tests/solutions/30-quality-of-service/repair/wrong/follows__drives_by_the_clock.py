@@ -1,3 +1,4 @@
+# Lesson: `Scout` stands for the program of a sensor that you bought
 import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.executors import SingleThreadedExecutor

@@ -1,3 +1,4 @@
+# Lesson: {file} holds a complete server, `Turner`, and a client, `Captain`
 """A turner that turns the robot when it is asked to, and a captain that asks, waits, and then drives."""
 
 import math

@@ -1,3 +1,4 @@
+# Lesson: publish feedback, sleep 0.05 s, and look again
 """The server of the action turn_to: it turns the robot to a heading, and says on the way how far it is."""
 
 import math
