@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from kit.document.blocks import CellStyle, Chapter, Column, Table
 from kit.help.docstrings import docstring_blocks
 from kit.help.topic import Shelf, Topic, chapter
+from kit.host.python_command import python_command
 
 _COLUMNS: Final = tuple(
     Column(title, CellStyle.TEXT)
@@ -19,7 +19,7 @@ _COLUMNS: Final = tuple(
 
 
 def _chapters() -> tuple[Chapter, ...]:
-    asked = [sys.executable, "-P", "-m", "grader", "checks", "--json"]
+    asked = python_command("grader", "checks", "--json")
     answer = json.loads(subprocess.run(asked, check=True, capture_output=True, text=True).stdout)
     return (
         chapter(
