@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import time
 from collections.abc import Mapping
 from itertools import pairwise, product
@@ -167,7 +168,8 @@ def action_parts(words: str, step: LessonStep, folder: Path) -> str:
 def rotate_fields(words: str, step: LessonStep, folder: Path) -> str:
     shown = shell("ros", "interface", "show", "turtlesim/action/RotateAbsolute")
     named = {"theta": "a heading", "delta": "how far it turned", "remaining": "how far it still is"}
-    goal, result, feedback = (named[part.split()[1]] for part in shown.split("---"))
+    fields = re.sub(r"#.*", "", shown)
+    goal, result, feedback = (named[part.split()[1]] for part in fields.split("---"))
     return f"The goal is {goal}, the result {result}, the feedback {feedback}"
 
 
