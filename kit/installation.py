@@ -10,7 +10,6 @@ import shlex
 import shutil
 import sys
 from collections.abc import Iterator, Mapping
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -66,7 +65,7 @@ def install_command(extra: str) -> str:
     """What to type on this machine to add an extra to this installation, in any folder."""
     packages = requirements(extra)
     python = shlex.quote(sys.executable)
-    has_pip = find_spec("pip") is not None
+    has_pip = _has_metadata("pip")
     uv = shutil.which("uv")
     program = f"{python} -m pip install" if has_pip or uv is None else f"uv pip install --python {python}"
     pins = f"-c {shlex.quote(str(constraints_file()))}"

@@ -211,7 +211,9 @@ class ScreenNewcomer(Newcomer):
         self.user.send(keys.encode())
 
     def is_at(self, number: int) -> bool:
-        return f" step {number} of {len(self.lesson.steps)} " in self.rows[0]
+        return (
+            f" step {number} of {len(self.lesson.steps)} " in f"{self.rows[0]} "
+        )  # the bar gives way to a long goal
 
     def read(self, step: LessonStep) -> str:
         rows = [plain_text(each) for each in wrap_blocks(parse_markup(self.words_of(step)), TEXT_WIDTH)]
