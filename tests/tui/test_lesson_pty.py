@@ -161,7 +161,7 @@ def test_a_new_student_drives_with_an_arrow_key_and_is_in_a_lesson_with_enter(op
     user.send(b"\r")
     sees(user, "step 1 of")
     user.send(b"\x1b")
-    sees(user, "Progress")
+    sees(user, "1-9 open")
     user.send(b"9")
     sees(user, "exercises passed")
     user.send(b"\x1b[F")
