@@ -144,6 +144,8 @@ def _packages() -> Iterator[Finding]:
 
 def _extensions() -> Iterator[Finding]:
     """Finds the parts that other packages bring, and tries each."""
+    if not installed_extensions():
+        return  # nothing heavy is imported to compare names with
     own = own_names()
     left_out = {each: why for group in GROUPS for each, why in name_conflicts(group, own[group])}
     for each in installed_extensions():

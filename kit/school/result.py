@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from datetime import datetime
 from enum import StrEnum
 from types import MappingProxyType
 from typing import Any, Final, TypeVar
@@ -238,7 +239,7 @@ class GradingResult:
             **given,
             tests=tuple(_criterion_from_dict(each) for each in content["tests"]),
             notices=tuple(content["notices"]),
-            timing=_checked(GradingTiming, content["timing"]),
+            timing=_timing_from_dict(content["timing"]),
         )
 
     def without_secrets(self) -> GradingResult:
@@ -261,6 +262,13 @@ class GradingResult:
 
 _OWN_READING: Final = ("tests", "notices", "timing")
 """Fields of a result that ``from_dict`` does not take as they are."""
+
+
+def _timing_from_dict(content: Mapping[str, Any]) -> GradingTiming:
+    timing = _checked(GradingTiming, content)
+    if timing.started:
+        datetime.fromisoformat(timing.started)
+    return timing
 
 
 def _criterion_from_dict(content: Mapping[str, Any]) -> CriterionResult:

@@ -42,6 +42,7 @@ from tests.grader.attack import (
     ODD,
     RAN,
     REFUSED,
+    SLOW,
     STOPPED,
     Attack,
     End,
@@ -522,7 +523,7 @@ FURTHER_ATTACKS: tuple[Attack, ...] = (
     Attack(80, "a signal that looks like a lack of memory", "import signal; os.kill(os.getpid(), signal.SIGKILL)", LARGE, control=ends_with(-9, "import os; os.kill(os.getpid(), 9)")),
     Attack(81, "the exit code of a process of the kit", f"os._exit({OVER_DISK_LIMIT})", LARGE, control=ends_with(OVER_DISK_LIMIT, f"import os; os._exit({OVER_DISK_LIMIT})")),
     # By what ends late
-    Attack(82, "an exit handler that sleeps", "import atexit, select; atexit.register(select.select, [], [], [], 1000); rclpy.shutdown()", control=keeps_python_from_ending("import atexit, select; atexit.register(select.select, [], [], [], 1000)")),
+    Attack(82, "an exit handler that sleeps", "import atexit, select; atexit.register(select.select, [], [], [], 1000); rclpy.shutdown()", SLOW, control=keeps_python_from_ending("import atexit, select; atexit.register(select.select, [], [], [], 1000)")),
     Attack(83, "a thread that never ends", "import select, threading; threading.Thread(target=select.select, args=([], [], [], 1000)).start()", control=keeps_python_from_ending("import select, threading; threading.Thread(target=select.select, args=([], [], [], 1000)).start()")),
     Attack(84, "a destructor that sleeps", LATE.replace("late =", "sys.modules['__main__'].late ="), control=keeps_python_from_ending(LATE)),
     # By frames in the wrong state

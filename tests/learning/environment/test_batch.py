@@ -333,7 +333,7 @@ def test_to_spare_the_search_for_walls_changes_nothing(task: LearningTask) -> No
     chance = np.random.default_rng(6)
     for _ in range(60):
         actions = actions_of(batch, chance)
-        searching.state.clearance[:] = 0.0
+        searching.state.robots.clearance[:] = 0.0
         step, other = batch.step(actions), searching.step(actions)
         assert [bits(step, i) for i in range(40)] == [bits(other, i) for i in range(40)]
 

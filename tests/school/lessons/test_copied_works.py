@@ -72,7 +72,7 @@ def copied_tasks(lesson: Lesson, exercise: Exercise, starter: dict[str, Any]) ->
     everything = {key: values[0] for key, values in parts.items()}
     rewards = [{"reward": value} for value in parts.get("reward", [])]
     for chosen in (*rewards, everything, *({**everything, **each} for each in rewards[1:])):
-        yield yaml.safe_dump({**starter, **chosen}, sort_keys=False)
+        yield yaml.safe_dump({**(starter or {}), **chosen}, sort_keys=False)
 
 
 def copies(lesson: Lesson, exercise: Exercise, folder: Path) -> Iterator[Path]:
