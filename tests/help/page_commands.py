@@ -83,6 +83,7 @@ NOT_RUN: Final[Mapping[str, str]] = {
     "kit bridge dds": "needs a robot; tests/bridge runs it on loopback",
     "kit bridge stop": "needs a bridge; tests/bridge runs it on loopback",
     "kit train turn --reward my_reward.py": "needs torch and minutes; tests/learning trains by a student's reward",
+    "kit maps new hall": "draws on the screen; tests/tui/screens/test_map_drawing.py draws one",
     "kit runs --stop first": "needs a training that still runs; tests/learning stops one",
     "kit train --resume first": "goes on with a training that was stopped; tests/learning does it",
 }
