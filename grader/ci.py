@@ -225,7 +225,7 @@ class GradedWork:
 
 
 @dataclass(frozen=True, slots=True)
-class Runner:
+class CiService:
     """On what a workflow runs."""
 
     python: str = "3.12"
@@ -275,7 +275,9 @@ _ADDRESS: Final = re.compile(
 )
 
 
-def workflow(service: str, works: Sequence[GradedWork], kit: GitSource, runner: Runner = Runner()) -> str:
+def workflow(
+    service: str, works: Sequence[GradedWork], kit: GitSource, runner: CiService = CiService()
+) -> str:
     """Returns the text of a service's workflow file. The names go into a shell's double quotes, so they must be plain."""
     text = WORKFLOWS[service][1]
     indent = re.search(r"^( *)ASSIGNMENTS$", text, re.MULTILINE)

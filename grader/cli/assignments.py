@@ -20,9 +20,9 @@ from grader.ci import (
     GRADESCOPE_ARCHIVE,
     REPOSITORY_SERVICES,
     WORKFLOWS,
+    CiService,
     GitSource,
     GradedWork,
-    Runner,
     gradescope_archive,
     warnings,
     workflow,
@@ -248,8 +248,8 @@ PLAIN_PATH: Final = re.compile(r"[A-Za-z0-9_./-]+")
     metavar="ADDRESS[@VERSION]",
     help="Repository to clone the kit from: https://..., optionally with a branch or tag.",
 )
-@click.option("--python", default=Runner().python, show_default=True, help="Version of Python.")
-@click.option("--runner", default=Runner().image, show_default=True, help="GitHub's runner.")
+@click.option("--python", default=CiService().python, show_default=True, help="Version of Python.")
+@click.option("--runner", default=CiService().image, show_default=True, help="GitHub's runner.")
 @click.option(
     "--write",
     is_flag=True,
@@ -286,7 +286,7 @@ def ci(service: str, folders: tuple[str, ...], kit: str, python: str, runner: st
         if service == GRADESCOPE:
             file, data = Path(GRADESCOPE_ARCHIVE), gradescope_archive(read[0][1], source)
         else:
-            text = workflow(service, [work for work, _, _ in read], source, Runner(python, runner))
+            text = workflow(service, [work for work, _, _ in read], source, CiService(python, runner))
             file, data = Path(WORKFLOWS[service][0]), text.encode()
     except (ValueError, OSError) as error:
         options.fail(f"{error}.")

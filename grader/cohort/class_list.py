@@ -22,7 +22,7 @@ from grader.cohort.gradebook import (
 from grader.cohort.lateness import LatePolicy
 from grader.cohort.marks import ManualMark
 from grader.cohort.queue import Queue
-from grader.cohort.roster import Roster, Student, WorkOwners, look, owners_of
+from grader.cohort.roster import Roster, RosterEntry, WorkOwners, look, owners_of
 from grader.reports.cleaning import clean_line
 from kit.plain_text import counted, join_names, suggestion
 from kit.school.result import format_points
@@ -92,7 +92,7 @@ def _student_rows(
 ) -> Iterator[GradebookRow]:
     """Yields a row for each student, then one for each work that fits nobody."""
     labels = Counter(look(each.label) for each in roster.students.values())
-    works: dict[Student, list[GradebookRow]] = {}
+    works: dict[RosterEntry, list[GradebookRow]] = {}
     for row in table:
         for student in owners.students[row.name]:
             works.setdefault(student, []).append(row)
@@ -110,7 +110,7 @@ def _student_rows(
 
 
 def _chosen_of(
-    rows: Sequence[GradebookRow], student: Student, times: Mapping[str, SubmissionTime], rule: str
+    rows: Sequence[GradebookRow], student: RosterEntry, times: Mapping[str, SubmissionTime], rule: str
 ) -> GradebookRow:
     """Returns the submission of a student that counts. Without all their times, it is the best."""
     if len(rows) == 1:

@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from grader.cohort.lateness import EXAMPLE, Lateness, LatePolicy, parse_time
 from grader.cohort.queue import Queue, QueueEntry, UnreadableWork
-from grader.cohort.roster import Student, WorkOwners, look
+from grader.cohort.roster import RosterEntry, WorkOwners, look
 from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.document.blocks import Block, Text
 from kit.field_types import check_field_types
@@ -100,7 +100,7 @@ class GradebookRow:
     """The confinement level of the program; None without a result."""
     work: str = ""
     """The submission's own name, where the row is under its student's; empty for one who has handed in nothing."""
-    student: Student | None = None
+    student: RosterEntry | None = None
     """As the roster has it; None without a roster, and for a work that fits nobody."""
     feedback: str = ""
     """The first reason for lost points that the student may see."""
@@ -142,7 +142,7 @@ def _as_grader_fault(row: GradebookRow, count: int) -> GradebookRow:
 
 
 def time_of(
-    work: str, students: Sequence[Student], submission_times: Mapping[str, SubmissionTime]
+    work: str, students: Sequence[RosterEntry], submission_times: Mapping[str, SubmissionTime]
 ) -> SubmissionTime | None:
     """Returns when a work was handed in: by its own name, or else by anything by which its students are known."""
     if work in submission_times or not students:
@@ -156,7 +156,7 @@ def _rows(
     queue: Queue,
     policy: LatePolicy | None,
     submission_times: Mapping[str, SubmissionTime],
-    owners: Mapping[str, tuple[Student, ...]],
+    owners: Mapping[str, tuple[RosterEntry, ...]],
 ) -> Iterator[GradebookRow]:
     assignment = queue.assignment()
     most = round(assignment.max_points, 6)
@@ -293,7 +293,7 @@ def read_json(text: str) -> tuple[GradebookRow, ...]:
 
 
 def _row_from_json(content: Mapping[str, Any]) -> GradebookRow:
-    student = None if content["student"] is None else Student(**content["student"])
+    student = None if content["student"] is None else RosterEntry(**content["student"])
     read = {**content, "student": student, "marked": tuple(content["marked"])}
     check_field_types(GradebookRow, read)
     return GradebookRow(**read)

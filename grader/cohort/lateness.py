@@ -25,7 +25,7 @@ MAX_DAYS: Final = 3650
 
 
 @dataclass(frozen=True, slots=True)
-class Extension:
+class DueDateExtension:
     """More time for one student."""
 
     until: datetime | None = None
@@ -81,7 +81,7 @@ class LatePolicy:
     """In which times are read that name none, and by whose clocks days are counted."""
     grace_days: int = 0
     """Days that cost nothing."""
-    extensions: Mapping[str, Extension] = field(default_factory=dict)
+    extensions: Mapping[str, DueDateExtension] = field(default_factory=dict)
     """By student: name, e-mail address, id or login."""
     locations: Mapping[str, str] = field(default_factory=dict)
     """Where each extension stands, for messages."""
@@ -92,7 +92,7 @@ class LatePolicy:
         zone = "" if self.zone is None else f" {self.zone}"
         return f"due {self.due.isoformat(sep=' ')}{zone}"
 
-    def lateness(self, submitted: datetime, extension: Extension | None = None) -> Lateness:
+    def lateness(self, submitted: datetime, extension: DueDateExtension | None = None) -> Lateness:
         """Returns how late a submission is, and what it keeps."""
         due = self.due if extension is None or extension.until is None else extension.until
         if self.zone is not None:
@@ -110,7 +110,7 @@ class LatePolicy:
             kept = 0.0
         return Lateness(kept, days, late_s, free, extension is not None)
 
-    def extension_of(self, names: Iterable[str]) -> Extension | None:
+    def extension_of(self, names: Iterable[str]) -> DueDateExtension | None:
         """Returns the extension of a student who is called by one of these names; None if there is none."""
         known = {look(each): extension for each, extension in self.extensions.items()}
         return next((known[key] for each in names if (key := look(each)) in known), None)
@@ -140,7 +140,7 @@ def read_policy(file: Path) -> LatePolicy:
             if zone is None:
                 section.error("must be a time zone such as Europe/Lisbon, or UTC", "zone")
         due = _read_due(section, "due", zone)
-        extensions: dict[str, Extension] = {}
+        extensions: dict[str, DueDateExtension] = {}
         locations: dict[str, str] = {}
         given = section.section("extensions", None)
         if given is not None:
@@ -168,16 +168,16 @@ def _read_due(section: Section, key: str, zone: tzinfo | None) -> datetime | Non
         return None
 
 
-def _read_extension(section: Section, student: str, zone: tzinfo | None) -> Extension:
+def _read_extension(section: Section, student: str, zone: tzinfo | None) -> DueDateExtension:
     if not section.is_mapping(student):
-        return Extension(_read_due(section, student, zone))
+        return DueDateExtension(_read_due(section, student, zone))
     given = section.section(student)
     until = _read_due(given, "until", zone) if given.has("until") else None
     days = given.integer("days", 0, minimum=0, maximum=MAX_DAYS)
     if until is None and not days:
         given.error(f"the extension of {quoted(student)} needs `until` or `days`")
     given.finish()
-    return Extension(until, days)
+    return DueDateExtension(until, days)
 
 
 def find_zone(name: str) -> tzinfo | None:

@@ -24,7 +24,7 @@ MAX_BYTES: Final = 32 << 20
 
 
 @dataclass(frozen=True, slots=True)
-class Student:
+class RosterEntry:
     """One student of the class. What the roster does not say is empty."""
 
     name: str = ""
@@ -56,7 +56,7 @@ class RosterForm:
     told_by: tuple[str, ...]
     """The column titles that only this form has, as ``_title`` writes them."""
     columns: Mapping[str, tuple[str, ...]]
-    """Titles of the columns of each field of ``Student``; more than one are put together with a blank."""
+    """Titles of the columns of each field of ``RosterEntry``; more than one are put together with a blank."""
 
 
 FORMS: Final = (
@@ -114,17 +114,17 @@ class Roster:
     titles: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     """Its rows as they stand in the file, with those that are no student's."""
-    students: Mapping[int, Student]
+    students: Mapping[int, RosterEntry]
     """By index of the row."""
 
-    def find(self, key: str) -> tuple[Student, ...]:
+    def find(self, key: str) -> tuple[RosterEntry, ...]:
         """Returns every student that a teacher may mean by a name, an e-mail address, an id, a login or a group."""
         return self.index.get(look(key), ())
 
     @property
-    def index(self) -> Mapping[str, tuple[Student, ...]]:
+    def index(self) -> Mapping[str, tuple[RosterEntry, ...]]:
         """The students by each of their keys."""
-        found: dict[str, list[Student]] = {}
+        found: dict[str, list[RosterEntry]] = {}
         for student in self.students.values():
             for key in {*map(look, student.keys), *([look(student.group)] if student.group else [])}:
                 found.setdefault(key, []).append(student)
@@ -171,7 +171,7 @@ def read_roster(file: Path) -> Roster:
             name: " ".join(" ".join(row[at] for at in found if at < len(row)).split())
             for name, found in places.items()
         }
-        student = Student(**_tidy(form.platform, fields))
+        student = RosterEntry(**_tidy(form.platform, fields))
         if student.keys and not _is_no_student(form.platform, student):
             students[number] = student
     if not students:
@@ -198,7 +198,7 @@ def _tidy(platform: str, fields: dict[str, str]) -> dict[str, str]:
     return fields
 
 
-def _is_no_student(platform: str, student: Student) -> bool:
+def _is_no_student(platform: str, student: RosterEntry) -> bool:
     """Whether this is a row of the platform's own: the most points, or its student for tests."""
     return platform == "canvas" and student.name.casefold() in ("points possible", "test student")
 
@@ -212,9 +212,9 @@ GRADESCOPE_NAME: Final = re.compile(r"submission_(?P<number>\d+)")
 class WorkOwners:
     """Whose each work of a class is."""
 
-    students: Mapping[str, tuple[Student, ...]]
+    students: Mapping[str, tuple[RosterEntry, ...]]
     """By the work's name: one student, or those of a group; empty where it fits nobody, or several."""
-    ambiguous: Mapping[str, tuple[Student, ...]]
+    ambiguous: Mapping[str, tuple[RosterEntry, ...]]
     """The works whose name fits more than one student, with these."""
 
 
@@ -222,8 +222,8 @@ def owners_of(works: Iterable[str], roster: Roster) -> WorkOwners:
     """Finds whose each work is, by its name: that of a file or folder, as platforms write them in their downloads."""
     index = roster.index
     groups = {look(each.group) for each in roster.students.values() if each.group}
-    students: dict[str, tuple[Student, ...]] = {}
-    ambiguous: dict[str, tuple[Student, ...]] = {}
+    students: dict[str, tuple[RosterEntry, ...]] = {}
+    ambiguous: dict[str, tuple[RosterEntry, ...]] = {}
     for work in works:
         key, found = next(((key, index[key]) for key in _readings(work) if key in index), ("", ()))
         if len(found) > 1 and key not in groups:

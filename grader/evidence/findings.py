@@ -31,7 +31,7 @@ class NotKept(BaseException):
 
 
 @dataclass(slots=True)
-class Finding:
+class KeptFinding:
     """One piece of evidence, with every answer that it has given."""
 
     label: str
@@ -58,7 +58,7 @@ class Findings:
     """All that was found about one submission."""
 
     level: int
-    pieces: list[Finding] = field(default_factory=list)
+    pieces: list[KeptFinding] = field(default_factory=list)
     evidence: dict[str, list[int]] = field(default_factory=dict)
     """The pieces that a criterion is judged on, by what it asks for."""
     public: dict[str, list[int]] = field(default_factory=dict)
@@ -80,8 +80,8 @@ class Findings:
         given = {each.name: content[each.name] for each in fields(cls) if each.name != "pieces"}
         pieces = []
         for each in content["pieces"]:
-            check_field_types(Finding, each)
-            pieces.append(Finding(**{**each, "printed": tuple(each["printed"])}))
+            check_field_types(KeptFinding, each)
+            pieces.append(KeptFinding(**{**each, "printed": tuple(each["printed"])}))
         found = cls(**given, pieces=pieces)
         places = (
             *found.evidence.values(),
@@ -106,7 +106,7 @@ def _answer_key(check: str, params: Any) -> str:
 class NotedEvidence:
     """Evidence whose answers are noted."""
 
-    def __init__(self, original: Evidence, finding: Finding) -> None:
+    def __init__(self, original: Evidence, finding: KeptFinding) -> None:
         self.original = original
         self._finding = finding
         self._measured: list[tuple[str, Any]] = []
@@ -221,7 +221,7 @@ class FindingsRecorder:
         """Its number and its noting twin, the same each time: criteria compare evidence by identity."""
         known = self._noted.get(id(evidence))
         if known is None:
-            finding = Finding(evidence.label, evidence.secret, "", 0, (), None)
+            finding = KeptFinding(evidence.label, evidence.secret, "", 0, (), None)
             known = len(self.findings.pieces), NotedEvidence(evidence, finding)
             self.findings.pieces.append(finding)
             self._noted[id(evidence)] = known
@@ -231,7 +231,7 @@ class FindingsRecorder:
 class KeptEvidence:
     """Evidence that answers what was asked before. Raises NotKept for anything else."""
 
-    def __init__(self, finding: Finding) -> None:
+    def __init__(self, finding: KeptFinding) -> None:
         self._finding = finding
         self.label = finding.label
         self.secret = finding.secret

@@ -15,8 +15,8 @@ import click
 from kit.cli import options
 from kit.cli.full_screen import show_dialogue
 from kit.cli.plain import InputBuffer, InputLines
-from kit.dialogue.dialogue import Action, Dialogue, Turn
-from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show, Tell, Type, Work
+from kit.dialogue.dialogue import Dialogue, DialogueAction, Turn
+from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show, StartTyping, Tell, Work
 from kit.document.blocks import Block, Text, labelled_table
 from kit.document.layout import HEARD, lines_of
 from kit.plain_text import wrap
@@ -205,7 +205,7 @@ class _Conversation:
                 self._is_left = True
             case Help():
                 self._say_help()
-            case Type():
+            case StartTyping():
                 click.echo("Type your answer, and Enter.")
             case Tell(_, blocks):
                 _say(blocks)
@@ -230,7 +230,7 @@ class _Conversation:
         return None
 
 
-def _keys(action: Action[Any], dialogue: Dialogue) -> str:
+def _keys(action: DialogueAction[Any], dialogue: Dialogue) -> str:
     """The keys of an action as they are typed in a line."""
     if action.shown_keys is not None:
         return action.shown_keys(dialogue)
@@ -239,7 +239,7 @@ def _keys(action: Action[Any], dialogue: Dialogue) -> str:
     return typed[0] if shown in NOT_TYPED and typed else shown
 
 
-def _word(action: Action[Any], dialogue: Dialogue) -> str:
+def _word(action: DialogueAction[Any], dialogue: Dialogue) -> str:
     return action.word(dialogue) if action.word is not None else action.keys.label
 
 

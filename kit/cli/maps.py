@@ -310,7 +310,7 @@ def from_photo(
     kit maps from-photo plan.jpg --width 5 --click     click the corners
     """
     from kit.mapmaking.new_map import MapExists, check_name, write_map
-    from kit.mapmaking.photo import PAPER, PhotoError, Scale, open_photo, plan_from_photo
+    from kit.mapmaking.photo import PAPER, PhotoError, PhotoScale, open_photo, plan_from_photo
     from kit.mapmaking.route import NoRoute
 
     if (width is None) == (walls_width is None):
@@ -325,7 +325,7 @@ def from_photo(
         photo = open_photo(picture)
         known = _clicked(photo, picture.name, glyphs, color) if clicks else _corners(corners, photo)
         found = plan_from_photo(
-            photo, Scale(width, walls_width), paper=PAPER[paper], corners=known, are_rough=clicks
+            photo, PhotoScale(width, walls_width), paper=PAPER[paper], corners=known, are_rough=clicks
         )
         plan = replace(found.plan, start=places[0], target=places[1])
         made = write_map(

@@ -34,7 +34,7 @@ def always(dialogue: Dialogue) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class Action(Generic[D]):
+class DialogueAction(Generic[D]):
     """One thing that can be done in a dialogue."""
 
     keys: ScreenAction
@@ -73,7 +73,7 @@ class Dialogue:
     help_title: ClassVar[str]
     help_notes: ClassVar[Sequence[Sequence[tuple[str, str]]]] = ()
     """Signs or terms and what they mean, on the help page."""
-    actions: ClassVar[Sequence[Action[Any]]]
+    actions: ClassVar[Sequence[DialogueAction[Any]]]
     failures: ClassVar[Mapping[type[Exception], str]] = MappingProxyType({})
     """Errors that an action may raise, and how they are said: ``Not saved: {}``."""
     has_entry: ClassVar[bool] = False
@@ -166,7 +166,7 @@ class Dialogue:
     # Actions
 
     @classmethod
-    def action(cls, action_id: str) -> Action[Any]:
+    def action(cls, action_id: str) -> DialogueAction[Any]:
         return next(each for each in cls.actions if each.id == action_id)
 
     @classmethod
@@ -184,16 +184,16 @@ class Dialogue:
         )
 
 
-def help_action() -> Action[Any]:
+def help_action() -> DialogueAction[Any]:
     """``?``"""
-    return Action(ACTIONS["help"], lambda dialogue: Help(), while_busy=True)
+    return DialogueAction(ACTIONS["help"], lambda dialogue: Help(), while_busy=True)
 
 
 def leave_action(
     run: Callable[..., Effect] = lambda dialogue: Leave(), word: Callable[[Any], str] | None = None
-) -> Action[Any]:
+) -> DialogueAction[Any]:
     """Esc and ``q``."""
-    return Action(ACTIONS["back"], run, word=word, while_busy=True)
+    return DialogueAction(ACTIONS["back"], run, word=word, while_busy=True)
 
 
 class Turn:
@@ -206,13 +206,13 @@ class Turn:
         self._asked: tuple[str, tuple[object, ...]] | None = None
         """What was to be done when it was asked whether it is meant."""
 
-    def allowed(self, action: Action[Any]) -> bool | str:
+    def allowed(self, action: DialogueAction[Any]) -> bool | str:
         """Whether an action is possible now; False: it does not belong here; a sentence: why not yet."""
         if self.dialogue.busy and not action.while_busy:
             return False
         return action.when(self.dialogue)
 
-    def possible(self) -> list[Action[Any]]:
+    def possible(self) -> list[DialogueAction[Any]]:
         """The actions that are possible now."""
         return [each for each in self.dialogue.actions if self.allowed(each) is True]
 
@@ -225,7 +225,7 @@ class Turn:
         action, args = found
         return self.do(action.id, *args)
 
-    def find(self, key: str) -> tuple[Action[Any], tuple[object, ...]] | None:
+    def find(self, key: str) -> tuple[DialogueAction[Any], tuple[object, ...]] | None:
         """The action that a key means now, and what the key stands for."""
         candidates = [
             (action, _arguments(call))
@@ -248,11 +248,11 @@ class Turn:
         action, args = found
         return self.do(action.id, *args), action.then if self.allowed_then(action) else ""
 
-    def allowed_then(self, action: Action[Any]) -> bool:
+    def allowed_then(self, action: DialogueAction[Any]) -> bool:
         """Whether what a line's end does after an action is possible now."""
         return bool(action.then) and self.allowed(self.dialogue.action(action.then)) is True
 
-    def _find_line(self, words: str) -> tuple[Action[Any], tuple[object, ...]] | None:
+    def _find_line(self, words: str) -> tuple[DialogueAction[Any], tuple[object, ...]] | None:
         first, _, rest = words.partition(" ")
         key = SIGNS.get(first, first.lower())
         found = self.find(key)

@@ -31,7 +31,7 @@ class Help:
 
 
 @dataclass(frozen=True, slots=True)
-class Type:
+class StartTyping:
     """Keys are for the text that is typed from now on."""
 
 
@@ -87,4 +87,4 @@ class Show:
     then: Callable[[Any], Effect] = lambda result: None
 
 
-Effect = Remark | Leave | Help | Type | Tell | Choose | Open | Work | Show | None
+Effect = Remark | Leave | Help | StartTyping | Tell | Choose | Open | Work | Show | None

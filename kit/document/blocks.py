@@ -130,7 +130,7 @@ class KeyLine:
 
 
 @dataclass(frozen=True, slots=True)
-class Scale:
+class RatingScale:
     """Numbers to choose from, in one row, and below them what the lowest and the highest mean."""
 
     points: tuple[int, ...]
@@ -253,7 +253,7 @@ class ScenePlot:
 
 
 Plot = BarChart | Histogram | ScatterPlot | ScenePlot
-Block = Text | Marked | Code | Picture | Choices | KeyLine | Scale | Table | Plot | Caution | Quote
+Block = Text | Marked | Code | Picture | Choices | KeyLine | RatingScale | Table | Plot | Caution | Quote
 
 
 @dataclass(frozen=True, slots=True)

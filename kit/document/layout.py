@@ -20,7 +20,7 @@ from kit.document.blocks import (
     Marked,
     Picture,
     Quote,
-    Scale,
+    RatingScale,
     ScatterPlot,
     ScenePlot,
     Table,
@@ -104,7 +104,7 @@ def block_rows(block: Block, page: Page) -> list[Row]:
     match block:
         case Choices():
             return [each for entry in block.entries for each in _choice_rows(entry, page)]
-        case Scale():
+        case RatingScale():
             return _scale_rows(block, page)
         case KeyLine():
             return _key_line_rows(block, page)
@@ -206,7 +206,7 @@ def _key_line_rows(block: KeyLine, page: Page) -> list[Row]:
     return [row(*parts[:2]), *(each for entry in block.entries for each in _choice_rows(entry, page))]
 
 
-def _scale_rows(block: Scale, page: Page) -> list[Row]:
+def _scale_rows(block: RatingScale, page: Page) -> list[Row]:
     """The points beside each other, and below them what the lowest and the highest mean."""
     points = block.points
     if page.is_heard:

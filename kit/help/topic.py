@@ -23,7 +23,7 @@ class Shelf(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Topic:
+class HelpTopic:
     """One page."""
 
     title: str
@@ -56,7 +56,7 @@ def topic_names() -> tuple[str, ...]:
     return tuple(sorted(_MODULES))
 
 
-def find_topic(name: str) -> Topic:
+def find_topic(name: str) -> HelpTopic:
     """The topic of a name that ``topic_names`` lists; its module is imported now. KeyError if there is none."""
-    found: Topic = import_module(f"{topics.__name__}.{_MODULES[name]}").TOPIC
+    found: HelpTopic = import_module(f"{topics.__name__}.{_MODULES[name]}").TOPIC
     return found

@@ -32,7 +32,7 @@ class Report:
 
 
 @dataclass(frozen=True, slots=True)
-class Check:
+class DiagnosisCheck:
     """What is wrong with one subject: errors, and warnings, which may be meant."""
 
     category: str
@@ -45,25 +45,27 @@ class Check:
 
 def checks(
     graph: Graph | None, folders: Sequence[Path], environment: Mapping[str, str], distro: str
-) -> Iterator[Check]:
+) -> Iterator[DiagnosisCheck]:
     """Checks the shell, the packages of some folders and, if a world runs, its graph. ``distro``: the one that the kit offers."""
     sourced = environment.get("ROS_DISTRO")
     other = f"ROS_DISTRO is {sourced} in this shell; the programs that the kit runs get {distro}."
-    yield Check("platform", warnings=(other,) if sourced not in (None, distro) else ())
+    yield DiagnosisCheck("platform", warnings=(other,) if sourced not in (None, distro) else ())
     if folders:
-        yield Check("package", errors=tuple(broken_packages(folders)))
+        yield DiagnosisCheck("package", errors=tuple(broken_packages(folders)))
     if graph is not None:
         yield _node_check(graph)
         yield _topic_check(graph)
         yield _qos_check(graph)
 
 
-def _node_check(graph: Graph) -> Check:
+def _node_check(graph: Graph) -> DiagnosisCheck:
     twice = [name for name, count in Counter(node_names(graph, hidden=False)).items() if count > 1]
-    return Check("node", warnings=tuple(f"There is more than one node of the name {name}." for name in twice))
+    return DiagnosisCheck(
+        "node", warnings=tuple(f"There is more than one node of the name {name}." for name in twice)
+    )
 
 
-def _topic_check(graph: Graph) -> Check:
+def _topic_check(graph: Graph) -> DiagnosisCheck:
     found = []
     for name in _checked_topics(graph):
         publishers, subscriptions = _ends(graph, name)
@@ -71,11 +73,11 @@ def _topic_check(graph: Graph) -> Check:
             found.append(f"Publisher without subscriber detected on {name}.")
         elif subscriptions and not publishers:
             found.append(f"Subscriber without publisher detected on {name}.")
-    return Check("topic", warnings=tuple(found))
+    return DiagnosisCheck("topic", warnings=tuple(found))
 
 
-def _qos_check(graph: Graph) -> Check:
-    return Check(
+def _qos_check(graph: Graph) -> DiagnosisCheck:
+    return DiagnosisCheck(
         "middleware",
         errors=tuple(
             f"QoS compatibility error found on topic '{name}', from {publisher} to {subscriber}: "

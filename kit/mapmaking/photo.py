@@ -37,7 +37,7 @@ class PhotoError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Scale:
+class PhotoScale:
     """What a length on the sheet is in the world: one of the two is given."""
 
     sheet_width: float | None = None
@@ -107,7 +107,7 @@ def _in_colour(image: Image.Image) -> Image.Image:
 
 def plan_from_photo(
     photo: Image.Image,
-    scale: Scale,
+    scale: PhotoScale,
     *,
     paper: float = PAPER["a4"],
     corners: Corners | None = None,
@@ -154,7 +154,7 @@ def _sheet_size(corners: Corners, paper: float) -> tuple[int, int]:
     return SHEET_PIXELS, round(SHEET_PIXELS / ratio)
 
 
-def _resolution(walls: BoolArray, scale: Scale) -> float:
+def _resolution(walls: BoolArray, scale: PhotoScale) -> float:
     columns = int(walls.shape[1])
     if scale.walls_width is not None:
         return scale.walls_width / _walls_columns(walls)

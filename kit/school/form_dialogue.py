@@ -7,9 +7,9 @@ from types import MappingProxyType
 from typing import Any, ClassVar, Final
 
 from kit.dialogue.actions import ACTIONS, ScreenAction, digits, letter
-from kit.dialogue.dialogue import Action, Dialogue, Refused, help_action, leave_action
-from kit.dialogue.effects import Effect, Leave, Type
-from kit.document.blocks import Block, Choice, Choices, Scale, Text, Tone
+from kit.dialogue.dialogue import Dialogue, DialogueAction, Refused, help_action, leave_action
+from kit.dialogue.effects import Effect, Leave, StartTyping
+from kit.document.blocks import Block, Choice, Choices, RatingScale, Text, Tone
 from kit.plain_text import counted, printable_text
 from kit.school.form_answers import InvalidAnswer, parse_answer
 from kit.school.form_session import PHASE_LABELS, FormSession
@@ -126,7 +126,7 @@ class FormDialogue(Dialogue):
                 return []
             case AnswerShape.SCALE:
                 points = tuple(int(str(each)) for each in question.values)
-                return [Scale(points, question.low, question.high, self.chosen)]
+                return [RatingScale(points, question.low, question.high, self.chosen)]
             case AnswerShape.YES_NO:
                 labels: Sequence[str] = ("yes", "no")
             case _:
@@ -174,7 +174,7 @@ class FormDialogue(Dialogue):
         return None
 
     def start_typing(self) -> Effect:
-        return Type()
+        return StartTyping()
 
     def clear(self) -> Effect:
         self.chosen, self._text = None, ""
@@ -231,22 +231,22 @@ class FormDialogue(Dialogue):
     def answer_keys(self) -> str:
         return f"1-{len(self._question.values)}"
 
-    actions: ClassVar[Sequence[Action[Any]]] = (
-        Action(
+    actions: ClassVar[Sequence[DialogueAction[Any]]] = (
+        DialogueAction(
             ScreenAction("form_answer", "1 to 7", "answer", "choose an answer; Enter keeps it", digits("answer", 1, MOST_POINTS), "1-7"),
             pick, has_choices, shown_keys=answer_keys, then="form_next",
         ),
-        Action(
+        DialogueAction(
             letter("type_answer", "e", "type", "type your answer; Esc ends typing, Enter keeps it"),
             start_typing, lambda dialogue: dialogue.is_text, is_for_lines=False,
         ),
-        Action(
+        DialogueAction(
             ScreenAction("form_next", "Enter", "next", "go on; without an answer, it is left blank", (("enter", "next"),)),
             go_on, is_asked, word=next_word,
         ),
-        Action(ACTIONS["choose"], move, has_choices, is_for_lines=False),
-        Action(ACTIONS["previous"], go_back, can_go_back, word=back_word),
-        Action(letter("clear_answer", "x", "clear", "clear the answer, so that Enter leaves it blank"), clear, has_answer, then="form_next"),
+        DialogueAction(ACTIONS["choose"], move, has_choices, is_for_lines=False),
+        DialogueAction(ACTIONS["previous"], go_back, can_go_back, word=back_word),
+        DialogueAction(letter("clear_answer", "x", "clear", "clear the answer, so that Enter leaves it blank"), clear, has_answer, then="form_next"),
         help_action(),
         leave_action(leave),
         glossary_action(),

@@ -22,7 +22,7 @@ from kit.plain_text import counted, join_with_and, quoted
 from kit.world.documents import UnusableFile, WorldDocuments, read_bytes
 from kit.world.map_server import FREE_THRESH, MODES, MapServerKeys, count_read_otherwise
 from kit.world.problems import ProblemCollector
-from kit.world.records import MAX_LAYERS, Color, Layer, Remark, SourceLocation, Walls
+from kit.world.records import MAX_LAYERS, Color, Layer, ReadingRemark, SourceLocation, Walls
 from kit.world.yaml_section import MAX_NUMBER, Section
 from kit.world.yaml_tree import parse_number
 
@@ -311,7 +311,7 @@ class LayerReader:
 
 def _reading(
     section: Section, dark: BoolArray, grey: Uint8Array, alpha: Uint8Array | None, keys: MapServerKeys
-) -> Remark | None:
+) -> ReadingRemark | None:
     """How the picture was read, if ROS's map_server reads it otherwise."""
     count = count_read_otherwise(dark, grey, alpha, keys)
     if not count:
@@ -320,7 +320,7 @@ def _reading(
         name for name, is_used in (("negate", keys.negate), ("mode", keys.mode != "trinary")) if is_used
     ]
     whatever = f", without regard to {join_with_and(unused)}" if unused else ""
-    return Remark(
+    return ReadingRemark(
         section.location_of(unused[0] if unused else "occupied_thresh"),
         f"read as Flatland reads it: walls are what is darker than {keys.occupied_thresh:g} of white{whatever}. "
         f"ROS's map_server takes {counted(count, 'pixel')} of {grey.size} otherwise.",

@@ -40,7 +40,7 @@ class SourceLocation:
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Remark:
+class ReadingRemark:
     """How a value was read that others may read otherwise: no mistake, but to be said once."""
 
     location: SourceLocation
@@ -64,7 +64,7 @@ class Walls:
     """The map YAML."""
     drawing_file: Path
     """The image or .dat file it names."""
-    reading: Remark | None = None
+    reading: ReadingRemark | None = None
     """How the picture was read, if others read it otherwise."""
 
     @property
@@ -234,11 +234,11 @@ class World:
     """Every layer name and its bit."""
 
     @property
-    def remarks(self) -> tuple[Remark, ...]:
+    def remarks(self) -> tuple[ReadingRemark, ...]:
         """How values were read that others may read otherwise, each once, in the order of the files."""
         readings = {layer.walls.reading for layer in self.layers if layer.walls is not None} - {None}
         turns = (
-            Remark(
+            ReadingRemark(
                 model.location,
                 f"the heading {model.pose.theta:g} of {model.name} was read as radians: {math.degrees(model.pose.theta):g} "
                 f"degrees. {model.pose.theta:g} degrees are {math.radians(model.pose.theta):.4g}.",

@@ -18,7 +18,7 @@ from textual.pilot import Pilot
 
 from kit.cli.dialogue import run_dialogue
 from kit.cli.lesson import LineStage
-from kit.dialogue.dialogue import SIGNS, Action, Dialogue, Turn
+from kit.dialogue.dialogue import SIGNS, Dialogue, DialogueAction, Turn
 from kit.dialogue.effects import Effect, Leave, Tell
 from kit.document.layout import lines_of
 from kit.school.form_dialogue import FormDialogue
@@ -174,7 +174,7 @@ def log(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> list
     return steps
 
 
-def word(action: Action[Any], dialogue: Dialogue) -> str:
+def word(action: DialogueAction[Any], dialogue: Dialogue) -> str:
     return action.word(dialogue) if action.word else action.keys.label
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kit.arrays import BoolArray
-from kit.mapmaking.photo import PhotoError, Scale, plan_from_photo
+from kit.mapmaking.photo import PhotoError, PhotoScale, plan_from_photo
 from kit.mapmaking.pixels import dilated_along_rows
 from tests.mapmaking.photos import SHEET, Photo, true_mask
 
@@ -36,7 +36,7 @@ class Judgement:
 def judge(photo: Photo) -> Judgement:
     """Reads a photograph and compares."""
     try:
-        found = plan_from_photo(photo.image, Scale(sheet_width=SHEET[0])).plan
+        found = plan_from_photo(photo.image, PhotoScale(sheet_width=SHEET[0])).plan
     except PhotoError as error:
         return Judgement(str(error), 0, 0)
     truth, walls = true_mask(photo, SCALE), found.walls

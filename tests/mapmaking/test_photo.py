@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from PIL import Image, ImageDraw
 
 from kit.cli import main
-from kit.mapmaking.photo import PhotoError, Scale, open_photo, plan_from_photo
+from kit.mapmaking.photo import PhotoError, PhotoScale, open_photo, plan_from_photo
 from kit.mapmaking.sheet import find_sheet
 from kit.run.scenario import find_scenario
 from tests.mapmaking.judging import judge
@@ -71,8 +71,8 @@ def flat(draw: bool = True, size: tuple[int, int] = (900, 700)) -> Image.Image:
 
 @pytest.mark.long
 def test_the_scale_comes_from_the_sheet_or_from_the_walls() -> None:
-    by_sheet = plan_from_photo(flat(), Scale(sheet_width=7.0)).plan
-    by_walls = plan_from_photo(flat(), Scale(walls_width=5.61)).plan
+    by_sheet = plan_from_photo(flat(), PhotoScale(sheet_width=7.0)).plan
+    by_walls = plan_from_photo(flat(), PhotoScale(walls_width=5.61)).plan
     assert by_sheet.size[0] == pytest.approx(7.0)
     assert by_walls.resolution == pytest.approx(by_sheet.resolution, rel=0.01)
 
@@ -80,8 +80,8 @@ def test_the_scale_comes_from_the_sheet_or_from_the_walls() -> None:
 @pytest.mark.long
 def test_corners_may_be_named() -> None:
     named = ((100.0, 100.0), (801.0, 100.0), (801.0, 596.0), (100.0, 596.0))
-    plan = plan_from_photo(flat(), Scale(sheet_width=SHEET[0]), corners=named).plan
-    found = plan_from_photo(flat(), Scale(sheet_width=SHEET[0])).plan
+    plan = plan_from_photo(flat(), PhotoScale(sheet_width=SHEET[0]), corners=named).plan
+    found = plan_from_photo(flat(), PhotoScale(sheet_width=SHEET[0])).plan
     assert (plan.walls != found.walls).mean() < 0.01
 
 
@@ -98,7 +98,7 @@ def test_corners_may_be_named() -> None:
 )
 def test_what_is_no_drawing_is_refused_with_a_way_out(picture: Image.Image, told: str) -> None:
     with pytest.raises(PhotoError, match=told):
-        plan_from_photo(picture, Scale(sheet_width=5.0))
+        plan_from_photo(picture, PhotoScale(sheet_width=5.0))
 
 
 @pytest.mark.parametrize(

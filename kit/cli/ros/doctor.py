@@ -13,7 +13,7 @@ from kit.cli import options
 from kit.cli.ros.world_client import connect_to_world, package_folders
 from kit.host.process import ROS_DISTRO
 from kit.inspection.client import InspectionClient
-from kit.inspection.diagnosis import NO_WORLD, Check, Report, checks, reports
+from kit.inspection.diagnosis import NO_WORLD, DiagnosisCheck, Report, checks, reports
 from kit.inspection.sockets import WORLD_VARIABLE, running_worlds, sockets_folder
 from kit.ros.packages import find_packages
 
@@ -77,7 +77,7 @@ def _client(world: str | None, workspace: Path | None) -> Iterator[InspectionCli
         yield client
 
 
-def _print_checks(made: list[Check], failed: set[str], *, has_world: bool) -> None:
+def _print_checks(made: list[DiagnosisCheck], failed: set[str], *, has_world: bool) -> None:
     for check in made:
         for kind, found in (("ERROR", check.errors), ("WARNING", check.warnings)):
             for text in found:

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from kit.document.blocks import CellStyle, Chapter, Column, Table
 from kit.help.docstrings import docstring_blocks
-from kit.help.topic import Shelf, Topic, chapter
+from kit.help.topic import HelpTopic, Shelf, chapter
 from kit.host.python_command import python_command
 
 _COLUMNS: Final = tuple(
@@ -54,7 +54,7 @@ def _rows(kind: Mapping[str, Any]) -> Iterator[tuple[str, str, str, str]]:
         yield each["check"], each["feedback"], anchors, params
 
 
-TOPIC: Final = Topic(
+TOPIC: Final = HelpTopic(
     "Kinds of submission and their checks",
     "what the grader can grade, and what each check measures",
     Shelf.REFERENCE,

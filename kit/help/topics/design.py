@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from kit.document.blocks import CellStyle, Chapter, Column, Picture, Table
-from kit.help.topic import Shelf, Topic, chapter
+from kit.help.topic import HelpTopic, Shelf, chapter
 
 DRAWING: Final = """
 8  faces         kit/cli/  one command a module   kit/tui/  screens, keys
@@ -159,6 +159,6 @@ Files of versions before 0.2.0 are not read.
     )
 
 
-TOPIC: Final = Topic(
+TOPIC: Final = HelpTopic(
     "The design and its reasons", "floors, the main loop, choices and why", Shelf.BACKGROUND, _chapters
 )

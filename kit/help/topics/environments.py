@@ -12,7 +12,7 @@ from gymnasium import spaces
 from kit.document.blocks import Block, CellStyle, Chapter, Column, Table
 from kit.environment_ids import ENVIRONMENTS, register
 from kit.help.docstrings import docstring_blocks
-from kit.help.topic import Shelf, Topic, chapter
+from kit.help.topic import HelpTopic, Shelf, chapter
 from kit.learning.environment.env import TaskEnv
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.catalogue import TASKS
@@ -96,4 +96,6 @@ def _task_tables() -> Iterator[Table]:
     yield Table("tasks", "", columns, rows, note="`kit task show NAME` shows one with all it sets.")
 
 
-TOPIC: Final = Topic("Environments", "task cards of the Gymnasium environments", Shelf.REFERENCE, _chapters)
+TOPIC: Final = HelpTopic(
+    "Environments", "task cards of the Gymnasium environments", Shelf.REFERENCE, _chapters
+)

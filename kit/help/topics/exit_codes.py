@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from kit.document.blocks import CellStyle, Chapter, Column, Table
-from kit.help.topic import Shelf, Topic, chapter
+from kit.help.topic import HelpTopic, Shelf, chapter
 
 CODES: Final = (
     ("0", "It did what was asked.", "kit world check on a good world"),
@@ -62,4 +62,4 @@ programs. After Ctrl-C, a sweep, a cohort and a test go on where they were when 
     )
 
 
-TOPIC: Final = Topic("Exit codes", "what a script may count on", Shelf.REFERENCE, _chapters)
+TOPIC: Final = HelpTopic("Exit codes", "what a script may count on", Shelf.REFERENCE, _chapters)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from kit.document.blocks import CellStyle, Chapter, Column, Table
-from kit.help.topic import Shelf, Topic, chapter
+from kit.help.topic import HelpTopic, Shelf, chapter
 from kit.msg.interfaces import definition_source, interface_names, known_packages
 
 _COLUMNS: Final = tuple(Column(title, CellStyle.TEXT) for title in ("Name", "Fields"))
@@ -50,6 +50,6 @@ def _fields(part: str) -> Iterator[str]:
             yield " ".join(field.split())
 
 
-TOPIC: Final = Topic(
+TOPIC: Final = HelpTopic(
     "Messages", "every ROS 2 message, service and action that comes with the kit", Shelf.REFERENCE, _chapters
 )

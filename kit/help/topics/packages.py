@@ -6,7 +6,7 @@ from typing import Final
 
 from kit.document.blocks import CellStyle, Chapter, Code, Column, Table
 from kit.extensions import FOLDERS, GROUPS, IMPORT_LIMIT_S, PREFIX
-from kit.help.topic import Shelf, Topic, chapter
+from kit.help.topic import HelpTopic, Shelf, chapter
 
 EXAMPLE: Final = f"""\
 [project.entry-points."{PREFIX}devices"]
@@ -65,6 +65,6 @@ program never sees them.
     )
 
 
-TOPIC: Final = Topic(
+TOPIC: Final = HelpTopic(
     "Parts of your own package", "bring devices, maps, lessons, checks, verbs", Shelf.HOW_TO, _chapters
 )

@@ -7,7 +7,7 @@ from typing import Final
 import kit
 from kit.document.blocks import Chapter
 from kit.help.docstrings import docstring_blocks
-from kit.help.topic import Shelf, Topic, chapter
+from kit.help.topic import HelpTopic, Shelf, chapter
 
 
 def _chapters() -> tuple[Chapter, ...]:
@@ -20,4 +20,6 @@ def _chapters() -> tuple[Chapter, ...]:
     )
 
 
-TOPIC: Final = Topic("From Python", "the public names, with examples that run", Shelf.REFERENCE, _chapters)
+TOPIC: Final = HelpTopic(
+    "From Python", "the public names, with examples that run", Shelf.REFERENCE, _chapters
+)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from kit.document.blocks import Chapter
-from kit.help.topic import Shelf, Topic, chapter
+from kit.help.topic import HelpTopic, Shelf, chapter
 
 
 def _chapters() -> tuple[Chapter, ...]:
@@ -73,7 +73,7 @@ and recordings in NumPy. Everything below the screen takes a seed, and the same 
     )
 
 
-TOPIC: Final = Topic(
+TOPIC: Final = HelpTopic(
     "For researchers",
     "repeat the study, pose a task, train with many seeds, compare",
     Shelf.HOW_TO,

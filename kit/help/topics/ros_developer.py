@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from kit.document.blocks import Chapter
-from kit.help.topic import Shelf, Topic, chapter
+from kit.help.topic import HelpTopic, Shelf, chapter
 
 
 def _chapters() -> tuple[Chapter, ...]:
@@ -89,7 +89,7 @@ you set, and stop the robot when they end. Read `kit bridge zenoh --help` before
     )
 
 
-TOPIC: Final = Topic(
+TOPIC: Final = HelpTopic(
     "For ROS developers",
     "run a package, look inside, plan layers, record, go to a robot",
     Shelf.HOW_TO,

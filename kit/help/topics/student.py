@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from kit.document.blocks import Chapter
-from kit.help.topic import Shelf, Topic, chapter
+from kit.help.topic import HelpTopic, Shelf, chapter
 
 
 def _chapters() -> tuple[Chapter, ...]:
@@ -96,6 +96,6 @@ The exported file holds your answers and results; it is what a teacher's class r
     )
 
 
-TOPIC: Final = Topic(
+TOPIC: Final = HelpTopic(
     "For students", "drive, write a controller, train, get checked, hand in", Shelf.HOW_TO, _chapters
 )

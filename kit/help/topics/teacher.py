@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from kit.document.blocks import Chapter, Code
-from kit.help.topic import Shelf, Topic, chapter
+from kit.help.topic import HelpTopic, Shelf, chapter
 
 
 def _chapters() -> tuple[Chapter, ...]:
@@ -124,7 +124,7 @@ A lesson is a folder of texts and exercises. `kit lesson --check FOLDER` reports
     )
 
 
-TOPIC: Final = Topic(
+TOPIC: Final = HelpTopic(
     "For teachers",
     "make an assignment, hand it out, grade, give grades back, read what a class learned",
     Shelf.HOW_TO,

@@ -10,7 +10,7 @@ from kit.document.blocks import Chapter, Code
 from kit.geometry import Pose
 from kit.help.docstrings import docstring_blocks
 from kit.help.key_tables import key_tables
-from kit.help.topic import Shelf, Topic, chapter
+from kit.help.topic import HelpTopic, Shelf, chapter
 from kit.sim.plugin import PluginType, WorldPluginType
 from kit.sim.plugins import plugin_types, world_plugin_types
 from kit.world.documents import AllowedRoot, WorldDocuments
@@ -143,6 +143,6 @@ def _device_chapters() -> Iterator[Chapter]:
         yield chapter(f"Device {device.type}", *docstring_blocks(device.plugin.__doc__ or ""), *tables)
 
 
-TOPIC: Final = Topic(
+TOPIC: Final = HelpTopic(
     "The world format", "every key of worlds, maps, models and devices", Shelf.REFERENCE, _chapters
 )

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar
 
 from kit.dialogue.actions import ACTIONS, ScreenAction, digits
-from kit.dialogue.dialogue import Action, Dialogue, Refused, leave_action
+from kit.dialogue.dialogue import Dialogue, DialogueAction, Refused, leave_action
 from kit.dialogue.effects import Effect
 from kit.document.blocks import Block, Choice, Choices, Text, Tone
 from kit.geometry import whole_degrees
@@ -106,12 +106,12 @@ class DefenceDialogue(Dialogue):
     def answer_keys(self) -> str:
         return f"1-{len(self.defence.questions[len(self.answers)].options)}"
 
-    actions: ClassVar[Sequence[Action[Any]]] = (
-        Action(
+    actions: ClassVar[Sequence[DialogueAction[Any]]] = (
+        DialogueAction(
             ScreenAction("defence_answer", "1 2 3", "answer", "choose an answer; it counts", digits("answer", 1, 3), "1-3"),
             choose, is_asked, shown_keys=answer_keys,
         ),
-        Action(ACTIONS["restart"], show_again, lambda dialogue: dialogue.is_answered, is_for_lines=False),
+        DialogueAction(ACTIONS["restart"], show_again, lambda dialogue: dialogue.is_answered, is_for_lines=False),
         leave_action(),
     )  # fmt: skip
 

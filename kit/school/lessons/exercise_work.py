@@ -51,7 +51,7 @@ class FolderWatch:
             return
 
 
-class ExerciseWork:
+class ExerciseAttempt:
     """The student's work on one exercise. ``poll`` it a few times a second; ``close`` it when done.
 
     Raises ExerciseFilesError where the student's files cannot be laid out.

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from kit.dialogue.actions import ACTIONS
-from kit.dialogue.dialogue import Action, Refused
+from kit.dialogue.dialogue import DialogueAction, Refused
 from kit.dialogue.effects import Effect, Tell
 from kit.document.blocks import Block, Text, Tone
 from kit.plain_text import quoted, suggestion
@@ -79,9 +79,11 @@ def glossary_blocks(terms: Sequence[GlossaryTerm]) -> list[Block]:
     return [block for each in terms for block in each.blocks()]
 
 
-def glossary_action() -> Action[Any]:
+def glossary_action() -> DialogueAction[Any]:
     """``,`` in a dialogue: the glossary, or with a word after it one term."""
-    return Action(ACTIONS["glossary"], _show_glossary, takes_text=True, is_listed=False, while_busy=True)
+    return DialogueAction(
+        ACTIONS["glossary"], _show_glossary, takes_text=True, is_listed=False, while_busy=True
+    )
 
 
 def _show_glossary(dialogue: object, word: str = "") -> Effect:

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from kit.dialogue.actions import ACTIONS, ScreenAction, digits, letter
-from kit.dialogue.dialogue import Action, Dialogue, Refused, help_action, leave_action
+from kit.dialogue.dialogue import Dialogue, DialogueAction, Refused, help_action, leave_action
 from kit.dialogue.effects import Choose, Effect, Leave, Open, Option, Remark, Show, Tell, Work
 from kit.document.blocks import Block, Marked, Picture, Text, Tone
 from kit.render.encode import AsciiEncoder
@@ -17,7 +17,7 @@ from kit.run.scenario import find_scenario
 from kit.school.lessons.checking import CheckReport, ExerciseFilesError
 from kit.school.lessons.defence import Defence, DefenceError
 from kit.school.lessons.defence_dialogue import DefenceDialogue
-from kit.school.lessons.exercise_work import ExerciseWork
+from kit.school.lessons.exercise_work import ExerciseAttempt
 from kit.school.lessons.glossary import glossary_action
 from kit.school.lessons.graph_playback import graph_rows
 from kit.school.lessons.lesson_session import LessonSession
@@ -107,9 +107,9 @@ class LessonDialogue(Dialogue):
         self.session = session
         self.step: LessonStep = session.first_step
         self.stage: Stage = NoStage()
-        self.work: ExerciseWork | None = None
+        self.work: ExerciseAttempt | None = None
         """The work on the step's exercise; None where it has none."""
-        self._works: dict[str, ExerciseWork] = {}
+        self._works: dict[str, ExerciseAttempt] = {}
         """The work on each exercise of this lesson that was come to. A check goes on while another step is looked at."""
         self.has_ended = False
         """Whether the last step is behind one."""
@@ -142,9 +142,9 @@ class LessonDialogue(Dialogue):
                 self._problem = f"The exercise files cannot be created: {error}"
         self.stage.open(step, still=self.begins_still)
 
-    def _work_on(self, exercise: Exercise) -> ExerciseWork:
+    def _work_on(self, exercise: Exercise) -> ExerciseAttempt:
         if exercise.name not in self._works:
-            self._works[exercise.name] = ExerciseWork(self.session, exercise)
+            self._works[exercise.name] = ExerciseAttempt(self.session, exercise)
         return self._works[exercise.name]
 
     def _close_works(self) -> None:
@@ -378,7 +378,7 @@ class LessonDialogue(Dialogue):
         file = report.recording
         return Work("", lambda: _load_run(file), lambda run: self._play(work, run))
 
-    def _play(self, work: ExerciseWork, run: tuple[Recording, Scenario] | None) -> Effect:
+    def _play(self, work: ExerciseAttempt, run: tuple[Recording, Scenario] | None) -> Effect:
         if run is not None and self.work is work:
             self.stage.play(*run)
         return None
@@ -611,7 +611,7 @@ class LessonDialogue(Dialogue):
         )
 
     @property
-    def _work(self) -> ExerciseWork:
+    def _work(self) -> ExerciseAttempt:
         assert self.work is not None  # the actions of an exercise are not possible elsewhere
         return self.work
 
@@ -718,42 +718,42 @@ class LessonDialogue(Dialogue):
     def predict_keys(self) -> str:
         return f"1-{len(self.step.options)}"
 
-    actions: ClassVar[Sequence[Action[Any]]] = (
-        Action(
+    actions: ClassVar[Sequence[DialogueAction[Any]]] = (
+        DialogueAction(
             ScreenAction("predict", "1 2 3 4", "predict", "predict; your first choice counts", digits("predict", 1, 4), "1-4"),
             predict, can_predict, shown_keys=predict_keys,
         ),
-        Action(
+        DialogueAction(
             ScreenAction("drive_scene", "arrows", "drive", "drive the robot, in a scene that waits for you", (), "←↑↓→"),
             lambda dialogue: None, lambda dialogue: dialogue.is_driving, is_for_lines=False,
         ),
-        Action(ACTIONS["check"], check, can_check),
-        Action(ACTIONS["edit_file"], edit, can_edit),
-        Action(ACTIONS["hint"], hint, can_hint),
-        Action(ACTIONS["drive"], drive, can_drive),
-        Action(ACTIONS["replay"], replay, can_replay),
-        Action(ACTIONS["solution"], show_solution, can_show_solution),
-        Action(ACTIONS["next"], go_on, can_go_on, word=next_word, while_busy=True),
-        Action(ACTIONS["defend"], defend, can_defend),
-        Action(letter("run_command", "o", "run", "run a command of this step here"), run_command, has_commands),
-        Action(ACTIONS["second_terminal"], explain_second_terminal, has_beside),
-        Action(ACTIONS["output"], show_output, can_show_output),
-        Action(
+        DialogueAction(ACTIONS["check"], check, can_check),
+        DialogueAction(ACTIONS["edit_file"], edit, can_edit),
+        DialogueAction(ACTIONS["hint"], hint, can_hint),
+        DialogueAction(ACTIONS["drive"], drive, can_drive),
+        DialogueAction(ACTIONS["replay"], replay, can_replay),
+        DialogueAction(ACTIONS["solution"], show_solution, can_show_solution),
+        DialogueAction(ACTIONS["next"], go_on, can_go_on, word=next_word, while_busy=True),
+        DialogueAction(ACTIONS["defend"], defend, can_defend),
+        DialogueAction(letter("run_command", "o", "run", "run a command of this step here"), run_command, has_commands),
+        DialogueAction(ACTIONS["second_terminal"], explain_second_terminal, has_beside),
+        DialogueAction(ACTIONS["output"], show_output, can_show_output),
+        DialogueAction(
             letter("questions", "k", "questions", "answer the lesson's questions, after its last step"),
             ask_questions, lambda dialogue: dialogue.has_ended,
         ),
-        Action(ACTIONS["previous"], go_back, can_go_back, while_busy=True),
-        Action(ACTIONS["restart"], restart, can_restart),
-        Action(ACTIONS["pause"], pause, can_pause, is_for_lines=False),
-        Action(ACTIONS["step"], step_once, can_step, is_for_lines=False),
-        Action(
+        DialogueAction(ACTIONS["previous"], go_back, can_go_back, while_busy=True),
+        DialogueAction(ACTIONS["restart"], restart, can_restart),
+        DialogueAction(ACTIONS["pause"], pause, can_pause, is_for_lines=False),
+        DialogueAction(ACTIONS["step"], step_once, can_step, is_for_lines=False),
+        DialogueAction(
             ACTIONS["start_over"], start_over, has_work,
             confirm="x once more starts this exercise over; your files are kept beside it.",
         ),
         help_action(),
         leave_action(lambda dialogue: Leave(), back_word),
-        Action(ACTIONS["steps"], go_to, takes_text=True, is_listed=False, while_busy=True),
-        Action(ACTIONS["quit"], lambda dialogue: Leave(), is_listed=False, is_for_lines=False, while_busy=True),
+        DialogueAction(ACTIONS["steps"], go_to, takes_text=True, is_listed=False, while_busy=True),
+        DialogueAction(ACTIONS["quit"], lambda dialogue: Leave(), is_listed=False, is_for_lines=False, while_busy=True),
         glossary_action(),
     )  # fmt: skip
 

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar, Final
 
 from kit.dialogue.actions import ACTIONS, ScreenAction, digits, letter
-from kit.dialogue.dialogue import Action, Dialogue, help_action, leave_action
+from kit.dialogue.dialogue import Dialogue, DialogueAction, help_action, leave_action
 from kit.dialogue.effects import Effect
 from kit.document.blocks import Block, Choice, Choices, KeyLine, Picture, Text, Tone
 from kit.school.lessons.glossary import glossary_action
@@ -199,25 +199,25 @@ class QuizDialogue(Dialogue):
     def next_word(self) -> str:
         return "results" if self.session.current_item is None else "next"
 
-    actions: ClassVar[Sequence[Action[Any]]] = (
-        Action(
+    actions: ClassVar[Sequence[DialogueAction[Any]]] = (
+        DialogueAction(
             ScreenAction("answer", "1 2 3", "answer", "choose an answer, then say how sure you are", digits("answer", 1, OPTION_COUNT), "1-3"),
             choose, is_asked,
         ),
-        Action(
+        DialogueAction(
             ScreenAction("confidence", "1 2 3 4", "how sure", "say how sure you are of your answer", digits("confidence", 1, 4), "1-4"),
             rate, is_chosen, then="next",
         ),
-        Action(
+        DialogueAction(
             ScreenAction("not_sure", "0", "not sure", "say that you do not know; not counted as wrong", (("0", "not_sure"),)),
             say_not_sure, is_asked, then="next",
         ),
-        Action(
+        DialogueAction(
             letter("skip", "x", "leave blank", "leave the question blank; press it twice"),
             leave_blank, is_asked, confirm="x once more leaves it blank; 0 says that you are not sure.", then="next",
         ),
-        Action(ACTIONS["next"], go_on, can_go_on, word=next_word),
-        Action(ACTIONS["previous"], take_back, is_chosen),
+        DialogueAction(ACTIONS["next"], go_on, can_go_on, word=next_word),
+        DialogueAction(ACTIONS["previous"], take_back, is_chosen),
         help_action(),
         leave_action(),
         glossary_action(),

@@ -13,7 +13,7 @@ from textual.geometry import Size
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.dialogue import Dialogue, Turn
-from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show, Tell, Type, Work
+from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show, StartTyping, Tell, Work
 from kit.document.blocks import Tone
 from kit.document.layout import Page, place, rows_of
 from kit.document.rows import MARGIN, Row, row, spread, text_width, window
@@ -252,7 +252,7 @@ class DialogueScreen(RowsScreen[None]):
                 self.action_back()
             case Help():
                 self._show_help()
-            case Type():
+            case StartTyping():
                 if self._field is not None:
                     self.set_focus(self._field)
                 self.show()

@@ -16,7 +16,7 @@ from kit.inspection.sockets import sockets_folder
 from kit.run.scenario import find_scenario
 from kit.school.lessons.aside import plain_lines
 from kit.school.lessons.defence_dialogue import DefenceDialogue
-from kit.school.lessons.exercise_work import ExerciseWork
+from kit.school.lessons.exercise_work import ExerciseAttempt
 from kit.school.lessons.lesson_dialogue import Drive, Edit, LessonDialogue, Replay, RunCommand
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import LessonStep
@@ -330,7 +330,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         if is_read_anew:
             self.show()
 
-    def _celebrate(self, work: ExerciseWork) -> None:
+    def _celebrate(self, work: ExerciseAttempt) -> None:
         """Lets the line of a check that has passed move once, unless motion is reduced."""
         if work.report is None or not work.report.is_passed or self.theme.terminal.reduce_motion.value:
             return

@@ -32,7 +32,7 @@ from grader.cohort.gradebook import (
     read_json,
     read_submission_times,
 )
-from grader.cohort.lateness import Extension, LatePolicy, read_policy
+from grader.cohort.lateness import DueDateExtension, LatePolicy, read_policy
 from grader.cohort.marks import read_marks
 from grader.cohort.queue import Queue
 from grader.cohort.roster import owners_of, read_roster
@@ -139,14 +139,14 @@ def test_equal_works_are_marked_but_not_within_a_group(tmp_path: Path) -> None:
         (timedelta(hours=25), None, 0, 0.8, "1 day 1 h"),
         (timedelta(hours=25), None, 1, 0.9, "1 day of them for nothing"),
         (timedelta(hours=20), None, 1, 1.0, "cost nothing"),
-        (timedelta(hours=25), Extension(days=2), 0, 1.0, "by an extension"),
-        (timedelta(hours=73), Extension(days=2), 0, 0.8, "after your extension"),
-        (timedelta(days=9), Extension(until=DUE + timedelta(days=9)), 0, 1.0, "by an extension"),
+        (timedelta(hours=25), DueDateExtension(days=2), 0, 1.0, "by an extension"),
+        (timedelta(hours=73), DueDateExtension(days=2), 0, 0.8, "after your extension"),
+        (timedelta(days=9), DueDateExtension(until=DUE + timedelta(days=9)), 0, 1.0, "by an extension"),
         (timedelta(days=11), None, 0, 0.0, "0%"),
     ],
 )
 def test_lateness_says_how_late_and_what_it_costs(
-    late: timedelta, extension: Extension | None, grace_days: int, kept: float, word: str
+    late: timedelta, extension: DueDateExtension | None, grace_days: int, kept: float, word: str
 ) -> None:
     policy = LatePolicy(DUE, 600, 0.1, 0.2, 10, LISBON, grace_days)
     found = policy.lateness(DUE + late, extension)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from kit.school.lessons import exercise_work
-from kit.school.lessons.exercise_work import ExerciseWork, FolderWatch
+from kit.school.lessons.exercise_work import ExerciseAttempt, FolderWatch
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.progress import ProgressJournal
 from kit.workspace import open_workspace
@@ -91,7 +91,7 @@ def test_an_editor_begins_at_the_first_todo_and_then_at_the_error(tmp_path: Path
     exercise = lesson.exercises[0]
     with ProgressJournal(tmp_path) as journal:
         session = LessonSession(lesson, journal, open_workspace(tmp_path))
-        model = ExerciseWork(session, exercise)
+        model = ExerciseAttempt(session, exercise)
         lines = model.file.read_text().splitlines()
         assert "TODO" in lines[model.line_to_edit - 1]
         assert not any("TODO" in line for line in lines[: model.line_to_edit - 1])

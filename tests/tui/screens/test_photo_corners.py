@@ -7,7 +7,7 @@ import pytest
 from PIL import Image, ImageDraw
 from textual.pilot import Pilot
 
-from kit.mapmaking.photo import Scale, plan_from_photo
+from kit.mapmaking.photo import PhotoScale, plan_from_photo
 from kit.mapmaking.sheet import SheetNotFound, find_sheet, order_corners, refine_corners
 from kit.tui.screens.photo_corners import PhotoCornersScreen, PhotoView
 from tests.tui.lesson_stage import rows, seen, stage, text, until
@@ -57,7 +57,7 @@ def test_clicked_corners_are_moved_to_the_edges_of_the_sheet() -> None:
     clicked = screens[0].found
     assert clicked is not None
     assert np.abs(np.array(clicked) - CORNERS).max() < 12  # a character is about ten pixels wide
-    found = plan_from_photo(image, Scale(sheet_width=5.0), corners=clicked, are_rough=True)
+    found = plan_from_photo(image, PhotoScale(sheet_width=5.0), corners=clicked, are_rough=True)
     assert np.abs(np.array(found.corners) - CORNERS).max() < 1.5
 
 
