@@ -327,7 +327,9 @@ class LessonDialogue(Dialogue):
 
     @property
     def polls(self) -> bool:
-        return bool(self._checked_elsewhere()) or (self.work is not None and not self.work.by_hand)
+        """Whether time brings something: a check that runs, or a file that may be saved anew. A drive by hand is not."""
+        is_edited = self.work is not None and not self.work.by_hand
+        return bool(self.busy or self._checked_elsewhere()) or is_edited
 
     def _checked_elsewhere(self) -> list[LessonStep]:
         """The steps, besides this one, whose exercise is being checked."""
