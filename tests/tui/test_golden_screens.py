@@ -69,7 +69,7 @@ def open_levels(theme: Theme, workspace: Workspace, progress: ProgressJournal) -
 
 async def levels_are_ready(pilot: Pilot[None], screen: Screen[Any]) -> None:
     assert isinstance(screen, LevelsScreen)
-    await seen(pilot, "reference 6")
+    await seen(pilot, "bronze at")
     await until(
         pilot, lambda: all(place.level in screen._pictures for place in screen._map_places()), "pictures"
     )

@@ -112,8 +112,10 @@ class TrainingCurves:
 
         curves = [
             Curve(
-                f"training {number}"
-                + (f", exam {self.exams[number] / 100:.2f}" if number in self.exams else ""),
+                # Short, so that the value of three curves beside each other is never cut.
+                f"exam {self.exams[number] / 100:.2f}; last"
+                if number in self.exams
+                else f"training {number}",
                 np.array([step for step, _ in tests], dtype=float),
                 np.array([share / 100 for _, share in tests]),
             )

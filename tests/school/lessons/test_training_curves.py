@@ -53,7 +53,7 @@ def test_the_figure_that_is_judged_stands_beside_the_curve() -> None:
     assert curves.exams == {1: 58}
     for columns in (60, 76):
         names = curves.picture(columns, AsciiEncoder())[0]
-        assert "training 1, exam 0.58" in names
+        assert "exam 0.58; last 0.42" in names
         assert "training 2" in names
         assert names.count("exam") == 1
     assert curves.describe() == [

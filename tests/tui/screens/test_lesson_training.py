@@ -19,7 +19,7 @@ from kit.tui.theme import Theme
 from kit.workspace import open_workspace
 from tests.tui.lesson_stage import seen, stage, text, until
 
-CURVE = re.compile(r"\d training (\d) (?:0\.\d+|1|0)")
+CURVE = re.compile(r"(\d) (?:training \d|exam [\d.]+; last) (?:0\.\d+|1|0)")
 
 
 def play_step(
@@ -68,7 +68,7 @@ def test_three_trainings_are_three_curves(tmp_path: Path) -> None:
         await seen(pilot, "steps, turn_")
         moments = {text(pilot)}
         await until(pilot, lambda: len(moments | {text(pilot)}) > 1, "the robot drives")
-        await seen(pilot, "3 training 3")
+        await seen(pilot, "3 exam ")
         await until(pilot, lambda: " s: training" not in text(pilot), "the check is over")
         assert set(CURVE.findall(text(pilot))) == {"1", "2", "3"}
 

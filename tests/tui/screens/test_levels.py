@@ -106,7 +106,12 @@ def test_every_world_fits_and_the_shut_levels_say_what_opens_them(
             await pilot.press("right")
             await pilot.pause()
         assert seen == {level.title for level in LEVELS}
-        assert all(each.title in flat(pilot.app) for each in all_challenges())
+        missing = {each.title for each in all_challenges()}
+        for _ in all_challenges():  # the list goes on below where it does not fit
+            missing -= {title for title in missing if title in flat(pilot.app)}
+            await pilot.press("down")
+            await pilot.pause()
+        assert missing == set()
         await pilot.press("right")
         await pilot.pause()
         assert all_worlds()[0].title in flat(pilot.app)
