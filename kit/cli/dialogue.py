@@ -101,13 +101,15 @@ class _Conversation:
     # What is said
 
     def _show(self, *, with_keys: bool = True) -> None:
-        """Says what is new: the blocks that were not there before, at another place where that is, and then the keys."""
+        """Says what is new, the blocks that were not there before, and then the keys; at another place where that is, and all
+        of it."""
         dialogue = self._dialogue
         blocks = dialogue.blocks()
         lines = [lines_of([block]) for block in blocks]
         heard: Sequence[Block] = ()
         if dialogue.place != self._place:
             self._place, heard = dialogue.place, dialogue.heard()
+            self._said = []  # two questions may have the same words
             click.echo("")
             if dialogue.position:
                 _echo(wrap(dialogue.position[0].upper() + dialogue.position[1:], HEARD.width))
