@@ -70,7 +70,7 @@ class Recorder(ABC):
     def prepare(self) -> None:  # noqa: B027 - few need anything
         """Makes what the program needs."""
 
-    def type_into(self, terminal: int) -> None:  # noqa: B027 - to few is anything typed
+    def type_into(self, write: Callable[[bytes], None]) -> None:  # noqa: B027 - to few is anything typed
         """What a user types, for a while."""
 
     def close(self) -> None:
@@ -108,9 +108,9 @@ class PlayRecording(RunRecording):
         drive = str(self.folder / self.file)
         return ("-m", "kit", "play", "simple", "--plain", "--controller", "teleop", "--record", drive)
 
-    def type_into(self, terminal: int) -> None:
+    def type_into(self, write: Callable[[bytes], None]) -> None:
         for _ in range(400):
-            os.write(terminal, b"drive 0.3 0 2\n")
+            write(b"drive 0.3 0 2\n")
             time.sleep(0.15)
 
 
@@ -189,9 +189,9 @@ class Quiz(Recorder):
     def words(self) -> Sequence[str]:
         return ("-m", "kit", "quiz", "--plain", "--again")
 
-    def type_into(self, terminal: int) -> None:
+    def type_into(self, write: Callable[[bytes], None]) -> None:
         for _ in range(12):
-            os.write(terminal, b"1\n3\n")
+            write(b"1\n3\n")
             time.sleep(0.15)
 
     def has_something(self) -> bool:
@@ -243,9 +243,9 @@ class MapDrawing(Recorder):
     def words(self) -> Sequence[str]:
         return ("-m", "kit", "maps", "new", "hall")
 
-    def type_into(self, terminal: int) -> None:
+    def type_into(self, write: Callable[[bytes], None]) -> None:
         for _ in range(400):
-            os.write(terminal, b" \x1b[C")
+            write(b" \x1b[C")
             time.sleep(0.1)
 
     def has_something(self) -> bool:
@@ -276,12 +276,9 @@ class Editing(Recorder):
     def words(self) -> Sequence[str]:
         return ("-m", "kit", "play", "simple", "--controller", "mine")
 
-    def type_into(self, terminal: int) -> None:
+    def type_into(self, write: Callable[[bytes], None]) -> None:
         for number in range(400):
-            os.write(
-                terminal,
-                b"\x05" if number == 40 else b"#" if number > 60 else b"\x1b[C" if number > 50 else b"",
-            )
+            write(b"\x05" if number == 40 else b"#" if number > 60 else b"\x1b[C" if number > 50 else b"")
             time.sleep(0.1)
 
     def has_something(self) -> bool:
@@ -316,7 +313,10 @@ class Started:
         self.own, theirs = pty.openpty()
         environment = {**recorder.place.environment, "TERM": "xterm-256color"}
         self.log = recorder.place.folder / "output.txt"
-        with (output or self.log).open("wb") as out:
+        self._own_lock = threading.Lock()
+        self._is_open = True
+        self.log.touch()
+        with (output or self.log).open("ab") as out:  # both streams at its end: neither over the other
             streams = theirs if recorder.needs_terminal and output is None else out
             self.process = subprocess.Popen(
                 [sys.executable, "-P", *recorder.words],
@@ -335,7 +335,13 @@ class Started:
 
     def _type(self, recorder: Recorder) -> None:
         with suppress(OSError):
-            recorder.type_into(self.own)
+            recorder.type_into(self._write)
+
+    def _write(self, typed: bytes) -> None:
+        with self._own_lock:
+            if not self._is_open:  # its number may be that of another terminal by now
+                raise OSError("the terminal is closed")
+            os.write(self.own, typed)
 
     def _read(self) -> None:
         with suppress(OSError), self.log.open("ab") as log:
@@ -345,8 +351,10 @@ class Started:
 
     def hang_up(self) -> None:
         """Closes the terminal, as a dropped line does."""
-        with suppress(OSError):
-            os.close(self.own)
+        with self._own_lock:
+            if self._is_open:
+                self._is_open = False
+                os.close(self.own)
 
 
 def until(condition: Callable[[], bool], what: str, seconds: float = WAIT_S) -> None:

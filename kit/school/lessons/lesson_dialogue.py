@@ -354,7 +354,7 @@ class LessonDialogue(Dialogue):
         if not work.poll() or work.report is None:
             return ""
         found = "passed" if work.report.is_passed else "not yet passed"
-        return f"The check of step {step.number}, {step.title}, has ended: {found}."
+        return f"The check of step {step.number} has ended: {found}."
 
     def _poll_here(self) -> Effect:
         work = self.work

@@ -138,8 +138,10 @@ class LessonScreen(DialogueScreen, DriveScreen):
         self.stage = ScenePair(world, PlaybackSceneView(theme))
         self._page = LessonPage(self.stage.world, self.stage.playback)
         self._strength = 1.0
-        self._passed_at = -lesson_rows.PASSED_S
-        """When the line of a check that passed began to move."""
+        self._passed_work: ExerciseAttempt | None = None
+        """What passed last."""
+        self._passed_at = 0.0
+        """When its line began to move."""
         self._said_row = self._look_row = 0
         """Rows of the words in which what was said begins, and what was said last; 0: nothing was."""
 
@@ -256,7 +258,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
         work = self.dialogue.work
         if work is not None and work.seconds is not None:
             return lesson_rows.checking(work.seconds, work.progress)
-        if (since := time.monotonic() - self._passed_at) < lesson_rows.PASSED_S and self.turn.remark is None:
+        since = time.monotonic() - self._passed_at
+        if work is self._passed_work and since < lesson_rows.PASSED_S and self.turn.remark is None:
             return lesson_rows.passing(since)
         return self._remark()
 
@@ -334,7 +337,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         """Lets the line of a check that has passed move once, unless motion is reduced."""
         if work.report is None or not work.report.is_passed or self.theme.terminal.reduce_motion.value:
             return
-        self._passed_at = time.monotonic()
+        self._passed_work, self._passed_at = work, time.monotonic()
         count = lesson_rows.PASSED_CELLS + 1
         self.set_interval(lesson_rows.PASSED_S / lesson_rows.PASSED_CELLS, self._show_status, repeat=count)
         self._show_status()

@@ -114,6 +114,26 @@ def test_a_prediction_is_kept_before_anything_moves(student: Student, play: Play
 
 
 @pytest.mark.long
+def test_what_passed_is_said_in_its_own_step_alone(
+    student: Student, play: Play, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(lesson_rows, "PASSED_S", 3600.0)
+    student.goes_to(COLOUR)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Save the file")
+        student.file.write_text("colour: green\n")
+        await seen(pilot, "Passed: >")
+        await pilot.press("n")
+        assert f"step {CORNER} of 5" in rows(pilot)[0]
+        assert "Passed" not in text(pilot)
+        await pilot.press("b")
+        assert "Passed: >" in text(pilot)
+
+    play(scene)
+
+
+@pytest.mark.long
 def test_who_does_not_want_to_wait_is_told_at_once(student: Student, play: Play) -> None:
     sheet = student.lesson / "lesson.yaml"
     sheet.write_text(sheet.read_text().replace("seconds: 1}", "seconds: 600}"))
