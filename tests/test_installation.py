@@ -54,7 +54,9 @@ OWN = {
 
 @pytest.fixture
 def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(sys, "path", [str(tmp_path)])
+    """A folder of packages, beside which this Python has none but those that come with it."""
+    own = [path for path in sys.path if Path(path).name not in ("site-packages", "dist-packages")]
+    monkeypatch.setattr(sys, "path", [str(tmp_path), *own])
     return tmp_path
 
 
