@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Final
 
-
 FIRST_DRIVE: Final = 35
 """Functions that are compiled before the first robot of a machine moves, on any map; a test counts them."""
 
