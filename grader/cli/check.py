@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from grader.driving.drive_record import GradedDrive
     from grader.evidence.contract import Evidence
     from grader.grading import Grading
-    from kit.school.result import GradingResult
+    from kit.results.grading_result import GradingResult
 
 EXIT_CODES = {"pass": 0, "fail": options.EXIT_FAILED, "broken": options.EXIT_BROKEN}
 
@@ -199,7 +199,7 @@ def report(file: Path, format_name: str, output: Path | None, for_student: bool,
     """Convert a result of `grader check --json` to another format."""
     from grader.reports import FORMATS
     from grader.reports.formats import write_annotations
-    from kit.school.result import GradingResult
+    from kit.results.grading_result import GradingResult
     from kit.workspace import write_atomically
 
     if format_name not in FORMATS:

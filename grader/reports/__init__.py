@@ -18,7 +18,7 @@ from grader.reports.formats import (
     write_prairielearn,
     write_text,
 )
-from kit.school.result import GradingResult
+from kit.results.grading_result import GradingResult
 
 ReportWriter = Callable[[GradingResult], str]
 

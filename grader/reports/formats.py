@@ -20,14 +20,16 @@ from xml.etree import ElementTree
 from grader.reports.cleaning import clean_line, escape_markdown, fenced_block, plain, xml_text
 from kit.document.blocks import Block, Text
 from kit.document.layout import lines_of, text_blocks
-from kit.school.result import (
-    INDENT,
-    VERDICT_TEXTS,
+from kit.results.grading_result import (
     CriterionResult,
     CriterionStatus,
     GradingResult,
     GradingVerdict,
     Visibility,
+)
+from kit.results.result_blocks import (
+    INDENT,
+    VERDICT_TEXTS,
     criterion_blocks,
     format_points,
     points_text,

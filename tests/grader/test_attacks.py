@@ -11,7 +11,7 @@ import pytest
 
 from grader.reports import FORMATS
 from kit.host.sandbox.confinement import Level
-from kit.school.result import GradingVerdict
+from kit.results.grading_result import GradingVerdict
 from tests.cases import every_case
 from tests.grader.attack import TOKEN, Attack, attempt, works_undefended
 from tests.grader.attacks import ATTACKS, THIRD_ROUND, WORKED_ONCE, table

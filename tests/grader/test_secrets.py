@@ -27,7 +27,13 @@ from grader.submission import Submission
 from kit.host.failure import Failure, FailureKind
 from kit.host.process import child_seed
 from kit.host.sandbox.confinement import Level
-from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingTiming, Visibility
+from kit.results.grading_result import (
+    CriterionResult,
+    CriterionStatus,
+    GradingResult,
+    GradingTiming,
+    Visibility,
+)
 from kit.world.problems import WorldError
 from tests.cases import every_case
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment

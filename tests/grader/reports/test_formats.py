@@ -11,7 +11,7 @@ import pytest
 
 from grader.reports import FORMATS, cleaning
 from grader.reports.formats import MAX_CLASSROOM_OUTPUT, write_annotations, write_classroom50
-from kit.school.result import CriterionResult, CriterionStatus, GradingResult, Visibility
+from kit.results.grading_result import CriterionResult, CriterionStatus, GradingResult, Visibility
 from tests.cases import every_case
 
 NASTY = {
