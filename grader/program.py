@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import NoReturn
 
-from kit.cli import refuse_if_written_over
+from kit.cli.process import refuse_if_written_over
 
 
 def run() -> NoReturn:

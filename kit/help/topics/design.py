@@ -14,6 +14,7 @@ DRAWING: Final = """
 7  pages         kit/help/  one topic a file
 6  school        kit/school/  lessons quiz survey game report progress
                  kit/study/   the dissertation's tables
+                 kit/results/  what grading found, read and shown
 5  learning      kit/learning/  environment/ training/ policies/ tasks/
                  kit/layers/    the layer planner
 4  running       kit/run/  runner (the tick) episode recording metrics
