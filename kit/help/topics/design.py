@@ -14,14 +14,13 @@ DRAWING: Final = """
 7  pages         kit/help/  one topic a file
 6  school        kit/school/  lessons quiz survey game report progress
                  kit/study/   the dissertation's tables
-                 kit/results/  what grading found, read and shown
 5  learning      kit/learning/  environment/ training/ policies/ tasks/
                  kit/layers/    the layer planner
 4  running       kit/run/  runner (the tick) episode recording metrics
                  kit/host/  student processes     kit/bridge/  robots
                  kit/launch/  launch files        kit/inspection/  terminals
                  kit/document/  what is told      kit/dialogue/  what is asked
-                 kit/render/  state -> characters
+                 kit/render/  state -> characters  kit/results/  of grading
                  kit/controllers/  node files     kit/mapmaking/  photo -> map
 3  conversation  kit/ros/  graph node parameters execution launch
                  kit/fields/  potential fields
