@@ -29,6 +29,7 @@ from kit.installation import (
     overwritten_text,
     requirements,
 )
+from kit.kernels.shared_cache import kept_files, shared_folders, why_not_shared
 from kit.tui.input.protocol import ask_keyboard
 from kit.tui.terminal import TerminalDecision, TerminalFacts, decide_terminal
 from kit.workspace import open_workspace
@@ -177,6 +178,19 @@ def _confinement() -> Iterator[Finding]:
         yield Finding("Student code cannot", name, f"{actions}.", meaning)
 
 
+def _kernels() -> Finding:
+    """Finds whether all accounts share what is compiled for this machine."""
+    folder = shared_folders()[0]
+    section, name, made = "Compiled kernels", "for all accounts", "sudo kit warm --shared"
+    if not folder.is_dir() or not any(kept_files(folder)):
+        return Finding(
+            section, name, "none", f"Each account compiles for itself. To have them for all: {made}"
+        )
+    if problem := why_not_shared(folder):
+        return Finding(section, name, "not used", f"{problem}. To make them anew: {made}")
+    return Finding(section, name, str(folder), "Accounts without kernels of their own use them.")
+
+
 def _workspace() -> Finding:
     folder = open_workspace(make=False).folder
     if not folder.exists():
@@ -198,7 +212,15 @@ def findings() -> list[Finding]:
     facts = TerminalFacts.here()
     # `kit doctor > file` asks about the terminal as `kit` would find it, not about the file.
     decision = decide_terminal(os.environ, replace(facts, stdout_tty=facts.stderr_tty))
-    return [*_machine(), *_terminal(decision), *_packages(), *_extensions(), *_confinement(), _workspace()]
+    return [
+        *_machine(),
+        *_terminal(decision),
+        *_packages(),
+        *_extensions(),
+        *_confinement(),
+        _kernels(),
+        _workspace(),
+    ]
 
 
 def as_text(report: list[Finding]) -> str:

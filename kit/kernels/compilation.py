@@ -17,7 +17,9 @@ NUMBA_SETTINGS = Path(".numba_config.yaml")
 and the current folder may be a student's."""
 with chdir("/") if NUMBA_SETTINGS.exists() else nullcontext():
     import numba
-    from numba.core import config, event
+    from numba.core import ccallback, config, event, sigutils
+
+    from kit.kernels.kernel_cache import KernelCache
 
 config._config_fname = ""  # no file has this name
 
@@ -47,9 +49,8 @@ def _compile_on_use(function: FunctionT, **options: bool) -> FunctionT:
     njit: Any = numba.njit  # its types leave out options
     compiled = njit(error_model="numpy", **options)(function)
     with suppress(RuntimeError):  # neither beside this file nor in the user's cache
-        compiled.enable_caching()
         # By itself numba looks at the function's own file alone, and not at those that it calls.
-        compiled._cache._cache_file._source_stamp = SOURCE_STAMP
+        compiled._cache = KernelCache(function, SOURCE_STAMP)
     return cast(FunctionT, compiled)
 
 
@@ -116,11 +117,12 @@ def c_function(function: Callable[..., Any], signature: str) -> int:
 
     A callback of a C library that is machine code spares the way into Python and back.
     """
-    options: Any = {"cache": True, "error_model": "numpy"}
-    try:
-        compiled: Any = numba.cfunc(signature, **options)(function)
-    except RuntimeError:  # neither beside its file nor in the user's cache may be written
-        compiled = numba.cfunc(signature, error_model="numpy")(function)
+    compiled: Any = ccallback.CFunc(
+        function, sigutils.normalize_signature(signature), locals={}, options={"error_model": "numpy"}
+    )
+    with suppress(RuntimeError):  # neither beside its file nor in the user's cache may be written
+        compiled._cache = KernelCache(function)
+    compiled.compile()
     _KEPT.append(compiled)
     return int(compiled.address)
 

@@ -373,10 +373,10 @@ def test_compile_kernels_compiles_all_that_a_world_calls() -> None:
 def test_without_a_place_to_remember_it_a_formula_is_compiled_all_the_same(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def nowhere(function: object) -> None:
+    def nowhere(function: object, stamp: object = None) -> None:
         raise RuntimeError("cannot cache function: no locator available")
 
-    monkeypatch.setattr("numba.core.dispatcher.FunctionCache", nowhere)
+    monkeypatch.setattr(compilation, "KernelCache", nowhere)
 
     def twice(value: float) -> float:
         return 2.0 * value
