@@ -5,8 +5,9 @@ What numba keeps on disk holds until one of the files of this folder is edited.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import chdir, nullcontext, suppress
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import chdir, contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -15,11 +16,31 @@ from kit.kernels.compilation_progress import PROGRESS
 NUMBA_SETTINGS = Path(".numba_config.yaml")
 """numba reads it in the current folder, at its import and whenever it compiles. It names the cache, whose files can run code,
 and the current folder may be a student's."""
-with chdir("/") if NUMBA_SETTINGS.exists() else nullcontext():
+UNUSED = ("scipy", "cffi")
+"""What numba would import for linear algebra and for C functions that cffi declares, of which kernels have neither: with all that
+these import, they take 14 MB of every drive (``tests/benchmarks/memory.py``)."""
+
+
+@contextmanager
+def _absent(names: Sequence[str]) -> Iterator[None]:
+    """Has packages be as if they were not installed, unless they are imported already."""
+    hidden = [name for name in names if name not in sys.modules]
+    sys.modules.update(dict.fromkeys(hidden))  # type: ignore[arg-type] # None is Python's own mark for it
+    try:
+        yield
+    finally:
+        for name in hidden:
+            sys.modules.pop(name, None)
+
+
+with _absent(UNUSED), chdir("/") if NUMBA_SETTINGS.exists() else nullcontext():
     import numba
     from numba.core import ccallback, config, event, sigutils
+    from numba.core.registry import cpu_target
 
     from kit.kernels.kernel_cache import KernelCache
+
+    cpu_target.target_context.refresh()  # imports the rest, which the first kernel would do
 
 config._config_fname = ""  # no file has this name
 

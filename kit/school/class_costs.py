@@ -11,8 +11,8 @@ import subprocess
 import tempfile
 import termios
 import time
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from fcntl import ioctl
 from pathlib import Path
 from typing import Final
@@ -64,27 +64,26 @@ def _measure_drives(folder: Path) -> tuple[float, float]:
         screens = [stack.enter_context(_drive(folder / f"student-{i}")) for i in range(AT_ONCE)]
         terminals = [terminal for _, terminal in screens]
         written = dict.fromkeys(terminals, 0)
-        deadline = time.monotonic() + START_LIMIT_S
-        while min(written.values()) < FIRST_PICTURE:
-            if time.monotonic() > deadline or any(each.poll() is not None for each, _ in screens):
-                raise NotMeasured("`kit play maze` does not start here: try it")
-            _read(written, KEY_INTERVAL_S)
-        _press_keys(written, SETTLED_S)
+        wait_for_picture(written, [process for process, _ in screens])
+        press_keys(written, SETTLED_S)
         sessions = {process.pid for process, _ in screens}
         before, began = sum(map(_processor_s, _processes_of(sessions))), time.monotonic()
-        _press_keys(written, DRIVE_S)
+        press_keys(written, DRIVE_S)
         processes = _processes_of(sessions)
         used, took = sum(map(_processor_s, processes)) - before, time.monotonic() - began
         return used / took / AT_ONCE, sum(map(_memory, processes)) / AT_ONCE
 
 
+def _drive(workspace: Path) -> AbstractContextManager[tuple[subprocess.Popen[bytes], int]]:
+    return in_terminal(python_command("kit", "play", "maze", "--workspace", str(workspace)))
+
+
 @contextmanager
-def _drive(workspace: Path) -> Iterator[tuple[subprocess.Popen[bytes], int]]:
-    """``kit play`` in a terminal of its own: its process, and the terminal's other end."""
+def in_terminal(command: list[str]) -> Iterator[tuple[subprocess.Popen[bytes], int]]:
+    """Runs a command in a terminal of its own: its process, and the terminal's other end. Both end with the context."""
     ours, theirs = pty.openpty()
     ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", *SCREEN, 0, 0))
     environment = {**os.environ, "TERM": "xterm-256color", "COLORTERM": "truecolor"}
-    command = python_command("kit", "play", "maze", "--workspace", str(workspace))
     process = subprocess.Popen(
         command, stdin=theirs, stdout=theirs, stderr=theirs, env=environment, start_new_session=True
     )
@@ -102,7 +101,19 @@ def _drive(workspace: Path) -> Iterator[tuple[subprocess.Popen[bytes], int]]:
         os.close(ours)
 
 
-def _press_keys(written: dict[int, int], seconds: float) -> None:
+def wait_for_picture(written: dict[int, int], processes: Sequence[subprocess.Popen[bytes]]) -> None:
+    """Waits until every terminal shows a picture. Raises NotMeasured if one does not.
+
+    ``written``: by terminal, the bytes that it has written.
+    """
+    deadline = time.monotonic() + START_LIMIT_S
+    while min(written.values()) < FIRST_PICTURE:
+        if time.monotonic() > deadline or any(each.poll() is not None for each in processes):
+            raise NotMeasured("`kit play maze` does not start here: try it")
+        _read(written, KEY_INTERVAL_S)
+
+
+def press_keys(written: dict[int, int], seconds: float) -> None:
     """Presses keys in every terminal, one after the other, and reads what they show."""
     for number in range(round(seconds / KEY_INTERVAL_S)):
         key = KEYS[number % len(KEYS) :][:1]
