@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -15,10 +14,10 @@ from kit.cli.warm import uses_of_kernels
 from kit.learning.tasks.catalogue import task_names
 from tests.other_accounts import (
     FIRST_ACCOUNT,
-    environment_of,
     home_of,
     open_installation,
     run_as,
+    warm_installation,
     why_impossible,
 )
 
@@ -49,17 +48,8 @@ def test_without_root_nothing_is_shared(monkeypatch: pytest.MonkeyPatch) -> None
 def test_another_account_finds_what_root_has_compiled_unless_others_may_write_it() -> None:
     if problem := why_impossible():
         pytest.skip(problem)
-    with open_installation() as installation, home_of(FIRST_ACCOUNT) as home, home_of(0) as roots:
-        made = subprocess.run(
-            [sys.executable, "-m", "kit", "warm", "--shared"],
-            cwd=roots,
-            env=environment_of(installation, roots),
-            capture_output=True,
-            text=True,
-            check=False,
-            timeout=LIMIT_S,
-        )
-        assert made.returncode == 0, made.stderr
+    with open_installation() as installation, home_of(FIRST_ACCOUNT) as home:
+        warm_installation(installation)
         folder = installation / "kit" / "kernels" / "__pycache__"
         assert any(folder.glob("*.nbc"))
         for words in BEGINNINGS:
