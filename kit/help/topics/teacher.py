@@ -105,6 +105,16 @@ grade comes from `grader cohort`.
 """,
         ),
         chapter(
+            "Many accounts on one machine",
+            """
+    kit doctor --class 30
+
+measures how many students this machine carries who drive and check at once, and says what more learners need before a deadline.
+After each installation, `sudo kit warm --shared` compiles for all accounts what each would otherwise compile at its first
+start.
+""",
+        ),
+        chapter(
             "Read what a class learned",
             """
     kit class guide
