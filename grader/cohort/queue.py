@@ -28,7 +28,7 @@ from kit.host.job_executors import MAX_TRIES, read_result
 from kit.host.job_folder import JobFolder
 from kit.host.python_command import python_command
 from kit.host.sandbox.confinement import Level
-from kit.school.result import (
+from kit.results.grading_result import (
     PUBLIC_SEEDS,
     SCHEMA,
     WITH_SECRET,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import click
 
-from kit.cli import BAD_INPUT, NO_ROOM, describe_no_room
+from kit.cli.process import BAD_INPUT, NO_ROOM, describe_no_room
 from kit.plain_text import escape_controls, wrap
 from kit.tui.terminal import (
     COLOUR_CHOICES,

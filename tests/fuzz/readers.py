@@ -181,8 +181,8 @@ class ResultTarget:
         if result is None:
             return "refused"
         for shown in (result, result.for_student()):
-            for write in FORMATS.values():
-                write(shown)
+            for report_format in FORMATS.values():
+                report_format.write(shown)
         return "read"
 
 

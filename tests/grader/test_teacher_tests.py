@@ -16,7 +16,13 @@ from grader.reading import read_assignment
 from grader.submission import Submission
 from grader.teacher_tests import TestDeadline, TestTimeUsedUp, read_teacher_tests
 from kit.host.sandbox.confinement import Level
-from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict, Visibility
+from kit.results.grading_result import (
+    CriterionResult,
+    CriterionStatus,
+    GradingResult,
+    GradingVerdict,
+    Visibility,
+)
 from kit.world.problems import WorldError
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 from tests.grader.test_grading import run_pytest

@@ -51,7 +51,7 @@ from kit.host.job_executors import ExecutorUnavailable, JobPool
 from kit.host.job_folder import JobExecutor
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
-from kit.school.result import GradingVerdict
+from kit.results.grading_result import GradingVerdict
 from kit.world.problems import WorldError
 from tests.cases import every_case
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
