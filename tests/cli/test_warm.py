@@ -11,6 +11,7 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.cli.warm import uses_of_kernels
+from kit.host.sandbox import landlock
 from kit.learning.tasks.catalogue import task_names
 from tests.other_accounts import (
     FIRST_ACCOUNT,
@@ -43,6 +44,23 @@ def test_without_root_nothing_is_shared(monkeypatch: pytest.MonkeyPatch) -> None
     assert "sudo kit warm --shared" in ended.output
 
 
+CONFINED = """
+import tempfile
+from pathlib import Path
+from grader.evidence.reader_child import confine_before_reading
+from kit.kernels.compilation_progress import PROGRESS
+from kit.learning.environment.batch import BatchEnv
+from kit.learning.tasks.catalogue import find_task
+from kit.world.catalogue import maps_folder
+scratch = tempfile.mkdtemp(dir=Path.home())
+modules = ("kernels", "grids", "world_kernels", "batch_step")
+confine_before_reading(Path(scratch) / "x.py", scratch, kernel_modules=modules, beside=[str(maps_folder())])
+BatchEnv(find_task("turn"), 2).reset(0)
+print("compiled", PROGRESS.count)
+"""
+"""A process that reads what was handed in, as the grader's, and then uses kernels."""
+
+
 @pytest.mark.long
 @pytest.mark.timeout(3 * LIMIT_S)
 def test_another_account_finds_what_root_has_compiled_unless_others_may_write_it() -> None:
@@ -56,6 +74,9 @@ def test_another_account_finds_what_root_has_compiled_unless_others_may_write_it
             ended = _kit(installation, home, *words)
             assert ended.returncode == 0, ended.stderr
             assert "Compiling" not in ended.stderr + ended.stdout, words
+        if landlock.abi() >= 3:
+            confined = run_as(FIRST_ACCOUNT, installation, home, ["-c", CONFINED], LIMIT_S)
+            assert confined.stdout == "compiled 0\n", confined.stderr
         assert not list(home.rglob("*.nbc"))
         tried = run_as(
             FIRST_ACCOUNT, installation, home, ["-c", f"open({str(folder / 'x.nbc')!r}, 'w')"], LIMIT_S
