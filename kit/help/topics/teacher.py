@@ -45,8 +45,8 @@ solution. They check their work with the public seeds, as often as they like.
     grader gradebook grades
 
 `handed_in` holds one file, folder or archive for each student, as a platform's download has them. Moodle has two to fetch from
-the assignment's page of submissions: *Download all submissions*, which you unpack as `handed_in`, and *Download grading
-worksheet*, which is the roster below (tick *Offline grading worksheet* in the assignment's settings first). Programs run confined; what
+the assignment's page of submissions: "Download all submissions", which you unpack as `handed_in`, and "Download grading
+worksheet", which is the roster below (tick "Offline grading worksheet" in the assignment's settings first). Programs run confined; what
 a level keeps them from is in `kit doctor`. After Ctrl-C the same command goes on; after a change of words or points nothing is
 run again. What could not be read has no grade and a sentence why, never 0. A cluster does the same with `--executor slurm`
 and `--slurm account=NAME`, or `--executor dask`.
@@ -92,7 +92,7 @@ said and stops nothing. `late.yaml` says when it was due, where a date alone is 
 
 The first writes the file that Moodle imports (`--for canvas` that of Canvas): where the roster is an export of the same
 platform, its own rows with the grades filled in, and `--decimal-comma` where your site writes 7,5. In Moodle it goes back by
-*Upload grading worksheet* on the same page. The second writes a page for
+"Upload grading worksheet" on the same page. The second writes a page for
 each student: what earned which points, the worst run as a picture, what to try next. The third prints what has changed since
 an earlier gradebook, criterion by criterion.
 """,
