@@ -13,6 +13,7 @@ import subprocess
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from functools import partial
 from pathlib import Path
 from statistics import median, quantiles
 from tempfile import mkdtemp
@@ -24,6 +25,7 @@ from tests.benchmarks.key_to_picture import PRESS, RELEASE, heading
 from tests.other_accounts import open_installation, warm_installation, why_impossible, with_interpreter
 from tests.ssh.connection import SSH, SSHD, open_kit, private_sshd, run_over_ssh
 from tests.tui.test_play_pty import User
+from tests.waiting import wait_until
 
 ACCOUNTS = 12
 PRESSES = 6
@@ -123,9 +125,16 @@ def accounts(count: int) -> Iterator[dict[str, Path]]:
             yield made
         finally:
             for name in made:
-                for process in _processes_of(name):
-                    subprocess.run(["kill", "-9", process], check=False, capture_output=True)
-                subprocess.run(["userdel", name], check=False, capture_output=True)
+                wait_until(partial(_has_ended, name), f"the end of what {name} runs", every_s=0.1)
+                subprocess.run(["userdel", name], check=True, capture_output=True)
+
+
+def _has_ended(name: str) -> bool:
+    """Kills what an account runs, and returns whether nothing was left."""
+    left = _processes_of(name)
+    for process in left:
+        subprocess.run(["kill", "-9", process], check=False, capture_output=True)
+    return not left
 
 
 @contextmanager
