@@ -5,6 +5,7 @@ What numba keeps on disk holds until one of the files of this folder is edited.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from contextlib import chdir, nullcontext, suppress
 from pathlib import Path
@@ -15,6 +16,8 @@ from kit.kernels.compilation_progress import PROGRESS
 NUMBA_SETTINGS = Path(".numba_config.yaml")
 """numba reads it in the current folder, at its import and whenever it compiles. It names the cache, whose files can run code,
 and the current folder may be a student's."""
+# Not compiled, kernels take a hundred times as long, and what a budget of time allows depends on the caller's environment.
+os.environ.pop("NUMBA_DISABLE_JIT", None)
 with chdir("/") if NUMBA_SETTINGS.exists() else nullcontext():
     import numba
     from numba.core import config, event
