@@ -375,6 +375,7 @@ def test_a_run_too_slow_is_ended_and_the_rest_still_counts(folder: Path, tmp_pat
     assert status == {
         "loads": CriterionStatus.PASS,
         "walls": CriterionStatus.PASS,
+        "closed": CriterionStatus.TIMEOUT,
         "collisions": CriterionStatus.PASS,
         "sights": CriterionStatus.PASS,
         "drives": CriterionStatus.TIMEOUT,
