@@ -67,6 +67,8 @@ def test_no_environment_decides_a_grade(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("before", ["umask 000", "exec <&-", "exec >&-", "ulimit -n 64", "ulimit -c unlimited"])
+@pytest.mark.parametrize(
+    "before", ["umask 000", "exec <&-", "exec >&-", "ulimit -n 64", "ulimit -c unlimited"]
+)
 def test_nothing_that_a_process_inherits_decides_a_grade(before: str, tmp_path: Path) -> None:
     assert verdict(checked(tmp_path, before, {})) == FORWARD_VERDICT

@@ -21,24 +21,16 @@ from kit.cli.ros.world_client import (
 )
 from kit.host.codec import NotFiniteError
 from kit.inspection.client import InspectionClient
-from kit.inspection.ros_text import (
-    BANDWIDTH_WINDOW,
+from kit.inspection.graph_text import absolute_name, services, topic_info, topic_summary, topics
+from kit.inspection.message_text import (
     DEFAULT_MAX_LENGTH,
-    RATE_WINDOW,
-    BandwidthMeter,
-    DelayMeter,
     MessageFormat,
     NoSuchField,
-    RateMeter,
-    absolute_name,
     get_field,
-    services,
     to_csv,
     to_yaml,
-    topic_info,
-    topic_summary,
-    topics,
 )
+from kit.inspection.meters import BANDWIDTH_WINDOW, RATE_WINDOW, BandwidthMeter, DelayMeter, RateMeter
 from kit.msg.interfaces import find_message, find_service, service_event_class
 from kit.msg.message import Message
 from kit.ros.exceptions import NameValidationException
