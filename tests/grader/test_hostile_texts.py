@@ -55,8 +55,8 @@ def test_no_text_of_a_program_leaves_as_anything_but_text(place: str, quick: Ass
     work = Submission("work", quick.submit, {quick.submit: f"{HEAD}{PLACES[place]}\n".encode()})
     result = grade(quick, work, GradingOptions(Level.LIMITED))
     assert result.verdict is GradingVerdict.FAIL
-    for form, write in FORMATS.items():
-        text = write(result)
+    for form, kind in FORMATS.items():
+        text = kind.write(result)
         assert text.encode("utf-8"), form
         assert all(sign.isprintable() or sign == "\n" for sign in text), form
         if form == "junit":
