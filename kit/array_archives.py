@@ -80,9 +80,8 @@ def check_arrays(archive: zipfile.ZipFile, max_bytes: int) -> dict[str, tuple[in
             length = int.from_bytes(part.read(2), "little")
             if length > MAX_ARRAY_HEADER:
                 raise ValueError(f"{each.filename} has a header of {length} bytes")
-            ast.literal_eval(
-                part.read(length).decode("latin-1")
-            )  # or numpy reads it as Python 2, and warns of that
+            # Or numpy reads it as Python 2, and warns of that.
+            ast.literal_eval(part.read(length).decode("latin-1"))
             part.seek(npy.MAGIC_LEN)
             shape, _, kind = npy.read_array_header_1_0(part)
             if kind.hasobject or math.prod(shape) * kind.itemsize > each.file_size:
