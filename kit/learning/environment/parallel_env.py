@@ -30,8 +30,7 @@ class RobotsParallelEnv(ParallelEnv):
     Each sees its own numbers and does one action of the task's table, or of its continuous ones. All get the same reward,
     and the episode ends for all at the same time: the robots of a task work together.
 
-    >>> from kit.learning.environment.parallel_env import RobotsParallelEnv
-    >>> env = RobotsParallelEnv("wheelchairs")
+    >>> env = kit.RobotsParallelEnv("wheelchairs")
     >>> observations, infos = env.reset(seed=1)
     >>> sorted(observations)
     ['left', 'right']
