@@ -6,6 +6,7 @@ What numba keeps on disk holds until one of the files of this folder is edited. 
 
 from __future__ import annotations
 
+import os
 import stat
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -37,6 +38,8 @@ def _absent(names: Sequence[str]) -> Iterator[None]:
             sys.modules.pop(name, None)
 
 
+# Not compiled, kernels take a hundred times as long, and what a budget of time allows depends on the caller's environment.
+os.environ.pop("NUMBA_DISABLE_JIT", None)
 with _absent(UNUSED), chdir("/") if NUMBA_SETTINGS.exists() else nullcontext():
     import numba
     from numba.core import caching, ccallback, config, event
