@@ -101,7 +101,10 @@ def test_episodes_are_cut_off_where_asked(form: str) -> None:
         (wrappers.RecordEpisodeStatistics, AutoresetMode.SAME_STEP),
         (wrappers.DictInfoToList, AutoresetMode.NEXT_STEP),
         (lambda env: wrappers.ClipReward(env, -1, 1), AutoresetMode.SAME_STEP),
-        (lambda env: wrappers.RescaleObservation(env, np.float32(-1), np.float32(1)), AutoresetMode.NEXT_STEP),
+        (
+            lambda env: wrappers.RescaleObservation(env, np.float32(-1), np.float32(1)),
+            AutoresetMode.NEXT_STEP,
+        ),
         (lambda env: wrappers.FlattenObservation(env), AutoresetMode.NEXT_STEP),
         (lambda env: wrappers.TransformReward(env, lambda reward: 2 * reward), AutoresetMode.SAME_STEP),
     ],
