@@ -38,12 +38,14 @@ TURTLE_POSE: Final = re.compile(r"/(\w+)/pose")
 
 _LAUNCH_FILE: Final = """
 from launch import LaunchDescription
-from launch.actions import ExecuteProcess
+from launch.actions import ExecuteProcess, IncludeLaunchDescription
 from launch_ros.actions import Node
 
 def generate_launch_description():
     return LaunchDescription([
         {world}
+        *[IncludeLaunchDescription(file, launch_arguments=[word.split(":=") for word in words])
+          for file, words in {launch_files!r}],
         *[ExecuteProcess(cmd=["python3", file, *words], name=file.rpartition("/")[2], output="screen")
           for file, words in {programs!r}],
     ])
@@ -58,9 +60,10 @@ _WORLDS: Final = {
 
 @dataclass(frozen=True, slots=True)
 class OutsideProgram:
-    """A program and what its author expects of it."""
+    """A program, which may be a launch file, and what its author expects of it."""
 
     file: Path
+    is_launch_file: bool
     world: str
     seconds: float
     arguments: tuple[str, ...]
@@ -81,6 +84,7 @@ def _read(file: Path) -> OutsideProgram:
     card = yaml.safe_load(file.read_text(encoding="utf-8"))
     return OutsideProgram(
         file.with_suffix(".py"),
+        card.get("launch", False),
         card["world"],
         card["seconds"],
         tuple(str(each) for each in card.get("arguments", ())),
@@ -165,13 +169,11 @@ def run_program(program: OutsideProgram, seed: int = 0) -> Outcome:
 
     with tempfile.TemporaryDirectory() as folder:
         launch_file = Path(folder) / "outside.launch.py"
-        programs = [
-            (str(program.file), list(program.arguments)),
-            *((str(each), []) for each in program.beside),
-        ]
-        launch_file.write_text(
-            _LAUNCH_FILE.format(world=_WORLDS[program.world], programs=programs), encoding="utf-8"
-        )
+        itself = [(str(program.file), list(program.arguments))]
+        launch_files, programs = (itself, []) if program.is_launch_file else ([], itself)
+        programs += [(str(each), []) for each in program.beside]
+        text = _LAUNCH_FILE.format(world=_WORLDS[program.world], launch_files=launch_files, programs=programs)
+        launch_file.write_text(text, encoding="utf-8")
         launch = Launch(find_launch_file(str(launch_file), None, ()), graph, seed=seed, on_output=on_output)
         graph.add_message_listener(on_message)
         has_subscriptions = graph.has_subscriptions
