@@ -32,8 +32,8 @@ class Vehicle(Node):
         if min(left, right) < 0.7:
             wheel_left, wheel_right = -0.1, 0.1
         cmd = Twist()
-        cmd.linear.x = (wheel_left + wheel_right) / 2
-        cmd.angular.z = (wheel_right - wheel_left) / 0.3
+        cmd.linear.x = float(wheel_left + wheel_right) / 2
+        cmd.angular.z = float(wheel_right - wheel_left) / 0.3
         self.pub.publish(cmd)
 
     def report(self):

@@ -28,9 +28,9 @@ class Rotator(Node):
         future.add_done_callback(self.on_response)
 
     def on_response(self, future):
-        self.handle = future.result()
-        self.get_logger().info(f"accepted: {self.handle.accepted}")
-        self.handle.get_result_async().add_done_callback(self.on_result)
+        self.goal_handle = future.result()
+        self.get_logger().info(f"accepted: {self.goal_handle.accepted}")
+        self.goal_handle.get_result_async().add_done_callback(self.on_result)
         self.timer = self.create_timer(1.0, self.cancel)
 
     def on_feedback(self, message):
@@ -38,7 +38,7 @@ class Rotator(Node):
 
     def cancel(self):
         self.timer.cancel()
-        self.handle.cancel_goal_async().add_done_callback(self.on_cancel)
+        self.goal_handle.cancel_goal_async().add_done_callback(self.on_cancel)
 
     def on_cancel(self, future):
         response = future.result()

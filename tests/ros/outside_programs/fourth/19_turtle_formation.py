@@ -44,7 +44,7 @@ class Formation(Node):
         lead = self.poses["turtle1"]
         cmd = Twist()
         elapsed = (now - self.started).nanoseconds / 1e9
-        cmd.linear.x, cmd.angular.z = (0.6, 0.2) if elapsed < 15 else (0.0, 0.0)
+        cmd.linear.x, cmd.angular.z = (0.4, 0.2) if elapsed < 15 else (0.0, 0.0)
         self.pubs["turtle1"].publish(cmd)
         worst = 0.0
         for name, (dx, dy) in self.OFFSETS.items():

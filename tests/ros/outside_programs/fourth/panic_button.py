@@ -32,6 +32,8 @@ drive(20)
 heard = []
 node.create_subscription(Bool, "estop/engaged", lambda m: heard.append(m.data),
                          QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL))
+while not heard:
+    rate.sleep()
 print(button.call(SetBool.Request(data=False)).message)
 drive(20)
 pub.publish(Twist())
