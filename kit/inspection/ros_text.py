@@ -11,10 +11,8 @@ from math import sqrt
 from types import MappingProxyType
 from typing import Any, Final
 
-import yaml
-
 from kit.msg.definition_parser import parse_definition
-from kit.msg.fields import FieldKind, FixedArrayKind, MessageKind, SequenceKind, item_kind
+from kit.msg.fields import MessageKind, item_kind
 from kit.msg.interfaces import PACKAGES, Interface, definition, definition_source, find_message
 from kit.msg.message import Message, Service, type_name
 from kit.msg.rcl_interfaces import FloatingPointRange, IntegerRange, ParameterDescriptor, ParameterValue
@@ -268,49 +266,8 @@ def nest_by_name(values: Iterable[tuple[str, Any]]) -> dict[str, Any]:
     return tree
 
 
-DEFAULT_MAX_LENGTH: Final = 128
-"""Items and characters of one value that are shown by default."""
-
-LINE_WIDTH: Final = 2**31 - 1
-"""A line of YAML is never broken."""
-
-_Dumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
-
-
 class NoSuchField(LookupError):
     """The message has no such field; the error names it."""
-
-
-@dataclass(frozen=True, slots=True)
-class MessageFormat:
-    """Options for formatting a message: truncation, arrays, texts, flow style."""
-
-    longest: int | None = DEFAULT_MAX_LENGTH
-    """Longer arrays and texts are truncated to this length; None: never."""
-    arrays: bool = True
-    """Whether arrays are written in full, or only with type and length."""
-    texts: bool = True
-    flow: bool = False
-    """Arrays and nested messages in one line each."""
-
-
-def to_yaml(message: Message, message_format: MessageFormat = MessageFormat()) -> str:
-    """The message's fields, one a line; ends with a newline."""
-    return str(
-        yaml.dump(
-            _plain(message, message_format),
-            Dumper=_Dumper,
-            sort_keys=False,
-            allow_unicode=True,
-            width=LINE_WIDTH,
-            default_flow_style=message_format.flow,
-        )
-    )
-
-
-def to_csv(message: Message, message_format: MessageFormat = MessageFormat()) -> str:
-    """All values in the order of the definition, without names."""
-    return ",".join(_cells(message, message_format))
 
 
 def get_field(message: Message, path: str) -> Any:
@@ -324,68 +281,6 @@ def get_field(message: Message, path: str) -> Any:
             raise NoSuchField(f"Invalid field '{path}': there is no '{name}'; available fields: {has}")
         found = getattr(found, name)
     return found
-
-
-def _plain(message: Message, message_format: MessageFormat) -> dict[str, Any]:
-    return {
-        field.name: _value(getattr(message, field.name), field.kind, message_format)
-        for field in type(message).__ros_fields__
-    }
-
-
-def _value(value: Any, kind: FieldKind, message_format: MessageFormat) -> Any:
-    if isinstance(value, Message):
-        return _plain(value, message_format)
-    if isinstance(value, (str, bytes)):
-        return _text(value, message_format)
-    if isinstance(kind, FixedArrayKind):
-        if not message_format.arrays:
-            return f"<array type: {kind.idl}>"
-        return _truncate(
-            [_value(entry, kind.item, message_format) for entry in value.tolist()], message_format
-        )
-    if isinstance(kind, SequenceKind):
-        if not message_format.arrays:
-            return f"<sequence type: {kind.item.idl}, length: {len(value)}>"
-        return _truncate([_value(entry, kind.item, message_format) for entry in value], message_format)
-    return value
-
-
-def _text(value: str | bytes, message_format: MessageFormat) -> str:
-    text = value if isinstance(value, str) else value.decode("latin-1")
-    if not message_format.texts:
-        return f"<string length: <{len(text)}>>"
-    return (
-        text
-        if message_format.longest is None or len(text) <= message_format.longest
-        else text[: message_format.longest] + "..."
-    )
-
-
-def _truncate(values: list[Any], message_format: MessageFormat) -> list[Any]:
-    return (
-        values
-        if message_format.longest is None or len(values) <= message_format.longest
-        else [*values[: message_format.longest], "..."]
-    )
-
-
-def _cells(message: Message, message_format: MessageFormat) -> Iterator[str]:
-    for field in type(message).__ros_fields__:
-        yield from _cell(getattr(message, field.name), field.kind, message_format)
-
-
-def _cell(value: Any, kind: FieldKind, message_format: MessageFormat) -> Iterator[str]:
-    if isinstance(value, Message):
-        yield from _cells(value, message_format)
-    elif isinstance(kind, (SequenceKind, FixedArrayKind)):
-        if not message_format.arrays:
-            yield str(_value(value, kind, message_format))
-            return
-        for entry in _truncate(list(value), message_format):
-            yield "..." if entry == "..." else next(iter(_cell(entry, kind.item, message_format)), "")
-    else:
-        yield str(_value(value, kind, message_format))
 
 
 RATE_WINDOW: Final = 10_000

@@ -20,8 +20,9 @@ from kit.cli.ros.world_client import (
     with_world_client,
 )
 from kit.inspection.client import CHECK_INTERVAL_S, NODE_PREFIX, InspectionClient
-from kit.inspection.ros_text import MessageFormat, absolute_name, to_yaml
+from kit.inspection.ros_text import absolute_name
 from kit.msg.interfaces import find_action
+from kit.msg.message_text import MessageFormat, to_yaml
 from kit.plain_text import nearest_name
 from kit.ros.action.client import ActionClient, ClientGoalHandle
 from kit.ros.action.goal_states import ENDED, STATUS_NAMES, uuid_bytes

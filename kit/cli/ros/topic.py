@@ -23,24 +23,21 @@ from kit.host.codec import NotFiniteError
 from kit.inspection.client import InspectionClient
 from kit.inspection.ros_text import (
     BANDWIDTH_WINDOW,
-    DEFAULT_MAX_LENGTH,
     RATE_WINDOW,
     BandwidthMeter,
     DelayMeter,
-    MessageFormat,
     NoSuchField,
     RateMeter,
     absolute_name,
     get_field,
     services,
-    to_csv,
-    to_yaml,
     topic_info,
     topic_summary,
     topics,
 )
 from kit.msg.interfaces import find_message, find_service, service_event_class
 from kit.msg.message import Message
+from kit.msg.message_text import DEFAULT_MAX_LENGTH, MessageFormat, to_csv, to_yaml
 from kit.ros.exceptions import NameValidationException
 from kit.ros.node.qos import QoSProfile, qos_profile_services_default
 from kit.ros.node.time import Time

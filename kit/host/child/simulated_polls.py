@@ -28,7 +28,7 @@ def use_simulated_polls(graph: Graph, waits: SimulatedWaits, is_own_code: Callab
         """Makes the uses of a function or property count by which the program's own code asks; ``is_counted`` gets the
         answer."""
         found = getattr(owner, name)
-        real = found.fget if isinstance(found, property) else found
+        real: Any = found.fget if isinstance(found, property) else found
 
         @wraps(real)
         def ask(*args: Any, **kwargs: Any) -> Any:

@@ -2,7 +2,6 @@ import math
 from collections import deque
 
 import rclpy
-from geographic_msgs.msg import GeoPoint
 from geometry_msgs.msg import PointStamped
 from nav_msgs.msg import Path
 from geometry_msgs.msg import PoseStamped
@@ -31,7 +30,7 @@ class GpsRoute(Node):
             self.lost += 1
             self.get_logger().warning("no fix", once=True)
             return
-        here = GeoPoint(latitude=fix.latitude, longitude=fix.longitude, altitude=fix.altitude)
+        here = fix
         if self.datum is None:
             self.datum = here
             self.get_logger().info(f"datum {here.latitude:.4f} {here.longitude:.4f}")

@@ -27,7 +27,7 @@ def main():
     checks["called"] = "response" in answer
     ros2("topic pub --once /turtle1/cmd_vel geometry_msgs/msg/Twist '{linear: {x: 1.0}}'")
     lines = os.popen("ros2 interface show turtlesim/srv/Spawn").read().splitlines()
-    checks["interface"] = lines[0].startswith("float32 x") and "---" in lines
+    checks["interface"] = any(line.startswith("float32 x") for line in lines) and "---" in lines
     rclpy.init()
     node = rclpy.create_node("grade")
     pub = node.create_publisher(Int64, "grade", 1)
