@@ -9,7 +9,8 @@ from typing import Final, NoReturn
 
 import click
 
-from kit.cli import LazyGroup, run_as_process
+from kit.cli.lazy_group import LazyGroup
+from kit.cli.process import run_as_process
 from kit.extensions import PACKAGES_VARIABLE
 
 # Before numpy is imported: it starts a thread for each core otherwise, for sums that one adds up in no time.

@@ -16,8 +16,8 @@ from kit.geometry import Pose
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
 from kit.plain_text import quoted
+from kit.results.grading_result import Visibility
 from kit.run.scenario import Scenario
-from kit.school.result import Visibility
 from kit.world.yaml_section import Section
 
 

@@ -37,7 +37,7 @@ from kit.extensions import admitting
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level, shield_this_process
 from kit.host.sandbox.probe import highest_level_up_to
-from kit.school.result import (
+from kit.results.grading_result import (
     PUBLIC_SEEDS,
     WITH_SECRET,
     CriterionResult,

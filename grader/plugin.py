@@ -32,8 +32,9 @@ from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
 from grader.teacher_tests import MARK, MARK_HELP
 from kit.host.sandbox.confinement import Level
+from kit.results.grading_result import CriterionResult, CriterionStatus
+from kit.results.result_blocks import format_points
 from kit.school.lessons.reading import ASSIGNMENT_FILE
-from kit.school.result import CriterionResult, CriterionStatus, format_points
 from kit.world.problems import WorldError
 
 

@@ -36,7 +36,7 @@ from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS, MIB, Limits
 from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
-from kit.school.result import Visibility
+from kit.results.grading_result import Visibility
 from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Final
 
 from kit.host.failure import Failure, FailureKind
-from kit.school.result import CriterionStatus
+from kit.results.grading_result import CriterionStatus
 
 
 @dataclass(frozen=True, slots=True)

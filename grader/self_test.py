@@ -27,7 +27,8 @@ from grader.scoring import required_passes, unfair_fail_probability
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
 from kit.host.sandbox.confinement import Level
-from kit.school.result import CriterionStatus, GradingResult, GradingVerdict, format_points
+from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
+from kit.results.result_blocks import format_points
 
 ENDING: Final = ".diff"
 

@@ -24,8 +24,8 @@ from grader.reading import SECRET_FILE, YAML_LOADER
 from grader.submitted_files import IGNORED_NAMES
 from grader.teacher_tests import read_teacher_tests
 from kit.plain_text import join_names
+from kit.results.grading_result import Visibility
 from kit.school.lessons.reading import ASSIGNMENT_FILE
-from kit.school.result import Visibility
 
 REFERENCE: Final = "reference"
 MAX_FILE: Final = 32 << 20

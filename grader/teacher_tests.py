@@ -34,7 +34,7 @@ from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
 from kit.host.failure import Failure
 from kit.host.sandbox.confinement import Level
 from kit.host.wire import Json
-from kit.school.result import CriterionResult, CriterionStatus, Visibility
+from kit.results.grading_result import CriterionResult, CriterionStatus, Visibility
 
 if TYPE_CHECKING:
     import pytest

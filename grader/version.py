@@ -16,8 +16,6 @@ from kit.world.catalogue import maps_folder
 DISTRIBUTION: Final = "robot_learning_kit"
 UNUSED_PARTS: Final = ("cli", "tui", "help", "school", "study", "data")
 """Parts of the kit that no grading runs through; an installation's maps in ``data`` count as maps."""
-USED_FILES: Final = ("school/result.py",)
-"""What grading uses of these parts all the same."""
 
 
 @cache
@@ -39,8 +37,7 @@ def _source_files() -> Iterator[tuple[str, Path]]:
         folder = Path(package.__path__[0])
         for file in sorted(folder.rglob("*.py")):
             name = file.relative_to(folder)
-            is_used = name.parts[0] not in UNUSED_PARTS or name.as_posix() in USED_FILES
-            if package is grader or is_used:
+            if package is grader or name.parts[0] not in UNUSED_PARTS:
                 yield f"{package.__name__}/{name.as_posix()}", file
     for file in sorted(path for path in maps_folder().rglob("*") if path.is_file()):
         yield f"maps/{file.relative_to(maps_folder()).as_posix()}", file

@@ -17,6 +17,7 @@ from kit.cli import VERBS
 from kit.document.markup import parse_markup
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
+from kit.results.grading_result import GradingResult
 from kit.school.game.challenges import all_challenges
 from kit.school.lessons.checking import check_exercise, install_exercise, read_solution, submission_path
 from kit.school.lessons.reading import (
@@ -29,7 +30,6 @@ from kit.school.lessons.reading import (
     solutions_folder,
 )
 from kit.school.lessons.records import Exercise, Lesson, StepKind
-from kit.school.result import GradingResult
 from kit.workspace import open_workspace
 from tests.cases import every_case
 from tests.kit_content import kit_lesson

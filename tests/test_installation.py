@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from kit import installation
-from kit.cli import BAD_INPUT
+from kit.cli.process import BAD_INPUT
 from kit.installation import (
     constraints_file,
     foreign_distributions,

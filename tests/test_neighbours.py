@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from grader.assignment import Assignment
-from grader.cohort.queue import Queue, grade_job, prepare_queue
+from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions
 from grader.reading import read_assignment
 from kit.host.sandbox.confinement import Level
@@ -86,7 +86,7 @@ def full_queue(folder: Path, assignment: Assignment, hand_ins: Path) -> None:
     queue = Queue(folder)
     prepare_queue(queue, hand_ins, assignment, TERMS)
     for key in queue.waiting():
-        grade_job(queue, key)
+        queue.run_job(key)
     write_atomically(queue.folder / "gradebook.csv", b"confidential,3\n")
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from grader.driving.drive_record import GradedDrive
     from grader.evidence.contract import Evidence
     from grader.grading import Grading
-    from kit.school.result import GradingResult
+    from kit.results.grading_result import GradingResult
 
 EXIT_CODES = {"pass": 0, "fail": options.EXIT_FAILED, "broken": options.EXIT_BROKEN}
 
@@ -75,7 +75,7 @@ def check(
     """
     from grader.cli.progress import shown_progress
     from grader.grading import GradingOptions, LevelTooLow, open_grading
-    from grader.reports import FORMATS, STUDENT_FORMATS
+    from grader.reports import FORMATS
     from grader.submission import read_submission
     from grader.submitted_files import SubmissionRefused
 
@@ -90,7 +90,7 @@ def check(
         if submission.note:
             options.warn(f"Note: {submission.note}")
         with shown_progress(progress_descriptor) as show_progress:
-            is_for_student = for_student or format_name in STUDENT_FORMATS
+            is_for_student = for_student or FORMATS[format_name].is_for_students
             grading_options = GradingOptions(
                 grading_level, secret, secret and is_for_student, show_progress=show_progress
             )
@@ -115,10 +115,12 @@ def check(
 
 def _report(result: GradingResult, format_name: str, hints: int, picture: str) -> str:
     from grader.reports import FORMATS
-    from grader.reports.formats import write_text
+    from grader.reports.formats.text_report import write_text
 
     return (
-        write_text(result, hints=hints) + picture if format_name == "text" else FORMATS[format_name](result)
+        write_text(result, hints=hints) + picture
+        if format_name == "text"
+        else FORMATS[format_name].write(result)
     )
 
 
@@ -198,8 +200,8 @@ def _save_replay(worst: Evidence, replay: Path, grading: Grading) -> str:
 def report(file: Path, format_name: str, output: Path | None, for_student: bool, work: str) -> None:
     """Convert a result of `grader check --json` to another format."""
     from grader.reports import FORMATS
-    from grader.reports.formats import write_annotations
-    from kit.school.result import GradingResult
+    from grader.reports.formats.annotations import write_annotations
+    from kit.results.grading_result import GradingResult
     from kit.workspace import write_atomically
 
     if format_name not in FORMATS:
@@ -212,7 +214,7 @@ def report(file: Path, format_name: str, output: Path | None, for_student: bool,
         options.fail(f"{file}: not a result of the grader.")
     if for_student:
         result = result.for_student()
-    text = write_annotations(result, work) if work else FORMATS[format_name](result)
+    text = write_annotations(result, work) if work else FORMATS[format_name].write(result)
     if output is None:
         click.echo(text, nl=False)
     else:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import os
 import sys
-from functools import partial
 from pathlib import Path
 
 import click
@@ -25,22 +24,18 @@ from grader.cohort.gradebook import (
 )
 from grader.cohort.program_ladder import LadderRace, find_programs, race_all, rank
 from grader.cohort.queue import (
-    ExecutorUnavailable,
     Queue,
     QueueError,
-    grade_job,
     judge_anew,
     prepare_queue,
-    run_locally,
-    run_on_dask,
-    run_on_slurm,
 )
 from grader.grading import GradingOptions
 from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.cli.options import describe_error, executor_options
 from kit.document.blocks import CellStyle, Column, Table
 from kit.document.layout import lines_of
-from kit.host.job_executors import SlurmResources, read_shard, serve_jobs
+from kit.host.job_executors import ExecutorUnavailable, read_shard
+from kit.host.job_folder import JobExecutor, serve_keys
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
 from kit.school.game.levels import UnknownLevel, find_level
@@ -72,10 +67,7 @@ def cohort(
     secret: bool,
     examples: bool,
     queue_folder: Path,
-    jobs: int,
-    executor: str,
-    cluster: str,
-    slurm: SlurmResources,
+    executor: JobExecutor,
 ) -> None:
     """Grade every file, folder or archive in SUBMISSIONS that has no grade yet.
 
@@ -95,7 +87,7 @@ def cohort(
         options.warn_of_short_seeds(assignment)
     queue = Queue(queue_folder.absolute())
     wanted = options.level_for_untrusted(
-        assignment, level, secret=secret, for_class=True, runs_here=executor == "local"
+        assignment, level, secret=secret, for_class=True, runs_here=executor.name == "local"
     )
     grading_options = GradingOptions(wanted, secret, secret and examples, may_lower_level=False)
     if secret and wanted < assignment.level:
@@ -110,19 +102,10 @@ def cohort(
         anew = f", {judged} judged anew by what was found before" if judged else ""
         click.echo(f"{len(entries)} submissions{anew}, {len(waiting)} to grade", err=True)
         with counted_progress(len(waiting), "graded") as count_one:
-
-            def count(key: str) -> None:
-                count_one()
-
-            if executor == "slurm":
-                run_on_slurm(queue, jobs, slurm)
-            elif executor == "dask":
-                run_on_dask(queue, waiting, cluster, count)
-            elif executor == "local":
-                run_locally(queue, waiting, jobs, count)
+            executor.run(queue, waiting, lambda key: count_one())
     except (QueueError, ExecutorUnavailable, OSError) as error:
         options.fail(describe_error(error))
-    raise SystemExit(publish(queue, is_graded=executor != "none"))
+    raise SystemExit(publish(queue, is_graded=executor.name != "none"))
 
 
 def publish(queue: Queue, *, is_graded: bool) -> int:
@@ -171,7 +154,7 @@ def work(folder: Path, shard: str, jobs: int) -> None:
         secret = queue.grading_options().secret
         options.level_for_untrusted(queue.assignment(), str(int(queue.level())), secret=secret)
         keys = queue.waiting(share)
-        run_locally(queue, keys, jobs, lambda key: None)
+        JobExecutor(jobs=jobs).run(queue, keys, lambda key: None)
     except (QueueError, OSError) as error:
         options.fail(describe_error(error))
     click.echo(f"{len(keys)} graded")
@@ -181,10 +164,7 @@ def work(folder: Path, shard: str, jobs: int) -> None:
 @click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
 def worker(folder: Path) -> None:
     """Grade the jobs whose keys come on standard input."""
-    # Other output must not mix with the answers.
-    answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    serve_jobs(partial(grade_job, Queue(folder)), sys.stdin, answers)
+    serve_keys(Queue(folder).run_job)
 
 
 DEFAULT_LEVELS = ("left-turn", "right-turn", "parking", "roundabout", "about-turn")

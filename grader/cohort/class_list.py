@@ -25,7 +25,7 @@ from grader.cohort.queue import Queue
 from grader.cohort.roster import Roster, RosterEntry, WorkOwners, look, owners_of
 from grader.reports.cleaning import clean_line
 from kit.plain_text import counted, join_names, suggestion
-from kit.school.result import format_points
+from kit.results.result_blocks import format_points
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from typing import Final
 from grader.cohort.gradebook import GradebookRow, as_csv, comment_text, late_text
 from grader.cohort.roster import Roster
 from grader.reports.cleaning import clean_line, spreadsheet_cell
-from kit.school.result import format_points
+from kit.results.result_blocks import format_points
 
 MOODLE_GRADE: Final = "Grade"
 MOODLE_MOST: Final = ("Maximum Grade", "Maximum grade")

@@ -17,11 +17,12 @@ from grader.cohort.queue import Queue
 from grader.cohort.roster import look
 from grader.cohort.statistics import class_document
 from grader.reports.cleaning import clean_line
-from grader.reports.formats import write_json
+from grader.reports.formats.json_report import write_json
 from kit.document.blocks import Block, Chapter, Document, Picture, Text, Tone
 from kit.document.html import document_to_html
 from kit.document.markdown import document_to_markdown
-from kit.school.result import VERDICT_TEXTS, GradingResult, criterion_blocks, points_text, replay_lines
+from kit.results.grading_result import GradingResult
+from kit.results.result_blocks import VERDICT_TEXTS, criterion_blocks, points_text, replay_lines
 from kit.workspace import make_private_folder, write_atomically
 
 PAGE_NAME: Final = re.compile(r"[^\w.@-]+")

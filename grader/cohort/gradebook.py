@@ -21,7 +21,8 @@ from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.document.blocks import Block, Text
 from kit.field_types import check_field_types
 from kit.plain_text import counted, join_names
-from kit.school.result import CriterionStatus, GradingResult, GradingVerdict, format_points
+from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
+from kit.results.result_blocks import format_points
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,9 +1,5 @@
 """The queue of a cohort in a folder, and its workers: ``manifest.json``, ``assignment/``, ``jobs/KEY.json``, ``results/KEY.json``,
-``findings/KEY.json``.
-
-Jobs are graded one at a time in this process, or many in worker processes that may die without harm: local ones, those
-of a SLURM job array, or of a Dask cluster.
-"""
+``findings/KEY.json``."""
 
 from __future__ import annotations
 
@@ -12,12 +8,12 @@ import hashlib
 import json
 import shutil
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
-from functools import cache, partial
+from functools import cache
 from itertools import count
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from grader.assignment import Assignment
 from grader.cohort.roster import look
@@ -28,12 +24,11 @@ from grader.submission import Submission, read_submission, submission_name
 from grader.submitted_files import IGNORED_NAMES, SubmissionRefused, SubmissionUnreadable
 from grader.version import grader_version
 from kit.field_types import check_field_types
-from kit.host import job_executors
-from kit.host.job_executors import MAX_TRIES, JobPool, SlurmResources, in_shard, read_result
-from kit.host.job_executors import ExecutorUnavailable as ExecutorUnavailable
+from kit.host.job_executors import MAX_TRIES, read_result
+from kit.host.job_folder import JobFolder
 from kit.host.python_command import python_command
 from kit.host.sandbox.confinement import Level
-from kit.school.result import (
+from kit.results.grading_result import (
     PUBLIC_SEEDS,
     SCHEMA,
     WITH_SECRET,
@@ -45,6 +40,8 @@ from kit.school.result import (
 from kit.workspace import make_private_folder, write_atomically
 
 MANIFEST: Final = "manifest.json"
+GRACE_S: Final = 120.0
+"""Wall clock that a worker gets for a job besides what the submission may take [s]: to start, to judge and to save."""
 
 
 class QueueError(Exception):
@@ -77,10 +74,22 @@ class UnreadableWork:
 
 
 @dataclass(frozen=True, slots=True)
-class Queue:
+class Queue(JobFolder):
     """A queue folder."""
 
-    folder: Path
+    job_name: ClassVar[str] = "grader"
+
+    @property
+    def worker_command(self) -> list[str]:
+        return python_command("grader", "worker", str(self.folder.absolute()))
+
+    @property
+    def shard_command(self) -> list[str]:
+        return python_command("grader", "work", str(self.folder.absolute()))
+
+    @property
+    def limit_s(self) -> float:
+        return MAX_TRIES * (self.assignment().submission_limit_s + GRACE_S)
 
     @property
     def assignment_folder(self) -> Path:
@@ -160,13 +169,38 @@ class Queue:
             return None
 
     def is_waiting(self, key: str) -> bool:
-        """True if a job has no result yet."""
         return self.result(key) is None and self.unreadable(key) is None
 
-    def waiting(self, shard: tuple[int, int] = (0, 1)) -> tuple[str, ...]:
-        """Returns the keys without a result that belong to shard ``i`` of ``n``."""
-        keys = sorted({entry.key for entry in self.entries() if entry.key is not None})
-        return tuple(key for key in keys if in_shard(key, shard) and self.is_waiting(key))
+    def keys(self) -> list[str]:
+        return sorted({entry.key for entry in self.entries() if entry.key is not None})
+
+    def run_job(self, key: str) -> GradingResult | None:
+        """Grades one job and saves its result. Returns None, and saves why, if the work cannot be read."""
+        try:
+            return self._grade(key)
+        except SubmissionRefused as refused:
+            self.save_unreadable(key, refused)
+            return None
+
+    def _grade(self, key: str) -> GradingResult:
+        manifest = self.manifest()
+        assignment = _assignment(self.folder, manifest["assignment_version"])
+        submission, options = self.submission(key), self.grading_options()
+        result, findings = grade_and_keep(assignment, submission, options)
+        for _ in range(MAX_TRIES - 1):  # a failure of the student's program is never retried
+            if result.verdict is not GradingVerdict.BROKEN:
+                break
+            result, findings = grade_and_keep(assignment, submission, options)
+        if findings is not None:
+            file = self.findings_file(findings_key(submission, assignment, options))
+            write_atomically(file, (json.dumps(findings.as_dict()) + "\n").encode())
+        self.save_result(key, result)
+        return result
+
+    def record_loss(self, key: str) -> None:
+        """Saves for a job that it has no grade; unless its worker had saved the result before it died."""
+        if self.is_waiting(key):
+            self.save_result(key, _incident_result(self, key))
 
     def submission(self, key: str) -> Submission:
         content = json.loads(self.job(key).read_bytes())
@@ -313,63 +347,9 @@ def _copy_assignment(queue: Queue, assignment: Assignment) -> None:
     coming.rename(target)
 
 
-GRACE_S: Final = 120.0
-"""Wall clock that a worker gets for a job besides what the submission may take [s]: to start, to judge and to save."""
-
-
 @cache
 def _assignment(folder: Path, version: str) -> Assignment:
     return Queue(folder).assignment()
-
-
-def grade_job(queue: Queue, key: str) -> GradingResult | None:
-    """Grades one job and saves its result. Returns None, and saves why, if the work cannot be read."""
-    try:
-        return _grade_job(queue, key)
-    except SubmissionRefused as refused:
-        queue.save_unreadable(key, refused)
-        return None
-
-
-def _grade_job(queue: Queue, key: str) -> GradingResult:
-    manifest = queue.manifest()
-    assignment = _assignment(queue.folder, manifest["assignment_version"])
-    submission, options = queue.submission(key), queue.grading_options()
-    result, findings = grade_and_keep(assignment, submission, options)
-    for _ in range(MAX_TRIES - 1):  # a failure of the student's program is never retried
-        if result.verdict is not GradingVerdict.BROKEN:
-            break
-        result, findings = grade_and_keep(assignment, submission, options)
-    if findings is not None:
-        file = queue.findings_file(findings_key(submission, assignment, options))
-        write_atomically(file, (json.dumps(findings.as_dict()) + "\n").encode())
-    queue.save_result(key, result)
-    return result
-
-
-def _limit_s(queue: Queue) -> float:
-    """How long a worker may take for one job [s]: after that it counts as standing still."""
-    return MAX_TRIES * (queue.assignment().submission_limit_s + GRACE_S)
-
-
-class WorkerPool(JobPool):
-    """Runs ``jobs`` worker processes. A worker that dies, or stands still, costs its job one try and nothing else."""
-
-    def __init__(self, queue: Queue, keys: Sequence[str], jobs: int, on_done: Callable[[str], None]) -> None:
-        super().__init__(
-            python_command("grader", "worker", str(queue.folder.absolute())),
-            keys,
-            jobs,
-            on_done,
-            partial(record_incident, queue),
-            _limit_s(queue),
-        )
-
-
-def record_incident(queue: Queue, key: str) -> None:
-    """Saves for a job that it has no grade, because its worker died every time; unless it had saved the result before."""
-    if queue.is_waiting(key):
-        queue.save_result(key, _incident_result(queue, key))
 
 
 def _incident_result(queue: Queue, key: str) -> GradingResult:
@@ -394,36 +374,3 @@ def _incident_result(queue: Queue, key: str) -> GradingResult:
         sys.platform,
         tests,
     )
-
-
-def run_locally(queue: Queue, keys: Sequence[str], jobs: int, on_done: Callable[[str], None]) -> None:
-    """Grades the jobs in processes on this machine."""
-    WorkerPool(queue, keys, jobs, on_done).run()
-
-
-def slurm_script(queue: Queue, shards: int, resources: SlurmResources | None = None) -> str:
-    """Returns the script of an array job of ``shards`` tasks, each of which grades its share of the queue."""
-    command = python_command("grader", "work", str(queue.folder.absolute()))
-    return job_executors.slurm_script(queue.folder, command, shards, "grader", resources)
-
-
-def run_on_slurm(queue: Queue, shards: int, resources: SlurmResources | None = None) -> None:
-    """Submits the array job and waits until it is over. Raises ExecutorUnavailable."""
-    job_executors.run_on_slurm(
-        queue.folder, slurm_script(queue, shards, resources), lambda: bool(queue.waiting())
-    )
-
-
-def run_on_dask(queue: Queue, keys: Sequence[str], address: str, on_done: Callable[[str], None]) -> None:
-    """Grades the jobs on a Dask cluster whose machines all see the queue folder. Raises ExecutorUnavailable.
-
-    Only keys are sent. A job that repeatedly kills its worker gets no grade; the others go on.
-    """
-    lost = partial(record_incident, queue)
-    job_executors.run_on_dask(queue.folder, grade_one_job, keys, address, on_done, lost, _limit_s(queue))
-
-
-def grade_one_job(folder: str, key: str) -> str:
-    """Grades one job, given by strings alone, as Dask sends them."""
-    grade_job(Queue(Path(folder)), key)
-    return key

@@ -1,42 +1,19 @@
-"""Report formats: each writes a grading result for one reader, with the cleaning that its format needs."""
+"""Report formats: each writes a grading result for one reader."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from importlib import import_module
+from pkgutil import iter_modules
 from types import MappingProxyType
 from typing import Final
 
-from grader.reports.formats import (
-    write_annotations,
-    write_check50,
-    write_classroom,
-    write_classroom50,
-    write_gradescope,
-    write_json,
-    write_junit,
-    write_markdown,
-    write_prairielearn,
-    write_text,
-)
-from kit.school.result import GradingResult
+from grader.reports import formats
+from grader.reports.report_format import ReportFormat
 
-ReportWriter = Callable[[GradingResult], str]
+_FOUND: Final[list[ReportFormat]] = [
+    import_module(f"{formats.__name__}.{module.name}").FORMAT for module in iter_modules(formats.__path__)
+]
 
-FORMATS: Final[Mapping[str, ReportWriter]] = MappingProxyType(
-    {
-        "text": write_text,
-        "json": write_json,
-        "junit": write_junit,
-        "gradescope": write_gradescope,
-        "classroom": write_classroom,
-        "classroom50": write_classroom50,
-        "annotations": write_annotations,
-        "prairielearn": write_prairielearn,
-        "check50": write_check50,
-        "markdown": write_markdown,
-    }
-)
+FORMATS: Final[Mapping[str, ReportFormat]] = MappingProxyType({each.name: each for each in _FOUND})
 """Every format by its name on the command line."""
-
-STUDENT_FORMATS: Final = frozenset(FORMATS) - {"text", "json"}
-"""Formats that students read as they are written."""

@@ -6,7 +6,8 @@ import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 
-from kit.cli import ScreenClosed, options
+from kit.cli import options
+from kit.cli.process import ScreenClosed
 from kit.tui.terminal import TerminalDecision
 from kit.workspace import Workspace, open_workspace
 

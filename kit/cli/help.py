@@ -9,7 +9,8 @@ from typing import Final
 
 import click
 
-from kit.cli import LazyGroup, options
+from kit.cli import options
+from kit.cli.lazy_group import LazyGroup
 from kit.document.blocks import Chapter, Document, Tone
 from kit.document.glyphs import WIDTH
 from kit.document.layout import Page, rows_of

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kit.cli import ScreenClosed, options
+from kit.cli import options
 from kit.cli.full_screen import run_screen
+from kit.cli.process import ScreenClosed
 from kit.document.blocks import Block, Picture, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.run.scenario import own_map_folder, scenario_on_map

@@ -6,13 +6,13 @@ import os
 import shutil
 import sys
 from collections.abc import Callable
-from functools import reduce
+from functools import reduce, wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import click
 
-from kit.cli import BAD_INPUT, NO_ROOM, describe_no_room
+from kit.cli.process import BAD_INPUT, NO_ROOM, describe_no_room
 from kit.plain_text import escape_controls, wrap
 from kit.tui.terminal import (
     COLOUR_CHOICES,
@@ -28,6 +28,7 @@ from kit.workspace import Workspace, WorkspaceError, open_workspace
 
 if TYPE_CHECKING:
     from kit.host.job_executors import SlurmResources
+    from kit.host.job_folder import ExecutorName
     from kit.run.recording_file import RecordingFile
     from kit.school.progress import ProgressJournal
 
@@ -183,8 +184,8 @@ def _read_slurm_resources(
 
 
 def executor_options(jobs: str, executor: str, *, may_have_none: bool = True) -> Decorator:
-    """The options ``--jobs``, ``--executor``, ``--cluster`` and ``--slurm``: how many side by side, and where. Both texts are
-    helps."""
+    """The options ``--jobs``, ``--executor``, ``--cluster`` and ``--slurm``: how many side by side, and where; the verb gets all
+    of it as ``executor``. Both texts are helps."""
     names = ("local", "slurm", "dask", *(("none",) if may_have_none else ()))
     options = (
         click.option(
@@ -206,7 +207,19 @@ def executor_options(jobs: str, executor: str, *, may_have_none: bool = True) ->
             help="What a task asks SLURM for: account, partition, qos, time (04:00:00) or memory (4G); repeat for more.",
         ),
     )
-    return lambda function: reduce(lambda made, option: option(made), reversed(options), function)
+
+    def decorate(function: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(function)
+        def verb(
+            *args: Any, executor: ExecutorName, jobs: int, cluster: str, slurm: SlurmResources, **given: Any
+        ) -> Any:
+            from kit.host.job_folder import JobExecutor  # what few verbs need
+
+            return function(*args, executor=JobExecutor(executor, jobs, cluster, slurm), **given)
+
+        return reduce(lambda made, option: option(made), reversed(options), verb)
+
+    return decorate
 
 
 controller: Decorator = controller_option("random_walk")

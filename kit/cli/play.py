@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kit.cli import ScreenClosed, options
+from kit.cli import options
 from kit.cli.full_screen import run_screen
+from kit.cli.process import ScreenClosed
 from kit.controllers import find_controller, prepare_workspace
 from kit.workspace import WorkspaceError
 

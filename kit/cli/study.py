@@ -11,7 +11,8 @@ import click
 from kit.cli import learning_options, options, report_output
 from kit.cli.sweep import run_sweep
 from kit.document.blocks import Document
-from kit.host.job_executors import ExecutorUnavailable, SlurmResources
+from kit.host.job_executors import ExecutorUnavailable
+from kit.host.job_folder import JobExecutor
 from kit.learning.training.algorithms import require_learn_extra
 from kit.learning.training.runs import RunError
 from kit.study import study_document
@@ -62,10 +63,7 @@ def command(
     check: bool,
     seeds: int,
     steps: int | None,
-    jobs: int,
-    executor: str,
-    cluster: str,
-    slurm: SlurmResources,
+    executor: JobExecutor,
     outputs: report_output.ReportOutputs,
     workspace: Path | None,
 ) -> None:
@@ -114,10 +112,7 @@ def command(
                         each,
                         seeds,
                         steps,
-                        jobs,
                         executor,
-                        cluster,
-                        slurm,
                     )
             to_files = outputs.has_files
             listed, everything = study_document.chapters(
@@ -172,10 +167,7 @@ def _run_again(
     variant: StudyVariant,
     seeds: int,
     steps: int | None,
-    jobs: int,
-    executor: str,
-    cluster: str,
-    slurm: SlurmResources,
+    executor: JobExecutor,
 ) -> None:
     """Trains and tests what is missing of a table; runs its potential fields."""
     tables = {each.id: each for chapter in study_chapters() for each in chapter.tables}
@@ -196,13 +188,13 @@ def _run_again(
             work = [f"up to {agents} agents to train"] * (agents > 0) + [
                 f"{runs} runs of potential fields"
             ] * (runs > 0)
-            expected = duration_text(run.expected_seconds(seeds, jobs))
+            expected = duration_text(run.expected_seconds(seeds, executor.jobs))
             told = " and ".join(work)
             click.echo(f"{told[0].upper()}{told[1:]}: {expected}. Ctrl-C keeps the results so far.", err=True)
         if run.misses_fields:
             _run_fields(run)
         for seed in missing:
-            _run_seed(run, seed, jobs, executor, cluster, slurm)
+            _run_seed(run, seed, executor)
         run.record_paths(lambda figure: click.echo(f"paths of figure {figure.id}: recorded", err=True))
     except (ExecutorUnavailable, RunError) as error:
         click.echo(str(error), err=True)
@@ -218,11 +210,9 @@ def _run_fields(run: StudyRun) -> None:
         run.record_fields(lambda case, number: bar.update(1))
 
 
-def _run_seed(
-    run: StudyRun, seed: int, jobs: int, executor: str, cluster: str, slurm: SlurmResources
-) -> None:
+def _run_seed(run: StudyRun, seed: int, executor: JobExecutor) -> None:
     sweep = run.sweep(seed)
-    run_sweep(sweep, executor, jobs, cluster, slurm)
+    run_sweep(sweep, executor)
     run.record(
         sweep,
         seed,

@@ -9,14 +9,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import Literal
 
 import click
 
 from kit.cli import learning_options, options
 from kit.document.layout import lines_of
-from kit.host import job_executors
-from kit.host.job_executors import ExecutorUnavailable, SlurmResources
+from kit.host.job_executors import ExecutorUnavailable
+from kit.host.job_folder import JobExecutor
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.crosstable import (
     case_groups,
@@ -26,7 +25,6 @@ from kit.learning.training.crosstable import (
 )
 from kit.learning.training.run_check import check_run_config
 from kit.learning.training.runs import NAME_PATTERN, PresetName, RunConfig
-from kit.learning.training.sweep_worker import make_pool, run_job_by_key, sweep_command
 from kit.learning.training.training_sweep import (
     TrainingSweep,
     combine,
@@ -154,10 +152,7 @@ def command(
     steps: int | None,
     episodes: int,
     goal: float | None,
-    jobs: int,
-    executor: Literal["local", "slurm", "dask", "none"],
-    cluster: str,
-    slurm: SlurmResources,
+    executor: JobExecutor,
     csv_file: Path | None,
     as_json: bool,
     name: str | None,
@@ -225,7 +220,7 @@ def command(
                 f"{title}: a sweep's name may contain letters, digits, '_', '-' and '.'; set one with --name."
             )
         folder = learning_options.runs_folder(workspace).parent / "sweeps" / title
-        run = partial(run_sweep, executor=executor, jobs=jobs, cluster=cluster, slurm=slurm)
+        run = partial(run_sweep, executor=executor)
         try:
             if ranges:
                 sweep = _tune(folder, configs, ranges, trials, episodes, goal, run)
@@ -271,25 +266,14 @@ def _tune(
     return tune(folder, configs[0], ranges, seeds, trials=trials, episodes=episodes, goal=goal, run=run)
 
 
-def run_sweep(sweep: TrainingSweep, executor: str, jobs: int, cluster: str, slurm: SlurmResources) -> None:
+def run_sweep(sweep: TrainingSweep, executor: JobExecutor) -> None:
     """Runs the trainings that have no result yet. Raises ExecutorUnavailable and KeyboardInterrupt."""
     keys = sweep.waiting()
-    if executor == "none" or not keys:
+    if executor.name == "none" or not keys:
         return
     click.echo(f"{len(sweep.entries())} trainings, {len(keys)} to do, in {sweep.folder}", err=True)
     with click.progressbar(length=len(keys), label="trained", file=sys.stderr) as bar:
-
-        def count(key: str) -> None:
-            bar.update(1)
-
-        if executor == "slurm":
-            command = sweep_command(sweep)
-            script = job_executors.slurm_script(sweep.folder, command, jobs, "kit-sweep", slurm)
-            job_executors.run_on_slurm(sweep.folder, script, lambda: bool(sweep.waiting()))
-        elif executor == "dask":
-            job_executors.run_on_dask(sweep.folder, run_job_by_key, keys, cluster, count, sweep.record_loss)
-        else:
-            make_pool(sweep, jobs, count).run()
+        executor.run(sweep, keys, lambda key: bar.update(1))
 
 
 def _print_table(

@@ -1,8 +1,7 @@
 """Works through jobs that are known by their keys: in local processes, in a SLURM array job, or on a Dask cluster.
 
-Jobs and results lie in a folder that all machines see; a job's result is a file, so that only keys are sent, and what was
-interrupted goes on where it was. A class of submissions is graded so, and a sweep of trainings is run so. What lies there
-as a result counts only if its reader accepts it: a worker may have another version, a full disk, or a fault.
+A job's result is a file that all machines see (``JobFolder``), so that only keys are sent. What lies there as a result counts
+only if its reader accepts it: a worker may have another version, a full disk, or a fault.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Final
 
 import kit
-from kit.inspection.ros_text import node_names, services, topics
+from kit.inspection.graph_text import node_names, services, topics
 from kit.ros.graph.graph import Graph
 from kit.ros.node.qos import QoSCompatibility, qos_check_compatible
 from kit.ros.packages import PackageError, broken_packages, read_package

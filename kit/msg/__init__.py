@@ -15,11 +15,11 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import Any
 
+from kit.msg.renamed_packages import RENAMED_PACKAGES
+
 _DEFINITIONS = os.path.join(os.path.dirname(__file__), "definitions")
 _SHIPPED = {package: os.path.join(_DEFINITIONS, package) for package in os.listdir(_DEFINITIONS)}
 """The folders of the packages whose definitions are shipped, by their names."""
-RENAMED_PACKAGES = {"turtlesim_msgs": "turtlesim"}
-"""Packages whose interfaces are those of another one, by a name that ROS 2 has given them since."""
 _PARTS = ("msg", "srv", "action")
 
 

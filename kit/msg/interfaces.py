@@ -14,7 +14,6 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any, Final, cast
 
-from kit.msg import RENAMED_PACKAGES
 from kit.msg.class_builder import Interface, build_interface
 from kit.msg.definition_parser import SECTIONS, DefinitionError
 from kit.msg.definition_writer import (
@@ -30,6 +29,7 @@ from kit.msg.definition_writer import (
 )
 from kit.msg.fields import MessageKind, SequenceKind
 from kit.msg.message import Action, Field, Message, Service, make_message_class, short_type_name
+from kit.msg.renamed_packages import RENAMED_PACKAGES
 
 _MAX_DEPTH: Final = 50
 """How deep messages may be nested in each other."""

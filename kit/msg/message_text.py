@@ -1,4 +1,4 @@
-"""Formats messages as YAML and as CSV, as ROS 2's commands print them and ``rosidl_runtime_py`` returns them."""
+"""Messages as ``topic echo`` prints them and ``rosidl_runtime_py`` returns them: YAML or CSV, long arrays and texts cut."""
 
 from __future__ import annotations
 
@@ -18,6 +18,10 @@ LINE_WIDTH: Final = 2**31 - 1
 """A line of YAML is never broken."""
 
 _Dumper: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+
+
+class NoSuchField(LookupError):
+    """The message has no such field; the error names it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +54,19 @@ def to_yaml(message: Message, message_format: MessageFormat = MessageFormat()) -
 def to_csv(message: Message, message_format: MessageFormat = MessageFormat()) -> str:
     """All values in the order of the definition, without names."""
     return ",".join(_cells(message, message_format))
+
+
+def get_field(message: Message, path: str) -> Any:
+    """The value at a path of field names joined by dots. Raises NoSuchField."""
+    found: Any = message
+    for name in path.split("."):
+        if not isinstance(found, Message) or name not in type(found).get_fields_and_field_types():
+            has = (
+                ", ".join(type(found).get_fields_and_field_types()) if isinstance(found, Message) else "none"
+            )
+            raise NoSuchField(f"Invalid field '{path}': there is no '{name}'; available fields: {has}")
+        found = getattr(found, name)
+    return found
 
 
 def as_plain_data(message: Message, message_format: MessageFormat = MessageFormat()) -> dict[str, Any]:

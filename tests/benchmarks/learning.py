@@ -23,6 +23,7 @@ from typing import TypeAlias
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from kit.document.layout import lines_of
+from kit.host.job_folder import JobExecutor
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.policies.evaluation import EvaluationResult, Evaluator
 from kit.learning.tasks.student_reward import StudentReward
@@ -33,7 +34,6 @@ from kit.learning.training.events import Evaluated, TrainingEnded
 from kit.learning.training.presets import KIT_PPO_HALLWAY, KIT_PPO_TURN
 from kit.learning.training.run_text import success_shares
 from kit.learning.training.runs import RunConfig, TrainingRun, create_run
-from kit.learning.training.sweep_worker import make_pool
 from kit.learning.training.training import make_learner, train
 from kit.learning.training.training_sweep import TrainingSweep, combine
 from kit.study.printed_tables import printed_means
@@ -163,7 +163,9 @@ def table(folder: Path, seeds: Seeds) -> None:
     sweep = TrainingSweep.prepare(
         folder / "table", combine(("hallway",), cases=groups, seeds=seeds(1)[:1]), 500
     )
-    make_pool(sweep, os.cpu_count() or 1, lambda key: print(f"  {key} trained", flush=True)).run()
+    JobExecutor(jobs=os.cpu_count() or 1).run(
+        sweep, sweep.waiting(), lambda key: print(f"  {key} trained", flush=True)
+    )
     columns = crosstable_columns(sweep)
     print("\n".join(f"  {row}" for row in lines_of(crosstable_tables(columns, printed_means("hallway")[1]))))
 

@@ -17,7 +17,8 @@ import sys
 from pathlib import Path
 import click
 from textual.screen import Screen
-from kit.cli import options, run_as_process
+from kit.cli import options
+from kit.cli.process import run_as_process
 from kit.cli.full_screen import show_screen
 
 class Kept(Screen):

@@ -15,7 +15,7 @@ from typing import Any, Final, get_args
 import numpy as np
 
 from grader.cohort.gradebook import as_csv, as_json, gradebook_rows
-from grader.cohort.queue import Queue, prepare_queue, record_incident
+from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions
 from grader.kinds.policy.kind import load_submitted_policy
 from grader.reading import read_assignment
@@ -163,7 +163,7 @@ class ResultTarget:
         options = GradingOptions(Level.LIMITED, may_lower_level=False)
         prepare_queue(self._queue, works, read_assignment(write_assignment(folder / "quick")), options)
         (self._key,) = self._queue.waiting()
-        record_incident(self._queue, self._key)
+        self._queue.record_loss(self._key)
         self._whole = self._queue.result_file(self._key).read_bytes()
 
     def attempt(self, rng: random.Random) -> str:
@@ -181,8 +181,8 @@ class ResultTarget:
         if result is None:
             return "refused"
         for shown in (result, result.for_student()):
-            for write in FORMATS.values():
-                write(shown)
+            for report_format in FORMATS.values():
+                report_format.write(shown)
         return "read"
 
 

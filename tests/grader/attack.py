@@ -19,7 +19,7 @@ from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import can_mount_scratch, highest_level_up_to
-from kit.school.result import CriterionStatus, GradingResult
+from kit.results.grading_result import CriterionStatus, GradingResult
 
 TOKEN = "735192468013"
 """A secret: in the assignment, in the grader's environment, in its memory."""

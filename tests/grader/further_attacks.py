@@ -34,7 +34,7 @@ from kit.learning.environment.batch import BatchEnv
 from kit.learning.maps.batch_map import FLOOR_CELL
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.render import raster
-from kit.school.result import GradingVerdict
+from kit.results.grading_result import GradingVerdict
 from tests.grader.attack import (
     HARMLESS,
     HASTY,

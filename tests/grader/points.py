@@ -52,7 +52,6 @@ Points: TypeAlias = dict[str, list[Any]]
 GRADE: Final = """
 import json, sys
 from pathlib import Path
-from grader.cohort.queue import run_locally
 from grader.cohort.gradebook import gradebook_rows
 from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions
@@ -67,7 +66,7 @@ def main():
         queue = Queue(exercise / "queue")
         options = GradingOptions(level, assignment.has_secrets, may_lower_level=False)
         prepare_queue(queue, exercise / "in", assignment, options)
-        run_locally(queue, queue.waiting(), jobs, lambda *given: None)
+        JobExecutor(jobs=jobs).run(queue, queue.waiting(), lambda *given: None)
         for row in gradebook_rows(queue):
             table[f"{exercise.name}/{row.name}"] = [row.points, dict(row.tests), dict(row.statuses), row.level]
     print(json.dumps(table))

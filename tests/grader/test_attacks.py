@@ -11,7 +11,7 @@ import pytest
 
 from grader.reports import FORMATS
 from kit.host.sandbox.confinement import Level
-from kit.school.result import GradingVerdict
+from kit.results.grading_result import GradingVerdict
 from tests.cases import every_case
 from tests.grader.attack import TOKEN, Attack, attempt, works_undefended
 from tests.grader.attacks import ATTACKS, THIRD_ROUND, WORKED_ONCE, table
@@ -91,7 +91,7 @@ def _gains_nothing(attack: Attack, level: Level, tmp_path: Path, monkeypatch: py
         stopped = [test for test in outcome.result.tests if test.points < test.max_points]
         assert all(test.rationale for test in stopped), "what was lost is explained"
         for form in FORMATS:
-            report = FORMATS[form](outcome.result)
+            report = FORMATS[form].write(outcome.result)
             assert TOKEN not in report
             if form == "annotations":
                 assert all(ANNOTATION.fullmatch(line) for line in report.splitlines()), report

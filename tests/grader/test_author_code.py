@@ -20,7 +20,7 @@ from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.host.wire import Json
-from kit.school.result import CriterionStatus
+from kit.results.grading_result import CriterionStatus
 from tests.grader.conftest import FORWARD, LOCKS
 from tests.grader.test_teacher_tests import OWN, folder_with
 

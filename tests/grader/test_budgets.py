@@ -10,7 +10,7 @@ from grader.grading import GradingOptions, grade
 from grader.reading import BUDGET_KEYS, SUBMISSION_KEY, read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
-from kit.school.result import CriterionStatus, GradingVerdict
+from kit.results.grading_result import CriterionStatus, GradingVerdict
 from tests.grader.conftest import LOCKS, write_assignment
 
 SHEET = """

@@ -11,7 +11,7 @@ from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
-from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
+from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 
 REFUSING = """

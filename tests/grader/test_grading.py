@@ -25,8 +25,8 @@ from grader.self_test import try_works, unfair_fail_odds
 from grader.submission import Submission
 from kit.host.process import child_seed
 from kit.host.sandbox.confinement import Level
+from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from kit.run.recording import load_recording
-from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.cases import every_case
 from tests.grader.conftest import FORWARD, QUICK, TEMPLATES, write_assignment
 

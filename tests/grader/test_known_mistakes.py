@@ -10,7 +10,7 @@ from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import read_submission
 from kit.host.sandbox.confinement import Level
-from kit.school.result import GradingResult
+from kit.results.grading_result import GradingResult
 from kit.world.problems import WorldError
 from tests.grader.conftest import write_assignment
 

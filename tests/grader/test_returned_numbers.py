@@ -21,7 +21,7 @@ from grader.submission import Submission
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox.confinement import Level
 from kit.learning.tasks.student_reward import LARGEST_REWARD
-from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
+from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from tests.cases import every_case
 from tests.grader.attack import REWARD_SHEET
 from tests.grader.conftest import FORWARD, write_assignment

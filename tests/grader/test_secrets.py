@@ -21,13 +21,19 @@ from grader.kinds.environment import kind as environment
 from grader.kinds.function.kind import CaseDifference, FunctionComparison
 from grader.reading import read_assignment
 from grader.reports import FORMATS
-from grader.reports.formats import write_text
+from grader.reports.formats.text_report import write_text
 from grader.scoring import round_share
 from grader.submission import Submission
 from kit.host.failure import Failure, FailureKind
 from kit.host.process import child_seed
 from kit.host.sandbox.confinement import Level
-from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingTiming, Visibility
+from kit.results.grading_result import (
+    CriterionResult,
+    CriterionStatus,
+    GradingResult,
+    GradingTiming,
+    Visibility,
+)
 from kit.world.problems import WorldError
 from tests.cases import every_case
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
@@ -44,11 +50,11 @@ def student_reports(result: GradingResult) -> Mapping[str, str]:
     shown = result.for_student()
     reports = {form: write(shown) for form, write in FORMATS.items()}
     reports["text with all hints"] = write_text(shown, hints=3)
-    again = GradingResult.from_dict(json.loads(FORMATS["json"](shown)))
+    again = GradingResult.from_dict(json.loads(FORMATS["json"].write(shown)))
     reports |= {f"{form} of the written JSON": write(again) for form, write in FORMATS.items()}
-    directly = {form: FORMATS[form](result) for form in FORMATS if form not in FOR_TEACHERS}
+    directly = {form: FORMATS[form].write(result) for form in FORMATS if form not in FOR_TEACHERS}
     if all(test.visibility is Visibility.VISIBLE for test in result.tests):
-        directly["gradescope"] = FORMATS["gradescope"](result)
+        directly["gradescope"] = FORMATS["gradescope"].write(result)
     return reports | {f"{form} without --for-student": report for form, report in directly.items()}
 
 
@@ -243,7 +249,7 @@ def test_what_depends_on_a_hidden_test_is_hidden_too(tmp_path: Path) -> None:
 def test_a_broken_hidden_test_gives_a_student_no_grade() -> None:
     broken = CriterionResult("b", "B", CriterionStatus.GRADER_ERROR, 0.0, 1.0, Visibility.HIDDEN, log="why")
     result = GradingResult("reach", "v1", "abc", "0.1", "public", 1, "linux", (broken,))
-    shown = GradingResult.from_dict(json.loads(FORMATS["json"](result.for_student())))
+    shown = GradingResult.from_dict(json.loads(FORMATS["json"].write(result.for_student())))
     assert (shown.points, shown.tests[0].log) == (None, "")
 
 

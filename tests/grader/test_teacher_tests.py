@@ -10,13 +10,19 @@ from pathlib import Path
 import pytest
 
 from grader.cohort.gradebook import gradebook_rows
-from grader.cohort.queue import Queue, grade_job, prepare_queue
+from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
 from grader.teacher_tests import TestDeadline, TestTimeUsedUp, read_teacher_tests
 from kit.host.sandbox.confinement import Level
-from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict, Visibility
+from kit.results.grading_result import (
+    CriterionResult,
+    CriterionStatus,
+    GradingResult,
+    GradingVerdict,
+    Visibility,
+)
 from kit.world.problems import WorldError
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 from tests.grader.test_grading import run_pytest
@@ -166,7 +172,7 @@ def test_a_cohort_counts_them(tmp_path: Path) -> None:
         read_assignment(folder_with(tmp_path, OWN)),
         GradingOptions(Level.LIMITED, may_lower_level=False),
     )
-    grade_job(queue, *queue.waiting())
+    queue.run_job(*queue.waiting())
     ada, link = gradebook_rows(queue)
     assert (ada.max_points, link.max_points) == (17.0, 17.0)
     assert (ada.tests["test_it_drives"], ada.tests["test_it_turns"]) == (2.0, 0.0)

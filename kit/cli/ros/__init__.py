@@ -7,7 +7,7 @@ from typing import Final
 
 import click
 
-from kit.cli import LazyGroup, Verbs
+from kit.cli.lazy_group import LazyGroup, Verbs
 from kit.cli.ros.documented_options import tell_absent_options
 
 VERBS: Final[Verbs] = {

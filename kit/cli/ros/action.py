@@ -20,7 +20,7 @@ from kit.cli.ros.world_client import (
     with_world_client,
 )
 from kit.inspection.client import CHECK_INTERVAL_S, NODE_PREFIX, InspectionClient
-from kit.inspection.ros_text import absolute_name
+from kit.inspection.graph_text import absolute_name
 from kit.msg.interfaces import find_action
 from kit.msg.message_text import MessageFormat, to_yaml
 from kit.plain_text import nearest_name

@@ -181,7 +181,7 @@ def record(
 @click.option("-v", "--verbose", is_flag=True, hidden=True)
 def info(folder: Path, verbose: bool) -> None:
     """Print the summary of a bag. Needs no running world."""
-    from kit.inspection.ros_text import bag_info
+    from kit.inspection.bag_text import bag_info
 
     click.echo(bag_info(_read(folder)))
 

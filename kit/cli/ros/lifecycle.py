@@ -8,7 +8,7 @@ import click
 
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
-from kit.inspection.ros_text import absolute_name, node_names
+from kit.inspection.graph_text import absolute_name, node_names
 from kit.msg.interfaces import find_service
 
 GET_STATE_TYPE: Final = "lifecycle_msgs/srv/GetState"

@@ -6,7 +6,7 @@ import click
 
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
-from kit.inspection.ros_text import absolute_name, node_info, node_names
+from kit.inspection.graph_text import absolute_name, node_info, node_names
 
 
 @click.group()

@@ -12,14 +12,8 @@ import yaml
 
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
-from kit.inspection.ros_text import (
-    absolute_name,
-    description,
-    format_value,
-    nest_by_name,
-    node_names,
-    type_name_of,
-)
+from kit.inspection.graph_text import absolute_name, node_names
+from kit.inspection.parameter_text import description, format_value, nest_by_name, type_name_of
 from kit.msg.message import Message, Service
 from kit.msg.rcl_interfaces import (
     DescribeParameters,

@@ -16,7 +16,7 @@ from kit.cli.ros.world_client import (
     with_world_client,
 )
 from kit.inspection.client import InspectionClient
-from kit.inspection.ros_text import service_info, services
+from kit.inspection.graph_text import service_info, services
 from kit.msg.interfaces import find_service
 
 

@@ -21,23 +21,18 @@ from kit.cli.ros.world_client import (
 )
 from kit.host.codec import NotFiniteError
 from kit.inspection.client import InspectionClient
-from kit.inspection.ros_text import (
-    BANDWIDTH_WINDOW,
-    RATE_WINDOW,
-    BandwidthMeter,
-    DelayMeter,
-    NoSuchField,
-    RateMeter,
-    absolute_name,
-    get_field,
-    services,
-    topic_info,
-    topic_summary,
-    topics,
-)
+from kit.inspection.graph_text import absolute_name, services, topic_info, topic_summary, topics
+from kit.inspection.meters import BANDWIDTH_WINDOW, RATE_WINDOW, BandwidthMeter, DelayMeter, RateMeter
 from kit.msg.interfaces import find_message, find_service, service_event_class
 from kit.msg.message import Message
-from kit.msg.message_text import DEFAULT_MAX_LENGTH, MessageFormat, to_csv, to_yaml
+from kit.msg.message_text import (
+    DEFAULT_MAX_LENGTH,
+    MessageFormat,
+    NoSuchField,
+    get_field,
+    to_csv,
+    to_yaml,
+)
 from kit.ros.exceptions import NameValidationException
 from kit.ros.node.qos import QoSProfile, qos_profile_services_default
 from kit.ros.node.time import Time

@@ -13,13 +13,12 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Final
 
-from kit.host.job_executors import JobPool, read_shard, serve_jobs
-from kit.host.python_command import python_command
+from kit.host.job_executors import read_shard
+from kit.host.job_folder import JobExecutor, serve_keys
 from kit.learning.training.training_sweep import LOCK_FILE, TrainingSweep
 from kit.learning.training.worker import EXIT_SIGNALS, ExitRequest
 
@@ -27,28 +26,12 @@ PATIENCE_S: Final = 30.0
 """Longest time for a sweep's process to start [s]."""
 
 
-def run_job_by_key(folder: str, key: str) -> str:
-    """Runs one training, given by strings alone, as Dask sends them."""
-    TrainingSweep(Path(folder)).run_job(key)
-    return key
-
-
-def sweep_command(sweep: TrainingSweep) -> list[str]:
-    """Returns the command that runs this module for the sweep, to which options may be added."""
-    return python_command("kit.learning.training.sweep_worker", str(sweep.folder.absolute()))
-
-
-def make_pool(sweep: TrainingSweep, jobs: int, on_done: Callable[[str], object]) -> JobPool:
-    """Processes on this machine for the trainings that have no result yet, at most ``jobs`` side by side."""
-    return JobPool(sweep_command(sweep), sweep.waiting(), jobs, on_done, sweep.record_loss)
-
-
 def start_sweep(sweep: TrainingSweep) -> subprocess.Popen[bytes]:
     """Starts a process that trains all that has no result yet, and outlives this one; it ends at once where another one
     does. The caller need not wait for it."""
     with (sweep.folder / "log.txt").open("wb") as log:
         process = subprocess.Popen(
-            [*sweep_command(sweep), "--all"],
+            [*sweep.worker_command, "--all"],
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=log,
@@ -72,7 +55,7 @@ def _run_all(sweep: TrainingSweep) -> int:
         lock.truncate(0)
         lock.write(str(os.getpid()))
         lock.flush()
-        make_pool(sweep, _available_processors(), lambda key: None).run()
+        JobExecutor(jobs=_available_processors()).run(sweep, sweep.waiting(), lambda key: None)
     return 0
 
 
@@ -94,10 +77,7 @@ def main(arguments: list[str]) -> int:
         elif arguments[1:] == ["--all"]:
             return _run_all(sweep)
         elif len(arguments) == 1:
-            # Other output must not mix with the answers.
-            answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
-            os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-            serve_jobs(run_job, sys.stdin, answers)
+            serve_keys(run_job)
         else:
             sys.stderr.write(
                 "usage: python -m kit.learning.training.sweep_worker FOLDER [--shard I/N | --all]\n"

@@ -23,11 +23,13 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from statistics import fmean, median
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from kit.document.blocks import Cell, CellStyle, Column, Table
 from kit.field_types import check_field_types
-from kit.host.job_executors import in_shard, read_result
+from kit.host.job_executors import read_result
+from kit.host.job_folder import JobFolder
+from kit.host.python_command import python_command
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.policies.seeds import derive_seed
@@ -110,10 +112,10 @@ class SweepResult:
 
 
 @dataclass(frozen=True, slots=True)
-class TrainingSweep:
+class TrainingSweep(JobFolder):
     """The folder of a sweep."""
 
-    folder: Path
+    job_name: ClassVar[str] = "kit-sweep"
 
     @classmethod
     def prepare(
@@ -195,10 +197,21 @@ class TrainingSweep:
             with suppress(OSError, ValueError):  # it has ended meanwhile
                 os.kill(int((self.folder / LOCK_FILE).read_text()), signal.SIGTERM)
 
-    def waiting(self, shard: tuple[int, int] = (0, 1)) -> tuple[str, ...]:
-        """The keys of share i of n that have no result yet, or only a problem."""
-        keys = [entry.key for entry in self.entries() if in_shard(entry.key, shard)]
-        return tuple(key for key in keys if (found := self.result(key)) is None or found.problem)
+    @property
+    def worker_command(self) -> list[str]:
+        return python_command("kit.learning.training.sweep_worker", str(self.folder.absolute()))
+
+    @property
+    def shard_command(self) -> list[str]:
+        return self.worker_command
+
+    def keys(self) -> tuple[str, ...]:
+        return tuple(entry.key for entry in self.entries())
+
+    def is_waiting(self, key: str) -> bool:
+        """Whether a training has no result yet, or only a problem."""
+        found = self.result(key)
+        return found is None or bool(found.problem)
 
     def run_job(self, key: str, *, interrupted: Callable[[], bool] = lambda: False) -> None:
         """Trains and tests one of them, and saves the result; a training that was begun goes on.
@@ -221,7 +234,6 @@ class TrainingSweep:
         self._save(key, result)
 
     def record_loss(self, key: str) -> None:
-        """Saves that a training's process died every time it was tried, unless it had saved its result before."""
         if self.result(key) is None:
             self._save(key, SweepResult(problem="its process died twice; is there enough memory?"))
 

@@ -9,7 +9,7 @@ from itertools import groupby
 from typing import ClassVar, Final, Generic, TypeAlias, TypeVar
 
 from kit.document.rows import Row
-from kit.school.game.challenge import Judgement
+from kit.school.game.judgement import Judgement
 
 State = TypeVar("State")
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final, Self
 
+from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.workspace import write_atomically
 from kit.world.yaml_section import Section
@@ -24,28 +25,6 @@ GOLD_GAIN, SILVER_GAIN = 0.98, 0.75
 
 class ChallengeError(ValueError):
     """An answer cannot be judged; the message says why."""
-
-
-@dataclass(frozen=True, slots=True)
-class AnswerComparison:
-    """An answer beside others, all in one unit."""
-
-    unit: str
-    answer: float
-    others: tuple[tuple[str, float], ...]
-    """Name and figure of each: the naive answer and the best one, or what earns the medals."""
-    more_is_better: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Judgement:
-    """The result of judging one answer."""
-
-    medal: Medal
-    text: str
-    """One sentence."""
-    comparison: AnswerComparison | None = None
-    """None where an answer does not do what is asked, so that no figure can be compared."""
 
 
 def _say_nothing(_: str) -> None:
@@ -145,12 +124,3 @@ class Challenge:
     task_text: str
     lesson: str
     task: ChallengeTask
-
-
-def judge_count(unit: str, text: str, count: int, fewest: int, naive: int, near: int = 1) -> Judgement:
-    """Judges an answer of which less is better and ``fewest`` is proved. ``near``: that many more still earn silver."""
-    comparison = AnswerComparison(unit, count, (("naive answer", naive), ("best answer", fewest)))
-    if count >= naive:
-        return Judgement(Medal.NONE, text, comparison)
-    medal = Medal.GOLD if count <= fewest else Medal.SILVER if count <= fewest + near else Medal.BRONZE
-    return Judgement(medal, text, comparison)

@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Final
 
 from kit.plain_text import quoted, suggestion
-from kit.school.game.challenge import Challenge, Judgement
+from kit.school.game.challenge import Challenge
 from kit.school.game.challenge_kinds import challenge_kinds
+from kit.school.game.judgement import Judgement
 from kit.school.game.levels import all_levels
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import GameSummary, level_progress

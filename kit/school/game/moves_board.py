@@ -7,7 +7,8 @@ from pathlib import Path
 
 from kit.plain_text import quoted
 from kit.school.game.board import MOVES, Board, letters_of
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn, Judgement
+from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.judgement import Judgement
 
 
 def read_moves(answer: str, most: int) -> str:

@@ -16,11 +16,11 @@ from tempfile import TemporaryFile
 from typing import Any, Final, Self
 
 from kit.host.python_command import python_command
+from kit.results.grading_result import CriterionResult, GradingResult, GradingVerdict
 from kit.school.lessons.reading import solutions_folder
 from kit.school.lessons.records import Exercise, Lesson
 from kit.school.lessons.training_curves import TrainingCurves, is_drive_line, read_training_curves
 from kit.school.lessons.translation import translated_result, translation_of
-from kit.school.result import CriterionResult, GradingResult, GradingVerdict
 from kit.workspace import Workspace, write_atomically
 
 STARTER: Final = "starter"

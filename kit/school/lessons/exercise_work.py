@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Final
 
 from kit.host.file_watcher import FileWatcher
+from kit.results.result_blocks import replay_lines
 from kit.school.lessons.checking import CheckReport, ExerciseCheck, has_other_files, submission_path
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import Exercise
 from kit.school.lessons.training_curves import DriveLoop, TestDrive, TrainingCurves
-from kit.school.result import replay_lines
 
 RESCAN_S: Final = 1.0
 """Between two looks for files that are new."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
+from kit.results.grading_result import CriterionResult
 from kit.school.game.levels import GameLevel, levels_of_lesson
 from kit.school.lessons import checking
 from kit.school.lessons.catalogue import LessonProgress, lesson_progress_from_events
@@ -18,7 +19,6 @@ from kit.school.lessons.defence import Defence, prepare_defence
 from kit.school.lessons.reading import LESSON_FILE, lesson_names, read_lesson
 from kit.school.lessons.records import Exercise, Lesson, LessonStep, PredictionOption
 from kit.school.progress import EventKind, ProgressJournal
-from kit.school.result import CriterionResult
 from kit.workspace import Workspace
 from kit.world.problems import WorldError
 

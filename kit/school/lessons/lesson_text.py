@@ -9,6 +9,7 @@ from typing import Final
 
 from kit.document.blocks import Block, Choice, Choices, Code, Text, Tone
 from kit.plain_text import join_names
+from kit.results.result_blocks import criterion_blocks, points_text
 from kit.school.game.levels import GameLevel, opened_levels_text
 from kit.school.lessons.catalogue import LessonProgress
 from kit.school.lessons.checking import CheckReport
@@ -21,7 +22,6 @@ from kit.school.lessons.records import (
     LessonStep,
     PredictionOption,
 )
-from kit.school.result import criterion_blocks, points_text
 
 _WHERE: Final[Mapping[CommandKind, str]] = MappingProxyType(
     {

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Final
 
 from kit.plain_text import quoted
+from kit.results.grading_result import CriterionResult, GradingResult
 from kit.school.lessons.records import Lesson, LessonStep, PredictionOption
-from kit.school.result import CriterionResult, GradingResult
 from kit.world.yaml_section import Section
 
 VARIABLE: Final = "KIT_LANG"

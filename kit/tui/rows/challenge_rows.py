@@ -9,7 +9,8 @@ from typing import Final
 from kit.document.rows import Row, row, side_by_side
 from kit.plain_text import wrap
 from kit.school.game.board import Board
-from kit.school.game.challenge import AnswerComparison, Challenge, Judgement
+from kit.school.game.challenge import Challenge
+from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.school.lessons.reading import lesson_number
 from kit.school.lessons.shell_lines import shell_path

@@ -15,8 +15,9 @@ from textual.binding import BindingType
 from kit.dialogue.actions import ScreenActions
 from kit.document.rows import Row, row
 from kit.host.file_watcher import FileWatcher
-from kit.school.game.challenge import Challenge, ChallengeError, HandedIn, Judgement
+from kit.school.game.challenge import Challenge, ChallengeError, HandedIn
 from kit.school.game.challenges import answers_folder, challenge_medals, prepare_answer, record_judgement
+from kit.school.game.judgement import Judgement
 from kit.school.game.medal import Medal
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.challenge_rows import challenge_page, judged

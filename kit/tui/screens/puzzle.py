@@ -9,7 +9,8 @@ from textual.binding import BindingType
 from kit.dialogue.actions import ScreenActions, letter
 from kit.document.rows import Row
 from kit.school.game.board import Board
-from kit.school.game.challenge import Challenge, ChallengeError, Judgement, as_comments
+from kit.school.game.challenge import Challenge, ChallengeError, as_comments
+from kit.school.game.judgement import Judgement
 from kit.school.progress import ProgressJournal
 from kit.tui.rows.challenge_rows import puzzle_beside, puzzle_page
 from kit.tui.rows.key_rows import bindings

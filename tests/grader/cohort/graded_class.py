@@ -10,7 +10,7 @@ from grader.grading import GradingOptions
 from grader.reading import read_assignment
 from grader.version import grader_version
 from kit.host.sandbox.confinement import Level
-from kit.school.result import PUBLIC_SEEDS, CriterionResult, CriterionStatus, GradingResult
+from kit.results.grading_result import PUBLIC_SEEDS, CriterionResult, CriterionStatus, GradingResult
 from tests.grader.conftest import write_assignment
 
 OPTIONS = GradingOptions(Level.LIMITED, may_lower_level=False)

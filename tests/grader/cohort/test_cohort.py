@@ -39,26 +39,19 @@ from grader.cohort.gradebook import (
 )
 from grader.cohort.lateness import LatePolicy, find_zone, parse_time, read_policy
 from grader.cohort.queue import (
-    ExecutorUnavailable,
     Queue,
     QueueError,
-    WorkerPool,
-    grade_job,
-    grade_one_job,
     job_key,
     prepare_queue,
-    record_incident,
-    run_locally,
-    run_on_dask,
-    run_on_slurm,
-    slurm_script,
 )
 from grader.grading import GradingOptions
 from grader.reading import read_assignment
 from grader.submission import read_submission
+from kit.host.job_executors import ExecutorUnavailable, JobPool
+from kit.host.job_folder import JobExecutor
 from kit.host.sandbox import probe
 from kit.host.sandbox.confinement import Level
-from kit.school.result import GradingVerdict
+from kit.results.grading_result import GradingVerdict
 from kit.world.problems import WorldError
 from tests.cases import every_case
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
@@ -92,7 +85,7 @@ def test_everybody_gets_a_row_and_equal_work_is_graded_once(queue: Queue) -> Non
     waiting = queue.waiting()
     assert len(waiting) == 4  # six entries, two of them equal, one refused
     for key in waiting:
-        grade_job(queue, key)
+        queue.run_job(key)
     table = gradebook_rows(queue)
     assert [row.name for row in table] == ["broken", "copy", "link", "s0", "s1", "s2"]
     assert [row.verdict for row in table] == ["fail", "fail", "unreadable", "fail", "fail", "fail"]
@@ -106,14 +99,14 @@ def test_everybody_gets_a_row_and_equal_work_is_graded_once(queue: Queue) -> Non
 @pytest.mark.long
 def test_processes_and_one_process_give_the_same_bytes(queue: Queue, tmp_path: Path) -> None:
     done: list[str] = []
-    run_locally(queue, queue.waiting(), 2, done.append)
+    JobExecutor(jobs=2).run(queue, queue.waiting(), done.append)
     assert len(done) == 4
     together = as_json(gradebook_rows(queue))
     other = Queue(tmp_path / "other")
     prepare_queue(other, tmp_path / "in", queue.assignment(), TERMS)
     for number in range(3):
         for key in other.waiting((number, 3)):
-            grade_one_job(str(other.folder), key)
+            Queue(other.folder).run_job(key)
     assert as_json(gradebook_rows(other)) == together
 
 
@@ -125,7 +118,7 @@ def test_shards_share_the_work(queue: Queue) -> None:
 
 def test_a_damaged_result_is_made_again(queue: Queue) -> None:
     key = queue.waiting()[0]
-    grade_job(queue, key)
+    queue.run_job(key)
     assert key not in queue.waiting()
     for damaged in (b"", b"{", b"[]", b'{"schema": 99}'):
         queue.result_file(key).write_bytes(damaged)
@@ -138,14 +131,14 @@ def test_a_worker_that_fails_is_nobodys_fault(
 ) -> None:
     key = queue.waiting()[0]
 
-    def failing(self: WorkerPool) -> subprocess.Popen[str]:
+    def failing(self: JobPool) -> subprocess.Popen[str]:
         return subprocess.Popen(
             [sys.executable, "-c", worker], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
         )
 
-    monkeypatch.setattr(WorkerPool, "_start", failing)
+    monkeypatch.setattr(JobPool, "_start", failing)
     monkeypatch.setattr("grader.cohort.queue.GRACE_S", 0.3 - queue.assignment().submission_limit_s)
-    run_locally(queue, [key], 1, lambda key: None)
+    JobExecutor(jobs=1).run(queue, [key], lambda key: None)
     result = queue.result(key)
     assert result is not None
     assert (result.verdict, result.points) == (GradingVerdict.BROKEN, None)
@@ -167,7 +160,7 @@ def test_the_key_is_what_decides_the_result(queue: Queue, tmp_path: Path) -> Non
 def test_another_grader_grades_anew(queue: Queue, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its code may be brought up to date without another version number."""
     for key in queue.waiting():
-        grade_job(queue, key)
+        queue.run_job(key)
     assert version.grader_version() == version.grader_version.__wrapped__()
     seen = list(version._source_files())
     assert {name.partition("/")[0] for name, _ in seen} == {"grader", "kit", "maps"}
@@ -184,13 +177,13 @@ def test_another_grader_grades_anew(queue: Queue, tmp_path: Path, monkeypatch: p
 @pytest.mark.long
 def test_a_new_assignment_grades_anew_and_says_what_changed(queue: Queue, tmp_path: Path) -> None:
     for key in queue.waiting():
-        grade_job(queue, key)
+        queue.run_job(key)
     before = gradebook_rows(queue)
     changed = read_assignment(write_assignment(tmp_path / "quick", QUICK.replace("full: 0.5", "full: 5")))
     prepare_queue(queue, tmp_path / "in", changed, TERMS)
     assert len(queue.waiting()) == 4
     for key in queue.waiting():
-        grade_job(queue, key)
+        queue.run_job(key)
     told = list(changes(before, gradebook_rows(queue)))
     assert any(line.startswith("s2: 3 -> ") and "pass -> partial)" in line for line in told)
     assert not any(line.startswith(("broken", "link")) for line in told)
@@ -221,7 +214,7 @@ def test_lateness(late: float, kept: float) -> None:
 @pytest.mark.long
 def test_late_rules_are_applied_when_the_table_is_made(queue: Queue, tmp_path: Path) -> None:
     for key in queue.waiting():
-        grade_job(queue, key)
+        queue.run_job(key)
     policy_file, times_file = tmp_path / "late.yaml", tmp_path / "times.csv"
     policy_file.write_text("due: 2026-11-30T12:00:00Z\nper_day: 0.5\n")
     times_file.write_text("name,submitted\ns2,2026-11-30T13:00:00Z\ns1,2026-11-30T11:00:00Z\n")
@@ -300,19 +293,18 @@ def test_an_array_job_works_off_its_shares(
     sbatch.write_text('#!/bin/sh\nfor i in 0 1; do SLURM_ARRAY_TASK_ID=$i sh "$2" || exit 1; done\n')
     sbatch.chmod(0o755)
     monkeypatch.setenv("PATH", f"{bin_folder}:{os.environ['PATH']}")
-    assert "#SBATCH --array=0-1" in slurm_script(queue, 2)
-    run_on_slurm(queue, 2)
+    JobExecutor("slurm", 2).run(queue, queue.waiting(), print)
     assert queue.waiting() == ()
-    assert (queue.folder / "slurm.sh").is_file()
+    assert "#SBATCH --array=0-1" in (queue.folder / "slurm.sh").read_text()
 
 
 def test_what_a_machine_lacks_is_said(queue: Queue, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "/nowhere")
     with pytest.raises(ExecutorUnavailable, match="sbatch"):
-        run_on_slurm(queue, 2)
+        JobExecutor("slurm", 2).run(queue, queue.waiting(), print)
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(ExecutorUnavailable, match=r"pip install .*distributed|\[cluster\]"):
-        run_on_dask(queue, queue.waiting(), "tcp://nowhere:1", lambda key: None)
+        JobExecutor("dask", cluster="tcp://nowhere:1").run(queue, queue.waiting(), lambda key: None)
     with pytest.raises(QueueError, match="grader cohort"):
         Queue(queue.folder / "none").entries()
 
@@ -356,7 +348,7 @@ class StandIn:
     def __exit__(self, *error: object) -> None:
         """Nothing to close."""
 
-    def submit(self, function: Callable[..., str], *names: str, **options: object) -> Future:
+    def submit(self, function: Callable[..., None], *names: str, **options: object) -> Future:
         assert all(isinstance(each, str) for each in names)
         problem = self.problem if names[-1] == self.deadly else None
         if problem is None and self.has_workers:
@@ -371,13 +363,13 @@ def test_a_cluster_gets_names_alone_and_outlives_a_job_that_kills(
     keys = queue.waiting()
     monkeypatch.setitem(sys.modules, "distributed", StandIn(keys[1]))  # type: ignore[arg-type]  # a stand-in
     done: list[str] = []
-    run_on_dask(queue, keys, "tcp://cluster:1", done.append)
+    JobExecutor("dask", cluster="tcp://cluster:1").run(queue, keys, done.append)
     assert sorted(done) == sorted(keys)
     assert queue.waiting() == ()
     verdicts = [result.verdict for key in keys if (result := queue.result(key)) is not None]
     assert [verdict is GradingVerdict.BROKEN for verdict in verdicts] == [False, True, False, False]
     with pytest.raises(ExecutorUnavailable, match="--cluster"):
-        run_on_dask(queue, keys, "", done.append)
+        JobExecutor("dask", cluster="").run(queue, keys, done.append)
 
 
 @pytest.mark.parametrize(
@@ -388,10 +380,10 @@ def test_a_job_that_fails_on_the_cluster_costs_no_other_job_its_result(
 ) -> None:
     keys = queue.waiting()
     monkeypatch.setitem(sys.modules, "distributed", StandIn(keys[0], problem))  # type: ignore[arg-type]
-    monkeypatch.setattr("grader.cohort.queue.grade_job", record_incident)
+    monkeypatch.setattr(Queue, "run_job", Queue.record_loss)
     done: list[str] = []
     with pytest.raises(ExecutorUnavailable, match=r"1 of 4 jobs failed .*the same command"):
-        run_on_dask(queue, keys, "tcp://cluster:1", done.append)
+        JobExecutor("dask", cluster="tcp://cluster:1").run(queue, keys, done.append)
     assert sorted(done) == sorted(keys)
     assert queue.waiting() == keys[:1]
 
@@ -401,7 +393,7 @@ def test_a_cluster_without_workers_is_not_waited_for(queue: Queue, monkeypatch: 
     cluster.has_workers = False
     monkeypatch.setitem(sys.modules, "distributed", cluster)  # type: ignore[arg-type]  # a stand-in
     with pytest.raises(ExecutorUnavailable, match="does the scheduler have workers"):
-        run_on_dask(queue, queue.waiting(), "tcp://cluster:1", lambda key: None)
+        JobExecutor("dask", cluster="tcp://cluster:1").run(queue, queue.waiting(), lambda key: None)
 
 
 @pytest.mark.long
@@ -412,11 +404,11 @@ def test_a_real_cluster_gives_the_same_bytes(queue: Queue, tmp_path: Path) -> No
 
     other = Queue(tmp_path / "other")
     prepare_queue(other, tmp_path / "in", queue.assignment(), TERMS)
-    run_locally(other, other.waiting(), 1, lambda key: None)
+    JobExecutor(jobs=1).run(other, other.waiting(), lambda key: None)
     done: list[str] = []
     options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": "ERROR"}
     with LocalCluster(**options, local_directory=str(tmp_path)) as cluster:
-        run_on_dask(queue, queue.waiting(), cluster.scheduler_address, done.append)
+        JobExecutor("dask", cluster=cluster.scheduler_address).run(queue, queue.waiting(), done.append)
     assert len(done) == 4
     assert as_json(gradebook_rows(queue)) == as_json(gradebook_rows(other))
 
@@ -433,7 +425,7 @@ def test_levels_do_not_change_points(tmp_path: Path) -> None:
         made = Queue(tmp_path / f"queue{int(level)}")
         prepare_queue(made, folder, assignment, GradingOptions(level, may_lower_level=False))
         for key in made.waiting():
-            grade_job(made, key)
+            made.run_job(key)
         tables.append([(row.name, row.points, dict(row.tests)) for row in gradebook_rows(made)])
     assert all(table == tables[0] for table in tables)
 

@@ -15,12 +15,13 @@ from click.testing import CliRunner
 
 from grader.__main__ import main
 from grader.cohort.gradebook import WAITING, gradebook_rows
-from grader.cohort.queue import Queue, _incident_result, prepare_queue, record_incident
+from grader.cohort.queue import Queue, _incident_result, prepare_queue
 from grader.grading import GradingOptions
 from grader.reading import read_assignment
 from kit.host.job_executors import MAX_RESULT_BYTES
+from kit.host.job_folder import JobExecutor
 from kit.host.sandbox.confinement import Level
-from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
+from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from tests.fuzz.damage import damage_json, nudge_json
 from tests.grader.conftest import FORWARD, write_assignment
 
@@ -149,12 +150,12 @@ def test_whatever_is_changed_in_a_result_it_is_read_or_made_again(
 def test_no_verdict_is_lost_by_one_that_comes_late(queue: Queue) -> None:
     key, other = queue.waiting()
     saved(queue, key)
-    record_incident(queue, key)  # the worker saved it and died before it could say so
+    queue.record_loss(key)  # the worker saved it and died before it could say so
     queue.save_result(key, _incident_result(queue, key))  # another worker that was given the job as well
     result = queue.result(key)
     assert result is not None
     assert result.verdict is GradingVerdict.PASS
-    record_incident(queue, other)
+    queue.record_loss(other)
     saved(queue, other)  # late, but a verdict
     assert {row.verdict for row in gradebook_rows(queue)} == {"pass"}
 
@@ -164,7 +165,7 @@ def test_who_has_no_result_after_all_workers_is_said(tmp_path: Path, monkeypatch
     works = tmp_path / "in"
     works.mkdir()
     (works / "a.py").write_text(FORWARD)
-    monkeypatch.setattr("grader.cli.cohort.run_locally", lambda queue, keys, jobs, on_done: None)
+    monkeypatch.setattr(JobExecutor, "run", lambda executor, queue, keys, on_done: None)
     command = [
         "cohort",
         str(works),

@@ -24,7 +24,7 @@ from grader.cohort.gradebook import (
     attention_blocks,
     gradebook_rows,
 )
-from grader.cohort.queue import Queue, grade_job, prepare_queue, record_incident
+from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
@@ -142,7 +142,7 @@ def test_a_large_source_of_a_reward_is_not_parsed(tmp_path: Path, monkeypatch: p
     queue = Queue(tmp_path / "queue")
     prepare_queue(queue, cohort, read_assignment(write_assignment(tmp_path / "sheet", REWARD)), TERMS)
     monkeypatch.setattr("ast.parse", lambda *given: pytest.fail("it was parsed"))
-    result = grade_job(queue, *queue.waiting())
+    result = queue.run_job(*queue.waiting())
     assert result is not None
     assert (result.points, result.tests[0].status.value) == (0.0, "student_error")
     assert "larger than 128 KiB" in result.tests[0].rationale
@@ -165,7 +165,7 @@ def test_the_same_error_in_three_works_is_the_graders_fault(
     queue = Queue(tmp_path / "queue")
     prepare_queue(queue, cohort, read_assignment(write_assignment(tmp_path / "sheet")), TERMS)
     for key in queue.waiting():
-        assert grade_job(queue, key) is None
+        assert queue.run_job(key) is None
     assert queue.waiting() == (), "it is not tried again and again"
     table = gradebook_rows(queue)
     is_fault = count >= SAME_ERRORS
@@ -194,7 +194,7 @@ def test_unreadable_work_is_listed_first_with_its_way_out(tmp_path: Path) -> Non
     queue = Queue(tmp_path / "queue")
     prepare_queue(queue, cohort, read_assignment(folder), TERMS)
     assert len(queue.waiting()) == 1, "equal works, whatever lies beside them"
-    record_incident(queue, *queue.waiting())
+    queue.record_loss(*queue.waiting())
     lines = lines_of(attention_blocks(gradebook_rows(queue)), Page(width=200))
     assert lines[0] == "3 have no grade and need your attention:"
     assert lines[1].startswith("  j.doe_hw1: unreadable. controller.py is missing.")
@@ -229,7 +229,7 @@ def test_secrets_that_are_not_used_are_said_and_cost_nothing(tmp_path: Path) -> 
         queue = Queue(tmp_path / f"queue{len(more)}")
         command = [*asked, *more, "--queue", str(queue.folder)]
         CliRunner().invoke(main, command)
-        grade_job(queue, *queue.waiting())
+        queue.run_job(*queue.waiting())
         return CliRunner().invoke(main, command), gradebook_rows(queue)[0]
 
     done, row = graded()
@@ -258,7 +258,7 @@ def test_a_recording_with_a_broken_header_is_the_students(tmp_path: Path, shape:
     (cohort / "ada.npz").write_bytes(out.getvalue())
     queue = Queue(tmp_path / "queue")
     prepare_queue(queue, cohort, read_assignment(write_assignment(tmp_path / "sheet", DRIVE)), TERMS)
-    result = grade_job(queue, *queue.waiting())
+    result = queue.run_job(*queue.waiting())
     assert result is not None
     assert result.tests[0].status.value == "student_error"
     assert "not a recording of the kit, or damaged" in result.tests[0].rationale
@@ -276,7 +276,7 @@ def test_a_recording_that_no_reader_expects_has_no_grade(
     (cohort / "ada.npz").write_bytes(b"x")
     queue = Queue(tmp_path / "queue")
     prepare_queue(queue, cohort, read_assignment(write_assignment(tmp_path / "sheet", DRIVE)), TERMS)
-    assert grade_job(queue, *queue.waiting()) is None
+    assert queue.run_job(*queue.waiting()) is None
     (row,) = gradebook_rows(queue)
     assert (row.verdict, row.final) == ("unreadable", None)
     assert "cannot be read (MemoryError)" in row.note

@@ -33,9 +33,9 @@ from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
+from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from kit.run.recording import Input, Recording, load_recording, save_recording
 from kit.run.scenario import find_scenario
-from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from tests.solutions.drives import AGAIN, STILL, ahead, driven, left
 
 ASSIGNMENT_TEXT = """

@@ -13,7 +13,7 @@ import pytest
 
 from grader import grading
 from grader.assignment import Assignment
-from grader.cohort.queue import Queue, grade_job, judge_anew, prepare_queue
+from grader.cohort.queue import Queue, judge_anew, prepare_queue
 from grader.evidence.findings import Findings
 from grader.grading import GradingOptions, grade, grade_and_keep, judge_findings
 from grader.kinds.contract import kind_names
@@ -179,7 +179,7 @@ def test_a_changed_word_regrades_a_class_without_a_program(
     prepare_queue(queue, tmp_path / "in", read_assignment(folder), options)
     assert judge_anew(queue) == 0
     for key in queue.waiting():
-        grade_job(queue, key)
+        queue.run_job(key)
     after = edited(folder, "points: 3", "points: 4")
     monkeypatch.setattr(grading, "open_grading", None)
     prepare_queue(queue, tmp_path / "in", after, options)

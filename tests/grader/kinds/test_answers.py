@@ -10,7 +10,7 @@ from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
-from kit.school.result import CriterionStatus, GradingVerdict
+from kit.results.grading_result import CriterionStatus, GradingVerdict
 from kit.world.problems import WorldError
 
 ASSIGNMENT_TEXT = """

@@ -19,7 +19,7 @@ from grader.submitted_files import SubmissionRefused
 from kit.host.sandbox.confinement import Level
 from kit.learning.policies.policy_file import policy_bytes
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.school.result import GradingVerdict
+from kit.results.grading_result import GradingVerdict
 from tests.learning.policies.test_evaluation import always
 
 LESSONS = Path(__file__).parents[3] / "lessons"

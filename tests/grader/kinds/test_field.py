@@ -11,7 +11,7 @@ from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
-from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
+from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 
 ASSIGNMENT_TEXT = """
 title: Charges

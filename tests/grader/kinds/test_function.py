@@ -29,8 +29,8 @@ from grader.submission import Submission, read_submission
 from kit.host.sandbox.confinement import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json
+from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from kit.school.lessons.reading import lessons_folder
-from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
 from kit.world.problems import WorldError
 from tests.cases import every_case
 from tests.grader.conftest import LOCKS

@@ -18,7 +18,7 @@ from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
 from kit.launch.launch_file_process import LaunchTarget
-from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
+from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
 

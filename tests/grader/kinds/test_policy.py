@@ -16,7 +16,7 @@ from kit.host.sandbox.confinement import Level
 from kit.learning.policies.policy import Policy, task_interface
 from kit.learning.policies.policy_file import policy_bytes
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.school.result import GradingResult, GradingVerdict
+from kit.results.grading_result import GradingResult, GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.packed import array_bytes, zipped
 from tests.learning.policies.test_evaluation import always

@@ -19,8 +19,8 @@ from kit.host.sandbox.probe import highest_level_up_to
 from kit.learning.policies.policy import task_interface
 from kit.learning.policies.policy_file import policy_bytes
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.results.grading_result import CriterionStatus, GradingResult
 from kit.school.lessons.reading import lessons_folder, solutions_folder
-from kit.school.result import CriterionStatus, GradingResult
 from kit.world.problems import WorldError
 from tests.learning.policies.test_evaluation import always
 

@@ -16,8 +16,8 @@ from grader.kinds.training.kind import CHECKS, collect_evidence
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
+from kit.results.grading_result import CriterionStatus
 from kit.school.lessons.reading import lessons_folder
-from kit.school.result import CriterionStatus
 from kit.world.problems import WorldError
 
 ASSIGNMENT_TEXT = """

@@ -10,8 +10,10 @@ from xml.etree import ElementTree
 import pytest
 
 from grader.reports import FORMATS, cleaning
-from grader.reports.formats import MAX_CLASSROOM_OUTPUT, write_annotations, write_classroom50
-from kit.school.result import CriterionResult, CriterionStatus, GradingResult, Visibility
+from grader.reports.formats.annotations import write_annotations
+from grader.reports.formats.classroom import MAX_CLASSROOM_OUTPUT
+from grader.reports.formats.classroom50 import write_classroom50
+from kit.results.grading_result import CriterionResult, CriterionStatus, GradingResult, Visibility
 from tests.cases import every_case
 
 NASTY = {
@@ -57,7 +59,7 @@ def result(text: str, status: CriterionStatus = CriterionStatus.FAIL) -> Grading
 @every_case("text", NASTY.values(), ids=NASTY)
 @every_case("form", FORMATS)
 def test_what_a_student_wrote_gives_no_orders(form: str, text: str) -> None:
-    report = FORMATS[form](result(text))
+    report = FORMATS[form].write(result(text))
     report.encode("utf-8")
     for line in report.splitlines():
         if form == "annotations":  # each line is a command of its own, and nothing in it another
@@ -73,16 +75,16 @@ def test_what_a_student_wrote_gives_no_orders(form: str, text: str) -> None:
 
 @every_case("text", NASTY.values(), ids=NASTY)
 def test_xml_and_json_can_be_read_again(text: str) -> None:
-    root = ElementTree.fromstring(FORMATS["junit"](result(text)))
+    root = ElementTree.fromstring(FORMATS["junit"].write(result(text)))
     assert (root.attrib["failures"], root.attrib["skipped"]) == ("1", "1"), "the hidden one is no failure"
     for form in ("json", "gradescope", "classroom", "prairielearn", "check50"):
-        json.loads(FORMATS[form](result(text)))
-    assert GradingResult.from_dict(json.loads(FORMATS["json"](result(text)))).points == 1.0
+        json.loads(FORMATS[form].write(result(text)))
+    assert GradingResult.from_dict(json.loads(FORMATS["json"].write(result(text)))).points == 1.0
 
 
 @every_case("text", NASTY.values(), ids=NASTY)
 def test_markdown_stays_text(text: str) -> None:
-    report = FORMATS["markdown"](result(text))
+    report = FORMATS["markdown"].write(result(text))
     assert "<" not in report.replace("&lt;", "")
     assert "@" not in report
     assert "](" not in report.replace("\\]\\(", "")
@@ -116,7 +118,7 @@ def test_text_is_cut_at_its_limit_and_says_so(sign: str) -> None:
 @every_case("sign", ["x", ":"])
 def test_classroom_gets_no_more_than_it_keeps(sign: str) -> None:
     for length in (100, MAX_CLASSROOM_OUTPUT, 10_000):
-        test = json.loads(FORMATS["classroom"](result(sign * length)))["tests"][0]
+        test = json.loads(FORMATS["classroom"].write(result(sign * length)))["tests"][0]
         for text in (test["message"], test["output"]):
             assert len(text) <= MAX_CLASSROOM_OUTPUT
             assert text.endswith("(shortened)") == (length > 100)
@@ -124,27 +126,27 @@ def test_classroom_gets_no_more_than_it_keeps(sign: str) -> None:
 
 @every_case("form", ["junit", "classroom", "prairielearn", "check50", "markdown"])
 def test_reports_for_students_hide_what_is_hidden(form: str) -> None:
-    report = FORMATS[form](result("no"))
+    report = FORMATS[form].write(result("no"))
     assert "s3cret" not in report
     assert "Hidden one" in report
 
 
 def test_gradescope_gets_the_visibility_and_not_a_broken_grade() -> None:
-    content = json.loads(FORMATS["gradescope"](result("no")))
+    content = json.loads(FORMATS["gradescope"].write(result("no")))
     assert [test["visibility"] for test in content["tests"]] == ["visible", "hidden"]
     assert sum(test["score"] for test in content["tests"]) == 1.0
     assert "score" not in content, "a total would tell what a hidden test earned"
     open_result = result("no")
-    content = json.loads(FORMATS["gradescope"](replace(open_result, tests=open_result.tests[:1])))
+    content = json.loads(FORMATS["gradescope"].write(replace(open_result, tests=open_result.tests[:1])))
     assert content["score"] == 1.0
-    broken = json.loads(FORMATS["gradescope"](result("no", CriterionStatus.GRADER_ERROR)))
+    broken = json.loads(FORMATS["gradescope"].write(result("no", CriterionStatus.GRADER_ERROR)))
     assert "score" not in broken
     assert "tests" not in broken
 
 
 def test_classroom_always_gets_tests_and_a_maximum() -> None:
     for status, expected in ((CriterionStatus.PASS, "pass"), (CriterionStatus.GRADER_ERROR, "error")):
-        content = json.loads(FORMATS["classroom"](result("no", status)))
+        content = json.loads(FORMATS["classroom"].write(result("no", status)))
         assert (content["status"], content["max_score"]) == (expected, 2)
         assert isinstance(content["tests"], list)
 
@@ -155,24 +157,24 @@ def test_prairielearn_does_not_grade_what_did_not_run() -> None:
     )
     later = CriterionResult("b", "B", CriterionStatus.SKIPPED, 0.0, 1.0, depends_on="a")
     content = json.loads(
-        FORMATS["prairielearn"](GradingResult("r", "v", "s", "g", "public", 1, "p", (stopped, later)))
+        FORMATS["prairielearn"].write(GradingResult("r", "v", "s", "g", "public", 1, "p", (stopped, later)))
     )
     assert content["gradable"] is False
     assert content["format_errors"] == ["work.py:3: SyntaxError"]
-    assert json.loads(FORMATS["prairielearn"](result("no")))["score"] == pytest.approx(1 / 2)
+    assert json.loads(FORMATS["prairielearn"].write(result("no")))["score"] == pytest.approx(1 / 2)
 
 
 def test_check50_tells_failed_from_unknown() -> None:
-    assert [test["passed"] for test in json.loads(FORMATS["check50"](result("no")))["results"]] == [
+    assert [test["passed"] for test in json.loads(FORMATS["check50"].write(result("no")))["results"]] == [
         False,
         None,
     ]
-    broken = json.loads(FORMATS["check50"](result("no", CriterionStatus.GRADER_ERROR)))["results"]
+    broken = json.loads(FORMATS["check50"].write(result("no", CriterionStatus.GRADER_ERROR)))["results"]
     assert broken[0]["passed"] is None
 
 
 def test_junit_tells_a_failure_from_an_error() -> None:
-    root = ElementTree.fromstring(FORMATS["junit"](result("no", CriterionStatus.GRADER_ERROR)))
+    root = ElementTree.fromstring(FORMATS["junit"].write(result("no", CriterionStatus.GRADER_ERROR)))
     assert (root.attrib["failures"], root.attrib["errors"]) == ("0", "1")
     names = [case.attrib["name"] for case in root.iter("testcase")]
     assert len(set(names)) == len(names)
@@ -182,7 +184,7 @@ def test_junit_tells_a_failure_from_an_error() -> None:
 def test_points_are_shown_with_at_most_two_decimals(form: str) -> None:
     part = replace(result("no").tests[0], points=1.234567)
     assert part.metrics == {}
-    report = FORMATS[form](replace(result("no"), tests=(part,)))
+    report = FORMATS[form].write(replace(result("no"), tests=(part,)))
     assert "1.2345" not in report
 
 

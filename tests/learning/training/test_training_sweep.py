@@ -18,10 +18,10 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.document.layout import lines_of
-from kit.host.job_executors import run_on_dask
+from kit.host.job_folder import JobExecutor
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.training.runs import RunError, TrainingRun
-from kit.learning.training.sweep_worker import run_job_by_key, start_sweep
+from kit.learning.training.sweep_worker import start_sweep
 from kit.learning.training.training_sweep import (
     SweepResult,
     TrainingSweep,
@@ -151,7 +151,7 @@ def test_a_cluster_trains_the_same(tmp_path: Path) -> None:
     options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": "ERROR"}
     with LocalCluster(**options, local_directory=str(tmp_path)) as cluster:
         address = cluster.scheduler_address
-        run_on_dask(other.folder, run_job_by_key, other.waiting(), address, done.append, other.record_loss)
+        JobExecutor("dask", cluster=address).run(other, other.waiting(), done.append)
     assert sorted(done) == sorted(entry.key for entry in one.entries())
     for key in done:
         first, second = one.result(key), other.result(key)

@@ -14,6 +14,7 @@ from grader.evidence.submission_clock import SubmissionClock, TrainingProgressRe
 from kit.document.blocks import Block, Code, Marked
 from kit.document.layout import Page, rows_of
 from kit.document.rows import MARGIN, Row, row, text_width
+from kit.results.grading_result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 from kit.school.lessons.catalogue import LessonProgress, lesson_progress_from_events
 from kit.school.lessons.checking import CheckReport
 from kit.school.lessons.lesson_session import LessonHint
@@ -26,7 +27,6 @@ from kit.school.lessons.lesson_text import (
 )
 from kit.school.lessons.reading import find_lesson, lesson_names, lessons_folder, read_lesson
 from kit.school.lessons.records import Lesson
-from kit.school.result import CriterionResult, CriterionStatus, GradingResult, GradingVerdict
 from kit.tui.rows import lesson_rows
 from kit.tui.widgets.lesson_page import LEAST_PICTURE
 from tests.tui.lesson_folder import write_lessons

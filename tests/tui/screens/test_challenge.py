@@ -11,11 +11,12 @@ from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
 from kit.school.game import leaderboard
-from kit.school.game.challenge import Challenge, HandedIn, Judgement
+from kit.school.game.challenge import Challenge, HandedIn
 from kit.school.game.challenge_kinds.exploit import ExploitTask, best_moves, shortest_moves
 from kit.school.game.challenge_kinds.repair import RepairTask
 from kit.school.game.challenge_kinds.training import TrainingTask
 from kit.school.game.challenges import all_challenges, answers_folder, challenge_medals
+from kit.school.game.judgement import Judgement
 from kit.school.game.levels import CHALLENGES_WORLD
 from kit.school.game.medal import Medal
 from kit.school.progress import ProgressJournal

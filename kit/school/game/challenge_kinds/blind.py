@@ -19,7 +19,8 @@ from kit.school.game.board import (
     shortest_way,
     step,
 )
-from kit.school.game.challenge import ChallengeTask, HandedIn, Judgement, judge_count
+from kit.school.game.challenge import ChallengeTask, HandedIn
+from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.school.game.moves_board import MovesBoard, read_moves
 from kit.world.yaml_section import Section

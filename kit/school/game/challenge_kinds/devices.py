@@ -11,7 +11,8 @@ from typing import Final, Self
 from kit.document.rows import Row, row
 from kit.layers.cover import minimum_cover
 from kit.school.game.board import WALL, Board, Cell, History, free_cells, grid_rows
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn, Judgement, judge_count
+from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
 

@@ -18,7 +18,8 @@ from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import read_requirements
 from kit.plain_files import is_file_there
 from kit.school.game.board import Board, History
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn, Judgement, judge_count
+from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.world.documents import open_document
 from kit.world.problems import WorldError

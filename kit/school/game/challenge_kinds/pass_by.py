@@ -13,7 +13,8 @@ from typing import Final, Self
 from kit.document.rows import Row, row
 from kit.plain_text import quoted
 from kit.school.game.board import MOVES, Board, Cell, find_cell, grid_rows, letters_of, shortest_way, step
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn, Judgement, judge_count
+from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
 

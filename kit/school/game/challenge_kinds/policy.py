@@ -27,14 +27,8 @@ from kit.school.game.board import (
     grid_rows,
     step,
 )
-from kit.school.game.challenge import (
-    AnswerComparison,
-    ChallengeError,
-    ChallengeTask,
-    HandedIn,
-    Judgement,
-    judge_share,
-)
+from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn, judge_share
+from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.world.yaml_section import Section
 
 PIT, GOAL, START = "X", "G", "S"

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Self
 
-from kit.school.game.challenge import AnswerComparison, ChallengeError, ChallengeTask, HandedIn, Judgement
+from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.school.lessons.checking import ExerciseCheck
 from kit.school.lessons.reading import STARTER_FOLDER

@@ -10,7 +10,8 @@ from typing import Self
 
 from kit.document.rows import Row, row
 from kit.school.game.board import Board, Cell, distances_to, find_cell, grid_rows, shortest_way, step
-from kit.school.game.challenge import ChallengeTask, HandedIn, Judgement, judge_count
+from kit.school.game.challenge import ChallengeTask, HandedIn
+from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.school.game.moves_board import MovesBoard, read_moves
 from kit.world.yaml_section import Section

@@ -11,7 +11,8 @@ import numpy as np
 
 from kit.document.rows import Row, row
 from kit.school.game.board import MOVES, Board, History, distances_to, find_cell, free_cells, step
-from kit.school.game.challenge import AnswerComparison, ChallengeError, ChallengeTask, HandedIn, Judgement
+from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
 

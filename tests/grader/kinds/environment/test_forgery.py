@@ -10,7 +10,7 @@ from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
-from kit.school.result import CriterionStatus, GradingResult, GradingVerdict
+from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from tests.grader.conftest import LOCKS
 
 LESSON = Path(__file__).parents[4] / "lessons" / "10-words-of-learning" / "hallway"

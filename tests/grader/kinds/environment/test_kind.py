@@ -12,7 +12,7 @@ from grader.kinds.environment.examination import sector_minima
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
-from kit.school.result import CriterionStatus, GradingResult
+from kit.results.grading_result import CriterionStatus, GradingResult
 from kit.world.problems import WorldError
 from tests.grader.conftest import LOCKS
 from tests.learning.worlds import NINE_NUMBERS

@@ -29,7 +29,7 @@ from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.sandbox import landlock
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
-from kit.school.result import CriterionStatus, GradingVerdict
+from kit.results.grading_result import CriterionStatus, GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import TEMPLATES
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.inspection.ros_text import CommentOptions, definition_text
+from kit.inspection.definition_text import CommentOptions, definition_text
 from kit.msg.definition_writer import is_shipped
 from kit.msg.interfaces import find_interface, interface_names, register_packages
 from tests.inspection.conftest import runner_for

@@ -1,5 +1,4 @@
-"""The result of grading one submission: one record that the grader writes and the screens, the line mode and all
-reports read.
+"""The result of grading one submission.
 
 A run of the grader ends in one of three verdicts: the work passes, the work fails, or the grader is broken. A broken
 grader neither gives nor takes points: the run has no grade.
@@ -8,16 +7,15 @@ grader neither gives nor takes points: the run has no grade.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from datetime import datetime
 from enum import StrEnum
-from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
-from kit.document.blocks import Picture, Text, Tone
 from kit.field_types import check_field_types
-from kit.plain_text import printable_text
+
+R = TypeVar("R")
 
 SCHEMA: Final = 1
 
@@ -28,6 +26,8 @@ WITH_SECRET: Final = "public+secret"
 
 MAX_LOG_LENGTH: Final = 4000
 """Characters of a program's output that are kept with a criterion."""
+_OWN_READING: Final = ("tests", "notices", "timing")
+"""Fields of a result that ``from_dict`` does not take as they are."""
 
 
 class CriterionStatus(StrEnum):
@@ -260,10 +260,6 @@ class GradingResult:
         return replace(self.without_secrets(), tests=tuple(test.for_student() for test in self.tests))
 
 
-_OWN_READING: Final = ("tests", "notices", "timing")
-"""Fields of a result that ``from_dict`` does not take as they are."""
-
-
 def _timing_from_dict(content: Mapping[str, Any]) -> GradingTiming:
     timing = _checked(GradingTiming, content)
     if timing.started:
@@ -288,113 +284,6 @@ def _criterion_from_dict(content: Mapping[str, Any]) -> CriterionResult:
     return criterion
 
 
-R = TypeVar("R")
-
-
 def _checked(record: type[R], content: Mapping[str, Any]) -> R:
     check_field_types(record, content)
     return record(**content)
-
-
-def rounded_points(points: float) -> float:
-    """Points with at most two decimals, for formats that show a number as it is written."""
-    return round(points, 2)
-
-
-def format_points(points: float) -> str:
-    """Points with at most two decimals: ``3``, ``2.5``."""
-    return f"{points:.2f}".rstrip("0").rstrip(".")
-
-
-INDENT: Final = 5
-"""Columns before what is said of a criterion below its title."""
-MAX_RATIONALE: Final = 600
-MAX_VALUE: Final = 300
-"""Characters of an expected or actual value that are shown."""
-
-MARKS: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
-    {
-        CriterionStatus.PASS: "[ok]",
-        CriterionStatus.PARTIAL: "[part]",
-        CriterionStatus.FAIL: "[no]",
-        CriterionStatus.STUDENT_ERROR: "[error]",
-        CriterionStatus.TIMEOUT: "[timeout]",
-        CriterionStatus.RESOURCE_LIMIT: "[limit]",
-        CriterionStatus.PROTOCOL_ERROR: "[error]",
-        CriterionStatus.SKIPPED: "[--]",
-        CriterionStatus.GRADER_ERROR: "[grader error]",
-    }
-)
-"""Words, not colours: they survive a pipe and a screen reader."""
-
-VERDICT_TEXTS: Final[Mapping[GradingVerdict, str]] = MappingProxyType(
-    {
-        GradingVerdict.PASS: "All tests that ran here passed.",
-        GradingVerdict.FAIL: "Not passed yet.",
-        GradingVerdict.BROKEN: "The grader failed: there is no grade, and no points were lost.",
-    }
-)
-
-
-def points_text(points: float, max_points: float) -> str:
-    """``2.5 of 4``"""
-    return f"{format_points(points)} of {format_points(max_points)}"
-
-
-def criterion_blocks(
-    criterion: CriterionResult, *, hints: int = 0, more_hints: str = "", log_lines: int = 0
-) -> list[Text | Picture]:
-    """One criterion: mark, title and points; of one that is not passed also the rationale, the expected and the actual value,
-    and the next steps.
-
-    ``hints``: how many of its hints to show. ``more_hints``: how to see more, shown where there are more.
-    ``log_lines``: how many of the last lines that a crashed program printed to show.
-    """
-    blocks: list[Text | Picture] = [_heading(criterion)]
-    if criterion.is_passed:
-        return blocks
-    blocks.append(_paragraph(_shortened(criterion.rationale, MAX_RATIONALE)))
-    if criterion.actual:
-        values = (("expected:", criterion.expected), ("actual:  ", criterion.actual))
-        blocks += [_paragraph(_shortened(text), Tone.DIM, lead=name) for name, text in values if text]
-    of = len(criterion.hints)
-    blocks += [
-        _paragraph(text, Tone.BOLD, lead=f"Hint {number} of {of}:")
-        for number, text in enumerate(criterion.hints[:hints], 1)
-    ]
-    if more_hints and of > hints:
-        blocks.append(_paragraph(more_hints, Tone.DIM))
-    if log_lines and criterion.log:
-        # A character before each: no line of a report begins with what a student's program printed.
-        lines = tuple(f"| {printable_text(line)}" for line in criterion.log.splitlines()[-log_lines:])
-        blocks.append(_paragraph("what the program printed:", Tone.DIM))
-        blocks.append(Picture(lines, INDENT, Tone.DIM, is_tight=True))
-    return [each for each in blocks if not isinstance(each, Text) or each.text]
-
-
-def replay_lines(criteria: Sequence[CriterionResult]) -> list[str]:
-    """The picture of the first criterion that was lost and has one; empty where none has."""
-    picture = next((each.replay for each in criteria if not each.is_passed and each.replay), "")
-    return picture.rstrip().splitlines()
-
-
-def _heading(criterion: CriterionResult) -> Text:
-    tone = Tone.GOOD if criterion.is_passed else Tone.BAD if criterion.is_judged else Tone.DIM
-    points = "" if criterion.is_withheld else f": {points_text(criterion.points, criterion.max_points)}"
-    return Text(
-        " ".join(criterion.title.split()),
-        Tone.PLAIN if criterion.is_passed else Tone.BOLD,
-        lead=MARKS[criterion.status],
-        lead_tone=tone,
-        tail=points,
-        hang=INDENT,
-        is_tight=True,
-    )
-
-
-def _paragraph(text: str, tone: Tone = Tone.PLAIN, lead: str = "") -> Text:
-    return Text(text, tone, lead=lead, lead_tone=tone, indent=INDENT, is_tight=True)
-
-
-def _shortened(text: str, limit: int = MAX_VALUE) -> str:
-    return text if len(text) <= limit else f"{text[:limit]} ... (shortened)"

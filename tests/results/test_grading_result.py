@@ -8,17 +8,19 @@ import math
 import pytest
 
 from kit.document.layout import Page, lines_of
-from kit.school.result import (
-    MARKS,
+from kit.results.grading_result import (
     MAX_LOG_LENGTH,
-    MAX_RATIONALE,
-    MAX_VALUE,
     CriterionResult,
     CriterionStatus,
     EpisodeSummary,
     GradingResult,
     GradingVerdict,
     Visibility,
+)
+from kit.results.result_blocks import (
+    MARKS,
+    MAX_RATIONALE,
+    MAX_VALUE,
     criterion_blocks,
     points_text,
     replay_lines,

@@ -1,0 +1,1 @@
+"""A report format a file, with its ``FORMAT``; ``grader.reports`` finds them here."""

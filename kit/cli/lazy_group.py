@@ -1,0 +1,148 @@
+"""A group of commands whose modules are imported only when they are used, and help that is broken at blanks alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from importlib import import_module
+from types import MappingProxyType
+from typing import Any, Final
+
+import click
+from click.shell_completion import CompletionItem
+
+from kit.cli.process import BAD_INPUT
+from kit.extensions import Extension, ExtensionError, extensions, load
+
+Verbs = Mapping[str, tuple[str, str]]
+_HELD: Final = "\ue000"
+"""In the place of a hyphen while click wraps a text: it would break an option there."""
+
+
+class WholeWordFormatter(click.HelpFormatter):
+    """Breaks the text of a command's help at blanks alone."""
+
+    def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
+        super().write_usage(prog, _held(args), prefix)
+
+    def write_text(self, text: str) -> None:
+        super().write_text(_held(text))
+
+    def write_dl(self, rows: Iterable[tuple[str, str]], col_max: int = 30, col_spacing: int = 2) -> None:
+        super().write_dl([(first, _held(second)) for first, second in rows], col_max, col_spacing)
+
+    def getvalue(self) -> str:
+        return super().getvalue().replace(_HELD, "-")
+
+
+def _held(text: str) -> str:
+    return text.replace("-", _HELD)
+
+
+class CommandContext(click.Context):
+    """What a command of the kit or the grader is called with."""
+
+    formatter_class = WholeWordFormatter
+
+
+def _prepared(command: click.Command) -> click.Command:
+    """The command, with its own commands, whose help is broken at blanks alone."""
+    command.context_class = CommandContext
+    for each in command.commands.values() if isinstance(command, click.Group) else ():
+        _prepared(each)
+    return command
+
+
+class LazyGroup(click.Group):
+    """A group that imports a verb's module when the verb is used, and lists the verbs without importing any."""
+
+    context_class = CommandContext
+
+    def __init__(
+        self,
+        *arguments: Any,
+        verbs: Verbs,
+        absent: Mapping[str, str] = MappingProxyType({}),
+        has_others: bool = False,
+        **options: Any,
+    ) -> None:
+        """``verbs``: by name ``module`` or ``module:command``, and its line in ``--help``; none for a verb that is not for
+        people. ``absent``: verbs that somebody may look for and why they are not there. ``has_others``: whether verbs and
+        dialogues of other packages are verbs of it."""
+        super().__init__(*arguments, **options)
+        self._verbs = verbs
+        self._has_others = has_others
+        self._absent = absent
+
+    def _others(self) -> dict[str, Extension]:
+        """The verbs and dialogues of other packages, by the names that the kit itself does not use."""
+        if not self._has_others:
+            return {}
+        return {**extensions("dialogues", list(self._verbs)), **extensions("verbs", list(self._verbs))}
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return [*self._verbs, *self._others()]
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in self._verbs:
+            other = self._others().get(cmd_name)
+            return None if other is None else _prepared(_command_of(other))
+        module, _, name = self._verbs[cmd_name][0].partition(":")
+        return _prepared(getattr(import_module(module), name or "command"))
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError:
+            from kit.plain_text import nearest_name
+
+            path = ctx.command_path
+            if args[0] in self._absent:
+                raise click.UsageError(
+                    f"There is no `{path} {args[0]}`: {self._absent[args[0]]}", ctx
+                ) from None
+            near = nearest_name(args[0], self.list_commands(ctx))
+            hint = f" Did you mean `{path} {near}`?" if near else ""
+            raise click.UsageError(
+                f"There is no `{path} {args[0]}`.{hint} `{path} --help` lists the commands.", ctx
+            ) from None
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """The verbs that begin so, without importing any, and the options."""
+        verbs = (
+            CompletionItem(name, help=text)
+            for name, (_, text) in self._verbs.items()
+            if text and name.startswith(incomplete)
+        )
+        others = (CompletionItem(name) for name in self._others() if name.startswith(incomplete))
+        return [*verbs, *others, *click.Command.shell_complete(self, ctx, incomplete)]
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, text) for name, (_, text) in self._verbs.items() if text])
+        others = self._others()
+        if others:
+            with formatter.section("Commands of other packages"):
+                formatter.write_dl([(name, f"From {each.source}.") for name, each in others.items()])
+
+
+class UnusablePart(click.ClickException):
+    """A verb of another package cannot be used."""
+
+    exit_code = BAD_INPUT
+
+
+def _command_of(extension: Extension) -> click.Command:
+    """The verb, or the verb that opens a dialogue, of another package; one that cannot be used ends with a sentence."""
+    try:
+        found = load(extension)
+    except ExtensionError as error:
+        raise UnusablePart(str(error)) from None
+    if extension.group == "dialogues":
+        from kit.cli.dialogue import dialogue_command
+
+        return dialogue_command(extension.name, found)
+    if isinstance(found, click.Command):
+        return found
+    raise UnusablePart(f"The verb {extension.name} of {extension.source} is no click command.")

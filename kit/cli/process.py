@@ -1,0 +1,87 @@
+"""A command line as a process of its own: what ends it, with which exit code, and that all it has written is out."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import signal
+import sys
+from contextlib import suppress
+from errno import EACCES, EDQUOT, EFBIG, EIO, EMFILE, ENAMETOOLONG, ENFILE, ENOSPC, EPERM, EROFS
+from typing import Final, NoReturn
+
+import click
+
+from kit.installation import foreign_distributions, overwritten_text
+from kit.interruption import ended_by_signals, write_out
+
+BAD_INPUT: Final = 2
+"""Exit code where an argument is wrong, or something cannot be read or written."""
+SIGNALLED: Final = 128
+"""Exit codes of what a signal has ended are above this, as shells have them."""
+NO_ROOM: Final = frozenset((ENOSPC, EDQUOT, EFBIG))
+REFUSED: Final = frozenset((EACCES, EPERM, EROFS, EIO, ENAMETOOLONG, EMFILE, ENFILE))
+
+
+def is_environment_error(error: OSError) -> bool:
+    """Whether an error is one of the disk, or of rights: nothing that the kit does wrong."""
+    return error.errno in NO_ROOM or (error.errno in REFUSED and error.filename is not None)
+
+
+def describe_no_room(error: OSError) -> str:
+    """A sentence about a full disk, and the way out."""
+    where = "what it prints or writes" if error.filename is None else error.filename
+    return (
+        f"{where} cannot be written: {error.strerror}. Free some space, or write elsewhere, and run it again."
+    )
+
+
+class ScreenClosed(SystemExit):
+    """A full screen was left: all that was to be kept is on the disk, and the terminal is as it was."""
+
+
+def run_as_process(command: click.Command, name: str) -> NoReturn:
+    """Runs a command line as this process, to whose end belongs that what it has written is out.
+
+    SIGTERM and SIGHUP end it as Ctrl-C does. Where the disk is full, or the folder another user's, one sentence says so in
+    place of a traceback; exit code 2.
+
+    After a full screen Python does not take apart what was imported, which takes longer than to leave the screen: the
+    process ends once its output is written. The screen has given the terminal back and removed what it made; the exit
+    handlers of libraries do not run, which would take compiled code away from threads that are still in it.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # for the imports; see ``kit.__main__``
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    for foreign in foreign_distributions(only_named=True):
+        click.echo(f"{name}: {overwritten_text(*foreign)}", err=True)
+        raise SystemExit(BAD_INPUT)
+    try:
+        with ended_by_signals():
+            try:
+                command(prog_name=name)
+            except SystemExit as stop:
+                if stop.code == BAD_INPUT:  # and why has been said
+                    write_out()
+                sys.stdout.flush()
+                raise
+    except ScreenClosed as closed:
+        write_out()
+        os._exit(closed.code if isinstance(closed.code, int) else 0)
+    except SystemExit as stop:
+        if not isinstance(stop.code, int) or stop.code <= SIGNALLED:
+            raise
+        # Python would kill itself by SIGINT, whatever the code, if an `exec` of a library's was interrupted on the way.
+        atexit._run_exitfuncs()
+        write_out()
+        os._exit(stop.code)
+    except OSError as error:
+        if not is_environment_error(error):
+            raise
+        with suppress(OSError):
+            text = (
+                describe_no_room(error) if error.errno in NO_ROOM else f"{error.filename}: {error.strerror}."
+            )
+            click.echo(f"{name}: {text}", err=True)
+        write_out()
+        raise SystemExit(BAD_INPUT) from None
+    raise SystemExit(0)  # a command that ends otherwise has said so by a SystemExit of its own
