@@ -11,6 +11,7 @@ from typing import Any, Final
 
 import click
 
+from kit.cli.options import ExistingPath
 from kit.cli.ros.message_options import QosOptions, find_or_exit, make_message, parse_fields, with_qos_options
 from kit.cli.ros.world_client import (
     exit_with_error,
@@ -397,7 +398,7 @@ for verb in (
 @click.option("-n", "--node-name", help="Name of the publishing node.")
 @click.option(
     "--yaml-file",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    type=ExistingPath(dir_okay=False, path_type=Path),
     help="Read the messages from this file: one after the other, divided by ---.",
 )
 @click.option("--stdin", is_flag=True, help="Read the message from standard input.")
