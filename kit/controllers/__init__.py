@@ -65,8 +65,8 @@ def find_controller(name: str, folder: Path | None = None) -> ControllerFile:
         if path.exists():
             raise LookupError(f"{name}: a controller is a Python file, NAME.py; this is {_kind_of(path)}.")
         tried = "" if folder is None or path.is_absolute() else f", neither here nor in {folder}"
-        near = near_file(name)
-        hint = f" Did you mean {near}?" if near else ""
+        near_path = near_file(name)
+        hint = f" Did you mean {near_path}?" if near_path else ""
         raise LookupError(f"{name}: there is no such file{tried}.{hint}")
     known = {item.name: item for item in (*kit_controllers(), *(user_controllers(folder) if folder else ()))}
     if name in known:

@@ -60,7 +60,7 @@ def kit(*words: str | Path) -> Result:
         (("run", "simple", "--steps", "1", "--controller"), "drive.py"),
         (("world", "check"), "room.yaml"),
         (("launch",), "room.launch.py"),
-        (("maps", "from-photo"), "room.png"),
+        (("maps", "from-photo", "--width", "4"), "room.png"),
         (("train", "turn", "--imitate"), "drive.npz"),
     ],
 )
