@@ -33,7 +33,7 @@ def register() -> None:
             register_environment(
                 identifier,
                 entry_point=f"kit.learning.environment.env:{name}Env",
-                vector_entry_point=f"kit.learning.environment.env:{name}VectorEnv",
+                vector_entry_point=f"kit.learning.environment.vector_env:{name}VectorEnv",
             )
 
 

@@ -193,7 +193,7 @@ def find_demonstrations(names: tuple[str, ...], workspace: Path | None) -> tuple
 
 def find_policy(name: str | None, workspace: Path | None, *, newest: bool = False) -> tuple[str, Policy]:
     """Finds a policy by the name of its run, or by its file; without a name that of the last run. Returns its title too."""
-    if name is not None and (name.endswith(".npz") or "/" in name):
+    if name is not None and (name.endswith((".npz", ".zip")) or "/" in name):
         return Path(name).stem, load_policy(Path(name))
     run = find_run(runs_folder(workspace), name)
     return run.name, run.policy(newest=newest)
@@ -201,7 +201,7 @@ def find_policy(name: str | None, workspace: Path | None, *, newest: bool = Fals
 
 def sweep_journal(name: str | None, workspace: Path | None) -> Path:
     """The file that keeps the sweep of a policy, which is named as in ``find_policy``: beside it, or in its run."""
-    if name is not None and (name.endswith(".npz") or "/" in name):
+    if name is not None and (name.endswith((".npz", ".zip")) or "/" in name):
         return Path(name).with_suffix(".sweep.jsonl")
     return find_run(runs_folder(workspace), name).folder / "sweep.jsonl"
 

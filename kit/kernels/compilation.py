@@ -110,6 +110,10 @@ class TypedKernel:
             self._code = compiled_for(self._kernel, arguments)
         return self._code(*arguments)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Machine code belongs to a process: a copy has its own at its first call."""
+        return {"_kernel": self._kernel, "_code": None}
+
 
 def c_function(function: Callable[..., Any], signature: str) -> int:
     """Returns the address of a function compiled for C code to call; ``signature``: in numba's words.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -214,7 +216,7 @@ class BatchEnv:
         over = transition.ended.nonzero()[0]
         last_observations = observations[over]
         if len(over) and self._autoreset:
-            observations[over] = self._reset_worlds(over)
+            observations[over] = self.reset_worlds(over)
         rewards, terms = self._reward(transition)
         return BatchStep(observations, rewards, terminated, truncated, last_observations, transition, terms)
 
@@ -272,12 +274,24 @@ class BatchEnv:
         speeds: FloatArray = average_speeds(before, after, self.task.step_time)
         return speeds
 
-    def _reset_worlds(self, over: IntArray) -> Float32Array:
-        """Begins the next episodes of the worlds ``over`` (m); (m, size) what agents see of them."""
+    def reset_worlds(
+        self, which: IntArray, *, seeds: Sequence[int | None] | None = None, cases: IntArray | None = None
+    ) -> Float32Array:
+        """Begins the next episodes of the worlds ``which`` (m); (m, size) what agents see of them.
+
+        ``seeds``: (m) each begins a world's randomness anew, as that of a single world with this seed; None goes on.
+        ``cases``: (n,) numbers of the cases that all worlds would run, instead of those dealt in turn.
+        """
         self._state = self._state.copy()
-        self._state.episode[over] += 1
-        self._begin_episodes(over)
-        return self._observe(over, len(over), is_fresh=True)
+        self._state.episode[which] += 1
+        if seeds is not None:
+            self._random_keys = self._random_keys.copy()
+            for world, seed in zip(which.tolist(), seeds, strict=True):
+                if seed is not None:
+                    self._random_keys[world] = int(kernels.random_bits(seed, 0)) >> 1
+                    self._state.episode[world] = 0
+        self._begin_episodes(which, cases)
+        return self._observe(which, len(which), is_fresh=True)
 
     # Things that move, and targets
 

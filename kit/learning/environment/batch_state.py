@@ -116,12 +116,31 @@ class BatchState:
     def copy(self) -> BatchState:
         """The same, of which the beginning of episodes may write into every array that it writes into: the others are shared."""
         robots = self.robots
-        own = {name: getattr(self, name).copy() for name in BEGUN_ARRAYS}
-        if self.disturbed.task.disturbances:
-            own["disturbed"] = self.disturbed.copy()
-        return self.changed(
-            robots=robots._replace(**{name: getattr(robots, name).copy() for name in BEGUN_ROBOT_ARRAYS}),
-            **own,
+        return BatchState(
+            robots._replace(
+                pose=robots.pose.copy(),
+                clearance=robots.clearance.copy(),
+                to_go=robots.to_go.copy(),
+                in_target=robots.in_target.copy(),
+                rotation=robots.rotation.copy(),
+            ),
+            episode=self.episode.copy(),
+            case=self.case.copy(),
+            target_row=self.target_row.copy(),
+            phase=self.phase.copy(),
+            target=self.target.copy(),
+            target_heading=self.target_heading.copy(),
+            step=self.step.copy(),
+            forward_steps=self.forward_steps.copy(),
+            move=self.move.copy(),
+            twist=self.twist.copy(),
+            speed=self.speed.copy(),
+            frames=self.frames,  # is replaced
+            obstacle_distance=self.obstacle_distance,  # of which nothing is seen before the first step
+            count=self.count.copy(),
+            achieved=self.achieved.copy(),
+            told_achieved=self.told_achieved.copy(),
+            disturbed=self.disturbed.copy(),
         )
 
     def changed(self, **changes: Any) -> BatchState:
@@ -129,13 +148,7 @@ class BatchState:
         return BatchState(*[changes[name] if name in changes else getattr(self, name) for name in FIELDS])
 
 
-BEGUN_ROBOT_ARRAYS = ("pose", "clearance", "to_go", "in_target", "rotation")
-"""Those of the robots that the beginning of an episode writes into."""
 FIELDS = tuple(field.name for field in fields(BatchState))
-BEGUN_ARRAYS = tuple(
-    name for name in FIELDS if name not in ("robots", "frames", "obstacle_distance", "disturbed")
-)
-"""Those of a state. ``frames`` is replaced; nothing is seen of the other before the first step."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

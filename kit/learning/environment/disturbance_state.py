@@ -32,6 +32,8 @@ class DisturbanceState:
     """(n, depth, r, 2): twists at the wheels, the newest first. All that are older than the last one are in the past."""
     due: FloatArray
     """(n, depth, r): in how many seconds each takes effect; at most 0 where it has already."""
+    is_any: bool
+    """Whether the task has disturbances; asked of it in every step, that would cost as much as a kernel."""
 
     @classmethod
     def allocate(cls, task: LearningTask, n: int) -> DisturbanceState:
@@ -43,11 +45,19 @@ class DisturbanceState:
             wheels=np.zeros((n, task.robots, len(WHEEL_KINDS))),
             commands=np.zeros((n, depth, task.robots, 2)),
             due=np.zeros((n, depth, task.robots)),
+            is_any=bool(task.disturbances),
         )
 
     def copy(self) -> DisturbanceState:
-        return DisturbanceState(
-            self.task, self.shared.copy(), self.wheels.copy(), self.commands.copy(), self.due.copy()
+        """The same, into which ``begin`` may write."""
+        if not self.is_any:
+            return self
+        return replace(
+            self,
+            shared=self.shared.copy(),
+            wheels=self.wheels.copy(),
+            commands=self.commands.copy(),
+            due=self.due.copy(),
         )
 
     def begin(self, which: IntArray, keys: IntArray, first: IntArray) -> None:
@@ -55,9 +65,9 @@ class DisturbanceState:
 
         World ``which[i]`` takes number ``first[i]`` and following of ``keys[i]``.
         """
-        disturbances, robots, shared = self.task.disturbances, self.task.robots, len(SHARED_KINDS)
-        if not disturbances:
+        if not self.is_any:
             return
+        disturbances, robots, shared = self.task.disturbances, self.task.robots, len(SHARED_KINDS)
         drawn = np.empty((len(which), shared + len(WHEEL_KINDS) * robots))
         world_kernels.fill_uniform(keys, first, drawn)
         kinds = (*SHARED_KINDS, *WHEEL_KINDS * robots)
@@ -72,7 +82,7 @@ class DisturbanceState:
         """The state once ``twists`` (n, r, 2), forward [m/s] and turn [rad/s], are sent; a later command never
         overtakes an earlier one. The jitter of robot k is number ``numbers[i] + k`` of ``keys[i]``."""
         disturbances = self.task.disturbances
-        if not disturbances:
+        if not self.is_any:
             return replace(self, commands=twists[:, None])
         factor = 1.0 + self.wheels[:, :, 0]
         forward, turn = twists[:, :, 0] * factor, twists[:, :, 1] * factor

@@ -1,25 +1,25 @@
-"""The tasks as Gymnasium environments, one world or many on the same compiled loops, and their pictures."""
+"""The tasks as Gymnasium environments, and their pictures."""
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
 from gymnasium import spaces
-from gymnasium.vector import AutoresetMode, VectorEnv
-from gymnasium.vector.utils import batch_space
+from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
-from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
+from kit.arrays import Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStatsRecorder
+from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.maps.batch_map import BatchMap
 from kit.learning.maps.obstacles import Obstacle
 from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS, find_task
@@ -86,6 +86,18 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         self.observation_space = self.task.observation.space(self.task.robots)
         self.action_space: spaces.Space[Any] = self.task.actions.space(self.task.robots)
         self._trails = [Trail() for _ in range(self.task.robots)]
+        self._spec: EnvSpec | None = None
+
+    @property
+    def spec(self) -> EnvSpec | None:
+        """What ``gymnasium.make`` made it by, with the steps after which an episode of this task is over."""
+        return self._spec
+
+    @spec.setter
+    def spec(self, spec: EnvSpec | None) -> None:
+        if spec is not None and spec.max_episode_steps is None:
+            spec = dataclasses.replace(spec, max_episode_steps=self.task.max_steps)
+        self._spec = spec
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -93,7 +105,8 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         """Begins an episode. ``options={"case": name}``: on this case, instead of the next one in turn."""
         super().reset(seed=seed)
         batch = self._get_batch(seed)
-        case = self._case_number((options or {}).get("case"))
+        check_options(options, "case")
+        case = case_number(self.task, (options or {}).get("case"))
         observations = batch.reset(seed, cases=None if case is None else np.array([case]))
         for trail in self._trails:
             trail.clear()
@@ -154,18 +167,27 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
             self._batch = BatchEnv(self.task, 1, seed, reward=self._reward, autoreset=False)
         return self._batch
 
-    def _case_number(self, case: object) -> int | None:
-        names = [each.name for _, each in self.task.map_cases()] if case is not None else []
-        if case is not None and case not in names:
-            raise UnknownTask(
-                f"task {self.task.name} has no case {quoted(str(case))}: {suggestion(str(case), names)}"
-            )
-        return None if case is None else names.index(str(case))
-
     def _extend_trails(self) -> None:
         assert self._batch is not None
         for trail, (x, y, _) in zip(self._trails, self._batch.state.pose[0].tolist(), strict=True):
             trail.add(x, y)
+
+
+def check_options(options: Mapping[str, Any] | None, *known: str) -> None:
+    """Raises ValueError for an option of ``reset`` that is none: it would be left out without a word."""
+    for name in options or ():
+        if name not in known:
+            raise ValueError(f"reset() has no option {quoted(str(name))}: {suggestion(str(name), known)}")
+
+
+def case_number(task: LearningTask, case: object) -> int | None:
+    """The number of a case by its name; None for None. UnknownTask if there is none."""
+    if case is None:
+        return None
+    names = [each.name for _, each in task.map_cases()]
+    if case not in names:
+        raise UnknownTask(f"task {task.name} has no case {quoted(str(case))}: {suggestion(str(case), names)}")
+    return names.index(str(case))
 
 
 class TurnEnv(TaskEnv):
@@ -304,77 +326,3 @@ def _outline(shape: Circle | Polygon) -> list[tuple[float, float]]:
         return list(shape.points)
     (x, y), angles = shape.center, np.linspace(0.0, 2.0 * math.pi, ROUND_CORNERS, endpoint=False)
     return [(x + shape.radius * math.cos(angle), y + shape.radius * math.sin(angle)) for angle in angles]
-
-
-# Many worlds
-
-
-class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
-    """``num_envs`` worlds of a task. A world resets itself in the step in which its episode ends (autoreset mode
-    ``SAME_STEP``, as in stable-baselines3): ``info["final_obs"]`` and ``info["final_info"]`` are of that episode.
-    """
-
-    default_task: ClassVar[LearningTask] = TURN
-
-    def __init__(
-        self,
-        num_envs: int,
-        task: LearningTask | Path | str | None = None,
-        *,
-        case: str | None = None,
-        reward: RewardFunction | None = None,
-        seed: int | None = None,
-    ) -> None:
-        """``task``: a variant of the class's own, the name of a task, or a task's file. ``case``: only this case or group of
-        cases. ``reward``: instead of the task's own. ``seed``: by chance if None."""
-        self.metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.SAME_STEP}
-        self.num_envs = num_envs
-        seed = int(np.random.default_rng().integers(2**31)) if seed is None else seed
-        found = resolve_task(task, self.default_task)
-        self.batch = BatchEnv(found if case is None else found.on(case), num_envs, seed, reward=reward)
-        self.single_observation_space = self.batch.observation_space
-        self.single_action_space = self.batch.action_space
-        self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self.action_space = batch_space(self.single_action_space, num_envs)
-        self._recorder = EpisodeStatsRecorder(self.batch)
-
-    def reset(
-        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[ObservationArray, dict[str, Any]]:
-        """Begins new episodes. One seed is enough: each world has its own randomness by its number."""
-        if isinstance(seed, list):
-            raise ValueError("give one seed: each world has its own randomness by its number")
-        self._recorder = EpisodeStatsRecorder(self.batch)
-        return self.batch.reset(seed), {}
-
-    def step(
-        self, actions: IntArray
-    ) -> tuple[ObservationArray, NDArray[Any], BoolArray, BoolArray, dict[str, Any]]:
-        step = self.batch.step(np.asarray(actions))
-        info: dict[str, Any] = {}
-        for episode, last in zip(self._recorder.add(step), step.last_observations, strict=True):
-            final = {
-                "episode": {"r": episode.reward, "l": episode.steps},
-                "case": episode.case,
-                "outcome": episode.outcome.value,
-            }
-            info = self._add_info(info, {"final_obs": last, "final_info": final}, episode.world)
-        return step.observations, step.rewards, step.terminated, step.truncated, info
-
-
-class TurnVectorEnv(BatchVectorEnv):
-    """Many worlds of ``RobotKit/Turn-v0``."""
-
-    default_task = TURN
-
-
-class HallwayVectorEnv(BatchVectorEnv):
-    """Many worlds of ``RobotKit/Hallway-v0``."""
-
-    default_task = HALLWAY
-
-
-class WheelchairsVectorEnv(BatchVectorEnv):
-    """Many worlds of ``RobotKit/Wheelchairs-v0``."""
-
-    default_task = WHEELCHAIRS

@@ -30,8 +30,7 @@ class RobotsParallelEnv(ParallelEnv):
     Each sees its own numbers and does one action of the task's table, or of its continuous ones. All get the same reward,
     and the episode ends for all at the same time: the robots of a task work together.
 
-    >>> from kit.learning.environment.parallel_env import RobotsParallelEnv
-    >>> env = RobotsParallelEnv("wheelchairs")
+    >>> env = kit.RobotsParallelEnv("wheelchairs")
     >>> observations, infos = env.reset(seed=1)
     >>> sorted(observations)
     ['left', 'right']
@@ -77,7 +76,10 @@ class RobotsParallelEnv(ParallelEnv):
     ) -> tuple[dict[str, Observation], dict[str, dict[str, Any]]]:
         """Begins an episode. ``options={"case": name}``: on this case, instead of the next one in turn."""
         self.agents = list(self.possible_agents)
-        seen, info = self._env.reset(seed=seed, options=options)
+        known = {name: value for name, value in (options or {}).items() if name == "case"}
+        seen, info = self._env.reset(
+            seed=seed, options=known
+        )  # PettingZoo's own test gives options that are none
         return self._split(seen), {agent: dict(info) for agent in self.agents}
 
     def step(

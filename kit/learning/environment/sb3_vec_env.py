@@ -4,19 +4,28 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
-from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvObs, VecEnvStepReturn
 
 from kit.arrays import Float32Array, Uint8Array
+from kit.installation import install_command
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
 from kit.learning.environment.mirror import TaskMirror
+from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.rewards import RewardFunction
+
+try:
+    from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
+    from stable_baselines3.common.vec_env.base_vec_env import VecEnvIndices, VecEnvObs, VecEnvStepReturn
+except ImportError:
+    raise ImportError(
+        f"stable-baselines3 is not installed. To have it, type: {install_command('learn')}"
+    ) from None
 
 
 class BatchVecEnv(VecEnv):
@@ -121,12 +130,23 @@ class HalfMirroredVecEnv(VecEnvWrapper):
 
 
 def make_vec_env(
-    task: LearningTask,
+    task: LearningTask | Path | str,
     n: int,
     seed: int = 0,
     reward: RewardFunction | None = None,
     *,
     fixed_cases: bool = False,
 ) -> BatchVecEnv:
-    """``n`` worlds of the task for stable-baselines3; the rest as for ``BatchEnv``."""
-    return BatchVecEnv(BatchEnv(task, n, seed, reward=reward, fixed_cases=fixed_cases))
+    """``n`` worlds of one task side by side, for the algorithms of stable-baselines3 (needs the extra ``learn``).
+
+    ``task``: a task, the name of one of the kit's, or the file of one of your own. ``reward``: instead of the task's, a
+    function of a transition, for all worlds at once. ``fixed_cases``: whether each world runs one case for good.
+
+    Raises UnknownTask if there is no such task, and WorldError if its file is wrong.
+
+    >>> worlds = kit.make_vec_env("turn", 64, seed=1)
+    >>> worlds.reset().shape
+    (64, 9)
+    """
+    found = task if isinstance(task, LearningTask) else find_task(str(task))
+    return BatchVecEnv(BatchEnv(found, n, seed, reward=reward, fixed_cases=fixed_cases))

@@ -15,7 +15,7 @@ from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
 from kit.learning.policies.episode_paths import PathRecorder
-from kit.learning.policies.policy import Policy
+from kit.learning.policies.policy import Policy, PolicyError
 from kit.learning.policies.policy_file import load_policy
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.learning_task import LearningTask
@@ -306,6 +306,10 @@ def evaluate_policy(
     >>> 0.0 <= result.worst.share <= result.mean <= 1.0
     True
     """
+    if not isinstance(policy, (Policy, str, Path)):
+        raise PolicyError(
+            f"a {type(policy).__name__} is not a policy of the kit's: kit.export_policy(model, task) makes one of it."
+        )
     policy = policy if isinstance(policy, Policy) else load_policy(policy)
     evaluator = Evaluator(policy.trained_on.resolve() if task is None else task)
     return evaluator.test(policy, episodes, seed, greedy=greedy)

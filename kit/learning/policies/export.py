@@ -2,15 +2,140 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import torch
 from torch import nn
 
 from kit.arrays import Float32Array
-from kit.learning.policies.policy import ActionSampling
-from kit.learning.policies.policy_network import Activation, LinearLayer, LstmLayer, PolicyNetwork
+from kit.learning.policies.policy import (
+    ActionSampling,
+    Policy,
+    PolicyError,
+    SamplingKind,
+    action_counts,
+    task_interface,
+)
+from kit.learning.policies.policy_network import (
+    Activation,
+    LinearLayer,
+    LstmLayer,
+    PolicyNetwork,
+    average_quantiles,
+    join_heads,
+)
+from kit.learning.tasks.task_spec import TaskSpec
+
+UNCHANGED = (nn.Flatten, nn.Identity, nn.Dropout)
+"""Modules that change nothing of one row of numbers while a policy acts."""
+BETWEEN: Mapping[type[nn.Module], Activation] = {nn.Tanh: "tanh", nn.ReLU: "relu"}
+TRIED = 256
+"""Observations on which an exported policy is compared with what it was made of."""
+SAME_SHARE = 0.99
+"""Of them so many must lead to the same action: two actions may be as good as each other to the last digit."""
+TOLERANCE = 1e-3
+
+
+def export_policy(model: Any, task: Path | str) -> Policy:
+    """Makes a policy of the kit's of what was trained elsewhere on a task, by its name or file: it can be saved, evaluated,
+    watched, raced and exported as any other.
+
+    ``model``: a model of stable-baselines3 or sb3-contrib, or a torch module of linear layers with Tanh or ReLU between
+    them, which gives (n, actions) scores of (n, numbers) observations, or (n, numbers) continuous actions. What was made is
+    tried beside the model before it is returned.
+
+    Raises PolicyError if the model is of an unknown kind, or does not fit the task.
+
+    >>> import torch
+    >>> actor = torch.nn.Sequential(torch.nn.Linear(9, 32), torch.nn.Tanh(), torch.nn.Linear(32, 3))
+    >>> kit.save_policy(kit.export_policy(actor, "turn"), "mine.npz")
+    """
+    spec = TaskSpec(str(task)).frozen()
+    resolved = spec.resolve()
+    choices = action_counts(resolved.actions.space(resolved.robots))
+    try:
+        if isinstance(model, nn.Module):
+            policy = _policy_of_module(model, choices, spec, task_interface(resolved))
+        elif hasattr(model, "policy") and hasattr(model, "predict"):
+            policy = Policy(
+                export_network(model),
+                choices,
+                export_sampling(model),
+                spec,
+                int(model.num_timesteps),
+                task_interface(resolved),
+                export_critic(model),
+            )
+        else:
+            raise TypeError(
+                f"a {type(model).__name__} is neither a model of stable-baselines3 nor a torch module"
+            )
+        policy.check_fits(resolved)
+        policy.check_consistent()
+    except (TypeError, ValueError, IndexError, AttributeError) as error:
+        raise PolicyError(
+            f"this {type(model).__name__} cannot be a policy of task {resolved.name}: {error}"
+        ) from None
+    space = resolved.observation.space(resolved.robots)
+    seen = np.random.default_rng(0).uniform(space.low, space.high, (TRIED, *space.shape)).astype(np.float32)
+    _check_same(policy, model, seen)
+    return policy
+
+
+def _policy_of_module(
+    module: nn.Module, choices: tuple[int, ...], spec: TaskSpec, interface: Mapping[str, Any]
+) -> Policy:
+    parts = [
+        each for each in module.modules() if not list(each.children()) and not isinstance(each, UNCHANGED)
+    ]
+    if unknown := [each for each in parts if not isinstance(each, (nn.Linear, *BETWEEN))]:
+        raise TypeError(f"it has a {type(unknown[0]).__name__}; the kit reads Linear, Tanh and ReLU")
+    if not any(isinstance(each, nn.Linear) for each in parts):
+        raise TypeError("it has no linear layer")
+    ends = type(parts[-1])
+    inner = {BETWEEN[type(each)] for each in parts[:-1] if type(each) in BETWEEN}
+    if len(inner) > 1 or ends is nn.ReLU or (ends is nn.Tanh and choices):
+        raise TypeError(
+            "between its layers must lie Tanh or ReLU, everywhere the same, and nothing after the last"
+        )
+    network = convert_modules(parts)
+    if choices:
+        sampling = ActionSampling("softmax")
+    else:
+        kind: SamplingKind = "noisy-tanh" if ends is nn.Tanh else "normal"
+        sampling = ActionSampling(kind, 1.0, (0.0,) * network.outputs)
+    return Policy(network, choices, sampling, spec, 0, interface)
+
+
+def _check_same(policy: Policy, model: Any, seen: Float32Array) -> None:
+    """PolicyError unless the policy does what the model does for what is ``seen`` (n, numbers)."""
+    player = policy.make_player(len(seen))
+    ours = player.act(seen)
+    if isinstance(model, nn.Module):
+        was_training = model.training
+        model.eval()
+        with torch.no_grad():
+            found = model(torch.as_tensor(seen))
+        model.train(was_training)
+        if not isinstance(found, torch.Tensor) or tuple(found.shape) != player.scores.shape:
+            raise PolicyError(
+                f"the module must return one tensor of shape {player.scores.shape} for {len(seen)} observations; of an "
+                "actor-critic give the actor alone."
+            )
+        theirs = found.cpu().numpy() if policy.choices else found.clamp(-1, 1).cpu().numpy()
+        ours = player.scores if policy.choices else ours
+        is_same = np.isclose(ours, theirs, rtol=TOLERANCE, atol=TOLERANCE).mean()
+    else:
+        theirs = model.predict(seen, deterministic=True)[0]
+        is_same = np.isclose(ours, theirs.reshape(ours.shape), rtol=TOLERANCE, atol=TOLERANCE).mean()
+    if is_same < SAME_SHARE:
+        raise PolicyError(
+            f"what was exported does something else for {1.0 - is_same:.0%} of the numbers: between the layers, or before or after "
+            "them, lies something that the kit does not know."
+        )
 
 
 def export_network(model: Any) -> PolicyNetwork:
@@ -19,7 +144,7 @@ def export_network(model: Any) -> PolicyNetwork:
     if hasattr(policy, "q_net"):
         return convert_modules(policy.q_net.q_net)
     if hasattr(policy, "quantile_net"):
-        return _average_quantiles(
+        return average_quantiles(
             convert_modules(policy.quantile_net.quantile_net), policy.quantile_net.n_quantiles
         )
     if hasattr(policy, "actor") and hasattr(policy.actor, "latent_pi"):
@@ -27,7 +152,7 @@ def export_network(model: Any) -> PolicyNetwork:
         means, log_deviations = (
             convert_modules([*actor.latent_pi, head]) for head in (actor.mu, actor.log_std)
         )
-        return _join_heads(means, log_deviations)
+        return join_heads(means, log_deviations)
     if hasattr(policy, "actor") and hasattr(policy.actor, "mu"):
         return convert_modules(policy.actor.mu)  # its tanh at the end is not among the layers
     if hasattr(policy, "mlp_extractor"):
@@ -49,7 +174,7 @@ def export_critic(model: Any) -> PolicyNetwork | None:
     if critic is None:
         return None
     first = convert_modules(critic.q_networks[0])
-    return _average_quantiles(first, critic.n_quantiles) if hasattr(critic, "n_quantiles") else first
+    return average_quantiles(first, critic.n_quantiles) if hasattr(critic, "n_quantiles") else first
 
 
 def export_sampling(model: Any) -> ActionSampling:
@@ -79,14 +204,13 @@ def convert_modules(modules: Iterable[nn.Module], lstm: Any = None) -> PolicyNet
     """Converts modules layer by layer. A normalisation of what goes into a layer becomes a part of that layer."""
     layers: list[LinearLayer] = []
     activations: list[Activation] = []
-    names: dict[type[nn.Module], Activation] = {nn.Tanh: "tanh", nn.ReLU: "relu"}
     normalisation: Any = None
     for module in modules:
         if isinstance(module, nn.Linear):
             layers.append(_convert_linear(module, normalisation))
             normalisation = None
-        elif type(module) in names:
-            activations.append(names[type(module)])
+        elif type(module) in BETWEEN:
+            activations.append(BETWEEN[type(module)])
         elif hasattr(module, "ra_mean"):
             normalisation = module
     return PolicyNetwork(tuple(layers), activations[0] if activations else "tanh", _convert_lstm(lstm))
@@ -103,15 +227,6 @@ def _convert_linear(module: nn.Linear, normalisation: Any) -> LinearLayer:
     return LinearLayer((weights * factor[:, None]).astype(np.float32), bias)
 
 
-def _join_heads(means: PolicyNetwork, log_deviations: PolicyNetwork) -> PolicyNetwork:
-    """One network of two that differ in their last layer: it gives means, then logarithms of standard deviations."""
-    one, other = means.layers[-1], log_deviations.layers[-1]
-    joined = LinearLayer(
-        np.concatenate((one.weights, other.weights), axis=1), np.concatenate((one.bias, other.bias))
-    )
-    return PolicyNetwork((*means.layers[:-1], joined), means.activation)
-
-
 def _convert_lstm(lstm: Any) -> LstmLayer | None:
     if lstm is None:
         return None
@@ -121,14 +236,6 @@ def _convert_lstm(lstm: Any) -> LstmLayer | None:
         LinearLayer(_to_array(lstm.weight_ih_l0).T.copy(), _to_array(lstm.bias_ih_l0)),
         LinearLayer(_to_array(lstm.weight_hh_l0).T.copy(), _to_array(lstm.bias_hh_l0)),
     )
-
-
-def _average_quantiles(network: PolicyNetwork, quantiles: int) -> PolicyNetwork:
-    """The mean of a value's quantiles is linear in the last layer, so that layer can give it at once."""
-    last = network.layers[-1]
-    weights = last.weights.reshape(len(last.weights), quantiles, -1).mean(axis=1)
-    bias = last.bias.reshape(quantiles, -1).mean(axis=0)
-    return PolicyNetwork((*network.layers[:-1], LinearLayer(weights, bias)), network.activation)
 
 
 def _to_array(parameter: Any) -> Float32Array:

@@ -55,9 +55,18 @@ class ActionSampling:
     """Standard deviation of each number of a continuous action."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Policy:
-    """Which actions for which observations."""
+    """Which actions for which observations: what training makes, and all that driving needs.
+
+    >>> policy = kit.load_policy("best.npz")
+    >>> policy
+    Policy(turn: 9 numbers seen, 3 actions, 0 steps)
+    >>> import numpy
+    >>> action, _ = policy.predict(numpy.zeros(9))
+    >>> int(action)
+    0
+    """
 
     model: PolicyNetwork | ActionValueTable
     choices: tuple[int, ...]
@@ -146,6 +155,43 @@ class Policy:
             best: Float32Array = scores.max(axis=1)
             return best
         return None
+
+    def predict(
+        self,
+        observation: Float32Array,
+        state: Float32Array | None = None,
+        episode_start: BoolArray | None = None,
+        deterministic: bool = True,
+    ) -> tuple[IntArray | Float32Array, Float32Array | None]:
+        """The action for an observation (numbers,), or (n, ...) actions for (n, numbers), and the next memory, as
+        stable-baselines3's models give them.
+
+        ``state``: (n, 2, h) the memory that the last call returned; None at the start. ``episode_start``: (n,) where an
+        episode has just begun. ``deterministic``: whether it takes the best action, or draws one as in training.
+        Raises ValueError for observations of another size.
+        """
+        seen = np.atleast_2d(np.asarray(observation, dtype=np.float32))
+        if seen.ndim != 2 or seen.shape[1] != self.model.inputs:
+            raise ValueError(
+                f"observations have {self.model.inputs} numbers each, not the shape {np.shape(observation)}"
+            )
+        player = self.make_player(len(seen), None if deterministic else np.random.default_rng())
+        if state is not None:
+            player.memory = np.array(state, dtype=np.float32)
+        actions = player.act(seen, None if episode_start is None else np.atleast_1d(episode_start))
+        memory = player.memory if self.model.memory else None
+        return (actions[0] if np.ndim(observation) == 1 else actions), memory
+
+    def __repr__(self) -> str:
+        """``Policy(turn: 9 numbers seen, 3 actions, 40,960 steps)``"""
+        does = (
+            f"{_product_text(self.choices)} actions"
+            if self.choices
+            else f"actions of {self.action_size} numbers"
+        )
+        return (
+            f"Policy({self.trained_on.title}: {self.model.inputs} numbers seen, {does}, {self.steps:,} steps)"
+        )
 
     def make_player(self, n: int, rng: np.random.Generator | None = None) -> PolicyPlayer:
         """Returns a player for ``n`` worlds: greedy, or, given a random generator, sampled."""

@@ -20,15 +20,22 @@ from kit.learning.policies.policy_network import (
     LstmLayer,
     PolicyNetwork,
 )
+from kit.learning.policies.sb3_archive import is_sb3_archive, read_sb3_policy
+from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.workspace import write_atomically
 
 FORMAT_VERSION = 1
 
 
-def save_policy(policy: Policy, file: Path) -> None:
-    """Writes it, atomically, as an ``.npz`` of plain arrays and one text. OSError if it cannot be written."""
-    write_atomically(file, policy_bytes(policy))
+def save_policy(policy: Policy, file: Path | str) -> None:
+    """Writes a policy, atomically, as an ``.npz`` of plain arrays and one text, which every command takes that takes a policy.
+
+    Raises OSError if it cannot be written.
+
+    >>> kit.save_policy(kit.load_policy("best.npz"), "mine.npz")
+    """
+    write_atomically(Path(file), policy_bytes(policy))
 
 
 def policy_bytes(policy: Policy) -> bytes:
@@ -71,22 +78,48 @@ def _critic_arrays(policy: Policy) -> dict[str, NDArray[Any]]:
     return {f"critic_{name}": array for name, array in _arrays_of(policy.critic).items()}
 
 
-def load_policy(file: Path | str) -> Policy:
-    """Reads a trained policy, such as a run's ``best.npz``; needs no torch.
+def load_policy(
+    file: Path | str,
+    task: Path | str | None = None,
+    *,
+    activation: Activation | None = None,
+    statistics: Path | str | None = None,
+) -> Policy:
+    """Reads a trained policy: a file of the kit's, such as a run's ``best.npz``, which needs no torch, or a model that
+    stable-baselines3 or sb3-contrib has saved (``.zip``), of which the weights alone are read and nothing is run.
 
-    Raises PolicyError if the file is damaged and FileNotFoundError if there is none.
+    ``task``: the name or file that the model was trained on; a file of the kit's says it itself. ``activation``: ``tanh`` or
+    ``relu``, where a model does not say what lies between its layers. ``statistics``: those of the VecNormalize around its
+    environment, where it had one; what is raised without them has the line that writes them.
+
+    Raises PolicyError if the file is damaged or does not fit the task, and FileNotFoundError if there is none.
 
     >>> policy = kit.load_policy("best.npz")
     >>> policy.trained_on.task
     'turn'
     """
     file = Path(file)
+    if is_sb3_archive(file):
+        if task is None:
+            raise PolicyError(
+                f"{file} is a model of stable-baselines3, which does not say what it was trained on: "
+                f"kit.load_policy({str(file)!r}, task='turn')."
+            )
+        return read_sb3_policy(
+            file,
+            TaskSpec(str(task)).frozen(),
+            activation=activation,
+            statistics=None if statistics is None else Path(statistics),
+        )
     try:
-        return _policy_from_arrays(read_arrays(file))
+        policy = _policy_from_arrays(read_arrays(file))
     except FileNotFoundError:
         raise
     except Exception as error:  # noqa: BLE001 - whatever a damaged archive makes numpy raise
         raise PolicyError(f"{file}: not a policy, or damaged ({error}). `kit runs` lists the runs.") from None
+    if task is not None:
+        policy.check_fits(find_task(str(task)))
+    return policy
 
 
 def _policy_from_arrays(arrays: dict[str, NDArray[Any]]) -> Policy:

@@ -119,6 +119,23 @@ class PolicyNetwork:
         return x @ last.weights + last.bias, memory
 
 
+def join_heads(means: PolicyNetwork, log_deviations: PolicyNetwork) -> PolicyNetwork:
+    """One network of two that differ in their last layer: it gives means, then logarithms of standard deviations."""
+    one, other = means.layers[-1], log_deviations.layers[-1]
+    joined = LinearLayer(
+        np.concatenate((one.weights, other.weights), axis=1), np.concatenate((one.bias, other.bias))
+    )
+    return PolicyNetwork((*means.layers[:-1], joined), means.activation)
+
+
+def average_quantiles(network: PolicyNetwork, quantiles: int) -> PolicyNetwork:
+    """The mean of a value's quantiles is linear in the last layer, so that layer can give it at once."""
+    last = network.layers[-1]
+    weights = last.weights.reshape(len(last.weights), quantiles, -1).mean(axis=1)
+    bias = last.bias.reshape(quantiles, -1).mean(axis=0)
+    return PolicyNetwork((*network.layers[:-1], LinearLayer(weights, bias)), network.activation)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class ActionValueTable:
     """One row of scores for each state; a state is in which bins a few of the inputs lie."""

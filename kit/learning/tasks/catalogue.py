@@ -32,6 +32,9 @@ def find_task(name: str) -> LearningTask:
     """The task of that name; else that of a file, of a folder with a ``task.yaml``, or of that name in the workspace.
 
     UnknownTask if there is none; WorldError if its file is wrong.
+
+    >>> kit.find_task("turn").max_steps
+    200
     """
     file = find_task_file(name)
     return _kit_task(name) if file is None else read_task(file).task
