@@ -256,6 +256,9 @@ def color(function: Callable[..., Any]) -> Callable[..., Any]:
 class ExistingPath(click.Path):
     """The path of a file or a folder that is there; for another one, the name that is near is told."""
 
+    def __init__(self, *, file_okay: bool = True, dir_okay: bool = True, path_type: type = Path) -> None:
+        super().__init__(exists=True, file_okay=file_okay, dir_okay=dir_okay, path_type=path_type)
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         try:
             return super().convert(value, param, ctx)
