@@ -62,14 +62,14 @@ TRAIL_POINTS = 100
     "--from",
     "folder",
     metavar="FOLDER",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    type=options.ExistingPath(file_okay=False, path_type=Path),
     help="Use someone else's lessons: texts are Markdown, programs run confined.",
 )
 @click.option(
     "--check",
     "contract_folder",
     metavar="FOLDER",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    type=options.ExistingPath(file_okay=False, path_type=Path),
     help="Check that your own lessons work with --from.",
 )
 @click.option(
