@@ -1,15 +1,6 @@
-"""``python -m kit`` is ``kit``.
+"""``python -m kit`` is ``kit``."""
 
-While the command line is imported, Ctrl-C ends the process as the system does it: Python's interrupt would end in a traceback
-there, or be lost in a callback of the import's own.
-"""
-
-import signal
-
-if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-from kit.cli import run
+from kit.program import run
 
 if __name__ == "__main__":
     run()

@@ -10,6 +10,7 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Mapping
+from configparser import ConfigParser
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ import pytest
 from kit import installation
 from kit.cli.process import BAD_INPUT
 from kit.installation import (
+    TOP_LEVEL,
     constraints_file,
     foreign_distributions,
     install_command,
@@ -54,7 +56,9 @@ OWN = {
 
 @pytest.fixture
 def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(sys, "path", [str(tmp_path)])
+    """A folder of packages, beside which this Python has none but those that come with it."""
+    own = [path for path in sys.path if Path(path).name not in ("site-packages", "dist-packages")]
+    monkeypatch.setattr(sys, "path", [str(tmp_path), *own])
     return tmp_path
 
 
@@ -87,14 +91,20 @@ def test_the_sentence_names_it_and_the_way_out() -> None:
 
 
 @pytest.mark.long
-def test_the_installed_kit_says_so_at_its_start(tmp_path: Path) -> None:
+@pytest.mark.parametrize("package", TOP_LEVEL)
+def test_the_installed_kit_says_so_at_its_start(tmp_path: Path, package: str) -> None:
     python, site = install_wheel(build_wheel(tmp_path), tmp_path / "venv")
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
 
     def start(program: str) -> subprocess.CompletedProcess[str]:
-        module = {"kit": "kit.cli", "grader": "grader.__main__"}[program]
+        """Starts a program as the script does that pip writes for it."""
+        module, _, name = scripts[program].partition(":")
         return subprocess.run(
-            [python, "-c", f"import sys; sys.argv[1:] = ['--help']; from {module} import run; run()"],
+            [
+                python,
+                "-c",
+                f"import sys; sys.argv[1:] = ['--help']; from {module} import {name}; sys.exit({name}())",
+            ],
             cwd=tmp_path,
             env=environment,
             capture_output=True,
@@ -102,12 +112,17 @@ def test_the_installed_kit_says_so_at_its_start(tmp_path: Path) -> None:
             check=False,
         )
 
-    assert [start(each).returncode for each in ("kit", "grader")] == [0, 0]
-    install(site, "kit", "0.2.15", {"kit/__init__.py": "", "kit/__main__.py": "print 'No Flask app found!'"})
-    for each in ("kit", "grader"):
+    (record,) = site.glob("robot_learning_kit-*.dist-info/entry_points.txt")
+    parser = ConfigParser(delimiters="=")
+    parser.read_string(record.read_text())
+    scripts = dict(parser["console_scripts"])
+    assert [start(each).returncode for each in scripts] == [0, 0, 0]
+    theirs = {f"{package}/__init__.py": "", f"{package}/__main__.py": "print 'No Flask app found!'"}
+    install(site, package, "0.2.15", theirs)
+    for each in scripts:
         ended = start(each)
         assert ended.returncode == BAD_INPUT
-        assert "kit 0.2.15, has written over" in ended.stderr
+        assert f"{package} 0.2.15, has written over" in ended.stderr
         assert "Traceback" not in ended.stderr
 
 

@@ -68,6 +68,12 @@ def test_every_picture_that_it_shows_is_there() -> None:
     assert all((README.parent / each).is_file() for each in shown)
 
 
+def test_every_file_that_it_links_is_there() -> None:
+    linked = re.findall(r"(?<!!)\[[^]]+\]\(([^)]+)\)", README.read_text())
+    assert len(linked) >= 5
+    assert all((README.parent / each).is_file() for each in linked)
+
+
 def test_its_paths_have_five_lines() -> None:
     section = README.read_text().split("## Four paths")[1].split("\n## ")[0]
     paths = re.findall(r"^```\n(.*?)^```", section, re.M | re.S)

@@ -11,6 +11,8 @@ from kit.cli import options
 
 SHELLS: Final = ("bash", "zsh", "fish")
 PROGRAMS: Final = ("kit", "grader")
+PREPARATION: Final = {"zsh": "(( $+functions[compdef] )) || { autoload -Uz compinit && compinit }"}
+"""What a script needs first: zsh loads its completion only where its settings say so, and a new account has none."""
 
 
 @click.command()
@@ -22,12 +24,14 @@ def command(context: click.Context, shell: str) -> None:
     \b
     bash:  kit completion bash >> ~/.bashrc
     zsh:   kit completion zsh >> ~/.zshrc
-    fish:  kit completion fish > ~/.config/fish/completions/kit.fish
+    fish:  kit completion fish > ~/.config/fish/conf.d/kit.fish
     """
     completion = get_completion_class(shell)
     if completion is None:
         options.fail(f"click has no completion for {shell}.")
     root = context.find_root().command
+    if shell in PREPARATION:
+        click.echo(PREPARATION[shell])
     for program in PROGRAMS:
         script = completion(root, {}, program, f"_{program.upper()}_COMPLETE")
         click.echo(script.source_template % script.source_vars())

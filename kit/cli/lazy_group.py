@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import click
 from click.shell_completion import CompletionItem
+from click.types import StringParamType
 
 from kit.cli.process import BAD_INPUT
 from kit.extensions import Extension, ExtensionError, extensions, load
@@ -44,9 +45,24 @@ class CommandContext(click.Context):
     formatter_class = WholeWordFormatter
 
 
+class WordType(StringParamType):
+    """A word that may name a file: a map or a world's file. click has a shell complete nothing for a text."""
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        return [CompletionItem(incomplete, type="file")]
+
+
+WORD: Final = WordType()
+
+
 def _prepared(command: click.Command) -> click.Command:
-    """The command, with its own commands, whose help is broken at blanks alone."""
+    """The command, with its own commands: its help is broken at blanks alone, and a shell completes its words with files."""
     command.context_class = CommandContext
+    for parameter in command.params:
+        if parameter.type is click.STRING:
+            parameter.type = WORD
     for each in command.commands.values() if isinstance(command, click.Group) else ():
         _prepared(each)
     return command

@@ -40,6 +40,13 @@ class ScreenClosed(SystemExit):
     """A full screen was left: all that was to be kept is on the disk, and the terminal is as it was."""
 
 
+def refuse_if_written_over(name: str) -> None:
+    """Ends the process with one sentence where another package has written over files of the kit."""
+    for foreign in foreign_distributions(only_named=True):
+        click.echo(f"{name}: {overwritten_text(*foreign)}", err=True)
+        raise SystemExit(BAD_INPUT)
+
+
 def run_as_process(command: click.Command, name: str) -> NoReturn:
     """Runs a command line as this process, to whose end belongs that what it has written is out.
 
@@ -50,11 +57,9 @@ def run_as_process(command: click.Command, name: str) -> NoReturn:
     process ends once its output is written. The screen has given the terminal back and removed what it made; the exit
     handlers of libraries do not run, which would take compiled code away from threads that are still in it.
     """
-    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # for the imports; see ``kit.__main__``
+    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # for the imports; see ``kit.program``
         signal.signal(signal.SIGINT, signal.default_int_handler)
-    for foreign in foreign_distributions(only_named=True):
-        click.echo(f"{name}: {overwritten_text(*foreign)}", err=True)
-        raise SystemExit(BAD_INPUT)
+    refuse_if_written_over(name)
     try:
         with ended_by_signals():
             try:

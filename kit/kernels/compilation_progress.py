@@ -9,6 +9,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Final
 
+FIRST_DRIVE: Final = 35
+"""Functions that are compiled before the first robot of a machine moves, on any map; a test counts them."""
+
 
 class CompilationProgress:
     """What numba compiles in this process, in whichever thread first needs a function."""
@@ -32,10 +35,13 @@ class CompilationProgress:
 
     @property
     def text(self) -> str:
-        """``Compiling for this machine, once: scan_rays; 4 functions are done``; empty while nothing is compiled."""
+        """``Compiling for this machine, once: scan_rays, 4 of about 35``; empty while nothing is compiled.
+
+        Without the sum where more is compiled than a drive needs, as for a training."""
         if not self._names:
             return ""
-        return f"Compiling for this machine, once: {self._names[0]}; {self.count} functions are done"
+        of = f" of about {FIRST_DRIVE}" if self.count < FIRST_DRIVE else " so far"
+        return f"Compiling for this machine, once: {self._names[0]}, {self.count}{of}"
 
     @contextmanager
     def told_by(self, tell: Callable[[str], None]) -> Iterator[None]:

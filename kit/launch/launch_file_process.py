@@ -20,6 +20,7 @@ from kit.plain_files import near_file
 from kit.ros.packages import (
     LAUNCH_SUFFIXES,
     SEARCH_VARIABLE,
+    Package,
     PackageError,
     broken_packages,
     find_packages,
@@ -172,7 +173,8 @@ def find_launch_file(where: str, file: str | None, extra_folders: Iterable[Path]
 
 
 def _choose_launch_file(folder: Path, file: str | None, extra_folders: Iterable[Path]) -> LaunchTarget:
-    files = read_package(folder).launch_files
+    package = read_package(folder)
+    files = package.launch_files
     if file is not None:
         named = [each for each in files if each.name == file or str(each.relative_to(folder)) == file]
         if not named and (folder / file).is_file():
@@ -184,9 +186,23 @@ def _choose_launch_file(folder: Path, file: str | None, extra_folders: Iterable[
         return LaunchTarget(files[0], folder, _search_order(folder, extra_folders))
     if not files:
         raise PackageError(
-            f"{folder}: it has no launch file; none ends in launch.py, launch.xml or launch.yaml, here or in launch/"
+            f"{folder}: it has no launch file; none ends in launch.py, launch.xml or launch.yaml, here or in launch/."
+            f"{_programs_text(package)}"
         )
     raise PackageError(f"{folder}: it has several launch files: {_names(files)}. Give one after the folder.")
+
+
+def _programs_text(package: Package) -> str:
+    """How its programs are run without a launch file; empty if it has none."""
+    names = [each.name for each in package.executables]
+    if not names:
+        return ""
+    run = f"`kit ros run {package.name} {names[0]}`"
+    return (
+        f" {run} runs its program."
+        if len(names) == 1
+        else f" {run} runs one of its programs: {', '.join(names)}."
+    )
 
 
 def _names(files: Sequence[Path]) -> str:

@@ -445,8 +445,10 @@ def test_nothing_of_ours_is_in_its_surroundings(student: Student, monkeypatch: p
         def f():
             assert "SECRET_TOKEN" not in os.environ and "PYTHONPATH" not in os.environ
             assert not os.listdir() and os.environ["HOME"] == os.getcwd()
-            open_files = [fd for fd in range(256) if _is_open(fd)]
-            assert len(open_files) == 4, open_files
+            open_files = [os.readlink(f"/proc/self/fd/{fd}") for fd in range(256) if _is_open(fd)]
+            # Some systems' libffi, of ctypes, holds its own file open.
+            others = [name for name in open_files if "/libffi.so" not in name]
+            assert len(others) == 4, open_files
             assert os.getpgrp() == os.getpid()
             return 1
         def _is_open(fd):

@@ -182,6 +182,19 @@ def test_a_broken_package_xml_is_an_error_with_its_line(source: Path, launch: La
         raise missing_package("nobody", [source])
 
 
+def test_a_program_runs_by_the_folder_of_its_package(source: Path, tmp_path: Path) -> None:
+    (source / "my_pkg" / "my_pkg" / "program.py").write_text(PROGRAM.format(more=""))
+    output = kit("ros", "run", source / "my_pkg", "my_pkg", workspace=tmp_path / "kit")
+    assert "SEES" in output
+
+
+def test_a_package_without_a_launch_file_says_how_its_program_is_run(source: Path, tmp_path: Path) -> None:
+    for file in (source / "my_pkg").rglob("*.launch.py"):
+        file.unlink()
+    output = kit("launch", source / "my_pkg", workspace=tmp_path / "kit")
+    assert "`kit ros run my_pkg my_pkg`" in output
+
+
 def test_pip_is_not_advised_for_what_lies_nearby(source: Path, tmp_path: Path) -> None:
     (source / "tools").mkdir()
     (source / "tools" / "wall_follower").mkdir()

@@ -19,6 +19,7 @@ from kit.launch.launch_file_process import SHARE_FOLDER, LaunchTarget
 from kit.launch.processes import PrintedLine, ProcessExit, ProcessStartError, suggest_fix
 from kit.launch.requests import StartRequest
 from kit.launch.single_program import SingleProgram
+from kit.ros.packages import PackageError, read_package, workspace_folders
 from kit.workspace import Workspace
 
 
@@ -31,7 +32,7 @@ from kit.workspace import Workspace
 )
 @options.seed
 @options.workspace
-@click.argument("package", metavar="PACKAGE|FILE.py")
+@click.argument("package", metavar="PACKAGE|FOLDER|FILE.py")
 @click.argument("words", nargs=-1, type=click.UNPROCESSED, metavar="[EXECUTABLE] [ARGUMENTS ...]")
 def command(world: str | None, seed: int, workspace: Path | None, package: str, words: Sequence[str]) -> None:
     """Run a package's program, or a Python file with a node, in the world of another terminal.
@@ -50,7 +51,14 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     if (package, *words[:1]) == ("turtlesim", "turtlesim_node"):
         _run_turtlesim(words[1:], opened_workspace, seed)
         return
-    search = (Path.cwd(), Path.cwd() / "src", opened_workspace.packages, SHARE_FOLDER)
+    search: tuple[Path, ...] = (Path.cwd(), Path.cwd() / "src", opened_workspace.packages, SHARE_FOLDER)
+    folder = Path(package).expanduser()
+    if folder.is_dir() and (folder / "package.xml").is_file():
+        search = (*workspace_folders(folder.absolute() / "package.xml"), *search)
+        try:
+            package = read_package(folder).name
+        except PackageError as problem:
+            options.fail(str(problem))
     if package.endswith(".py"):
         request = StartRequest(
             1, Path(package).stem, None, None, ("python3", package, *words), False, _environment(), None, ""

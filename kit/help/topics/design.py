@@ -10,6 +10,7 @@ from kit.help.topic import HelpTopic, Shelf, chapter
 DRAWING: Final = """
 8  faces         kit/cli/  one command a module   kit/tui/  screens, keys
                  grader/   beside: the kit never imports it
+                 kit/program   what the installed kit begins with
 7  pages         kit/help/  one topic a file
 6  school        kit/school/  lessons quiz survey game report progress
                  kit/study/   the dissertation's tables

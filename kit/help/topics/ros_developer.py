@@ -19,7 +19,8 @@ A package runs from its source folder; nothing is built, and no ROS is installed
     kit launch my_robot --show-args
     kit launch my_robot --steps 500
 
-Programs start in processes of their own. `kit ros run PACKAGE PROGRAM` runs one alone; `kit pkg executables` lists them.
+Programs start in processes of their own. `kit ros run PACKAGE PROGRAM` runs one alone; a package is given by its name or its folder, and
+`kit pkg executables` lists them.
 """,
         ),
         chapter(
@@ -49,10 +50,13 @@ On a screen, `n` shows the nodes with the messages moving between them. `kit hel
     kit layers plan ~/robot-kit/worlds/hall/world.yaml
     kit layers plan ~/robot-kit/worlds/hall/world.yaml --patch
     kit layers check ~/robot-kit/worlds/hall/world.yaml
+    kit layers plan ~/robot-kit/worlds/hall/world.yaml --requirements > wanted.yaml
+    kit layers plan wanted.yaml
 
 `plan` finds the provably smallest set of collision layers that keeps what collides and what each laser sees; `--patch` prints
-the change to the files, `--apply` makes it and loads them again. `kit layers explain slides` shows the method step by step,
-`kit help world-format` every key.
+the change to the files, `--apply` makes it and loads them again. To have something
+else collide, or another laser see it, edit what `--requirements` prints, and plan for that file. Robots with one model file share
+their layers. `kit layers explain slides` shows the method step by step, `kit help world-format` every key.
 """,
         ),
         chapter(

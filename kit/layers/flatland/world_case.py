@@ -191,7 +191,7 @@ def current_case(layer_lists: LayerLists, *, grouped: bool = True) -> WorldCase:
         layer_lists,
         lambda a, b: "collide" if a.category & b.category else "apart",
         lambda laser, laser_use, use: "sees" if laser_use[1].bits & use.category else "blind",
-        title=f"{layer_lists.world.file.parent.name}/{layer_lists.world.file.name}",
+        title=f"{layer_lists.world.file.absolute().parent.name}/{layer_lists.world.file.name}",
         grouped=grouped,
     )
 

@@ -16,7 +16,7 @@ from kit.ros.message_filters import (
 __all__ = ["ApproximateTimeSynchronizer", "Cache", "SimpleFilter", "Subscriber", "TimeSynchronizer"]
 
 if TYPE_CHECKING:
-    from enum import reduce as reduce
+    from functools import reduce as reduce
     from kit.ros.log import LoggingSeverity as LoggingSeverity
     from kit.ros.node.clock import ROSClock as ROSClock
     from kit.ros.node.time import Duration as Duration, Time as Time
@@ -26,7 +26,7 @@ else:
         "LoggingSeverity": "kit.ros.log:LoggingSeverity",
         "ROSClock": "kit.ros.node.clock:ROSClock",
         "Time": "kit.ros.node.time:Time",
-        "reduce": "enum:reduce",
+        "reduce": "functools:reduce",
     }
 
     def __getattr__(name):
