@@ -66,7 +66,7 @@ def example_of_exercise(name: str) -> AssignmentExample:
     names = [each.name for each in lesson.exercises]
     if exercise not in names:
         choices = [f"{lesson.name}/{each}" for each in names]
-        raise NoExample(f"There is no exercise {quoted(name)}: {suggestion(name, choices)}.")
+        raise NoExample(f"There is no exercise {quoted(name)}: {suggestion(name, choices)}")
     folders = (lessons_folder() / lesson.name / exercise, solutions_folder() / lesson.name / exercise)
     return AssignmentExample(folders, f"{lesson.name}/{exercise}")
 

@@ -156,8 +156,8 @@ def _check_packages(section: Section, packages: tuple[str, ...]) -> None:
     for name in packages:
         if name not in known:
             section.error(
-                f"no installed package {quoted(name)} brings parts of the kit: {suggestion(name, known)}. Every machine "
-                "that grades needs it",
+                f"every machine that grades needs the package {quoted(name)}, and none that is installed here and brings "
+                f"parts of the kit has that name: {suggestion(name, known)}",
                 "packages",
             )
 

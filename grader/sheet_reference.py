@@ -28,8 +28,6 @@ from kit.world.yaml_section import Section
 MEANINGS_FILE: Final = Path(__file__).parent / "sheet_keys.yaml"
 SECRET: Final = "secret"
 """Stands before the keys of the secret file."""
-INSTEAD_OF: Final = ("answers", "case", "environment.task")
-"""Keys of which others may be written instead: in the secret file, or beside them."""
 LONGEST_EXAMPLE: Final = 40
 
 
@@ -55,7 +53,7 @@ def asked_keys(kind: str) -> Mapping[str, FormatKey]:
         section.name("kind", "controller")
         read_sheet(kind, section, section.section(SECRET), folder)
 
-    keys = format_keys(read, {"trials[].name": (OWN_NAME,)}, INSTEAD_OF)
+    keys = format_keys(read, {"trials[].name": (OWN_NAME,)})
     found = {each.key.replace("[]", ""): each for each in keys}
     return {
         path: key for path, key in found.items() if path != SECRET and not path.startswith("checks.with.")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import io
 import math
 import tokenize
@@ -21,6 +22,8 @@ MAX_PACKED_BYTES: Final = 64 << 20
 MAX_UNPACKED_BYTES: Final = 256 << 20
 """Bytes of all its arrays together."""
 MAX_ARRAYS: Final = 1_000
+MAX_ARRAY_HEADER: Final = 10_000
+"""Bytes, as numpy has it."""
 
 READ_ERRORS: Final = (
     ValueError, LookupError, TypeError, EOFError, RuntimeError,  # NotImplementedError is one: zipfile's own
@@ -74,6 +77,12 @@ def check_arrays(archive: zipfile.ZipFile, max_bytes: int) -> dict[str, tuple[in
         with archive.open(each) as part:
             if npy.read_magic(part) != (1, 0):
                 raise ValueError("an array of an unknown version")
+            length = int.from_bytes(part.read(2), "little")
+            if length > MAX_ARRAY_HEADER:
+                raise ValueError(f"{each.filename} has a header of {length} bytes")
+            # Or numpy reads it as Python 2, and warns of that.
+            ast.literal_eval(part.read(length).decode("latin-1"))
+            part.seek(npy.MAGIC_LEN)
             shape, _, kind = npy.read_array_header_1_0(part)
             if kind.hasobject or math.prod(shape) * kind.itemsize > each.file_size:
                 raise ValueError(f"{each.filename} is not what it says")

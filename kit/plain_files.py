@@ -1,12 +1,15 @@
-"""Opens files that somebody else may have made: plain ones alone, and never more of one than is allowed."""
+"""Opens files that somebody else may have made: plain ones alone, and never more of one than is allowed; finds the file that
+a wrong name means."""
 
 from __future__ import annotations
 
 import errno
 import os
 import stat
+from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
+from urllib.parse import unquote
 
 
 def open_plain_file(file: Path | str, *, follows_links: bool = True, folder: int | None = None) -> BinaryIO:
@@ -42,3 +45,31 @@ def is_file_there(file: Path) -> bool:
         return file.is_file()
     except (OSError, ValueError):
         return False
+
+
+def near_file(name: str, folder: Path | None = None, *, is_folder: bool = False) -> str:
+    """The name of a file that is there, relative to ``folder``, for one that is not: written with the separators of
+    Windows, in the other case, or as the address or the path that it has on another machine. Empty if there is none.
+
+    ``folder``: by default the one in which the program runs. ``is_folder``: a folder is looked for, not a file.
+    """
+    folder = folder or Path.cwd()
+    words = unquote(name.removeprefix("file://")).replace("\\", "/").split("/")
+    words = [word for word in words if word not in ("", ".", "~") and not word.endswith(":")]
+    for first in range(len(words)):  # all of the path, then what is left without its first folders
+        found = folder
+        for word in words[first:]:
+            if word == "..":
+                found = found.parent
+                continue
+            with suppress(OSError):
+                names = [path.name for path in found.iterdir()]
+                match = word if word in names else next((n for n in names if n.lower() == word.lower()), None)
+                if match is not None:
+                    found = found / match
+                    continue
+            break
+        else:
+            if (found.is_dir() if is_folder else found.is_file()) and found.is_relative_to(folder):
+                return str(found.relative_to(folder))
+    return ""

@@ -7,9 +7,10 @@ import os
 import subprocess
 import sys
 import textwrap
+import warnings
 import zipfile
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,7 @@ from click.testing import CliRunner
 from grader.kinds.policy.kind import load_submitted_policy
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
-from kit.array_archives import MAX_UNPACKED_BYTES
+from kit.array_archives import MAX_UNPACKED_BYTES, unpack_arrays
 from kit.cli.replay import command as replay
 from kit.learning.policies.policy import PolicyError
 from kit.learning.policies.policy_file import load_policy
@@ -125,6 +126,19 @@ def test_an_archive_that_unpacks_to_far_more_takes_no_memory(reader: str, tmp_pa
     )
     assert "larger than" in done.stdout
     assert int(done.stdout.rpartition(" ")[2]) < 50, "MiB"
+
+
+@pytest.mark.parametrize(("shape", "is_read"), [("(3,)", True), ("(3L,)", False)])
+def test_an_array_as_python_2_wrote_it_is_refused_without_a_warning(shape: str, is_read: bool) -> None:
+    """numpy reads it, and warns whoever merely opens somebody else's file."""
+    header = f"{{'descr': '<i8', 'fortran_order': False, 'shape': {shape}, }}".ljust(117).encode() + b"\n"
+    array = b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header + bytes(24)
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w") as archive:
+        archive.writestr("counts.npy", array)
+    with warnings.catch_warnings(), nullcontext() if is_read else pytest.raises(SyntaxError):
+        warnings.simplefilter("error")
+        assert list(unpack_arrays(made.getvalue(), 1000)["counts"]) == [0, 0, 0]
 
 
 def recorded_in(place: str, folder: Path) -> Path:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import ast
+from pathlib import Path
+
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.plain_text import format_size, wrap
+import kit
+from kit.plain_text import format_size, suggestion, wrap
 
 
 def test_a_size_has_the_unit_that_suits_it() -> None:
@@ -38,3 +42,20 @@ def test_wrapping_loses_nothing(text: str, width: int) -> None:
     assert all(len(line) <= width for line in lines)
     words = [word for line in lines for word in line.split()]
     assert [word for word in text.split() if len(word) <= width - 2 and word not in words] == []
+
+
+def test_a_suggestion_is_the_end_of_its_message() -> None:
+    """It may be a question: what follows would read ``did you mean "lidar"?. More.``"""
+    assert suggestion("lidra", ("imu", "lidar")).endswith("?")
+    root = Path(kit.__file__).parents[1]
+    followed = [
+        f"{file}:{node.lineno}"
+        for file in (*root.glob("kit/**/*.py"), *root.glob("grader/**/*.py"))
+        if "suggestion(" in (text := file.read_text(encoding="utf-8"))
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, ast.JoinedStr)
+        for part, after in zip(node.values, node.values[1:], strict=False)
+        if isinstance(part, ast.FormattedValue) and ast.unparse(part.value).startswith("suggestion(")
+        if isinstance(after, ast.Constant) and str(after.value).startswith(".")
+    ]
+    assert not followed

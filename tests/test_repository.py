@@ -13,6 +13,7 @@ import yaml
 
 import kit
 from grader.ci import ACTIONS
+from tests.public_schemas import why_invalid
 
 ROOT = Path(__file__).parents[1]
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
@@ -43,6 +44,13 @@ def test_the_top_holds_what_it_may() -> None:
         pytest.skip("not a git checkout")
     names = {line.partition("/")[0] for line in listed.stdout.splitlines()}
     assert {name for name in names if not name.startswith(".")} <= TOP_LEVEL
+
+
+def test_workflows_and_forms_are_valid_by_public_schemas() -> None:
+    forms = [file for file in FORMS if file.stem != "config"]
+    assert why_invalid("github-workflows", *WORKFLOWS) == ""
+    assert why_invalid("github-issue-forms", *forms) == ""
+    assert why_invalid("github-issue-config", FORMS[0].with_name("config.yml")) == ""
 
 
 @pytest.mark.parametrize("file", WORKFLOWS, ids=lambda file: file.stem)

@@ -35,7 +35,7 @@ from grader.new_assignment import example_of_exercise, example_of_kind, make_ass
 from grader.reading import SECRET_FILE, budget_lines
 from grader.reports.cleaning import plain
 from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds, works_of
-from kit.cli.options import describe_os_error
+from kit.cli.options import ExistingPath, describe_os_error
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.plain_text import counted, quoted, suggestion
@@ -167,10 +167,10 @@ def checks(kind: str, machine_readable: bool) -> None:
 
 
 @click.command()
-@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.argument("folder", type=ExistingPath(file_okay=False, path_type=Path))
 @click.option(
     "--solutions",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    type=ExistingPath(file_okay=False, path_type=Path),
     help="Folder with the solution and the wrong solutions, if not FOLDER.",
 )
 @options.level

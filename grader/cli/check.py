@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TypeGuard
 import click
 
 from grader.cli import options
+from kit.cli.options import ExistingPath
 
 if TYPE_CHECKING:
     from grader.driving.drive_record import GradedDrive
@@ -31,7 +32,7 @@ _format_option = click.option(
 
 
 @click.command()
-@click.argument("file", type=click.Path(exists=True, path_type=Path))
+@click.argument("file", type=ExistingPath(path_type=Path))
 @options.assignment
 @options.level
 @options.secret
@@ -188,7 +189,7 @@ def _save_replay(worst: Evidence, replay: Path, grading: Grading) -> str:
 
 
 @click.command()
-@click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.argument("file", type=ExistingPath(dir_okay=False, path_type=Path))
 @_format_option
 @click.option(
     "--output", type=click.Path(dir_okay=False, path_type=Path), help="Write the report to this file."

@@ -31,7 +31,7 @@ from grader.cohort.queue import (
 )
 from grader.grading import GradingOptions
 from grader.reports.cleaning import clean_line, spreadsheet_cell
-from kit.cli.options import describe_error, executor_options
+from kit.cli.options import ExistingPath, describe_error, executor_options
 from kit.document.blocks import CellStyle, Column, Table
 from kit.document.layout import lines_of
 from kit.host.job_executors import ExecutorUnavailable, read_shard
@@ -43,7 +43,7 @@ from kit.workspace import write_atomically
 
 
 @click.command()
-@click.argument("submissions", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.argument("submissions", type=ExistingPath(file_okay=False, path_type=Path))
 @options.assignment
 @options.level
 @options.secret
@@ -133,7 +133,7 @@ def publish(queue: Queue, *, is_graded: bool) -> int:
 
 
 @click.command()
-@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.argument("folder", type=ExistingPath(file_okay=False, path_type=Path))
 @click.option(
     "--shard",
     default="0/1",
@@ -161,7 +161,7 @@ def work(folder: Path, shard: str, jobs: int) -> None:
 
 
 @click.command(hidden=True)
-@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.argument("folder", type=ExistingPath(file_okay=False, path_type=Path))
 def worker(folder: Path) -> None:
     """Grade the jobs whose keys come on standard input."""
     serve_keys(Queue(folder).run_job)
@@ -171,7 +171,7 @@ DEFAULT_LEVELS = ("left-turn", "right-turn", "parking", "roundabout", "about-tur
 
 
 @click.command()
-@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.argument("folder", type=ExistingPath(file_okay=False, path_type=Path))
 @click.option(
     "--level",
     "names",

@@ -24,17 +24,17 @@ from grader.cohort.marks import read_marks
 from grader.cohort.queue import Queue, QueueError
 from grader.cohort.roster import read_roster
 from grader.cohort.statistics import class_document
-from kit.cli.options import describe_error
+from kit.cli.options import ExistingPath, describe_error
 from kit.document.layout import document_lines, lines_of
 from kit.plain_text import counted
 from kit.workspace import write_atomically
 from kit.world.problems import WorldError
 
-FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
+FILE = ExistingPath(dir_okay=False, path_type=Path)
 
 
 @click.command()
-@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.argument("folder", type=ExistingPath(file_okay=False, path_type=Path))
 @click.option(
     "--roster",
     type=FILE,

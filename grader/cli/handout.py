@@ -21,6 +21,7 @@ from grader.new_assignment import CARD
 from grader.reading import budget_lines
 from grader.sheet_reference import SheetKey, documented_attributes, sheet_keys
 from grader.student_version import ReleaseRefused, StudentVersion, missing_for_practice, student_version
+from kit.cli.options import ExistingPath
 from kit.document.blocks import Block, Code, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.plain_text import counted, join_names
@@ -35,7 +36,7 @@ STARTER: Final = "starter"
 
 
 @click.command()
-@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.argument("folder", type=ExistingPath(file_okay=False, path_type=Path))
 @click.option(
     "--to",
     "target",

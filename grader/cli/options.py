@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import click
 
-from kit.cli.options import on_terminal
+from kit.cli.options import ExistingPath, on_terminal
 
 if TYPE_CHECKING:
     from grader.assignment import Assignment
@@ -38,7 +38,7 @@ def warn(message: str) -> None:
 assignment: Decorator = click.option(
     "--assignment",
     "folder",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    type=ExistingPath(file_okay=False, path_type=Path),
     required=True,
     help="Assignment folder.",
 )

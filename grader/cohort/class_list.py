@@ -121,6 +121,8 @@ def _chosen_of(
         text = "the best, since their times are not known,"
         # A missing grade comes first: the teacher must see it before another submission counts.
         chosen = max(rows, key=lambda row: (math.inf if row.final is None else row.final, row.name))
+        if chosen.final is None:
+            text = "which has no grade yet,"
     else:
         chosen = max(rows, key=lambda row: rank(row, submitted[row.work]))  # type: ignore[arg-type]  # none is None
     note = f"{chosen.work}, {text} of {len(rows)}"

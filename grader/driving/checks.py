@@ -128,6 +128,18 @@ class HeadingParams:
 
 
 @dataclass(frozen=True, slots=True)
+class RemainingTurnParams:
+    topic: str = "/turn_to/_action/feedback"
+    """Of the action's feedback."""
+    turned: float = 0.0
+    """Degrees: the heading that is wanted, against the world's x axis."""
+    within: float = 10.0
+    """Degrees"""
+    least: int = 10
+    """Messages."""
+
+
+@dataclass(frozen=True, slots=True)
 class HeardTopicsParams:
     node: str = "/driver"
     topics: tuple[str, ...] = ("/wall_ahead",)
@@ -345,6 +357,19 @@ def faces(drive: GradedDrive, params: HeadingParams) -> float:
     return abs(math.degrees(math.remainder(turned - math.radians(params.turned), math.tau)))
 
 
+@check(none=0.5, full=0.9, unit="%", params=RemainingTurnParams)
+def remaining_turn(drive: GradedDrive, params: RemainingTurnParams) -> float:
+    """How far the robot still has to turn is told rightly by {actual} of the action's feedback ({where}); {full} earns all
+    points. It is the angle from its heading to the wanted one, the short way round."""
+    told = drive.remaining.get(params.topic)
+    if told is None or len(told) < params.least or not len(drive.track):
+        return 0.0
+    ticks = np.clip(np.round(told[:, 0] / drive.recording.step_size).astype(int), 0, len(drive.track) - 1)
+    left = np.radians(params.turned) - drive.track[ticks, 2]
+    off = np.abs(np.abs(np.arctan2(np.sin(left), np.cos(left))) - np.abs(told[:, 1]))
+    return float(np.mean(off <= np.radians(params.within)))
+
+
 @check(none=0.5, full=0.9, unit="%", params=SpeedByRangeParams)
 def speed_by_range(drive: GradedDrive, params: SpeedByRangeParams) -> float:
     """The speed does not follow what the laser measures ahead: it is the asked one for {actual} of the commands, in the case
@@ -525,6 +550,7 @@ CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
             comes_by,
             comes_back,
             faces,
+            remaining_turn,
             speed_by_range,
             flag_by_range,
             speed_by_flag,

@@ -119,7 +119,7 @@ class RestrictedRunner(Runner):
 
 class TrafficRecorder:
     """Counts the messages on each topic that nodes other than the world's own publish, second by second, and notes what the
-    lasers of the world measured ahead and what the program's booleans said."""
+    lasers of the world measured ahead, what the program's booleans said and how much it told was left."""
 
     def __init__(self, graph: Graph, world_node: GraphNode | None) -> None:
         self._world_node = world_node
@@ -127,6 +127,7 @@ class TrafficRecorder:
         self._nodes: dict[tuple[str, str], set[str]] = {}
         self._ahead: dict[str, list[tuple[float, float, float]]] = {}
         self._flags: dict[str, dict[int, bool]] = {}
+        self._remaining: dict[str, dict[int, float]] = {}
         self.stop = graph.add_message_listener(self._on_message)
 
     def _on_message(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
@@ -136,6 +137,9 @@ class TrafficRecorder:
             return
         if isinstance(message, Bool):
             self._flags.setdefault(name, {})[time_ns] = bool(message.data)
+        remaining = getattr(getattr(message, "feedback", None), "remaining", None)
+        if isinstance(remaining, float):
+            self._remaining.setdefault(name, {})[time_ns] = remaining
         key = name, type_name(type(message))
         self._counts.setdefault(key, Counter())[time_ns // 10**9] += 1
         self._nodes.setdefault(key, set()).add(node.handle.full_name)
@@ -152,10 +156,18 @@ class TrafficRecorder:
 
     def flags(self) -> Mapping[str, FloatArray]:
         """Returns (k, 2) for each topic of booleans; see ``GradedDrive``."""
-        return {
-            name: np.array([(time_ns / 1e9, value) for time_ns, value in said.items()], dtype=np.float64)
-            for name, said in self._flags.items()
-        }
+        return _by_time(self._flags)
+
+    def remaining(self) -> Mapping[str, FloatArray]:
+        """Returns (k, 2) for each topic of an action's feedback; see ``GradedDrive``."""
+        return _by_time(self._remaining)
+
+
+def _by_time(values: Mapping[str, Mapping[int, float]]) -> Mapping[str, FloatArray]:
+    return {
+        name: np.array([(time_ns / 1e9, value) for time_ns, value in said.items()], dtype=np.float64)
+        for name, said in values.items()
+    }
 
 
 AHEAD: Final = math.radians(60)
@@ -331,6 +343,7 @@ class _EpisodeWorld:
             printed_at=printed.seconds,
             ahead=self._traffic_recorder.ahead(),
             flags=self._traffic_recorder.flags(),
+            remaining=self._traffic_recorder.remaining(),
             fingerprint=self._fingerprint.text,
             level=int(program.level),
             answers=self._service_caller.answers(),

@@ -1,1 +1,1 @@
-"""Kinds of submissions: one module each, found by its name, whose record ``KIND`` tells how it is graded."""
+"""Kinds of submissions: one folder each, found by its name; the record ``KIND`` of its ``kind.py`` tells how it is graded."""

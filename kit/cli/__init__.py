@@ -81,6 +81,7 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     "help": ("kit.cli.help", "Show a page: how-to, formats, environments, Python, reasons."),
     "completion": ("kit.cli.completion", "Print a script that lets your shell complete commands."),
     "keys": ("kit.cli.doctor:keys_command", "Press keys and see what this terminal sends."),
+    "warm": ("kit.cli.warm", "Compile what worlds compute with now, also for all accounts (--shared)."),
     "doctor": (
         "kit.cli.doctor",
         "Report what the kit found on this machine and terminal.",

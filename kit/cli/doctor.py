@@ -8,7 +8,7 @@ import platform
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -29,6 +29,8 @@ from kit.installation import (
     overwritten_text,
     requirements,
 )
+from kit.kernels.shared_cache import kept_files, shared_folders, why_not_shared
+from kit.plain_text import counted
 from kit.tui.input.protocol import ask_keyboard
 from kit.tui.terminal import TerminalDecision, TerminalFacts, decide_terminal
 from kit.workspace import open_workspace
@@ -36,6 +38,12 @@ from kit.workspace import open_workspace
 if TYPE_CHECKING:
     from kit.tui.app import KitApp
     from kit.tui.screens.key_test import KeyTestScreen
+
+
+MEGA: Final = 1e6
+GIGA: Final = 1e9
+LEARNERS: Final = (1_000, 100_000)
+"""Numbers of learners for which the needs before a deadline are simulated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,6 +185,84 @@ def _confinement() -> Iterator[Finding]:
         yield Finding("Student code cannot", name, f"{actions}.", meaning)
 
 
+def _kernels() -> Finding:
+    """Finds whether all accounts share what is compiled for this machine."""
+    folder = shared_folders()[0]
+    section, name, made = "Compiled kernels", "for all accounts", "sudo kit warm --shared"
+    if not folder.is_dir() or not any(kept_files(folder)):
+        return Finding(
+            section, name, "none", f"Each account compiles for itself. To have them for all: {made}"
+        )
+    if problem := why_not_shared(folder):
+        return Finding(section, name, "not used", f"{problem}. To make them anew: {made}")
+    return Finding(section, name, str(folder), "Accounts without kernels of their own use them.")
+
+
+def _class_findings(students: int) -> Iterator[Finding]:
+    """Measures what a student costs this machine, and finds how many it carries and what many learners need."""
+    from kit.school.capacity import RESERVE, Habits, class_capacity, server_need
+    from kit.school.class_costs import AT_ONCE, NotMeasured, measure_costs, this_machine
+
+    habits = Habits()
+    try:
+        machine, cost = this_machine(), measure_costs()
+    except NotMeasured as error:
+        options.fail(f"--class: {error}.")
+    section = "Measured here"
+    yield Finding(
+        section, "machine", f"{counted(machine.cores, 'core')}, {_gigabytes(machine.memory_bytes)} free"
+    )
+    yield Finding(
+        section,
+        "a drive",
+        f"{cost.drive_cores:.2f} cores, {cost.drive_bytes / MEGA:.0f} MB",
+        f"Mean of {AT_ONCE} at once that keys steer.",
+    )
+    yield Finding(
+        section,
+        "a check",
+        f"{cost.check_core_s:.1f} s of a core, {cost.check_bytes / MEGA:.0f} MB",
+        f"Of the solution of `grader new`; it took {cost.check_s:.1f} s.",
+    )
+    capacity = class_capacity(machine, cost, habits)
+    fits = "carries them" if capacity.students >= students else "does not carry them all"
+    section = f"A class of {students}"
+    yield Finding(
+        section,
+        "this machine",
+        fits,
+        f"{counted(capacity.students, 'student')} at once; {capacity.scarce} would be short first "
+        f"(cores for {capacity.by_cores}, memory for {capacity.by_memory}).",
+    )
+    yield Finding(
+        section,
+        "assumed",
+        f"all drive, and check every {habits.seconds_between_checks:.0f} s",
+        f"{RESERVE:.0%} of the machine stays free.",
+    )
+    section = "Before a deadline (simulated)"
+    for learners in LEARNERS:
+        need = server_need(learners, cost, habits)
+        yield Finding(
+            section,
+            f"{learners:,} learners",
+            f"{counted(need.check_cores, 'core')}, {_gigabytes(need.check_bytes)} for checks alone",
+            f"{need.last_hour:,} hand-ins in the last hour; 95 of 100 wait at most {need.waits_s:.0f} s. With their drives on "
+            f"the servers too, {need.most_at_work:,} at once: {need.drive_cores:,} cores and "
+            f"{_gigabytes(need.drive_bytes)} more.",
+        )
+    yield Finding(
+        section,
+        "assumed",
+        f"{habits.hand_ins} hand-ins each in {habits.days:.0f} days, on average {habits.mean_hours_left:.0f} h before the end",
+        "An hour of driving before each; cores as here; a fixed seed.",
+    )
+
+
+def _gigabytes(size: float) -> str:
+    return f"{size / GIGA:,.1f} GB"
+
+
 def _workspace() -> Finding:
     folder = open_workspace(make=False).folder
     if not folder.exists():
@@ -198,7 +284,15 @@ def findings() -> list[Finding]:
     facts = TerminalFacts.here()
     # `kit doctor > file` asks about the terminal as `kit` would find it, not about the file.
     decision = decide_terminal(os.environ, replace(facts, stdout_tty=facts.stderr_tty))
-    return [*_machine(), *_terminal(decision), *_packages(), *_extensions(), *_confinement(), _workspace()]
+    return [
+        *_machine(),
+        *_terminal(decision),
+        *_packages(),
+        *_extensions(),
+        *_confinement(),
+        _kernels(),
+        _workspace(),
+    ]
 
 
 def as_text(report: list[Finding]) -> str:
@@ -222,15 +316,22 @@ def as_json(report: list[Finding]) -> str:
 
 
 @click.command
+@click.option(
+    "--class",
+    "students",
+    type=click.IntRange(1, 100_000),
+    metavar="N",
+    help="Measure instead what students cost, and whether this machine carries N at once (half a minute).",
+)
 @click.option("--json", "machine_readable", is_flag=True, help="Print the report as JSON.")
-def command(machine_readable: bool) -> None:
+def command(students: int | None, machine_readable: bool) -> None:
     """Report what the kit found on this machine and terminal, what it decided, and why.
 
     The running world and the packages are the subject of `kit ros doctor`.
 
     The output contains no secrets: paste it when you ask for help.
     """
-    report = findings()
+    report = findings() if students is None else list(_class_findings(students))
     click.echo(as_json(report) if machine_readable else as_text(report))
 
 

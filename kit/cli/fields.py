@@ -34,7 +34,7 @@ BOTH: Final = ("fields", "abreast")
 
 _CHARGES = click.option(
     "--charges",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    type=options.ExistingPath(dir_okay=False, path_type=Path),
     help="Use this charge file instead of the map's own.",
 )
 _RUNS = click.option(

@@ -14,7 +14,14 @@ from kit.cli.full_screen import run_screen
 from kit.host.failure import StudentCodeError
 from kit.inspection.sockets import sockets_folder, world_name
 from kit.ros.graph.graph import Graph
-from kit.ros.packages import Package, PackageError, PackageExecutable, find_packages, read_package
+from kit.ros.packages import (
+    Package,
+    PackageError,
+    PackageExecutable,
+    broken_packages,
+    find_packages,
+    read_package,
+)
 from kit.tui.terminal import TerminalDecision
 from kit.workspace import Workspace, WorkspaceError, open_workspace
 from kit.world.problems import WorldError
@@ -221,7 +228,7 @@ where = click.option(
     "--in",
     "folders",
     multiple=True,
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    type=options.ExistingPath(file_okay=False, path_type=Path),
     help="Folder to search (default: this one, src, and the workspace's packages).",
 )
 
@@ -345,7 +352,10 @@ def _brought(name: str) -> tuple[PackageExecutable, ...]:
 
 
 def _found(opened_workspace: Workspace, folders: Sequence[Path]) -> dict[str, Path]:
-    return find_packages(folders or (Path.cwd(), Path.cwd() / "src", opened_workspace.packages))
+    searched = tuple(folders) or (Path.cwd(), Path.cwd() / "src", opened_workspace.packages)
+    for reason in broken_packages(searched):
+        click.echo(reason, err=True)
+    return find_packages(searched)
 
 
 def _package(found: dict[str, Path], name: str) -> Package:

@@ -24,6 +24,7 @@ from kit.learning.tasks.student_reward import RewardFileError
 from kit.learning.training.algorithms import LearnExtraMissing, UnknownAlgorithm, UnsuitableAlgorithm
 from kit.learning.training.demonstrations import DemonstrationError
 from kit.learning.training.runs import NO_LIMIT, RunError, find_run
+from kit.plain_files import near_file
 from kit.run.recording import RecordingError
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError
@@ -174,7 +175,9 @@ def find_demonstrations(names: tuple[str, ...], workspace: Path | None) -> tuple
     for name in names:
         if name.endswith(".npz"):
             if not Path(name).is_file():
-                raise DemonstrationError(f"{name}: there is no such file.")
+                near = near_file(name)
+                hint = f" Did you mean {near}?" if near else ""
+                raise DemonstrationError(f"{name}: there is no such file.{hint}")
             found.append(Path(name).absolute())
         elif (opened.runs / name / "best.npz").is_file():
             found.append(opened.runs / name / "best.npz")

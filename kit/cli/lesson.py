@@ -62,14 +62,14 @@ TRAIL_POINTS = 100
     "--from",
     "folder",
     metavar="FOLDER",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    type=options.ExistingPath(file_okay=False, path_type=Path),
     help="Use someone else's lessons: texts are Markdown, programs run confined.",
 )
 @click.option(
     "--check",
     "contract_folder",
     metavar="FOLDER",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    type=options.ExistingPath(file_okay=False, path_type=Path),
     help="Check that your own lessons work with --from.",
 )
 @click.option(
@@ -181,7 +181,7 @@ def _foreign_lesson(folder: Path, name: str) -> Lesson:
     """The lesson of that name in a folder of somebody else's. Raises UnknownLesson and WorldError."""
     found = {each.name: each for each in lesson_folders(folder)}
     if name not in found:
-        raise UnknownLesson(f"{folder} has no lesson {quoted(name)}: {suggestion(name, tuple(found))}.")
+        raise UnknownLesson(f"{folder} has no lesson {quoted(name)}: {suggestion(name, tuple(found))}")
     return read_lesson(found[name], is_foreign=True)
 
 

@@ -256,7 +256,7 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
 
 
 @command.command(name="from-photo")
-@click.argument("picture", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.argument("picture", type=options.ExistingPath(dir_okay=False, path_type=Path))
 @click.argument("name", required=False)
 @click.option("--width", type=click.FloatRange(0.5, 200.0), help="Width of the whole sheet in the world [m].")
 @click.option(

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, NoReturn
 import click
 
 from kit.cli.process import BAD_INPUT, NO_ROOM, describe_no_room
+from kit.plain_files import near_file
 from kit.plain_text import escape_controls, wrap
 from kit.tui.terminal import (
     COLOUR_CHOICES,
@@ -252,9 +253,25 @@ def color(function: Callable[..., Any]) -> Callable[..., Any]:
     return count(theme(function))
 
 
+class ExistingPath(click.Path):
+    """The path of a file or a folder that is there; for another one, the name that is near is told."""
+
+    def __init__(self, *, file_okay: bool = True, dir_okay: bool = True, path_type: type = Path) -> None:
+        super().__init__(exists=True, file_okay=file_okay, dir_okay=dir_okay, path_type=path_type)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        try:
+            return super().convert(value, param, ctx)
+        except click.BadParameter as problem:
+            near = near_file(os.fspath(value), is_folder=not self.file_okay)
+            if not near or Path(value).exists():
+                raise
+            raise click.BadParameter(f"{problem.message} Did you mean {near}?", ctx, param) from None
+
+
 root: Decorator = click.option(
     "--root",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    type=ExistingPath(file_okay=False, path_type=Path),
     help="Folder that the world file may read (default: its own).",
 )
 storage: Decorator = click.option(

@@ -67,7 +67,8 @@ def run_as_process(command: click.Command, name: str) -> NoReturn:
             except SystemExit as stop:
                 if stop.code == BAD_INPUT:  # and why has been said
                     write_out()
-                sys.stdout.flush()
+                if sys.stdout is not None:  # closed by whoever started this
+                    sys.stdout.flush()
                 raise
     except ScreenClosed as closed:
         write_out()

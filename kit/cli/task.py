@@ -123,7 +123,7 @@ def pack(task: str, archive: Path | None) -> None:
 
 
 @command.command()
-@click.argument("archive", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.argument("archive", type=options.ExistingPath(dir_okay=False, path_type=Path))
 @click.option(
     "--dest",
     type=click.Path(file_okay=False, path_type=Path),

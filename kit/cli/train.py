@@ -171,7 +171,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
 @click.option(
     "--reward",
     "reward_file",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    type=options.ExistingPath(dir_okay=False, path_type=Path),
     help="Your own reward: a Python file with reward(); each function metric_NAME() in it only adds a curve.",
 )
 @click.option("--algorithm-reward", "reward", help="Use another of the kit's rewards, by name.")

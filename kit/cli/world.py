@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from kit.cli import options
+from kit.plain_files import near_file
 from kit.plain_text import counted
 from kit.run.scenario import own_map_folder
 from kit.sim.plugins import plugin_readers, world_plugin_readers
@@ -26,7 +27,7 @@ def command() -> None:
 @click.argument("world", metavar="FILE_OR_MAP")
 @click.option(
     "--root",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    type=options.ExistingPath(file_okay=False, path_type=Path),
     help="Folder that the world file may read.  [default: its own]",
 )
 @click.option(
@@ -78,8 +79,10 @@ def _find(world: str) -> tuple[Path, Path | None]:
             return path, allowed_root_of(path)
     except OSError as error:  # no permission; a name too long
         raise click.UsageError(f"Cannot open {path}: {error.strerror}.") from None
-    if len(Path(world).parts) > 1 or path.suffix:
-        raise click.UsageError(f"There is no file {path}.")
+    if len(Path(world).parts) > 1 or path.suffix or "\\" in world:
+        near = near_file(world)
+        hint = f" Did you mean {near}?" if near else ""
+        raise click.UsageError(f"There is no file {path}.{hint}")
     try:
         card = find_map(world)
     except UnknownMap as error:

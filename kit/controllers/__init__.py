@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kit.extensions import folders
+from kit.plain_files import near_file
 from kit.plain_text import nearest_name
 from kit.workspace import Workspace, expand_home, open_workspace, unusable_workspace_error, write_atomically
 
@@ -56,7 +57,7 @@ def find_controller(name: str, folder: Path | None = None) -> ControllerFile:
     Raises LookupError that names what there is.
     """
     path = expand_home(name)
-    if path.suffix == ".py" or "/" in name:
+    if path.suffix.lower() == ".py" or "/" in name or "\\" in name:
         places = [path, *([] if folder is None else [folder / path])]
         for file in places:
             if file.is_file():
@@ -64,7 +65,9 @@ def find_controller(name: str, folder: Path | None = None) -> ControllerFile:
         if path.exists():
             raise LookupError(f"{name}: a controller is a Python file, NAME.py; this is {_kind_of(path)}.")
         tried = "" if folder is None or path.is_absolute() else f", neither here nor in {folder}"
-        raise LookupError(f"{name}: there is no such file{tried}.")
+        near_path = near_file(name)
+        hint = f" Did you mean {near_path}?" if near_path else ""
+        raise LookupError(f"{name}: there is no such file{tried}.{hint}")
     known = {item.name: item for item in (*kit_controllers(), *(user_controllers(folder) if folder else ()))}
     if name in known:
         return known[name]

@@ -18,14 +18,10 @@ from kit.host.wire import Json, ProtocolError
 from kit.msg.fields import FieldError, FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
 from kit.msg.message import Message
 
-MAY_BE_INFINITE: Final = frozenset(
-    {
-        ("sensor_msgs/msg/LaserScan", "ranges"),
-        ("sensor_msgs/msg/LaserScan", "intensities"),
-        ("sensor_msgs/msg/Range", "range"),
-    }
-)
-"""Fields in which a student's message may hold NaN or infinity: readings beyond range (REP 117)."""
+MAY_BE_INFINITE: Final = ("sensor_msgs/", "std_msgs/", "example_interfaces/")
+"""The packages in whose messages' own fields a student may write NaN or infinity: readings beyond range (REP 117), what was not
+measured (as sensor_msgs says of batteries, pressures and positions), and plain numbers, such as the least of no readings. A
+command, a pose and a path are of others."""
 
 Pack = Callable[[Any], Json]
 Unpack = Callable[[Json], Any]
@@ -60,13 +56,13 @@ class Codec:
         return self._unpack[cls](content)
 
 
-def _must_be_finite(cls: type[Message], field: str, strict: bool) -> bool:
-    return strict and (cls.__ros_type__, field) not in MAY_BE_INFINITE
+def _must_be_finite(cls: type[Message], strict: bool) -> bool:
+    return strict and not cls.__ros_type__.startswith(MAY_BE_INFINITE)
 
 
 def _packer(cls: type[Message], strict: bool) -> Pack:
     steps = [
-        (field.slot, _kind_packer(field.kind, strict, _must_be_finite(cls, field.name, strict)))
+        (field.slot, _kind_packer(field.kind, strict, _must_be_finite(cls, strict)))
         for field in cls.__ros_fields__
     ]
 
@@ -124,10 +120,7 @@ def _finite_numbers_to_text(values: Any) -> str:
 
 def _unpacker(cls: type[Message], strict: bool) -> Unpack:
     names = [field.name for field in cls.__ros_fields__]
-    steps = [
-        _kind_unpacker(field.kind, strict, _must_be_finite(cls, field.name, strict))
-        for field in cls.__ros_fields__
-    ]
+    steps = [_kind_unpacker(field.kind, strict, _must_be_finite(cls, strict)) for field in cls.__ros_fields__]
 
     def unpack(content: Json) -> Any:
         values = wire.items(content, len(names))

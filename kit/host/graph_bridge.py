@@ -329,7 +329,7 @@ class ChildBridge(GraphBridge):
             except NotFiniteError as problem:
                 raise ValueError(
                     f"{problem} of the {type(message).__name__} for {topic} is not a finite number. "
-                    "(A laser ray that meets nothing reads nan.)"
+                    "(A laser ray that meets nothing reads nan or inf.)"
                 ) from None
             self._add("message", number, content)
 

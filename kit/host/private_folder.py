@@ -26,7 +26,8 @@ _swept_folders: Final[set[str]] = set()
 
 def make_private_folder() -> str:
     """Makes a folder that only this user may enter (mode 0700), and returns its path. Its maker removes it."""
-    parent = tempfile.gettempdir()
+    # The program that is granted it has another current folder.
+    parent = os.path.abspath(tempfile.gettempdir())
     if parent not in _swept_folders:
         _swept_folders.add(parent)
         remove_abandoned_folders(parent)

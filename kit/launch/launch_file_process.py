@@ -16,11 +16,13 @@ from kit.host.wire import Json, ProtocolError
 from kit.launch.command_folder import with_commands
 from kit.launch.program_lookup import INTERACTIVE_BOUNDS, LaunchBounds
 from kit.launch.requests import DeclaredArgument, Request, parse_request
+from kit.plain_files import near_file
 from kit.ros.packages import (
     LAUNCH_SUFFIXES,
     SEARCH_VARIABLE,
     Package,
     PackageError,
+    broken_packages,
     find_packages,
     read_package,
 )
@@ -147,7 +149,10 @@ def find_launch_file(where: str, file: str | None, extra_folders: Iterable[Path]
         packages = find_packages(here)
         if where not in packages:
             known = f" Packages found here: {', '.join(sorted(packages))}." if packages else ""
-            raise PackageError(f"{where}: there is no such file, folder or package.{known}")
+            known += "".join(f" One cannot be read: {reason}." for reason in broken_packages(here))
+            near = near_file(where) or near_file(where, is_folder=True)
+            hint = f" Did you mean {near}?" if near else ""
+            raise PackageError(f"{where}: there is no such file, folder or package.{hint}{known}")
         path = packages[where]
     path = path.absolute()
     if (path / "package.xml").is_file():
@@ -159,6 +164,8 @@ def find_launch_file(where: str, file: str | None, extra_folders: Iterable[Path]
         alone = sorted(found for suffix in LAUNCH_SUFFIXES for found in path.glob(f"*launch.{suffix}"))
         if len(alone) == 1 and file is None:
             return LaunchTarget(alone[0], path, _search_order(path, extra_folders))
+        for reason in broken_packages([path]):
+            raise PackageError(reason)
         raise PackageError(f"{path}: no package.xml here or below, so this is not a ROS 2 package")
     raise PackageError(
         f"{where}: it contains several packages: {', '.join(sorted(inside))}. Give the folder of one."

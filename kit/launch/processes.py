@@ -23,7 +23,7 @@ _MISSING_NAME: Final = re.compile(r"cannot import name '(\w+)' from '([\w.]+)'")
 UNAVAILABLE_ROS_MODULES: Final = frozenset(
     {
         "cv_bridge", "image_geometry", "laser_geometry", "nav2_simple_commander", "pcl_ros",
-        "rosbag2_py", "ros2cli", "rclpy_action", "tf2_kdl", "control_msgs", "map_msgs", "nav2_msgs", "xacro",
+        "ros2cli", "rclpy_action", "tf2_kdl", "control_msgs", "map_msgs", "nav2_msgs", "xacro",
     }
 )  # fmt: skip
 """Modules of ROS 2 that the kit does not have."""

@@ -294,6 +294,11 @@ def definition_source(name: str) -> str:
     return _registry.source(find_interface(name).__ros_type__)[1]
 
 
+def definition_file(name: str) -> str:
+    """The path of an interface's definition file. Raises UnknownInterface."""
+    return _registry.source(find_interface(name).__ros_type__)[0]
+
+
 def _list_files(folder: str) -> list[str]:
     try:
         return sorted(os.listdir(folder))

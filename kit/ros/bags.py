@@ -184,7 +184,7 @@ class BagRecorder:
         assert self._node is not None
         cls = find_message(type_of)
         profiles = [
-            _rosbags_qos(publisher.qos_profile) for publisher in self._graph.directory.publishers(topic)
+            offered_profile(publisher.qos_profile) for publisher in self._graph.directory.publishers(topic)
         ]
         with uninterrupted():
             try:
@@ -244,7 +244,7 @@ class BagRecorder:
             self.failure = f"{self._folder}: the bag ends early: {reason(problem)}."
 
 
-def _rosbags_qos(profile: QoSProfile) -> Qos:
+def offered_profile(profile: QoSProfile) -> Qos:
     return Qos(
         QosHistory(int(profile.history)),
         profile.depth,
@@ -293,7 +293,7 @@ class Bag:
 
 def read_bag(folder: Path) -> Bag:
     """Reads the summary of a bag, a folder with ``metadata.yaml``. Raises BagError."""
-    with _open_reader(folder) as reader:
+    with open_reader(folder) as reader:
         files = tuple(sorted(path.name for path in folder.iterdir() if path.suffix in (".mcap", ".db3")))
         return Bag(
             folder,
@@ -319,7 +319,7 @@ def read_messages(
     ``skipped`` is told their name and type.
     """
     serializers = [Serializer("humble"), Serializer("jazzy")]
-    with _open_reader(folder) as reader:
+    with open_reader(folder) as reader:
         found: dict[int, tuple[Serializer, type[Message]]] = {}
         for connection in reader.connections:
             if topics is None or connection.topic in topics:
@@ -356,7 +356,7 @@ def _serializer_for(
 
 
 @contextmanager
-def _open_reader(folder: Path) -> Iterator[Reader]:
+def open_reader(folder: Path) -> Iterator[Reader]:
     if not (folder / "metadata.yaml").is_file():
         if is_being_recorded(folder):
             raise BagError(f"{folder}: a program records this bag now. It can be read when that has ended.")

@@ -25,6 +25,7 @@ from kit.interruption import uninterrupted
 from kit.msg.conversion import from_dict, to_dict
 from kit.msg.interfaces import find_interface
 from kit.msg.message import Message
+from kit.plain_text import quoted, suggestion
 from kit.ros.graph.graph import Graph
 from kit.run.episode import run_until
 from kit.run.lockstep import Observer
@@ -60,7 +61,7 @@ class Input:
     """JSON-able."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Recording:
     """The inputs of one run and the poses of all models. ``load_recording`` reads it from a file.
 
@@ -90,8 +91,21 @@ class Recording:
     def ticks(self) -> int:
         return len(self.counts)
 
+    def __repr__(self) -> str:
+        """``Recording(maze: 100 ticks of 0.01 s, serp)``"""
+        return f"Recording({self.place}: {self.ticks:,} ticks of {self.step_size:g} s, {', '.join(self._model_names())})"
+
+    def _model_names(self) -> tuple[str, ...]:
+        """The names of all models that there ever were."""
+        return tuple(dict.fromkeys(name for _, names in self.models for name in names))
+
     def track(self, model: str) -> FloatArray:
-        """(k, 3): the poses of a model at all ticks at which it existed."""
+        """(k, 3): the poses of a model at all ticks at which it existed. LookupError for one that there never was."""
+        known = self._model_names()
+        if known and model not in known:
+            raise LookupError(
+                f"there is no model {quoted(model)} in this recording: {suggestion(model, known)}"
+            )
         starts = np.concatenate([[0], np.cumsum(self.counts)])
         rows = []
         ends = (*(tick for tick, _ in self.models), self.ticks)[1:]  # none at all before the first tick

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from contextlib import AbstractContextManager, contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from pathlib import Path
-from urllib.parse import unquote
 
-from kit.plain_files import read_plain_file
+from kit.plain_files import near_file, read_plain_file
 from kit.plain_text import is_printable, quoted
 from kit.world.problems import Problem, ProblemCollector, WorldError
 from kit.world.records import SourceLocation
@@ -106,30 +105,6 @@ def _exists(file: Path) -> bool:
         return file.exists()
     except OSError:
         return False
-
-
-def near_file(name: str, folder: Path) -> str:
-    """The name of a file that is there, relative to ``folder``, for one that is not: written with the separators of
-    Windows, in the other case, or as the address or the path that it has on another machine. Empty if there is none."""
-    words = unquote(name.removeprefix("file://")).replace("\\", "/").split("/")
-    words = [word for word in words if word not in ("", ".", "~") and not word.endswith(":")]
-    for first in range(len(words)):  # all of the path, then what is left without its first folders
-        found = folder
-        for word in words[first:]:
-            if word == "..":
-                found = found.parent
-                continue
-            with suppress(OSError):
-                names = [path.name for path in found.iterdir()]
-                match = word if word in names else next((n for n in names if n.lower() == word.lower()), None)
-                if match is not None:
-                    found = found / match
-                    continue
-            break
-        else:
-            if found.is_file() and found.is_relative_to(folder):
-                return str(found.relative_to(folder))
-    return ""
 
 
 def _resolve_links(path: Path) -> Path:
@@ -263,7 +238,9 @@ class WorldDocuments:
             if not documents:
                 self.problems.add(SourceLocation(file), "the file is empty")
         except UnusableFile as error:
-            self.problems.add(referenced_at, f"cannot read {quoted(str(file), 200)}: {error}")
+            near = "" if _exists(file) else near_file(str(file), file.parent) or near_file(str(file))
+            hint = f". Did you mean {quoted(near)}?" if near else ""
+            self.problems.add(referenced_at, f"cannot read {quoted(str(file), 200)}: {error}{hint}")
         except InvalidYaml as error:
             self.problems.add(error.problem.location, error.problem.message)
         self._read_files[file] = documents, self._budget.spent - before

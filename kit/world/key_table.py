@@ -66,14 +66,11 @@ class _Run:
 
 
 def format_keys(
-    read: Callable[[Section], object],
-    alternatives: Mapping[str, Sequence[str]] = MappingProxyType({}),
-    absent: Sequence[str] = (),
+    read: Callable[[Section], object], alternatives: Mapping[str, Sequence[str]] = MappingProxyType({})
 ) -> tuple[FormatKey, ...]:
-    """All keys that ``read`` can ask for, in the order of its questions, whatever is chosen.
+    """All keys that ``read`` can ask for, in the order of its questions, whatever is chosen and whatever is not written.
 
-    ``alternatives``: texts by which the reader tells cases apart although any other text is allowed too. ``absent``: keys in
-    whose place the reader asks for others, where they are not written.
+    ``alternatives``: texts by which the reader tells cases apart although any other text is allowed too.
 
     >>> def read(section: Section) -> None:
     ...     section.number("radius", 1.0, above=0)
@@ -81,12 +78,16 @@ def format_keys(
     (FormatKey(key='radius', type='number, greater than 0', default='1', only_with=''),)
     """
     runs: list[_Run] = []
-    pending = [_Run({}), *(_Run({}, each) for each in absent)]
+    pending = [_Run({})]
     tried: set[tuple[str, str]] = set()
+    left_out: set[str] = set()
     while pending:
         run = pending.pop(0)
         read(_NotingSection(run, "", alternatives))
         runs.append(run)
+        for key in sorted(run.guarded - left_out):  # the reader may ask for others in its place
+            left_out.add(key)
+            pending.append(_Run(run.decided, key))
         for key, options in run.choices.items():
             for option in options:
                 if key not in run.decided and (key, option) not in tried:
@@ -114,7 +115,7 @@ def _merged(runs: Sequence[_Run]) -> Iterator[FormatKey]:
 
 def _condition(key: str, known: Sequence[_Run], runs: Sequence[_Run]) -> str:
     """The choice that tells the runs which know the key from those that do not."""
-    unknown = [run for run in runs if key not in run.keys]
+    unknown = [run for run in runs if key not in run.keys and run.absent != key]
     for name in dict.fromkeys(name for run in known for name in run.choices):
         options = {run.option(name) for run in known}
         if unknown and not options & {run.option(name) for run in unknown}:

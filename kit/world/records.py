@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
 from kit.geometry import Pose
+from kit.plain_text import counted
 
 if TYPE_CHECKING:
     from kit.arrays import FloatArray
@@ -222,7 +223,7 @@ class Model:
         return f"{self.namespace}_{name}" if self.namespace else name
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class World:
     file: Path
     layers: tuple[Layer, ...] = ()
@@ -232,6 +233,11 @@ class World:
     position_iterations: int = 10
     layer_bits: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     """Every layer name and its bit."""
+
+    def __repr__(self) -> str:
+        """``World(maps/maze/world.yaml: 1 layer, models serp)``"""
+        models = ", ".join(model.name for model in self.models)
+        return f"World({self.file}: {counted(len(self.layers), 'layer')}, models {models or 'none'})"
 
     @property
     def remarks(self) -> tuple[ReadingRemark, ...]:

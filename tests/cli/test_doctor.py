@@ -17,6 +17,8 @@ from click.testing import CliRunner
 from kit.cli import doctor
 from kit.cli.doctor import command
 from kit.installation import install_command
+from kit.school import class_costs
+from kit.school.capacity import MachineSize, UseCost
 
 
 def report(*arguments: str, **environ: str) -> str:
@@ -151,3 +153,30 @@ def test_it_loads_nothing_heavy() -> None:
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, stdin=subprocess.DEVNULL
     )
     assert {"textual", "torch", "numba", "numpy", "pymunk", "gymnasium"}.isdisjoint(run.stdout.split())
+
+
+@pytest.fixture
+def costs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(class_costs, "measure_costs", lambda: UseCost(0.16, 132e6, 1.8, 7.0, 119e6))
+    monkeypatch.setattr(class_costs, "this_machine", lambda: MachineSize(8, 16e9))
+
+
+@pytest.mark.usefixtures("costs")
+def test_a_class_fits_or_does_not() -> None:
+    fits = json.loads(report("--class", "30", "--json"))["A class of 30"]["this machine"]
+    not_all = json.loads(report("--class", "300", "--json"))["A class of 300"]["this machine"]
+    assert fits["value"] != not_all["value"]
+    assert fits["meaning"] == not_all["meaning"]
+    text = report("--class", "30")
+    assert all(len(line) <= 80 for line in text.splitlines())
+    assert "100,000 learners" in text
+
+
+def test_a_machine_that_tells_nothing_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse() -> MachineSize:
+        raise class_costs.NotMeasured("only Linux says")
+
+    monkeypatch.setattr(class_costs, "this_machine", refuse)
+    ended = CliRunner().invoke(command, ["--class", "30"])
+    assert ended.exit_code == 2
+    assert "only Linux says" in ended.output

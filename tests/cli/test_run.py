@@ -52,6 +52,30 @@ def kit(*words: str | Path) -> Result:
     return result
 
 
+@pytest.mark.parametrize("name", ["my\\{}", "MY/{}", "C:\\my\\{}", "~/nowhere/my/{}"])
+@pytest.mark.parametrize(
+    ("words", "file"),
+    [
+        (("run",), "room.yaml"),
+        (("run", "simple", "--steps", "1", "--controller"), "drive.py"),
+        (("world", "check"), "room.yaml"),
+        (("launch",), "room.launch.py"),
+        (("maps", "from-photo", "--width", "4"), "room.png"),
+        (("train", "turn", "--imitate"), "drive.npz"),
+    ],
+)
+def test_a_path_as_windows_users_write_it_gets_the_name_that_is_there(
+    words: tuple[str, ...], file: str, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "my").mkdir()
+    (tmp_path / "my" / file).touch()
+    monkeypatch.chdir(tmp_path)
+    result = kit(*words, name.format(file))
+    assert "Did you mean" in result.output
+    assert f"my/{file}" in result.output.replace("\n", " ")
+    assert result.exit_code != 0
+
+
 @pytest.mark.long
 def test_the_same_words_give_the_same_run_to_the_bit() -> None:
     words = ("run", "maze", "--steps", "700", "--json", "--seed")

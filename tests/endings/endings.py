@@ -6,6 +6,7 @@ import os
 import shutil
 import signal
 import subprocess
+import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -41,6 +42,13 @@ class Ending:
         return not self.has_traceback and (self.kept > 0 or not self.had_something)
 
 
+def _until_something(recorder: Recorder) -> float:
+    """Returns how long it took until there was something to keep [s]: a measure of how busy the machine is."""
+    began = time.monotonic()
+    until(recorder.has_something, "something to keep")
+    return time.monotonic() - began
+
+
 def _by_signal(number: signal.Signals, recorder: Recorder, folder: Path) -> Ending:
     started = Started(recorder)
     until(recorder.has_something, "something to keep")
@@ -66,7 +74,7 @@ def _by_kill_of_group(recorder: Recorder, folder: Path) -> Ending:
 def _by_partner(recorder: Recorder, folder: Path) -> Ending:
     """The world that is recorded is killed; elsewhere a process that the program has started, if there is one."""
     started = Started(recorder)
-    until(recorder.has_something, "something to keep")
+    taken_s = _until_something(recorder)
     if recorder.partner is not None:
         recorder.partner.kill()
     else:
@@ -74,7 +82,7 @@ def _by_partner(recorder: Recorder, folder: Path) -> Ending:
             with suppress(ProcessLookupError):
                 os.kill(child, signal.SIGKILL)
         with suppress(subprocess.TimeoutExpired):
-            started.process.wait(1)
+            started.process.wait(max(1.0, taken_s / 2))
         started.process.send_signal(signal.SIGINT)
     return _end(recorder, started)
 
@@ -82,10 +90,10 @@ def _by_partner(recorder: Recorder, folder: Path) -> Ending:
 def _by_second_writer(recorder: Recorder, folder: Path) -> Ending:
     """A second program of the same kind writes the same name: it is refused, and the first one loses nothing."""
     started = Started(recorder)
-    until(recorder.has_something, "something to keep")
+    taken_s = _until_something(recorder)
     second = Started(recorder)
     with suppress(subprocess.TimeoutExpired):
-        second.process.wait(6)
+        second.process.wait(max(6.0, 3 * taken_s))
     second.process.send_signal(signal.SIGTERM)
     second.process.wait(END_S)
     started.process.send_signal(signal.SIGTERM)
@@ -95,13 +103,13 @@ def _by_second_writer(recorder: Recorder, folder: Path) -> Ending:
 def _by_full_disk(recorder: Recorder, folder: Path) -> Ending:
     """The folder in which it writes is a file system of its own that becomes full; where there is none, another's quota."""
     started = Started(recorder)
-    until(recorder.has_something, "something to keep")
+    taken_s = _until_something(recorder)
     filler = recorder.folder / "filler"
     with suppress(OSError), filler.open("wb", buffering=0) as file:
         while True:
             file.write(bytes(512))
     with suppress(subprocess.TimeoutExpired):
-        started.process.wait(4)
+        started.process.wait(max(4.0, 2 * taken_s))
     started.process.send_signal(signal.SIGTERM)
     started.process.wait(END_S)
     filler.unlink(missing_ok=True)
@@ -112,7 +120,7 @@ def _by_full_output(recorder: Recorder, folder: Path) -> Ending:
     """Standard output is a full device, and then the program is asked to end."""
     started = Started(recorder, output=Path("/dev/full"))
     with suppress(TimeoutError):
-        until(lambda: recorder.has_something() or started.process.poll() is not None, "something", 20)
+        until(lambda: recorder.has_something() or started.process.poll() is not None, "something")
     has_ended = started.process.poll() is not None and not recorder.has_something()
     started.process.send_signal(signal.SIGTERM)
     return replace(_end(recorder, started), had_something=not has_ended)

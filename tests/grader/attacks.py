@@ -348,6 +348,59 @@ THIRD_ROUND: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingProx
 without what holds it."""
 
 
+FOURTH_ROUND: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingProxyType(
+    {
+        "what surrounds the grader: a relative TMPDIR (no points), NUMBA_DISABLE_JIT (not read), a closed output": (
+            ("grader/test_surroundings.py::test_no_environment_decides_a_grade", "grader/test_surroundings.py::test_nothing_that_a_process_inherits_decides_a_grade"),
+            ("host/test_private_folder.py::test_its_path_holds_in_every_current_folder",),
+        ),
+        "a world whose robot moves by itself, and one of walls that close nothing": (
+            ("grader/kinds/world/test_kind.py::test_a_robot_that_moves_by_itself_is_not_driven", "grader/kinds/world/test_kind.py::test_a_gap_in_the_walls_is_found"),
+            ("grader/test_grading.py::test_the_templates_prove_themselves",),
+        ),
+        "the commands of a solution's drive, given again by the clock: half of three exercises and of the template": (
+            ("grader/test_tapes.py::test_a_tape_of_the_solutions_drive_earns_little",),
+            ("test_every_lesson.py::test_every_work_loses_what_it_was_written_for",),
+        ),
+        "feedback of an action that is always the same; a policy that turns on the spot and touches nothing": (
+            ("test_every_lesson.py::test_every_work_loses_what_it_was_written_for", "grader/test_grading.py::test_the_templates_prove_themselves"),
+            ("test_every_lesson.py::test_every_work_loses_what_it_was_written_for",),
+        ),
+        "an array as Python 2 wrote it, at which numpy warns whoever opens the file": (
+            ("test_plain_files.py::test_an_array_as_python_2_wrote_it_is_refused_without_a_warning",),
+            ("test_plain_files.py::test_an_array_as_python_2_wrote_it_is_refused_without_a_warning",),
+        ),
+    }
+)  # fmt: skip
+"""What worked in the fourth round, by class; as ``THIRD_ROUND``."""
+
+WITHSTOOD: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "left for the next grading: System V and POSIX objects, named semaphores, keyrings, attributes, namespaces of a thread": NO_ATTACK,
+        "signals and groups: stopped by itself, stopped by a thread, a session of its own and an abort": (
+            "grader/test_attacks.py::test_nobody_gains_anything_in_other_ways",
+        ),
+        "odd names: two Unicode forms, case folding, options, formulas, line ends, no UTF-8, device names; pipes and sockets": (
+            "grader/cohort/test_cohort.py::test_no_two_names_of_a_class_look_alike",
+            "grader/cohort/test_cohort.py::test_a_note_gives_a_ci_service_no_command",
+        ),
+        "texts that leave, in ten formats: escapes, halves of surrogates, commands, ends of XML, from 23 places of a program": (
+            "grader/test_hostile_texts.py::test_no_text_of_a_program_leaves_as_anything_but_text",
+        ),
+        "YAML: keys twice, of 90 kB, lists as keys, merges, dates, base 60, numbers of 60,000 digits, two documents": (
+            "grader/kinds/test_answers.py::test_whatever_a_file_of_answers_holds_it_is_told",
+        ),
+        "compiled programs and packages that take the place of what is shown; caches of numba": (
+            "grader/test_submission.py::test_what_reads_otherwise_than_it_runs_is_refused",
+        ),
+        "environment variables in a world's files": (
+            "grader/kinds/world/test_kind.py::test_a_program_in_a_world_is_not_run",
+        ),
+    }
+)
+"""Classes of the fourth round in which three ideas in a row failed, and the tests that hold them."""
+
+
 def table(levels: Sequence[Level], words: Sequence[str] = ()) -> Iterator[str]:
     """Yields a line for each attack, by the levels at which it is tried; ``words``: in the names of those to try."""
     os.environ["GRADER_TOKEN"] = TOKEN

@@ -1,7 +1,7 @@
 """Takes each defence of the grader's away, in a copy of the project, and shows that the test which holds it then fails.
 
 ``python -m tests.grader.controls`` goes through all; words choose those whose names hold them. Exit code 1 if a test passes
-without its defence. What a test holds only on some machines (as root, with Landlock) is tried only there.
+without its defence, or fails with it. What a test holds only on some machines (as root, with Landlock) is tried only there.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from enum import Enum
 from pathlib import Path
 from typing import Final
 
@@ -271,12 +272,132 @@ CONTROLS: Final = (
         "            pass\n",
         "host/sandbox/test_control_groups.py::test_the_groups_of_a_killed_kit_are_removed_at_the_next_start",
     ),
+    Control(
+        "AIO requests of the machine",
+        "kit/host/sandbox/seccomp.py",
+        '    "pipe2": (293, 59), "eventfd"',
+        '    "pipe2": (293, 59), "io_setup": (206, 0), "eventfd"',
+        "host/sandbox/test_confinement.py::test_no_attack_gets_anywhere",
+    ),
+    Control(
+        "files in flight",
+        "kit/host/sandbox/seccomp.py",
+        '    "pipe2": (293, 59), "eventfd"',
+        '    "pipe2": (293, 59), "sendmsg": (46, 211), "eventfd"',
+        "host/sandbox/test_confinement.py::test_no_attack_gets_anywhere",
+    ),
+    Control(
+        "flags of the library",
+        "kit/host/sandbox/seccomp.py",
+        '    "pipe2": (293, 59), "eventfd"',
+        '    "pipe2": (293, 59), "ioctl": (16, 29), "eventfd"',
+        "host/sandbox/test_confinement.py::test_no_attack_gets_anywhere",
+    ),
+    Control(
+        "what of a file is in memory, by a flag of reading",
+        "kit/host/sandbox/seccomp.py",
+        '    "pipe2": (293, 59), "eventfd"',
+        '    "pipe2": (293, 59), "preadv2": (327, 286), "eventfd"',
+        "host/sandbox/test_confinement.py::test_the_filter_decides_each_call_rightly",
+    ),
+    Control(
+        "a result of another submission",
+        "grader/cohort/queue.py",
+        "        if key not in keys:\n            return False\n",
+        "",
+        "grader/cohort/test_queue.py::test_the_result_of_another_submission_gives_it_no_grade",
+    ),
+    Control(
+        "a worker's result that is too large",
+        "kit/host/job_executors.py",
+        "read_plain_file(file, MAX_RESULT_BYTES)",
+        "read_plain_file(file, 10 * MAX_RESULT_BYTES)",
+        "grader/cohort/test_queue.py::test_a_file_that_is_no_result_is_not_read",
+    ),
+    Control(
+        "a worker's result with a number that is none",
+        "kit/host/job_executors.py",
+        "        json.dumps(content, allow_nan=False)  # 1e999 is read as infinity\n",
+        "",
+        "grader/cohort/test_queue.py::test_a_file_that_is_no_result_is_not_read",
+    ),
+    Control(
+        "a worker's incident that comes after a grade",
+        "grader/cohort/queue.py",
+        "result.verdict is GradingVerdict.BROKEN and self._has_grade(key)",
+        "False",
+        "grader/cohort/test_queue.py::test_no_verdict_is_lost_by_one_that_comes_late",
+    ),
+    Control(
+        "a robot that announces endpoints without end",
+        "kit/bridge/zenoh_wire.py",
+        "                    if len(self._tokens) < MAX_ENDPOINTS:\n",
+        "                    if True:\n",
+        "bridge/test_hostile_robot.py::test_a_robot_that_announces_endpoints_without_end_fills_no_memory",
+    ),
+    Control(
+        "a robot whose messages are too large",
+        "kit/bridge/channels.py",
+        "        if len(data) <= MAX_MESSAGE_BYTES:\n",
+        "        if data is not None:\n",
+        "bridge/test_hostile_robot.py::test_what_is_too_large_does_not_wait_in_memory",
+    ),
+    Control(
+        "a robot whose requests the world does not answer",
+        "kit/bridge/channels.py",
+        "            if self._client.pending_count >= MAX_UNANSWERED:\n",
+        "            if self._client.pending_count < 0:\n",
+        "bridge/test_hostile_robot.py::test_requests_without_end_that_the_world_does_not_answer_fill_no_memory",
+    ),
+    Control(
+        "a robot whose types change without end",
+        "kit/bridge/bridge.py",
+        "        if text in told or len(told) > MAX_REPORTS:\n",
+        "        if text in told:\n",
+        "bridge/test_hostile_robot.py::test_what_a_robot_calls_itself_is_no_command_of_a_terminal_and_fills_no_screen",
+    ),
+    Control(
+        "a robot of a world that moves by itself",
+        "grader/kinds/world/checks.py",
+        "    if run.run.undriven >= LEAST_WAY:\n",
+        "    if run.run.undriven < 0.0:\n",
+        "grader/kinds/world/test_kind.py::test_a_robot_that_moves_by_itself_is_not_driven",
+    ),
+    Control(
+        "temporary files in a relative folder",
+        "kit/host/private_folder.py",
+        "os.path.abspath(tempfile.gettempdir())",
+        "tempfile.gettempdir()",
+        "host/test_private_folder.py::test_its_path_holds_in_every_current_folder",
+    ),
+    Control(
+        "kernels that are not compiled",
+        "kit/kernels/compilation.py",
+        'os.environ.pop("NUMBA_DISABLE_JIT", None)\n',
+        "\n",
+        "grader/test_surroundings.py::test_no_environment_decides_a_grade",
+    ),
+    Control(
+        "an array that makes numpy warn",
+        "kit/array_archives.py",
+        '            ast.literal_eval(part.read(length).decode("latin-1"))',
+        "            part.read(length)",
+        "test_plain_files.py::test_an_array_as_python_2_wrote_it_is_refused_without_a_warning",
+    ),
 )  # fmt: skip
 
 
-def is_held(control: Control, folder: Path) -> bool:
-    """Returns whether the test passes in a copy of the project, and fails there without its defence. ``folder``: an empty one,
-    for the copy."""
+class Seen(Enum):
+    """What was seen of a control."""
+
+    FAILS = "fails without it"
+    PASSES = "PASSES WITHOUT IT"
+    FAILS_ALWAYS = "FAILS WITH IT TOO"
+    SKIPPED = "not on this machine"
+
+
+def see(control: Control, folder: Path) -> Seen:
+    """Runs the control's test in a copy of the project, with its defence and without. ``folder``: an empty one, for the copy."""
     for name in COPIED:
         source = ROOT / name
         if source.is_dir():
@@ -287,11 +408,14 @@ def is_held(control: Control, folder: Path) -> bool:
             _link(source, folder / name)
     changed = folder / control.file
     text = changed.read_text("utf-8")
-    if _run(control, folder) != 0:
-        return False
+    code, output = _run(control, folder)
+    if code != 0:
+        return Seen.FAILS_ALWAYS
+    if "passed" not in output:
+        return Seen.SKIPPED
     changed.unlink()
     changed.write_text(text.replace(control.defence, control.without), "utf-8")
-    return _run(control, folder) in (1, None)
+    return Seen.FAILS if _run(control, folder)[0] in (1, None) else Seen.PASSES
 
 
 def _link(source: str | Path, target: str | Path) -> None:
@@ -302,38 +426,36 @@ def _link(source: str | Path, target: str | Path) -> None:
         shutil.copy2(source, target)
 
 
-def _run(control: Control, folder: Path) -> int | None:
-    """Returns the exit code of the control's test in a copy of the project; None where it does not end."""
+def _run(control: Control, folder: Path) -> tuple[int | None, str]:
+    """Returns the exit code of the control's test in a copy of the project, None where it does not end; and what it printed."""
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:xdist", "-p", "no:cacheprovider"]
     command += ["-m", "long or not long", f"tests/{control.test}"]
     environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
     try:
-        return subprocess.run(
-            command, cwd=folder, env=environment, capture_output=True, timeout=LIMIT_S, check=False
-        ).returncode
+        done = subprocess.run(
+            command, cwd=folder, env=environment, capture_output=True, timeout=LIMIT_S, check=False, text=True
+        )
     except subprocess.TimeoutExpired:
-        return None
+        return None, ""
+    return done.returncode, done.stdout
 
 
-def tried(words: Sequence[str] = ()) -> Iterator[tuple[Control, bool]]:
-    """Yields each control whose name holds one of the words, with whether its test sees that the defence is gone."""
+def tried(words: Sequence[str] = ()) -> Iterator[tuple[Control, Seen]]:
+    """Yields each control whose name holds one of the words, with what was seen of it."""
     for control in CONTROLS:
         if not words or any(word in control.name for word in words):
             with tempfile.TemporaryDirectory(prefix="kit-control-") as folder:
-                yield control, is_held(control, Path(folder))
+                yield control, see(control, Path(folder))
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.grader.controls", description=__doc__)
     parser.add_argument("words", nargs="*", help="words in the names of those to try")
-    passed = 0
-    for control, holds in tried(parser.parse_args().words):
-        print(
-            f"{'fails without it' if holds else 'PASSES WITHOUT IT':<18} {control.name}: {control.test}",
-            flush=True,
-        )
-        passed += not holds
-    return 1 if passed else 0
+    wrong = 0
+    for control, seen in tried(parser.parse_args().words):
+        print(f"{seen.value:<19} {control.name}: {control.test}", flush=True)
+        wrong += seen in (Seen.PASSES, Seen.FAILS_ALWAYS)
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":

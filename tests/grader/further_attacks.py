@@ -469,6 +469,16 @@ def never_ends(folder: Path) -> bool:
     return not any(batch.step(np.array([0, 0])).ended.any() for _ in range(5))
 
 
+def never_ends_when_stopped(folder: Path) -> bool:
+    """Whether a process that has stopped itself still lives, and waits for ever."""
+    stops = [sys.executable, "-c", "import os, signal; os.kill(os.getpid(), signal.SIGSTOP)"]
+    with subprocess.Popen(stops) as running:
+        _, status = os.waitpid(running.pid, os.WUNTRACED)
+        is_stopped = os.WIFSTOPPED(status)
+        running.kill()
+    return is_stopped
+
+
 def policy_that_runs(file: Path) -> bytes:
     """An array of objects, one of which makes ``file`` as soon as it is unpickled."""
 
@@ -576,4 +586,6 @@ FURTHER_ATTACKS: tuple[Attack, ...] = (
     Attack(124, "a task whose episodes do not end", whole=ENDLESS, files=task_files(), sheet=TASK_SHEET.replace("total: 120", "total: 10, submission: 10").replace("start: 60, reply: 60", "start: 5, reply: 5"), end=End(1.0, "timeout"), control=never_ends),
     Attack(125, "a task whose world reads the secrets", whole=TASK, files=task_files(room=ROOM.replace(b"room.dat", b"../../assignment/secret.yaml")), sheet=TASK_SHEET, end=UNREAD, assignment_files={"hidden.dat": SQUARE}, control=leaves_by_its_name("../../assignment/secret.yaml")),
     Attack(126, "a policy that is a program", whole=TASK, files=task_files() | {"best.npz": policy_that_runs(Path("made-by-a-policy"))}, sheet=TASK_SHEET[: TASK_SHEET.index("  - {check: sound")] + "  - {check: arrives, points: 10}\n", end=UNREAD, control=runs_when_loaded),
+    # By being stopped
+    Attack(127, "stop all its threads, and never be over", "import signal; os.kill(os.getpid(), signal.SIGSTOP)", SLOW, sheet=HASTY, control=never_ends_when_stopped),
 )  # fmt: skip

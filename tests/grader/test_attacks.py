@@ -14,7 +14,7 @@ from kit.host.sandbox.confinement import Level
 from kit.results.grading_result import GradingVerdict
 from tests.cases import every_case
 from tests.grader.attack import TOKEN, Attack, attempt, works_undefended
-from tests.grader.attacks import ATTACKS, THIRD_ROUND, WORKED_ONCE, table
+from tests.grader.attacks import ATTACKS, FOURTH_ROUND, THIRD_ROUND, WITHSTOOD, WORKED_ONCE, table
 from tests.grader.conftest import LOCKS
 from tests.grader.further_attacks import FURTHER_ATTACKS
 
@@ -132,7 +132,11 @@ def test_every_row_is_there() -> None:
     assert len(set(names)) == len(names)
 
 
-HOLDING = {**WORKED_ONCE, **{name: (*held, *control) for name, (held, control) in THIRD_ROUND.items()}}
+HOLDING = {
+    **WORKED_ONCE,
+    **WITHSTOOD,
+    **{name: (*held, *control) for name, (held, control) in (THIRD_ROUND | FOURTH_ROUND).items()},
+}
 
 
 @every_case("name", HOLDING)

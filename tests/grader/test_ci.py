@@ -24,6 +24,7 @@ from grader.reading import read_assignment
 from kit.host.sandbox import probe
 from tests.cases import every_case
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
+from tests.public_schemas import why_invalid
 
 ROOT = Path(__file__).parents[2]
 KIT = GitSource("https://example.org/somebody/kit", "v1")
@@ -316,6 +317,18 @@ def test_the_hostile_files_would_be_run_in_the_checkout(tmp_path: Path) -> None:
         check=False,
     )
     assert mark.exists()
+
+
+def test_workflows_are_valid_by_the_services_public_schemas(tmp_path: Path) -> None:
+    for service, schema in (("github", "github-workflows"), ("gitlab", "gitlab-ci")):
+        files = []
+        for works in ([ONE], [ONE, TWO]):
+            files.append(tmp_path / f"{service}-{len(works)}.yml")
+            files[-1].write_text(workflow(service, works, KIT))
+        assert why_invalid(schema, *files) == ""
+        spoiled = tmp_path / "spoiled.yml"
+        spoiled.write_text(files[0].read_text().replace("script:", "scripts:").replace("steps:", "step:"))
+        assert "spoiled.yml" in why_invalid(schema, spoiled)
 
 
 def test_a_workflow_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.grader.conftest import LOCKS
-from tests.grader.controls import CONTROLS, ROOT, Control, is_held
+from tests.grader.controls import CONTROLS, ROOT, Control, Seen, see
 
 
 def test_each_takes_away_what_is_there_once() -> None:
@@ -25,4 +25,4 @@ def test_each_takes_away_what_is_there_once() -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("control", CONTROLS, ids=lambda control: control.name)
 def test_its_test_fails_without_it(control: Control, tmp_path: Path) -> None:
-    assert is_held(control, tmp_path)
+    assert see(control, tmp_path) in (Seen.FAILS, Seen.SKIPPED)

@@ -37,7 +37,7 @@ from kit.results.grading_result import (
 from kit.world.problems import WorldError
 from tests.cases import every_case
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
-from tests.grader.kinds.test_damaged_works import exercise
+from tests.grader.kinds.test_damaged_works import right_work
 
 GRADE = GradingOptions(Level.LIMITED, secret=True, examples=True)
 SECRET_SEED = 4_182_736_451_928_374_651
@@ -486,9 +486,9 @@ def test_nothing_that_a_student_reads_of_is_run_after_a_secret_run(
 
 @pytest.mark.long
 @pytest.mark.parametrize("kind", ["controller", "function", "launch", "environment"])
-def test_every_kind_that_runs_programs_tells_public_evidence_from_secret(kind: str) -> None:
+def test_every_kind_that_runs_programs_tells_public_evidence_from_secret(kind: str, tmp_path: Path) -> None:
     """``public_evidence`` of a real collector runs nothing secret, and ``evidence`` adds to it."""
-    assignment, submission = exercise(kind)
+    assignment, submission = right_work(kind, tmp_path)
     with submission.in_temporary_folder() as file:
         options = EvidenceOptions(Level.LIMITED, secret=True)
         with find_kind(kind).collect(assignment, file, options) as collector:

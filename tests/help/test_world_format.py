@@ -23,12 +23,13 @@ from kit.sim.plugin import PluginType, WorldPluginType
 from kit.sim.plugins import plugin_readers, plugin_types, world_plugin_readers, world_plugin_types
 from kit.sim.simulation import Simulation
 from kit.world.documents import open_document
-from kit.world.key_table import FormatKey, key_meanings
+from kit.world.key_table import FormatKey, format_keys, key_meanings
 from kit.world.layer_reader import LayerReader
 from kit.world.loading import load_world, read_world
 from kit.world.model_loading import read_model
 from kit.world.plugin_reader import FLATLAND_PREFIX, ModelScope, WorldScope
 from kit.world.problems import WorldError
+from kit.world.yaml_section import Section
 
 ROOT = Path(__file__).parents[2]
 DEVICES: dict[str, PluginType | WorldPluginType] = {**plugin_types, **world_plugin_types}
@@ -51,6 +52,20 @@ def test_every_key_of_a_file_is_explained_and_no_other(name: str) -> None:
 def test_every_key_of_a_device_is_explained_and_no_other(type_: str) -> None:
     meanings = [key for each in device_documentation(DEVICES[type_]) for key in key_meanings(each)]
     assert sorted(meanings) == sorted(each.key for each in device_keys(DEVICES[type_]))
+
+
+def test_keys_are_found_that_are_asked_for_in_the_place_of_others() -> None:
+    """Also where a choice that is not the first one leads there; a condition says only what a choice decides."""
+
+    def read(section: Section) -> None:
+        if section.text("form", choices=("circle", "box")) == "box":
+            section.number("width") if section.has("width") else section.number("corners")
+        else:
+            section.number("radius") if section.has("radius") else section.text("circle_of")
+
+    found = {each.key: each.only_with for each in format_keys(read)}
+    assert set(found) == {"form", "radius", "circle_of", "width", "corners"}
+    assert (found["radius"], found["width"]) == ("form: circle", "form: box")
 
 
 def written_keys(content: object, prefix: str = "") -> Iterator[str]:

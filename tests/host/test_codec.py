@@ -15,8 +15,8 @@ from kit.msg.fields import FLOAT32, FieldKind, FixedArrayKind, MessageKind, Scal
 from kit.msg.geometry_msgs import Twist, TwistWithCovariance
 from kit.msg.interfaces import find_message, interface_names
 from kit.msg.message import Message
-from kit.msg.sensor_msgs import LaserScan, Range
-from kit.msg.std_msgs import ByteMultiArray, Int8, String, UInt64
+from kit.msg.sensor_msgs import BatteryState, LaserScan, NavSatFix, Range
+from kit.msg.std_msgs import ByteMultiArray, Float32, Float64MultiArray, Int8, String, UInt64
 from tests.cases import every_case
 
 OURS, CHILDS = Codec(in_child=False), Codec(in_child=True)
@@ -72,8 +72,16 @@ def test_readings_may_be_infinite() -> None:
         assert (
             receiver.unpack(LaserScan, carried(sender.pack(scan))).ranges.tobytes() == scan.ranges.tobytes()
         )
-    far = CHILDS.unpack(Range, carried(OURS.pack(Range(range=math.inf))))
-    assert far.range == math.inf
+    for sender, receiver in ((OURS, CHILDS), (CHILDS, OURS)):
+        for message in (
+            Range(range=math.inf),
+            NavSatFix(latitude=math.nan, position_covariance=[math.inf] * 9),
+            BatteryState(current=math.nan, cell_voltage=[math.nan, 3.7]),
+            Float32(data=math.inf),
+            Float64MultiArray(data=[0.5, -math.inf]),
+        ):
+            copy = receiver.unpack(type(message), carried(sender.pack(message)))
+            assert repr(copy) == repr(message)
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])

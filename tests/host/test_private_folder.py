@@ -53,6 +53,16 @@ def test_only_its_owner_may_enter_it() -> None:
     assert not folder.exists()
 
 
+def test_its_path_holds_in_every_current_folder(
+    temporary: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Programs that are granted it stand elsewhere: with a relative TMPDIR none of them started."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(tempfile, "tempdir", ".")
+    with private_folder() as folder:
+        assert folder.is_absolute()
+
+
 def test_the_next_start_removes_the_folder_of_a_killed_process_and_of_no_living_one(temporary: Path) -> None:
     killed, left = _owner(temporary)
     living, kept = _owner(temporary)

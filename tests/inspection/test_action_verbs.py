@@ -17,7 +17,7 @@ from kit.ros.execution.task import Future
 from kit.ros.node.node import Node, create_graph_node
 from tests.inspection.conftest import Kit, Stage
 from tests.inspection.test_streams import EXIT_INTERRUPTED, terminal
-from tests.waiting import wait_until
+from tests.waiting import LIMIT_S, wait_until
 
 PERIOD_S = 0.05
 TYPE = "example_interfaces/action/Fibonacci"
@@ -197,7 +197,7 @@ def test_a_server_whose_process_is_killed_in_mid_goal(stage: Stage, tmp_path: Pa
             assert other.stdout is not None
             wait_until(lambda: "Sending goal" in other.stdout.readline())
             server.kill()
-            _, err = other.communicate(timeout=30)
+            _, err = other.communicate(timeout=LIMIT_S)
         assert other.returncode == 1
         assert "The server of '/fibonacci' is gone" in err
         assert client.stderr is not None

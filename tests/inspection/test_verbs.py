@@ -139,7 +139,7 @@ REFUSED = {
     "topic pub /x std_msgs/msg/String [1]": ("needs to be a dictionary in YAML format", 1),
     "topic pub /x std_msgs/msg/String {data": ("not YAML", 1),
     "topic pub /9 std_msgs/msg/String --once": ("must not start with a number", 1),
-    "topic pub /x std_msgs/msg/Float32 {data:\u00a0.inf} --once -w 0": ("is not a finite number", 1),
+    "topic pub /x geometry_msgs/msg/Vector3 {x:\u00a0.inf} --once -w 0": ("is not a finite number", 1),
     "topic delay /demo/chatter": ("msg does not have header", 1),
     "service info /nothing": ("Unknown service '/nothing'", 1),
     "service call /demo/switch std_srvs/srv/SetBoo": ("did you mean 'std_srvs/srv/SetBool'?", 1),

@@ -373,10 +373,10 @@ def test_compile_kernels_compiles_all_that_a_world_calls() -> None:
 def test_without_a_place_to_remember_it_a_formula_is_compiled_all_the_same(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def nowhere(function: object) -> None:
+    def nowhere(function: object, stamp: object = None) -> None:
         raise RuntimeError("cannot cache function: no locator available")
 
-    monkeypatch.setattr("numba.core.dispatcher.FunctionCache", nowhere)
+    monkeypatch.setattr(compilation, "KernelCache", nowhere)
 
     def twice(value: float) -> float:
         return 2.0 * value
@@ -416,3 +416,17 @@ print(repr(config.CACHE_DIR))
         check=True,
     )
     assert str(tmp_path) in control.stdout
+
+
+def test_what_kernels_do_not_use_is_not_imported_and_can_be_later() -> None:
+    code = """
+import sys
+from kit.kernels import compilation
+assert compilation.jit(lambda x: x + 1.0)(1.0) == 2.0
+print({*compilation.UNUSED, "pycparser", "unittest"} & {*sys.modules})
+import cffi, scipy.linalg
+print(scipy.linalg.det([[2.0]]), cffi.FFI().typeof("int").cname)
+"""
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.split() == ["set()", "2.0", "int"]

@@ -155,6 +155,21 @@ def test_missing_files_and_packages_are_named(
     assert code == 2
 
 
+def test_a_broken_package_is_named_with_its_line(
+    launch: Launched, workshop: Workshop, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = workshop.package("torn", "LogInfo(msg='one'),")
+    manifest = folder / "package.xml"
+    lines = manifest.read_text("utf-8").splitlines()
+    manifest.write_text("\n".join([*lines[:-1], "</license>", lines[-1]]), "utf-8")
+    monkeypatch.chdir(tmp_path)
+    for words in ((folder.parent,), ("torn",)):
+        _, err, code = launch(*words)
+        assert f"{manifest}:{len(lines)}:" in err
+        assert "broken XML" in err
+        assert code == 2
+
+
 def test_several_launch_files_must_be_chosen_from(launch: Launched, workshop: Workshop) -> None:
     folder = workshop.package("many", "LogInfo(msg='one'),")
     (folder / "launch" / "two.launch.py").write_text("")

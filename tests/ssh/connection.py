@@ -9,7 +9,7 @@ import shutil
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -20,11 +20,14 @@ from tests.waiting import wait_until
 RELAY = Path(__file__).with_name("relay.py")
 SSHD = shutil.which("sshd", path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin")
 SSH = shutil.which("ssh")
+ROOT = Path(kit_package.__file__).parent.parent
 
 
 @contextmanager
-def private_sshd(folder: Path) -> Iterator[tuple[int, Path]]:
-    """A server that keeps its keys in ``folder``: its port, and the key that opens it. OSError if it does not start."""
+def private_sshd(folder: Path, begin: Sequence[str] = ()) -> Iterator[tuple[int, Path]]:
+    """A server that keeps its keys in ``folder``: its port, and the key that opens it. OSError if it does not start.
+
+    ``begin``: how the command begins that starts it, such as in another mount namespace."""
     for name in ("host", "user"):
         subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", folder / name], check=True)
     shutil.copy(folder / "user.pub", folder / "authorized_keys")
@@ -33,11 +36,12 @@ def private_sshd(folder: Path) -> Iterator[tuple[int, Path]]:
     (folder / "config").write_text(
         f"Port {port}\nListenAddress 127.0.0.1\nHostKey {folder}/host\nPidFile none\nUsePAM no\nStrictModes no\n"
         f"AuthorizedKeysFile {folder}/authorized_keys\nPasswordAuthentication no\nPermitRootLogin yes\n"
+        "MaxStartups 100\n"
     )
     if os.geteuid() == 0:
         Path("/run/sshd").mkdir(exist_ok=True)
     assert SSHD
-    command = [SSHD, "-D", "-e", "-f", folder / "config"]
+    command = [*begin, SSHD, "-D", "-e", "-f", folder / "config"]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
 
         def answers() -> bool:
@@ -57,19 +61,47 @@ def private_sshd(folder: Path) -> Iterator[tuple[int, Path]]:
             process.terminate()
 
 
-def open_kit(server: tuple[int, Path], workspace: Path, rate: float, delay: float, *arguments: str) -> User:
-    """Runs ``kit`` with these arguments on the other side of a link of ``rate`` [bytes/s] and ``delay`` [s] each way."""
-    port, key = server
-    relay = shlex.join([sys.executable, str(RELAY), str(port), str(rate), str(delay)])
-    options = {
-        "ProxyCommand": relay,
-        "StrictHostKeyChecking": "no",
-        "UserKnownHostsFile": "/dev/null",
-        "LogLevel": "ERROR",
-    }
-    root = Path(kit_package.__file__).parent.parent
-    environment = ["env", f"KIT_WORKSPACE={workspace}", f"PYTHONPATH={root}"]
-    remote = shlex.join([*environment, sys.executable, "-m", "kit", *arguments])
-    flags = [part for name, value in options.items() for part in ("-o", f"{name}={value}")]
-    client = ["-tt", "-i", str(key), *flags, f"{getpass.getuser()}@127.0.0.1", remote]
-    return User(str(Path(__file__).with_name("client.py")), str(SSH), *client)
+def open_kit(
+    server: tuple[int, Path],
+    workspace: Path,
+    rate: float,
+    delay: float,
+    *arguments: str,
+    account: str | None = None,
+    installation: Path = ROOT,
+) -> User:
+    """Runs ``kit`` with these arguments on the other side of a link of ``rate`` [bytes/s] and ``delay`` [s] each way.
+
+    ``account``: whose terminal it is, by default this one's. ``installation``: the folder with the kit that runs.
+    """
+    relay = shlex.join([sys.executable, str(RELAY), str(server[0]), str(rate), str(delay)])
+    words = [
+        f"KIT_WORKSPACE={workspace}",
+        f"PYTHONPATH={installation}",
+        sys.executable,
+        "-m",
+        "kit",
+        *arguments,
+    ]
+    client = _client(server, account, "-tt", "-o", f"ProxyCommand={relay}")
+    return User(str(Path(__file__).with_name("client.py")), *client, shlex.join(["env", *words]))
+
+
+def run_over_ssh(
+    server: tuple[int, Path], account: str, installation: Path, words: Sequence[str]
+) -> subprocess.Popen[str]:
+    """Starts Python with these arguments in an account's home."""
+    remote = shlex.join(["env", f"PYTHONPATH={installation}", sys.executable, *words])
+    return subprocess.Popen(
+        [*_client(server, account, "-p", str(server[0])), remote],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+
+
+def _client(server: tuple[int, Path], account: str | None, *flags: str) -> list[str]:
+    options = {"StrictHostKeyChecking": "no", "UserKnownHostsFile": "/dev/null", "LogLevel": "ERROR"}
+    given = [part for name, value in options.items() for part in ("-o", f"{name}={value}")]
+    return [str(SSH), "-i", str(server[1]), *given, *flags, f"{account or getpass.getuser()}@127.0.0.1"]

@@ -97,7 +97,7 @@ class SubmittedAnswers:
         choices = {_normalized(choice) for choice in question.choices}
         for each in given:
             if choices and _normalized(each) not in choices:
-                return f"There is no choice {quoted(each)}: {suggestion(each, question.choices)}."
+                return f"There is no choice {quoted(each)}: {suggestion(each, question.choices)}"
         is_number = all(map(_is_number, self.task.keys[question.name].right))
         if is_number and not all(map(_is_number, given)):
             return "A number is asked for: write it in digits, without a unit."

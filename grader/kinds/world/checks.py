@@ -257,6 +257,8 @@ def drives(run: WorldRun, params: DrivesParams) -> Iterator[str]:
             yield f"the robot begins at {axis} = {format_metres(actual)}; {format_metres(wanted)} is wanted"
     if run.run.reached_s is not None and run.run.distance < LEAST_WAY:
         yield "the robot is at its target before it has driven"
+    if run.run.undriven >= LEAST_WAY:
+        yield f"the robot moves by {run.run.undriven:.1f} m while nobody drives it"
     if run.run.reached_s is None:
         away = "" if run.run.target_distance is None else f"it ended {run.run.target_distance:.1f} m away"
         yield ", ".join(

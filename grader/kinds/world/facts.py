@@ -215,6 +215,8 @@ class RunFacts(JsonRecord):
     target_distance: float | None = None
     """From the robot's hull to the target at the end [m]."""
     distance: float = 0.0
+    undriven: float = 0.0
+    """How far the robot moves in the same time while nobody drives it [m]."""
     bumps: int = 0
     joint_gap: float = 0.0
     """How far apart two ends of one joint have been at most, after the first half second [m]."""

@@ -172,6 +172,7 @@ def run_world(world: World, spec: WorldRunSpec) -> RunFacts:
         if score.target_m is not None and math.isfinite(score.target_m)
         else None,
         distance=score.distance_m,
+        undriven=_undriven_way(world, spec, model, ticks) if spec.driver and model is not None else 0.0,
         bumps=score.bumps,
         joint_gap=path_recorder.joint_gap,
         widest_joint=path_recorder.widest_joint,
@@ -184,6 +185,16 @@ def run_world(world: World, spec: WorldRunSpec) -> RunFacts:
             trail=np.array(path_recorder.trail, dtype=np.float64).reshape(-1, 2),
         ),
     )
+
+
+def _undriven_way(world: World, spec: WorldRunSpec, model: Model, ticks: int) -> float:
+    """Returns how far the robot moves in so many ticks without the driver [m]: what moves it then is no drive of its own."""
+    simulation = Simulation(world, seed=spec.seed, step_size=STEP)
+    runner = Runner(simulation, Graph(log_sink=lambda record: None))
+    path = PathObserver(model, world)
+    runner.observers.append(path)
+    run_until(runner, ticks=ticks)
+    return max((math.dist(path.trail[0], each) for each in path.trail), default=0.0)
 
 
 def _drive(

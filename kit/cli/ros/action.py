@@ -21,8 +21,8 @@ from kit.cli.ros.world_client import (
 )
 from kit.inspection.client import CHECK_INTERVAL_S, NODE_PREFIX, InspectionClient
 from kit.inspection.graph_text import absolute_name
-from kit.inspection.message_text import MessageFormat, to_yaml
 from kit.msg.interfaces import find_action
+from kit.msg.message_text import MessageFormat, to_yaml
 from kit.plain_text import nearest_name
 from kit.ros.action.client import ActionClient, ClientGoalHandle
 from kit.ros.action.goal_states import ENDED, STATUS_NAMES, uuid_bytes

@@ -9,9 +9,9 @@ import click
 from kit.cli.ros.message_options import find_or_exit
 from kit.cli.ros.world_client import exit_with_error, register_workspace_interfaces
 from kit.inspection.definition_text import CommentOptions, definition_text
-from kit.inspection.message_text import MessageFormat, to_yaml
 from kit.msg.interfaces import PACKAGES, find_interface, interface_names, known_packages
 from kit.msg.message import Message, Service, is_custom_interface
+from kit.msg.message_text import MessageFormat, to_yaml
 
 
 @click.group()

@@ -28,7 +28,7 @@ from kit.ros.exceptions import InvalidRosArguments
 from kit.ros.graph.naming import validate_full_topic_name
 from kit.ros.parameters.parameter import Parameter as TypedParameter
 from kit.ros.parameters.parameter import parameter_value_to_python
-from kit.ros.parameters.parameter_files import get_parameter_value, read_parameter_file
+from kit.ros.parameters.parameter_files import AmbiguousValue, get_parameter_value, read_parameter_file
 
 SERVICE_TIMEOUT_S: Final = 5.0
 """How long a node may take to answer [s]."""
@@ -117,10 +117,13 @@ def set_parameters(client: InspectionClient, name: str, pairs: Sequence[str], hi
             f"Got {len(pairs)} argument(s)."
         )
     node = _find_node_or_exit(client, name, hidden=hidden)
-    parameters = [
-        Parameter(name=each, value=get_parameter_value(value))
-        for each, value in zip(pairs[::2], pairs[1::2], strict=True)
-    ]
+    try:
+        parameters = [
+            Parameter(name=each, value=get_parameter_value(value))
+            for each, value in zip(pairs[::2], pairs[1::2], strict=True)
+        ]
+    except AmbiguousValue as problem:
+        exit_with_error(str(problem))
     results = _set(client, node, parameters)
     for parameter, result in zip(parameters, results, strict=True):
         prefix = f"{parameter.name}: " if len(parameters) > 1 else ""

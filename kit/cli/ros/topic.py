@@ -11,6 +11,7 @@ from typing import Any, Final
 
 import click
 
+from kit.cli.options import ExistingPath
 from kit.cli.ros.message_options import QosOptions, find_or_exit, make_message, parse_fields, with_qos_options
 from kit.cli.ros.world_client import (
     exit_with_error,
@@ -22,7 +23,10 @@ from kit.cli.ros.world_client import (
 from kit.host.codec import NotFiniteError
 from kit.inspection.client import InspectionClient
 from kit.inspection.graph_text import absolute_name, services, topic_info, topic_summary, topics
-from kit.inspection.message_text import (
+from kit.inspection.meters import BANDWIDTH_WINDOW, RATE_WINDOW, BandwidthMeter, DelayMeter, RateMeter
+from kit.msg.interfaces import find_message, find_service, service_event_class
+from kit.msg.message import Message
+from kit.msg.message_text import (
     DEFAULT_MAX_LENGTH,
     MessageFormat,
     NoSuchField,
@@ -30,9 +34,6 @@ from kit.inspection.message_text import (
     to_csv,
     to_yaml,
 )
-from kit.inspection.meters import BANDWIDTH_WINDOW, RATE_WINDOW, BandwidthMeter, DelayMeter, RateMeter
-from kit.msg.interfaces import find_message, find_service, service_event_class
-from kit.msg.message import Message
 from kit.ros.exceptions import NameValidationException
 from kit.ros.node.qos import QoSProfile, qos_profile_services_default
 from kit.ros.node.time import Time
@@ -397,7 +398,7 @@ for verb in (
 @click.option("-n", "--node-name", help="Name of the publishing node.")
 @click.option(
     "--yaml-file",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    type=ExistingPath(dir_okay=False, path_type=Path),
     help="Read the messages from this file: one after the other, divided by ---.",
 )
 @click.option("--stdin", is_flag=True, help="Read the message from standard input.")

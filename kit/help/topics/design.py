@@ -20,7 +20,7 @@ DRAWING: Final = """
                  kit/host/  student processes     kit/bridge/  robots
                  kit/launch/  launch files        kit/inspection/  terminals
                  kit/document/  what is told      kit/dialogue/  what is asked
-                 kit/render/  state -> characters  kit/results/  of grading
+                 kit/render/  state -> characters kit/results/  of gradings
                  kit/controllers/  node files     kit/mapmaking/  photo -> map
 3  conversation  kit/ros/  graph node parameters execution launch
                  kit/fields/  potential fields

@@ -44,7 +44,9 @@ solution. They check their work with the public seeds, as often as they like.
     grader cohort handed_in --assignment one --queue grades --secret
     grader gradebook grades
 
-`handed_in` holds one file, folder or archive for each student, as a platform's download has them. Programs run confined; what
+`handed_in` holds one file, folder or archive for each student, as a platform's download has them. Moodle has two to fetch from
+the assignment's page of submissions: "Download all submissions", which you unpack as `handed_in`, and "Download grading
+worksheet", which is the roster below (tick "Offline grading worksheet" in the assignment's settings first). Programs run confined; what
 a level keeps them from is in `kit doctor`. After Ctrl-C the same command goes on; after a change of words or points nothing is
 run again. What could not be read has no grade and a sentence why, never 0. A cluster does the same with `--executor slurm`
 and `--slurm account=NAME`, or `--executor dask`.
@@ -89,7 +91,8 @@ said and stops nothing. `late.yaml` says when it was due, where a date alone is 
     grader gradebook grades --roster class.csv --marks marks.yaml --against before.json
 
 The first writes the file that Moodle imports (`--for canvas` that of Canvas): where the roster is an export of the same
-platform, its own rows with the grades filled in, and `--decimal-comma` where your site writes 7,5. The second writes a page for
+platform, its own rows with the grades filled in, and `--decimal-comma` where your site writes 7,5. In Moodle it goes back by
+"Upload grading worksheet" on the same page. The second writes a page for
 each student: what earned which points, the worst run as a picture, what to try next. The third prints what has changed since
 an earlier gradebook, criterion by criterion.
 """,
@@ -102,6 +105,16 @@ an earlier gradebook, criterion by criterion.
 prints the workflow; `gitlab` and `classroom50` likewise, `--write` puts it into its place, `gradescope` makes an archive.
 Repeat `--assignment` for a repository with several. Anyone who can push can change it, so these results are for practice; the
 grade comes from `grader cohort`.
+""",
+        ),
+        chapter(
+            "Many accounts on one machine",
+            """
+    kit doctor --class 30
+
+measures how many students this machine carries who drive and check at once, and says what more learners need before a deadline.
+After each installation, `sudo kit warm --shared` compiles for all accounts what each would otherwise compile at its first
+start.
 """,
         ),
         chapter(

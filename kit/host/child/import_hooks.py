@@ -13,24 +13,28 @@ if TYPE_CHECKING:
 
 
 def on_import(name: str, change: Callable[[ModuleType], object]) -> None:
-    """Calls ``change`` with a module: now if it has been imported, else as soon as it has been."""
+    """Calls ``change`` with a module: now if it has been imported, else as soon as it has been, in the order of the calls."""
     if name in sys.modules:
         change(sys.modules[name])
-    else:
-        sys.meta_path.insert(0, _ImportHook(name, change))
+        return
+    for finder in sys.meta_path:
+        if isinstance(finder, _ImportHook) and finder.name == name:
+            finder.changes.append(change)
+            return
+    sys.meta_path.insert(0, _ImportHook(name, change))
 
 
 class _ImportHook:
-    """Finder and loader of one module, which is changed once it is loaded."""
+    """Finder and loader of one module, which changes it once it is loaded."""
 
     def __init__(self, name: str, change: Callable[[ModuleType], object]) -> None:
-        self._name, self._change = name, change
+        self.name, self.changes = name, [change]
         self._loader: Loader | None = None
 
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        if name != self._name:
+        if name != self.name:
             return None
         sys.meta_path.remove(self)
         spec = PathFinder.find_spec(name, path, target)
@@ -48,4 +52,5 @@ class _ImportHook:
         assert module.__spec__ is not None
         module.__spec__.loader = module.__loader__ = self._loader
         self._loader.exec_module(module)
-        self._change(module)
+        for change in self.changes:
+            change(module)

@@ -20,7 +20,8 @@ calling ``Event.wait`` with a limit
 ``time.process_time``                 the processor time: for measuring how long a computation takes
 ====================================  ==============================================================================
 
-Whoever reads a simulated clock again and again without waiting lets time pass: see ``kit.ros.graph.graph.MAX_READS``.
+Whoever reads a simulated clock again and again without waiting lets time pass: see ``kit.ros.graph.graph.MAX_READS``. So does
+who asks another thread's event, queue, lock or future (``kit.host.child.simulated_polls``).
 On a robot all of them show the wall clock.
 """
 
@@ -35,6 +36,7 @@ from typing import Any, Final, SupportsIndex
 
 import kit
 from kit.host.child.import_hooks import on_import
+from kit.host.child.simulated_polls import use_simulated_polls
 from kit.host.child.simulated_waits import SimulatedWaits
 from kit.ros.graph.graph import Graph
 
@@ -177,6 +179,7 @@ def use_simulated_time(graph: Graph, libraries: Sequence[str] = ()) -> Simulated
 
     waits = SimulatedWaits(graph, _PYTHON[0], is_own_code)
     waits.install()
+    use_simulated_polls(graph, waits, is_own_code)
     started = time.time()
     wall_localtime, wall_gmtime = time.localtime, time.gmtime
 

@@ -14,6 +14,8 @@ import threading
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache, wraps
+from pathlib import Path
+from types import FrameType
 from typing import Any, Final
 from weakref import WeakSet
 
@@ -22,6 +24,8 @@ from kit.ros.graph.graph import Graph
 
 WAITING_MODULES: Final = ("threading.py", "queue.py", "sched.py", "concurrent/futures/")
 """The modules of Python that wait for who calls them, relative to its library's folder."""
+LOCK_WEIGHT: Final = 0.01
+"""How many readings of the clock an acquired lock stands for: locks also guard what is computed."""
 
 
 class WaitingClock:
@@ -59,7 +63,10 @@ class SimulatedWaits:
         self._ended: WeakSet[threading.Thread] = WeakSet()
         self._start_code = threading.Thread.start.__code__
         self.clock = WaitingClock(graph)
-        prefixes = tuple(library + name for name in WAITING_MODULES)
+        asking = str(
+            Path(__file__).with_name("simulated_polls.py")
+        )  # stands between the program and those modules
+        prefixes = (asking, *(library + name for name in WAITING_MODULES))
 
         @cache
         def is_waiting_code(file: str) -> bool:
@@ -81,6 +88,19 @@ class SimulatedWaits:
                 return threading.current_thread() not in self._graph.pool_threads
             frame = frame.f_back
         return self._is_own_code(frame.f_code.co_filename)
+
+    def count_failure(self) -> None:
+        """Counts a question of the program whether a lock is free, as a reading of the clock is counted."""
+        if self.is_program(3):
+            self._graph.count_read()
+
+    def count_lock(self) -> None:
+        """Counts, by ``LOCK_WEIGHT``, that the program itself has acquired a lock."""
+        frame: FrameType | None = sys._getframe(2)
+        while frame is not None and frame.f_code.co_filename in (__file__, threading.__file__):
+            frame = frame.f_back
+        if frame is not None and self._is_own_code(frame.f_code.co_filename):
+            self._graph.count_read(LOCK_WEIGHT)
 
     def install(self) -> None:
         """Replaces what waits in ``threading`` now, and in ``queue`` when it is imported."""
@@ -127,7 +147,11 @@ class SimulatedWaits:
 
             def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
                 if self._real.acquire(False):
+                    waits.count_lock()
                     return True
+                if not blocking and timeout == -1:
+                    waits.count_failure()
+                    return False
                 if not blocking or (timeout < 0 and timeout != -1) or not waits.is_program():
                     return bool(self._real.acquire(blocking, timeout))
                 with graph.lock:
@@ -147,10 +171,11 @@ class SimulatedWaits:
                     graph.notify()
 
             def locked(self) -> bool:
+                waits.count_failure()
                 return bool(self._real.locked())
 
             def __enter__(self) -> bool:
-                return self._real.acquire(False) or self.acquire()
+                return self.acquire()
 
             def __exit__(self, *_: object) -> None:
                 self.release()

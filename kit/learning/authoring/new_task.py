@@ -32,7 +32,7 @@ observation:
   scale: 0.5                  # multiplies ranges and distances
 reward:
   terms:                      # `kit task keys` names them all
-    progress: 1.0
+    progress: 1.0             # metres on the way to the target; for other goals: achieving
     elapsed: -0.01
     collided: -2.0
     reached: 2.0

@@ -76,7 +76,10 @@ class RobotsParallelEnv(ParallelEnv):
     ) -> tuple[dict[str, Observation], dict[str, dict[str, Any]]]:
         """Begins an episode. ``options={"case": name}``: on this case, instead of the next one in turn."""
         self.agents = list(self.possible_agents)
-        seen, info = self._env.reset(seed=seed, options=options)
+        known = {name: value for name, value in (options or {}).items() if name == "case"}
+        seen, info = self._env.reset(
+            seed=seed, options=known
+        )  # PettingZoo's own test gives options that are none
         return self._split(seen), {agent: dict(info) for agent in self.agents}
 
     def step(

@@ -60,7 +60,7 @@ def collided_reward(t: Transition) -> Array:
 
 
 def reached_reward(t: Transition) -> Array:
-    """1 where every robot is in the target."""
+    """1 where the goal is reached and no robot has collided."""
     return 1.0 * t.reached
 
 
@@ -187,7 +187,7 @@ def facing_reward(t: Transition) -> Array:
 
 
 def achieving_reward(t: Transition) -> Array:
-    """The share of the goal that this step achieved: of a floor, a patrol, a wall, a time near the leader."""
+    """The share of the goal that this step achieved."""
     return t.achieved - t.previous_achieved
 
 

@@ -252,7 +252,7 @@ class Transition:
 
     @cached_property
     def reached(self) -> Array:
-        """(...) bool: the goal is reached, such as every robot is in the target, and none has collided."""
+        """(...) bool: the goal is reached, and no robot has collided."""
         return (self.achieved >= 1.0) & ~self.collided
 
     @cached_property

@@ -246,21 +246,22 @@ class Graph:
             finally:
                 state.is_waiting = False
 
-    def count_read(self) -> None:
+    def count_read(self, weight: float = 1.0) -> None:
         """To be called when a program reads the clock, or asks whether something has happened, of its own accord.
 
-        A program that does so again and again without waiting waits by that: see ``MAX_READS``.
+        A program that does so again and again without waiting waits by that: see ``MAX_READS``. ``weight``: how many
+        readings this one stands for.
         """
         if self.waiter is None or self._simulated_ns is None:
             return
         state = self.thread_state
         if state.is_waiting:
             return
-        state.reads = reads = state.reads + 1
-        if reads > MAX_READS and reads % READS_PER_STEP == 0:
+        state.reads += weight
+        if state.reads >= MAX_READS + READS_PER_STEP:
             now = self._simulated_ns
             self.wait(lambda: self.now_ns != now, now + 1)
-            state.reads = reads
+            state.reads = MAX_READS
 
     def notify(self) -> None:
         """Wakes all waiting threads so that they re-check their condition."""

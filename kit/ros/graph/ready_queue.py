@@ -30,7 +30,7 @@ class ThreadState(threading.local):
     work: tuple[ReadyQueue, ReadyItem] | None = None
     is_pooled = False
     """Whether the thread belongs to a MultiThreadedExecutor."""
-    reads = 0
+    reads = 0.0
     """How often the thread has read the clock, or asked for something else that it may wait for, since it last waited."""
     is_waiting = False
     """Whether it is within ``Graph.wait``, which calls functions of others to ask whether the wait is over."""

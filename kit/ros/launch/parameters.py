@@ -98,10 +98,15 @@ def _evaluate(context: LaunchContext, value: Any) -> Any:
 
 
 def _read(text: str) -> Any:
-    from kit.ros.parameters.parameter_files import parse_value  # only now: it takes PyYAML
+    from kit.ros.parameters.parameter_files import (  # only now: it takes PyYAML
+        AmbiguousValue,
+        parse_value,
+    )
 
     try:
         return parse_value(text)
+    except AmbiguousValue:
+        raise
     except InvalidRosArguments:
         return text
 

@@ -26,8 +26,13 @@ PARAMETERS_KEY = "ros__parameters"
 _TRUE = {"y", "Y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"}
 _FALSE = {"n", "N", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"}
 _INTEGER = re.compile(r"[-+]?(?:0x[0-9a-fA-F]+|[0-9]+)")
+_ZERO_FIRST = re.compile(r"[-+]?0[0-9]+")
 _FLOAT = re.compile(r"[-+]?(?:[0-9]+\.[0-9]*|\.[0-9]+|[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _SPECIAL = {".nan": math.nan, ".inf": math.inf, "+.inf": math.inf, "-.inf": -math.inf}
+
+
+class AmbiguousValue(InvalidRosArguments):
+    """A value that can be read in two ways; the error says which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +145,11 @@ def _entries(node: YamlNode, source: _TextSource) -> Iterator[tuple[str, YamlNod
 
 def _value(node: YamlNode, source: _TextSource) -> Any:
     if isinstance(node, ScalarNode):
-        return node.value if node.style in ("'", '"', "|", ">") else _parse_scalar(node.value)
+        if node.style in ("'", '"', "|", ">"):
+            return node.value
+        if _is_ambiguous(node.value):
+            raise AmbiguousValue(str(source.error(_ambiguity(node.value), node.start_mark)))
+        return _parse_scalar(node.value)
     if not isinstance(node, SequenceNode):
         raise source.error("a parameter cannot hold a mapping", node.start_mark)
     values = [_value(entry, source) for entry in node.value]
@@ -151,6 +160,24 @@ def _value(node: YamlNode, source: _TextSource) -> Any:
     except TypeError as problem:
         raise source.error(str(problem), node.start_mark) from None
     return values
+
+
+def _is_ambiguous(text: str) -> bool:
+    """Whether a number with a zero before it is another one in base eight, in which ROS 2 reads it."""
+    if not _ZERO_FIRST.fullmatch(text):
+        return False
+    digits = text.lstrip("+-")
+    return not set(digits) <= set("01234567") or int(digits, 8) != int(digits)
+
+
+def _ambiguity(text: str) -> str:
+    digits = text.lstrip("+-")
+    sign = "-" if text.startswith("-") else ""
+    octal = f"{sign}{int(digits, 8)}" if set(digits) <= set("01234567") else "no whole number"
+    return (
+        f"{text} can be read in two ways: it is {octal} in base eight, as ROS 2 reads it. "
+        f"Write {sign}{int(digits)}, or '{text}' for a text"
+    )
 
 
 def _parse_scalar(text: str) -> Any:
@@ -164,9 +191,11 @@ def _parse_scalar(text: str) -> Any:
 
 
 def get_parameter_value(string_value: str) -> ParameterValue:
-    """Parses a text to a parameter message; a text that is no other value stays a string."""
+    """Parses a text to a parameter message; a text that is no other value stays a string. Raises AmbiguousValue."""
     try:
         value = parse_value(string_value)
+    except AmbiguousValue:
+        raise
     except InvalidRosArguments:
         value = string_value
     return Parameter("value", value=value).get_parameter_value()

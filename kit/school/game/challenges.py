@@ -53,7 +53,7 @@ def find_challenge(name: str) -> Challenge:
     """Finds a challenge by its id. Raises LookupError that offers the nearest one."""
     known = {each.id: each for each in all_challenges()}
     if name not in known:
-        raise LookupError(f"There is no challenge {quoted(name)}: {suggestion(name, tuple(known))}.")
+        raise LookupError(f"There is no challenge {quoted(name)}: {suggestion(name, tuple(known))}")
     return known[name]
 
 

@@ -259,7 +259,9 @@ def find_level(name: str, levels: tuple[GameLevel, ...] | None = None) -> GameLe
         if name in (level.id, str(number)):
             return level
     ids = [level.id for level in levels]
-    raise UnknownLevel(f"There is no level {quoted(name)}: {suggestion(name, ids)}. `kit game` lists them.")
+    raise UnknownLevel(
+        f"There is no level {quoted(name)} among those that `kit game` lists: {suggestion(name, ids)}"
+    )
 
 
 @cache

@@ -70,7 +70,7 @@ def find_terms(terms: Sequence[GlossaryTerm], word: str) -> tuple[GlossaryTerm, 
     ]
     if not found:
         known = [spelling for each in terms for spelling in each.spellings]
-        raise UnknownTerm(f"The glossary has no {quoted(word)}: {suggestion(word, known)}.")
+        raise UnknownTerm(f"The glossary has no {quoted(word)}: {suggestion(word, known)}")
     return tuple(found)
 
 

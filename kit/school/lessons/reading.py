@@ -108,7 +108,7 @@ def find_lesson(name: str, folder: Path | None = None) -> Lesson:
     if known is not None:
         return read_lesson(folder / known)
     raise UnknownLesson(
-        f"There is no lesson {quoted(name)}: {suggestion(name, names)}. `kit lesson` lists them."
+        f"There is no lesson {quoted(name)} among those that `kit lesson` lists: {suggestion(name, names)}"
     )
 
 

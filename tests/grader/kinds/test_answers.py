@@ -12,6 +12,7 @@ from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.results.grading_result import CriterionStatus, GradingVerdict
 from kit.world.problems import WorldError
+from tests.cases import every_case
 
 ASSIGNMENT_TEXT = """
 title: Words
@@ -114,3 +115,31 @@ def test_a_key_must_be_one_of_the_choices(folder: Path) -> None:
     (folder / "secret.yaml").write_text(KEYS.replace("[cmd_vel]", "[cmd]"))
     with pytest.raises(WorldError, match="none of the choices"):
         read_assignment(folder)
+
+
+HOSTILE = {
+    "a key twice": "rate: 10\nrate: 11\n",
+    "a huge key": "? " + "k" * 90_000 + "\n: 3\n",
+    "a list as a key": "? [1, 2]\n: 3\n",
+    "a merge of nothing": "<<: 1\n",
+    "a merge": "a: &a {rate: 10}\n<<: [*a, *a]\n",
+    "a date": "rate: 9999-99-99\n2001-01-01: 1\n",
+    "base 60": "rate: 190:20:30\n1:2:3: 1\n",
+    "a number of 60,000 digits": "rate: 0b" + "1" * 60_000 + "\n",
+    "a number of 6,000 digits": "rate: " + "9" * 6_000 + "\n",
+    "a number beyond all": "rate: 1e999999999\n",
+    "bytes": "rate: !!binary aGFsbG8=\n",
+    "a set": "nodes: !!set {a, b}\n",
+    "two documents": "---\nrate: 10\n---\nrate: 11\n",
+    "half a surrogate": 'rate: "\\ud800"\n',
+    "an escape": "rate: \x1b[31m\n",
+    "no end": "rate: [" * 2_000 + "\n",
+}
+
+
+@every_case("name", HOSTILE)
+def test_whatever_a_file_of_answers_holds_it_is_told(name: str, folder: Path) -> None:
+    result = grade(read_assignment(folder), handed_in(HOSTILE[name]), DESK)
+    assert (result.verdict, result.points) == (GradingVerdict.FAIL, 0.0)
+    assert all(test.rationale.isprintable() or "\n" in test.rationale for test in result.tests)
+    assert any("answers.yaml:" in test.rationale or test.rationale for test in result.tests)

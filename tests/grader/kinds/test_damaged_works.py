@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
-from functools import cache
 from pathlib import Path
 
 import pytest
@@ -13,14 +12,12 @@ import pytest
 from grader.assignment import Assignment
 from grader.grading import GradingOptions, grade
 from grader.kinds.contract import kind_names
+from grader.new_assignment import example_of_kind, make_assignment
 from grader.reading import read_assignment
 from grader.submission import Submission, read_submission
 from grader.submitted_files import SubmissionRefused
 from kit.host.sandbox.confinement import Level
-from kit.learning.policies.policy_file import policy_bytes
-from kit.learning.tasks.task_spec import TaskSpec
 from kit.results.grading_result import GradingVerdict
-from tests.learning.policies.test_evaluation import always
 
 LESSONS = Path(__file__).parents[3] / "lessons"
 SOLUTIONS = Path(__file__).parents[2] / "solutions"
@@ -50,42 +47,26 @@ QUICK = ("drive", "plan", "policy")
 """Kinds that start no process and no world for a damaged work."""
 
 
-POLICY_ASSIGNMENT = """
-title: Round the corner
-kind: policy
-submit: best.npz
-level: 0
-policy: {task: turn, episodes: 10}
-checks: [{check: succeeds, points: 1}]
-"""
-
-
-@cache
-def exercise(kind: str) -> tuple[Assignment, Submission]:
-    """The first exercise of a kind in the lessons, and its solution."""
+def right_work(kind: str, folder: Path) -> tuple[Assignment, Submission]:
+    """The first exercise of a kind in the lessons, where none asks for it the kind's example; and its solution."""
     for file in sorted(LESSONS.glob("*/*/assignment.yaml")):
         assignment = read_assignment(file.parent)
         found = sorted((SOLUTIONS / file.parent.relative_to(LESSONS)).glob("solution*"))
         if assignment.kind == kind and found:
             return assignment, read_submission(found[0], assignment.submit)
-    raise AssertionError(f"no lesson has an exercise of the kind {kind}")
-
-
-def policy_exercise(folder: Path) -> tuple[Assignment, Submission]:
-    """No lesson asks for a trained policy."""
-    (folder / "task").mkdir()
-    (folder / "task" / "assignment.yaml").write_text(POLICY_ASSIGNMENT)
-    data = policy_bytes(always(TaskSpec("turn"), 1))
-    return read_assignment(folder / "task"), Submission("ada", "best.npz", {"best.npz": data})
+    make_assignment(example_of_kind(kind), folder / "example")
+    assignment = read_assignment(folder / "example")
+    (solution,) = (folder / "example").glob("solution*")
+    return assignment, read_submission(solution, assignment.submit)
 
 
 @pytest.mark.parametrize(
     "kind", [pytest.param(kind, marks=[pytest.mark.long] * (kind not in QUICK)) for kind in kind_names()]
 )
 def test_damage_is_the_works_own(kind: str, tmp_path: Path) -> None:
-    assignment, right = policy_exercise(tmp_path) if kind == "policy" else exercise(kind)
+    assignment, right = right_work(kind, tmp_path)
     for name, damage in DAMAGES.items():
-        folder = tmp_path / name.replace(" ", "_")
+        folder = tmp_path / "works" / name.replace(" ", "_")
         for file, content in right.files.items():
             path = folder / file
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -19,6 +19,8 @@ from typing import Any, Final
 import yaml
 
 from kit.host.failure import StudentCodeError
+from kit.inspection.server import InspectionServer
+from kit.inspection.sockets import sockets_folder, world_name
 from kit.launch.launch_file_process import find_launch_file
 from kit.launch.launch_run import Launch, LaunchOutputLine
 from kit.launch.plain_launch import LaunchLimit, run_plain_launch
@@ -38,12 +40,14 @@ TURTLE_POSE: Final = re.compile(r"/(\w+)/pose")
 
 _LAUNCH_FILE: Final = """
 from launch import LaunchDescription
-from launch.actions import ExecuteProcess
+from launch.actions import ExecuteProcess, IncludeLaunchDescription
 from launch_ros.actions import Node
 
 def generate_launch_description():
     return LaunchDescription([
         {world}
+        *[IncludeLaunchDescription(file, launch_arguments=[word.split(":=") for word in words])
+          for file, words in {launch_files!r}],
         *[ExecuteProcess(cmd=["python3", file, *words], name=file.rpartition("/")[2], output="screen")
           for file, words in {programs!r}],
     ])
@@ -58,9 +62,10 @@ _WORLDS: Final = {
 
 @dataclass(frozen=True, slots=True)
 class OutsideProgram:
-    """A program and what its author expects of it."""
+    """A program, which may be a launch file, and what its author expects of it."""
 
     file: Path
+    is_launch_file: bool
     world: str
     seconds: float
     arguments: tuple[str, ...]
@@ -81,6 +86,7 @@ def _read(file: Path) -> OutsideProgram:
     card = yaml.safe_load(file.read_text(encoding="utf-8"))
     return OutsideProgram(
         file.with_suffix(".py"),
+        card.get("launch", False),
         card["world"],
         card["seconds"],
         tuple(str(each) for each in card.get("arguments", ())),
@@ -126,19 +132,17 @@ class Outcome:
     complaints: list[str] = field(default_factory=list)
 
 
-class _WallLimit:
-    """A participant that ends a run that takes too long."""
+class _LimitedServer(InspectionServer):
+    """Serves the world to the programs' commands, and ends a run that takes too long."""
 
-    def __init__(self) -> None:
+    def __init__(self, graph: Graph, folder: Path, world: str) -> None:
+        super().__init__(graph, folder, world)
         self._until = time.monotonic() + LIMIT_S
 
     def exchange(self) -> bool:
         if time.monotonic() > self._until:
             raise TimeoutError
-        return False
-
-    def close(self) -> None:
-        """No-op."""
+        return super().exchange()
 
 
 def run_program(program: OutsideProgram, seed: int = 0) -> Outcome:
@@ -165,14 +169,16 @@ def run_program(program: OutsideProgram, seed: int = 0) -> Outcome:
 
     with tempfile.TemporaryDirectory() as folder:
         launch_file = Path(folder) / "outside.launch.py"
-        programs = [
-            (str(program.file), list(program.arguments)),
-            *((str(each), []) for each in program.beside),
-        ]
-        launch_file.write_text(
-            _LAUNCH_FILE.format(world=_WORLDS[program.world], programs=programs), encoding="utf-8"
+        itself = [(str(program.file), list(program.arguments))]
+        launch_files, programs = (itself, []) if program.is_launch_file else ([], itself)
+        programs += [(str(each), []) for each in program.beside]
+        text = _LAUNCH_FILE.format(world=_WORLDS[program.world], launch_files=launch_files, programs=programs)
+        launch_file.write_text(text, encoding="utf-8")
+        target = find_launch_file(str(launch_file), None, ())
+        name, workspace = target.name, Path(folder) / "workspace"
+        launch = Launch(
+            target, graph, seed=seed, workspace=workspace, name=world_name(name), on_output=on_output
         )
-        launch = Launch(find_launch_file(str(launch_file), None, ()), graph, seed=seed, on_output=on_output)
         graph.add_message_listener(on_message)
         has_subscriptions = graph.has_subscriptions
         graph.has_subscriptions = lambda topic: (
@@ -183,7 +189,7 @@ def run_program(program: OutsideProgram, seed: int = 0) -> Outcome:
                 launch,
                 seed=seed,
                 limit=LaunchLimit(None, program.seconds),
-                make_companion=lambda _: _WallLimit(),
+                make_companion=lambda graph: _LimitedServer(graph, sockets_folder(workspace), name),
             )
         except (StudentCodeError, ProcessStartError) as problem:
             outcome.complaints.append(f"the launch failed: {problem}")

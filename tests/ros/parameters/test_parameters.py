@@ -35,7 +35,7 @@ from kit.ros.execution.context import Context, context_of
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node, create_graph_node
 from kit.ros.parameters.parameter import Parameter, parameter_value_to_python
-from kit.ros.parameters.parameter_files import get_parameter_value
+from kit.ros.parameters.parameter_files import AmbiguousValue, get_parameter_value, parse_value
 from tests.cases import every_case
 
 Type = Parameter.Type
@@ -346,9 +346,20 @@ class TestCommandLine:
         assert later.declare_parameter("speed", 0.0).value == 0.9
 
 
+@every_case("text", ["012", "-010", "[1, 017]", "08"])
+def test_a_number_with_a_zero_before_it_is_refused(text: str) -> None:
+    """In base eight, as ROS 2 reads it, it is another number, or none."""
+    for read in (get_parameter_value, parse_value):
+        with pytest.raises(AmbiguousValue, match="two ways"):
+            read(text)
+
+
 @every_case(
     ("text", "value"),
     [
+        ("007", 7),
+        ("'012'", "012"),
+        ("1_000", "1_000"),
         ("1", 1),
         ("-1", -1),
         ("0x10", 16),

@@ -66,7 +66,8 @@ class GoalCount(ABC):
 
     @abstractmethod
     def count(self, transition: Transition) -> FloatArray:
-        """(n,) the counts after a step; before it they were ``transition.before.count``."""
+        """(n,) the counts after a step; before it they were ``transition.before.count``, and no count falls unless robots
+        can leave a target."""
 
 
 class Goal(ABC):

@@ -171,6 +171,17 @@ def test_a_wall_in_the_way_is_found(folder: Path) -> None:
     assert (passed, "away" in said) == (False, True)
 
 
+@pytest.mark.long
+def test_a_robot_that_moves_by_itself_is_not_driven(folder: Path) -> None:
+    """It arrives all the same, and nothing but the drive without a driver tells the two apart."""
+    shutil.copytree(TEMPLATE / "wrong" / "drives__moves_by_itself", folder, dirs_exist_ok=True)
+    found = seen(folder, DRIVE)
+    assert isinstance(found, WorldRun)
+    assert found.run.reached_s is not None
+    passed, said = judged(found, "drives")
+    assert (passed, "nobody drives it" in said) == (False, True)
+
+
 def test_nobody_to_drive_is_said_and_costs_the_run(folder: Path) -> None:
     change(
         folder, "robot.model.yaml", "{type: DiffDrive, name: drive, body: base}", "{type: Bumper, name: bump}"
@@ -364,6 +375,7 @@ def test_a_run_too_slow_is_ended_and_the_rest_still_counts(folder: Path, tmp_pat
     assert status == {
         "loads": CriterionStatus.PASS,
         "walls": CriterionStatus.PASS,
+        "closed": CriterionStatus.TIMEOUT,
         "collisions": CriterionStatus.PASS,
         "sights": CriterionStatus.PASS,
         "drives": CriterionStatus.TIMEOUT,

@@ -93,7 +93,7 @@ def test_it_is_checked_drawn_and_told(kind: str, tmp_path: Path) -> None:
     (card, case), *_ = task.map_cases()
     drawn = build_case_scene(task, card, case)
     assert bool(drawn.targets) == goal.has_standing_targets
-    assert goal.description in "\n".join(lines_of(task_blocks(task)))
+    assert goal.description in " ".join(" ".join(lines_of(task_blocks(task))).split())
     keys = "\n".join(lines_of(key_tables()))
     assert kind in keys
     assert all(name.split()[0] in keys for name in goal.usual_settings().split(", ") if name)

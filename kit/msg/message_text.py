@@ -1,4 +1,4 @@
-"""Messages as ``topic echo`` prints them: YAML or CSV, arrays and texts cut where they are long."""
+"""Messages as ``topic echo`` prints them and ``rosidl_runtime_py`` returns them: YAML or CSV, long arrays and texts cut."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def to_yaml(message: Message, message_format: MessageFormat = MessageFormat()) -
     """The message's fields, one a line; ends with a newline."""
     return str(
         yaml.dump(
-            _plain(message, message_format),
+            as_plain_data(message, message_format),
             Dumper=_Dumper,
             sort_keys=False,
             allow_unicode=True,
@@ -69,7 +69,8 @@ def get_field(message: Message, path: str) -> Any:
     return found
 
 
-def _plain(message: Message, message_format: MessageFormat) -> dict[str, Any]:
+def as_plain_data(message: Message, message_format: MessageFormat = MessageFormat()) -> dict[str, Any]:
+    """The message's fields by name, in the order of the definition; nested messages as dicts, arrays as lists."""
     return {
         field.name: _value(getattr(message, field.name), field.kind, message_format)
         for field in type(message).__ros_fields__
@@ -78,7 +79,7 @@ def _plain(message: Message, message_format: MessageFormat) -> dict[str, Any]:
 
 def _value(value: Any, kind: FieldKind, message_format: MessageFormat) -> Any:
     if isinstance(value, Message):
-        return _plain(value, message_format)
+        return as_plain_data(value, message_format)
     if isinstance(value, (str, bytes)):
         return _text(value, message_format)
     if isinstance(kind, FixedArrayKind):
