@@ -14,7 +14,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from kit.arrays import BoolArray, IntArray
+from kit.arrays import BoolArray, FloatArray, IntArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.env import (
@@ -148,7 +148,7 @@ class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
 
     def step(
         self, actions: IntArray
-    ) -> tuple[ObservationArray, NDArray[np.float64], BoolArray, BoolArray, dict[str, Any]]:
+    ) -> tuple[ObservationArray, FloatArray, BoolArray, BoolArray, dict[str, Any]]:
         """Every world does one step. ``info`` has what a single environment's has, an array for each key, and beside it a mask
         of the worlds for which it holds."""
         if not self._is_begun:
