@@ -34,7 +34,7 @@ from kit.learning.policies.policy_network import (
 )
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.plain_files import read_plain_file
+from kit.plain_files import open_plain_file, read_plain_file
 
 WEIGHTS: Final = "policy.pth"
 DESCRIPTION: Final = "data"
@@ -62,7 +62,7 @@ class _Parts:
 def is_sb3_archive(file: Path) -> bool:
     """Whether a file looks like a model of stable-baselines3."""
     try:
-        with zipfile.ZipFile(file) as archive:
+        with open_plain_file(file) as opened, zipfile.ZipFile(opened) as archive:
             return {WEIGHTS, DESCRIPTION} <= set(archive.namelist())
     except (OSError, zipfile.BadZipFile):
         return False
