@@ -123,7 +123,7 @@ def test_a_puzzle_is_played_by_keys_and_kept_in_its_file(journal: ProgressJourna
         await pilot.press("u")
         await pilot.press("escape")
         await until(pilot, lambda: pilot.app.screen is levels, "the list")
-        assert f"\n{moves[:-1]}\n" in file.read_text()
+        await until(pilot, lambda: f"\n{moves[:-1]}\n" in file.read_text(), "the file to be written")
         await pilot.press("enter")
         await seen(pilot, f"{len(moves) - 1} of {FIRST.task.max_moves} moves")
         file.write_text("r")
