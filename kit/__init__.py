@@ -19,7 +19,7 @@ Training with PPO on many worlds at once (``kit train`` does more):
 >>> model = model.learn(4_096)
 >>> action, _ = model.predict(observation, deterministic=True)
 
-From here on it is a policy like any other: `kit evaluate mine.npz`, `kit game race turn --agent mine.npz`. A model that was
+From here on it is a policy like any other, for every command that takes one. A model that was
 saved is read by ``kit.load_policy("model.zip", task="turn")``:
 
 >>> kit.save_policy(kit.export_policy(model, "turn"), "mine.npz")

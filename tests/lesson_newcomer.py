@@ -320,12 +320,16 @@ class ScreenNewcomer(Newcomer):
 
     def _hold(self, arrow: str, is_there: Callable[[], bool]) -> None:
         self.type(f"\x1b[1;1:1{arrow}")
+        pressed = time.monotonic()
 
         def is_done() -> bool:
-            if (
-                "The clock starts with your first key" in self.user.text
-            ):  # a held key repeats, as a terminal's does
-                self.type(f"\x1b[1;1:2{arrow}")
+            nonlocal pressed
+            if "The clock starts with your first key" in self.user.text:
+                if time.monotonic() - pressed < TOLD_S:  # a held key repeats, as a terminal's does
+                    self.type(f"\x1b[1;1:2{arrow}")
+                else:  # it was pressed before the drive took keys: one presses again
+                    self.type(f"\x1b[1;1:3{arrow}\x1b[1;1:1{arrow}")
+                    pressed = time.monotonic()
             return is_there() or "The target is reached" in self.user.text
 
         self.wait(is_done, "the robot there")

@@ -48,10 +48,10 @@ FOR_TEACHERS = ("json", "text", "gradescope")
 def student_reports(result: GradingResult) -> Mapping[str, str]:
     """Everything that a student can be shown of a result."""
     shown = result.for_student()
-    reports = {form: write(shown) for form, write in FORMATS.items()}
+    reports = {form: each.write(shown) for form, each in FORMATS.items()}
     reports["text with all hints"] = write_text(shown, hints=3)
     again = GradingResult.from_dict(json.loads(FORMATS["json"].write(shown)))
-    reports |= {f"{form} of the written JSON": write(again) for form, write in FORMATS.items()}
+    reports |= {f"{form} of the written JSON": each.write(again) for form, each in FORMATS.items()}
     directly = {form: FORMATS[form].write(result) for form in FORMATS if form not in FOR_TEACHERS}
     if all(test.visibility is Visibility.VISIBLE for test in result.tests):
         directly["gradescope"] = FORMATS["gradescope"].write(result)
