@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from kit.arrays import Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
 from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.maps.batch_map import BatchMap
 from kit.learning.maps.obstacles import Obstacle
@@ -69,11 +70,7 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         ``rgb_array`` and ``ansi`` are what ``render`` returns.
 
         Raises UnknownTask, UnsupportedWorld, and WorldError if a task's file is wrong."""
-        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
-            modes = self.metadata["render_modes"]
-            raise ValueError(
-                f"there is no render mode {quoted(render_mode)}: {suggestion(render_mode, modes)}"
-            )
+        check_render_mode(render_mode)
         self.task = resolve_task(task, self.default_task)
         if case is not None:
             self.task = self.task.on(case)
@@ -121,16 +118,7 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
             raise gymnasium.error.ResetNeeded("call reset() before the first step()")
         step = self._batch.step(np.asarray(action)[None])
         self._extend_trails()
-        transition = step.transition
-        info: dict[str, Any] = {
-            "case": self._batch.cases[int(transition.case[0])].name,
-            "terms": {name: float(value[0]) + 0.0 for name, value in step.terms.items()},
-            "is_success": bool(transition.reached[0]),
-        }
-        if self.task.robots > 1:
-            info["adjacent"] = bool(transition.adjacent[0])
-        if transition.ended[0]:
-            info["outcome"] = EpisodeOutcome.of(transition, 0).value
+        info = step_info(self._batch, step, 0)
         if self.render_mode == "human":
             self._paint()
         ends = bool(step.terminated[0]), bool(step.truncated[0])
@@ -141,10 +129,7 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         ``human`` None: every step has been painted."""
         if self.render_mode in (None, "human") or self._batch is None:
             return None
-        scene = self._scene()
-        if self.render_mode == "rgb_array":
-            return draw_image(scene, image_camera(scene.bounds, *IMAGE_SIZE))
-        return "\n".join((*scene_rows(scene, *TEXT_SIZE), describe_scene(scene), ""))
+        return picture_of(self._scene(), self.render_mode)
 
     def _scene(self) -> Scene:
         assert self._batch is not None
@@ -156,9 +141,7 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         self._picture = self._picture or TerminalPicture(sys.stdout)
         time.sleep(max(0.0, self._paint_at - time.monotonic()))
         self._paint_at = time.monotonic() + self.task.step_time
-        state = self._batch.state
-        case = self._batch.cases[int(state.case[0])].name
-        self._picture.paint(self._scene(), f"{case}, step {int(state.step[0])} of {self.task.max_steps}")
+        self._picture.paint(self._scene(), picture_title(self._batch))
 
     def _get_batch(self, seed: int | None) -> BatchEnv:
         """The world, which is built when it is first needed: an unseeded one by a seed of chance."""
@@ -171,6 +154,41 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         assert self._batch is not None
         for trail, (x, y, _) in zip(self._trails, self._batch.state.pose[0].tolist(), strict=True):
             trail.add(x, y)
+
+
+def check_render_mode(mode: str | None) -> None:
+    """Raises ValueError for a mode that the environments do not have."""
+    modes = TaskEnv.metadata["render_modes"]
+    if mode is not None and mode not in modes:
+        raise ValueError(f"there is no render mode {quoted(mode)}: {suggestion(mode, modes)}")
+
+
+def step_info(batch: BatchEnv, step: BatchStep, world: int) -> dict[str, Any]:
+    """What there is to know of a world after a step, before it begins another episode."""
+    transition = step.transition
+    info: dict[str, Any] = {
+        "case": batch.cases[int(transition.case[world])].name,
+        "terms": {name: float(value[world]) + 0.0 for name, value in step.terms.items()},
+        "is_success": bool(transition.reached[world]),
+    }
+    if batch.task.robots > 1:
+        info["adjacent"] = bool(transition.adjacent[world])
+    if transition.ended[world]:
+        info["outcome"] = EpisodeOutcome.of(transition, world).value
+    return info
+
+
+def picture_of(scene: Scene, mode: str) -> Any:
+    """(height, width, 3) uint8 for the mode ``rgb_array``; else a text: the world in characters, then in words."""
+    if mode == "rgb_array":
+        return draw_image(scene, image_camera(scene.bounds, *IMAGE_SIZE))
+    return "\n".join((*scene_rows(scene, *TEXT_SIZE), describe_scene(scene), ""))
+
+
+def picture_title(batch: BatchEnv) -> str:
+    """What stands above a picture of the first world: its case, and how far its episode is."""
+    state = batch.state
+    return f"{batch.cases[int(state.case[0])].name}, step {int(state.step[0])} of {batch.task.max_steps}"
 
 
 def check_options(options: Mapping[str, Any] | None, *known: str) -> None:

@@ -4,7 +4,7 @@ single environments side by side return, and with one case to the bit."""
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -18,22 +18,22 @@ from kit.arrays import BoolArray, FloatArray, IntArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.env import (
-    IMAGE_SIZE,
-    TEXT_SIZE,
     ObservationArray,
     TaskEnv,
     build_batch_scene,
     case_number,
     check_options,
+    check_render_mode,
+    picture_of,
+    picture_title,
     resolve_task,
+    step_info,
 )
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.rewards import RewardFunction
-from kit.plain_text import quoted, suggestion
-from kit.render.image import draw_image, image_camera
-from kit.render.world_text import TerminalPicture, describe_scene, scene_rows
+from kit.render.world_text import TerminalPicture
 
 
 class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
@@ -66,11 +66,7 @@ class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
         task's file is wrong."""
         if num_envs < 1:
             raise ValueError(f"there must be at least one environment, not {num_envs}")
-        modes = TaskEnv.metadata["render_modes"]
-        if render_mode is not None and render_mode not in modes:
-            raise ValueError(
-                f"there is no render mode {quoted(render_mode)}: {suggestion(render_mode, modes)}"
-            )
+        check_render_mode(render_mode)
         if max_episode_steps is not None and max_episode_steps < 1:
             raise ValueError(f"an episode has at least one step, not {max_episode_steps}")
         found = resolve_task(task, self.default_task)
@@ -209,43 +205,24 @@ class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
         """What was seen and is known of episodes that have ended, before their worlds begin the next ones."""
         info: dict[str, Any] = {}
         for world in which.tolist():
-            final = self._info_of(step, world)
+            final = step_info(self.batch, step, world)
             seen = step.observations[world].copy()
             info = self._add_info(info, {"final_obs": seen, "final_info": final}, world)
         return info
 
-    def _info_of(self, step: BatchStep, world: int) -> Mapping[str, Any]:
-        transition = step.transition
-        found: dict[str, Any] = {
-            "case": self._names[int(transition.case[world])],
-            "terms": {name: float(values[world]) + 0.0 for name, values in step.terms.items()},
-            "is_success": bool(transition.reached[world]),
-        }
-        if self.batch.task.robots > 1:
-            found["adjacent"] = bool(transition.adjacent[world])
-        if transition.ended[world]:
-            found["outcome"] = EpisodeOutcome.of(transition, world).value
-        return found
-
     def render(self) -> tuple[Any, ...] | None:
         """A picture of each world (height, width, 3) uint8 for ``rgb_array``, a text of each for ``ansi``; else None."""
-        if self.render_mode in (None, "human") or not self._is_begun:
+        if self.render_mode is None or self.render_mode == "human" or not self._is_begun:
             return None
-        scenes = [build_batch_scene(self.batch, world) for world in range(self.num_envs)]
-        if self.render_mode == "rgb_array":
-            return tuple(draw_image(scene, image_camera(scene.bounds, *IMAGE_SIZE)) for scene in scenes)
-        return tuple(
-            "\n".join((*scene_rows(scene, *TEXT_SIZE), describe_scene(scene), "")) for scene in scenes
-        )
+        scenes = (build_batch_scene(self.batch, world) for world in range(self.num_envs))
+        return tuple(picture_of(scene, self.render_mode) for scene in scenes)
 
     def _paint(self) -> None:
         """Paints the first world in the terminal."""
         if self.render_mode != "human":
             return
         self._picture = self._picture or TerminalPicture(sys.stdout)
-        state = self.batch.state
-        title = f"{self._names[int(state.case[0])]}, step {int(state.step[0])} of {self.batch.task.max_steps}"
-        self._picture.paint(build_batch_scene(self.batch, 0), title)
+        self._picture.paint(build_batch_scene(self.batch, 0), picture_title(self.batch))
 
 
 class TurnVectorEnv(BatchVectorEnv):

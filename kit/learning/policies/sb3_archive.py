@@ -40,7 +40,7 @@ WEIGHTS: Final = "policy.pth"
 DESCRIPTION: Final = "data"
 MAX_DESCRIPTION_BYTES: Final = 64 << 20
 ACTIVATIONS: Final[Mapping[str, Activation]] = {"Tanh": "tanh", "ReLU": "relu"}
-NOISE_KEY: Final = re.compile(r"(^|\.)(ra_mean|running_mean|num_batches_tracked)$")
+NORMALISATION_KEY: Final = re.compile(r"(^|\.)(ra_mean|running_mean|num_batches_tracked)$")
 """Weights of a layer that normalises what goes through it."""
 SLACK: Final = 1e-3
 """By which an observation may lie outside its space and count as inside."""
@@ -192,7 +192,7 @@ def _parts_of(
         raise PolicyError(
             "its network has a part for pictures or dictionaries; the tasks of the kit give one row of numbers."
         )
-    if any(NOISE_KEY.search(name) for name in weights):
+    if any(NORMALISATION_KEY.search(name) for name in weights):
         raise PolicyError(
             "its layers normalise what goes through them, as CrossQ's do. Use `kit.export_policy(model, task)` in Python, "
             "where the model is at hand."
