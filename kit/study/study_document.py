@@ -349,6 +349,8 @@ def _trainings(table: PrintedTable) -> Iterator[tuple[str, str, float]]:
 def _seeds_text(seeds: TrainedSeeds, *, with_steps: bool = False) -> str:
     """``2 of 5``, with the steps that these took; and how many are still to be trained."""
     missing = seeds.planned - len(seeds.tests)
+    if not seeds.tests:  # "0 of 0" would be read as a failure
+        return f"{missing} to be trained"
     told = f"{seeds.reached} of {len(seeds.tests)}"
     if with_steps and seeds.steps_to_goal:
         told += f" ({_range_text(seeds.steps_to_goal, '{:,}')})"
