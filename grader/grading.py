@@ -32,7 +32,9 @@ from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
 from grader.seeds import SeedSet
 from grader.submission import Submission
 from grader.submitted_files import YAML_ENDINGS, SubmissionRefused, reading_submission
-from grader.teacher_tests import TestOutcome, run_teacher_tests, teacher_test_result, tests_digest
+from grader.teacher_tests.reading import tests_digest
+from grader.teacher_tests.result import teacher_test_result
+from grader.teacher_tests.running import TestOutcome, run_teacher_tests
 from grader.version import grader_version
 from kit.extensions import admitting
 from kit.host.failure import Failure, FailureKind, StudentCodeError
