@@ -14,6 +14,7 @@ from typing import Final
 import click
 
 from grader.assignment import Assignment
+from grader.budgets import budget_lines
 from grader.check import Check
 from grader.ci import SERVICES
 from grader.ci.ci_service import CiRunner, GitSource, GradedWork
@@ -23,7 +24,7 @@ from grader.cli.progress import shown_progress
 from grader.grading import GradingOptions, LevelTooLow
 from grader.kinds.contract import KINDS_PACKAGE, find_kind, kind_names
 from grader.new_assignment import example_of_exercise, example_of_kind, make_assignment
-from grader.reading import SECRET_FILE, budget_lines
+from grader.reading import SECRET_FILE
 from grader.reports.cleaning import plain
 from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds, works_of
 from kit.cli.options import ExistingPath, describe_os_error

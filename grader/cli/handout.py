@@ -13,12 +13,12 @@ from typing import Final
 
 import click
 
+from grader.budgets import budget_lines
 from grader.ci import REPOSITORY_SERVICES, SERVICES
 from grader.ci.ci_service import CiRunner, GitSource, GradedWork
 from grader.cli import options
 from grader.kinds.contract import kind_names
 from grader.new_assignment import CARD
-from grader.reading import budget_lines
 from grader.sheet_reference import SheetKey, documented_attributes, sheet_keys
 from grader.student_version import ReleaseRefused, StudentVersion, missing_for_practice, student_version
 from grader.teacher_tests import reading as teacher_tests
