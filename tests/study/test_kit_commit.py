@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -23,7 +22,7 @@ def git(folder: Path, *words: str) -> str:
 
 
 @pytest.fixture
-def source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder in which the kit might lie, below one that is anybody's."""
     folder = tmp_path / "anybodys" / "source"
     (folder / "kit" / "study").mkdir(parents=True)
@@ -31,7 +30,7 @@ def source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     module.write_text("")
     monkeypatch.setattr(study_runs, "__file__", str(module))
     monkeypatch.setattr(study_runs, "SHIPPED_FOLDER", folder / "kit" / "study" / "results")
-    yield folder
+    return folder
 
 
 def make_repository(folder: Path, marker: Path, setting: str) -> None:
