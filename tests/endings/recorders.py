@@ -298,7 +298,7 @@ class Editing(Recorder):
         return ("-m", "kit", "play", "simple", "--controller", "mine")
 
     def type_into(self, terminal: Terminal) -> None:
-        wait_until(lambda: b"^E" in terminal.shown, "the screen")
+        wait_until(lambda: b"bumps" in terminal.shown, "the robot on the screen")
         terminal.write(b"\x05")
         wait_until(lambda: b"SPEED" in terminal.shown, "the program in the editor")
         for _ in range(400):
