@@ -266,6 +266,27 @@ CONTROLS: Final = (
         "host/sandbox/test_control_groups.py::test_threads_of_root_are_counted",
     ),
     Control(
+        "a frame at the wrong time",
+        "kit/host/protocol.py",
+        "    if not isinstance(frame, ALLOWED_FRAMES[state]):\n",
+        "    if not frame:\n",
+        "host/test_states.py::test_every_frame_in_every_state",
+    ),
+    Control(
+        "a forged number of an endpoint",
+        "kit/host/proxy_nodes.py",
+        "        if not isinstance(endpoint, kind):\n",
+        "        if endpoint is None:\n",
+        "host/test_forgery.py::test_a_forged_answer_ends_the_process",
+    ),
+    Control(
+        "one user for all runs",
+        "kit/host/sandbox/confinement.py",
+        "        os.setresuid(user, user, user)\n",
+        "",
+        "host/sandbox/test_confinement.py::test_two_runs_have_two_users",
+    ),
+    Control(
         "groups of a killed kit",
         "kit/host/sandbox/control_groups.py",
         "            _remove_abandoned(each.folder)\n",
