@@ -1,4 +1,4 @@
-"""Functions without an idea earn next to nothing in any exercise: constants, what they are given, its least, most, sum."""
+"""Works without an idea earn little in any exercise: functions next to nothing, the same answer to all questions at most half."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 import yaml
 
 from grader.grading import GradingOptions, grade
+from grader.kinds.answers.kind import AnswersTask
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
@@ -37,17 +38,21 @@ MOST: Final = 0.1
 """The share of a criterion's points that may be hit by chance."""
 
 
-def function_exercises() -> Iterator[tuple[str, str]]:
+MOST_OF_ANSWERS: Final = 0.5
+"""The share of an exercise's points that one answer to all of its questions may earn."""
+
+
+def exercises_of(kind: str) -> Iterator[tuple[str, str]]:
     for name in lesson_names():
         for exercise in kit_lesson(name).exercises:
             text = (lessons_folder() / name / exercise.name / "assignment.yaml").read_text()
-            if "\nkind: function" in text:
+            if f"\nkind: {kind}\n" in text:
                 yield name, exercise.name
 
 
 @pytest.mark.daily(7)
 @pytest.mark.long
-@pytest.mark.parametrize(("name", "exercise"), list(function_exercises()))
+@pytest.mark.parametrize(("name", "exercise"), list(exercises_of("function")))
 def test_a_function_without_an_idea_earns_nothing(name: str, exercise: str) -> None:
     folder = lessons_folder() / name / exercise
     assignment = read_assignment(folder)
@@ -56,5 +61,27 @@ def test_a_function_without_an_idea_earns_nothing(name: str, exercise: str) -> N
         source = "".join(FUNCTION.format(name=each["name"], returned=returned) for each in functions)
         work = Submission(idea, assignment.submit, {assignment.submit: source.encode()})
         result = grade(assignment, work, GradingOptions(Level.LIMITED))
-        earned = {test.id: test.points for test in result.tests if (test.points or 0) > MOST * test.max_points}
+        earned = {
+            test.id: test.points for test in result.tests if (test.points or 0) > MOST * test.max_points
+        }
         assert not earned, idea
+
+
+@pytest.mark.daily(7)
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "exercise"), list(exercises_of("answers")))
+def test_one_answer_to_all_questions_earns_little(name: str, exercise: str) -> None:
+    assignment = read_assignment(lessons_folder() / name / exercise)
+    task: AnswersTask = assignment.task
+    words = {word for question in task.questions for word in question.choices} | {"0", "1", "2", "10"}
+    earned = {}
+    for word in sorted(words):
+        given: dict[str, list[str] | str] = {}
+        for question in task.questions:
+            said = word if word in question.choices or not question.choices else question.choices[0]
+            given[question.name] = [said] if question.is_list else said
+        work = Submission(word, assignment.submit, {assignment.submit: yaml.safe_dump(given).encode()})
+        earned[word] = grade(assignment, work, GradingOptions(Level.LIMITED, secret=True)).points or 0.0
+    assert max(earned.values()) <= MOST_OF_ANSWERS * assignment.max_points, earned
+    if exercise == "what-happens":
+        assert max(earned.values()) > 0, "answers are read"
