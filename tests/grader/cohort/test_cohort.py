@@ -17,8 +17,8 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta, tzinfo
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Final
 from types import SimpleNamespace
+from typing import Final
 
 import pytest
 from click.testing import CliRunner
