@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from typing import Final
 
+from grader.look_alikes import mark_foreign_letters
+
 MAX_FILES: Final = 200
 MAX_BYTES: Final = 8 * 1024 * 1024
 """Bytes of all needed files together, unpacked."""
@@ -209,8 +211,8 @@ def is_plain_name(path: str) -> bool:
 
 
 def shown_name(path: str) -> str:
-    """Returns a name for a message: in quotes, shortened, and without characters that cannot be seen."""
-    return repr(path[:80])
+    """Returns a name for a message: in quotes, shortened, without characters that cannot be seen or that look like others."""
+    return mark_foreign_letters(repr(path[:80]))
 
 
 _SIGNATURES: Final = (

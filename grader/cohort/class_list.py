@@ -22,7 +22,8 @@ from grader.cohort.gradebook import (
 from grader.cohort.lateness import LatePolicy
 from grader.cohort.marks import ManualMark
 from grader.cohort.queue import Queue
-from grader.cohort.roster import Roster, RosterEntry, WorkOwners, look, owners_of
+from grader.cohort.roster import Roster, RosterEntry, WorkOwners, owners_of
+from grader.look_alikes import look
 from grader.reports.cleaning import clean_line
 from kit.plain_text import counted, join_names, suggestion
 from kit.results.result_blocks import format_points

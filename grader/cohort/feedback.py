@@ -14,8 +14,8 @@ from typing import Final
 from grader.assignment import Assignment
 from grader.cohort.gradebook import MISSING, GradebookRow, late_text
 from grader.cohort.queue import Queue
-from grader.cohort.roster import look
 from grader.cohort.statistics import class_document
+from grader.look_alikes import look
 from grader.reports.cleaning import clean_line
 from grader.reports.formats.json_report import write_json
 from kit.document.blocks import Block, Chapter, Document, Picture, Text, Tone

@@ -16,7 +16,8 @@ from typing import Any, Final
 
 from grader.cohort.lateness import EXAMPLE, Lateness, LatePolicy, parse_time
 from grader.cohort.queue import Queue, QueueEntry, UnreadableWork
-from grader.cohort.roster import RosterEntry, WorkOwners, look
+from grader.cohort.roster import RosterEntry, WorkOwners
+from grader.look_alikes import look
 from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.document.blocks import Block, Text
 from kit.field_types import check_field_types

@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import Final
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
-from grader.cohort.roster import look
+from grader.look_alikes import look
 from kit.plain_text import counted, quoted
 from kit.world.documents import open_document
 from kit.world.yaml_section import Section

@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any, ClassVar, Final
 
 from grader.assignment import Assignment
-from grader.cohort.roster import look
 from grader.evidence.findings import Findings
 from grader.grading import GradingOptions, grade_and_keep, judge_findings, level_for_untrusted
+from grader.look_alikes import outline
 from grader.reading import read_assignment
 from grader.submission import Submission, read_submission, submission_name
 from grader.submitted_files import IGNORED_NAMES, SubmissionRefused, SubmissionUnreadable
@@ -309,7 +309,7 @@ def _entries(
         if path.name.startswith(".") or path.name.lower() in IGNORED_NAMES:
             continue
         name = _unlike(names, submission_name(path), path.name)
-        names.add(look(name))
+        names.add(outline(name))
         try:
             submission = read_submission(path, assignment.submit)
         except SubmissionUnreadable as unreadable:
@@ -326,12 +326,12 @@ def _entries(
         yield QueueEntry(name, key, note=submission.note)
 
 
-def _unlike(looks: set[str], name: str, file_name: str) -> str:
+def _unlike(outlines: set[str], name: str, file_name: str) -> str:
     """Returns a submission's name, or its file's, if that looks like no other; else one with a number."""
     for candidate in (name, file_name):
-        if look(candidate) not in looks:
+        if outline(candidate) not in outlines:
             return candidate
-    return next(each for number in count(2) if look(each := f"{file_name} ({number})") not in looks)
+    return next(each for number in count(2) if outline(each := f"{file_name} ({number})") not in outlines)
 
 
 def _copy_assignment(queue: Queue, assignment: Assignment) -> None:

@@ -10,13 +10,13 @@ from __future__ import annotations
 import csv
 import io
 import re
-import unicodedata
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
+from grader.look_alikes import look
 from kit.plain_files import read_plain_file
 from kit.plain_text import join_names
 
@@ -129,14 +129,6 @@ class Roster:
             for key in {*map(look, student.keys), *([look(student.group)] if student.group else [])}:
                 found.setdefault(key, []).append(student)
         return MappingProxyType({key: tuple(each) for key, each in found.items()})
-
-
-def look(name: str) -> str:
-    """Returns what a reader takes a name for: without double blanks, letters of other widths, and what cannot be seen."""
-    shown = "".join(
-        sign for sign in unicodedata.normalize("NFKC", name) if sign.isprintable() or sign.isspace()
-    )
-    return " ".join(shown.split()).casefold()
 
 
 def read_roster(file: Path) -> Roster:

@@ -14,7 +14,10 @@ import click
 
 from kit.installation import foreign_distributions, overwritten_text
 from kit.interruption import ended_by_signals, write_out
+from kit.plain_text import escape_controls
 
+FAILED: Final = 1
+"""Exit code where what was asked for is not so, or not possible."""
 BAD_INPUT: Final = 2
 """Exit code where an argument is wrong, or something cannot be read or written."""
 SIGNALLED: Final = 128
@@ -47,6 +50,15 @@ def refuse_if_written_over(name: str) -> None:
         raise SystemExit(BAD_INPUT)
 
 
+def _tell_other_kinds(name: str) -> None:
+    """Says of each file of this command line that another command takes it, if that is so."""
+    from kit.cli.file_kinds import other_kinds  # what a command that succeeds does not need
+
+    with suppress(OSError):
+        for sentence in other_kinds(name, sys.argv[1:]):
+            click.echo(escape_controls(sentence), err=True)
+
+
 def run_as_process(command: click.Command, name: str) -> NoReturn:
     """Runs a command line as this process, to whose end belongs that what it has written is out.
 
@@ -65,6 +77,8 @@ def run_as_process(command: click.Command, name: str) -> NoReturn:
             try:
                 command(prog_name=name)
             except SystemExit as stop:
+                if stop.code in (FAILED, BAD_INPUT):
+                    _tell_other_kinds(name)
                 if stop.code == BAD_INPUT:  # and why has been said
                     write_out()
                 if sys.stdout is not None:  # closed by whoever started this

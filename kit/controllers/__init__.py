@@ -14,6 +14,8 @@ from kit.workspace import Workspace, expand_home, open_workspace, unusable_works
 FOLDER = Path(__file__).parent
 TEMPLATE = FOLDER / "template.py"
 FIRST_CONTROLLER = "my_controller.py"
+PROGRAM_SUFFIXES = frozenset((".py", ""))
+"""A program of ROS may be without an ending. What has another is no program, though a YAML file may read like one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +62,7 @@ def find_controller(name: str, folder: Path | None = None) -> ControllerFile:
     if path.suffix.lower() == ".py" or "/" in name or "\\" in name:
         places = [path, *([] if folder is None else [folder / path])]
         for file in places:
-            if file.is_file():
+            if file.is_file() and file.suffix.lower() in PROGRAM_SUFFIXES:
                 return ControllerFile(file.stem, file.absolute(), controller_title(file))
         if path.exists():
             raise LookupError(f"{name}: a controller is a Python file, NAME.py; this is {_kind_of(path)}.")

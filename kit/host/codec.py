@@ -18,10 +18,10 @@ from kit.host.wire import Json, ProtocolError
 from kit.msg.fields import FieldError, FieldKind, FixedArrayKind, MessageKind, ScalarKind, SequenceKind
 from kit.msg.message import Message
 
-MAY_BE_INFINITE: Final = ("sensor_msgs/", "std_msgs/", "example_interfaces/")
+MAY_BE_INFINITE: Final = ("sensor_msgs/", "std_msgs/", "example_interfaces/", "rcl_interfaces/")
 """The packages in whose messages' own fields a student may write NaN or infinity: readings beyond range (REP 117), what was not
-measured (as sensor_msgs says of batteries, pressures and positions), and plain numbers, such as the least of no readings. A
-command, a pose and a path are of others."""
+measured (as sensor_msgs says of batteries, pressures and positions), plain numbers, such as the least of no readings, and
+parameters, where infinity means no limit. A command, a pose and a path are of others."""
 
 Pack = Callable[[Any], Json]
 Unpack = Callable[[Json], Any]

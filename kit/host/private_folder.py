@@ -1,17 +1,19 @@
 """Makes private temporary folders, and removes those whose process was killed before it could do so itself.
 
-Every folder's name says which process owns it. The first folder that a process makes also removes the folders of
-processes of this user that no longer live. So a SIGKILL leaves nothing behind after the next start.
+Every folder's name says which process owns it, to those alone who know this start of the machine: a confined program, which
+sees the path, learns no process from it. The first folder that a process makes also removes the folders of processes of this
+user that no longer live. So a SIGKILL leaves nothing behind after the next start.
 """
 
 from __future__ import annotations
 
+import hashlib
 import os
 import re
 import socket
 import tempfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
@@ -19,7 +21,7 @@ from typing import Final
 from kit.host.sandbox.reaper import remove_folder
 
 PREFIX: Final = "kit-private-"
-_NAME: Final = re.compile(rf"{PREFIX}(?P<machine>[0-9a-f]{{8}})-(?P<pid>\d+)-(?P<start>\d+)-")
+_NAME: Final = re.compile(rf"{PREFIX}(?P<machine>[0-9a-f]{{8}})-(?P<owner>[0-9a-f]{{16}}|p\d+)-")
 _swept_folders: Final[set[str]] = set()
 """Folders for temporary files that this process has looked through."""
 
@@ -37,7 +39,7 @@ def make_private_folder() -> str:
 def owned_name() -> str:
     """Returns how a name begins that says that this process owns what bears it; see ``is_abandoned``."""
     pid = os.getpid()
-    return f"{PREFIX}{_MACHINE}-{pid}-{_start_of_process(pid) or 0}-"
+    return f"{PREFIX}{_MACHINE}-{_owner_word(pid, _start_of_process(pid) or 0)}-"
 
 
 @contextmanager
@@ -53,22 +55,43 @@ def private_folder() -> Iterator[Path]:
 def remove_abandoned_folders(parent: str) -> None:
     """Removes the private folders in ``parent`` that belong to this user and whose process no longer lives."""
     with suppress(OSError), os.scandir(parent) as entries:
-        abandoned = [entry.path for entry in entries if is_abandoned(entry)]
-        for folder in abandoned:
+        for folder in abandoned(entries):
             remove_folder(folder)
 
 
-def is_abandoned(entry: os.DirEntry[str]) -> bool:
-    """Returns whether this user's process that owned it, by its name, no longer lives."""
-    named = _NAME.match(entry.name)
-    if named is None or named["machine"] != _MACHINE:
-        return False
+def abandoned(entries: Iterable[os.DirEntry[str]]) -> list[str]:
+    """Returns the paths of the entries that a process of this user owned, by their names, that no longer lives."""
+    found = [(entry, named) for entry in entries if (named := _NAME.match(entry.name)) is not None]
+    owned = [(entry.path, named["owner"]) for entry, named in found if _is_own(entry, named["machine"])]
+    living = _living_owners() if owned else frozenset()
+    return [path for path, owner in owned if not (_lives(owner) if owner[0] == "p" else owner in living)]
+
+
+def _is_own(entry: os.DirEntry[str], machine: str) -> bool:
     try:
-        if entry.is_symlink() or entry.stat(follow_symlinks=False).st_uid != os.geteuid():
-            return False
+        is_link, user = entry.is_symlink(), entry.stat(follow_symlinks=False).st_uid
     except OSError:  # removed meanwhile
         return False
-    return _start_of_process(int(named["pid"])) != int(named["start"])
+    return machine == _MACHINE and not is_link and user == os.geteuid()
+
+
+def _lives(owner: str) -> bool:
+    """Whether the process of an owner's word that is its number lives: where there is no /proc."""
+    return _start_of_process(int(owner[1:])) is not None
+
+
+def _living_owners() -> frozenset[str]:
+    """The owners' words of all processes."""
+    pids = map(int, filter(str.isdecimal, os.listdir("/proc") if os.path.isdir("/proc/self") else ()))
+    starts = ((pid, _start_of_process(pid)) for pid in pids)
+    return frozenset(_owner_word(pid, start) for pid, start in starts if start is not None)
+
+
+def _owner_word(pid: int, start: int) -> str:
+    """What stands for a process in a name: its number and start, hashed with what no confined program can read."""
+    if not start:
+        return f"p{pid}"
+    return hashlib.blake2s(f"{pid} {start}".encode(), key=_BOOT, digest_size=8).hexdigest()
 
 
 def _machine_digits() -> str:
@@ -79,8 +102,18 @@ def _machine_digits() -> str:
     return f"{zlib.crc32(f'{socket.gethostname()} {namespace}'.encode()):08x}"
 
 
+def _boot_identity() -> bytes:
+    """Returns what Linux drew at random when it was started; nothing elsewhere."""
+    try:
+        with open("/proc/sys/kernel/random/boot_id", "rb") as file:
+            return file.read(32)
+    except OSError:
+        return b""
+
+
 # At import, since the process cannot read its own namespace any more once it is shielded.
 _MACHINE: Final = _machine_digits()
+_BOOT: Final = _boot_identity()
 
 
 def _start_of_process(pid: int) -> int | None:

@@ -91,7 +91,8 @@ class ScalarKind(NamedTuple):
             raise FieldError(
                 f"The '{name}' field must be a {self.text}, {self.low} to {self.high}, not {value}"
             )
-        return value
+        # True is a whole number to Python, and 1 to whoever receives it.
+        return int(value) if self.python_type is int else value
 
     def _hint(self, value: object) -> str:
         if self.python_type is float and type(value) is int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import subprocess
 import time
 from collections.abc import Callable, Iterable
@@ -479,20 +480,38 @@ def kit_commit() -> str:
 
     Recorded results, which recording itself changes, do not count.
     """
-    results = f":!{SHIPPED_FOLDER.relative_to(Path(__file__).parents[1])}"
+    results = f":!{SHIPPED_FOLDER.relative_to(Path(__file__).parents[2])}"
     try:
         commit = _git("describe", "--always", "--abbrev=12", "--exclude=*")
-        return commit + ("+" if _git("status", "--porcelain", "-uno", "--", ".", results) else "")
+        return commit + ("+" if _git("status", "--porcelain", "-uno", "--", "kit", results) else "")
     except (OSError, subprocess.SubprocessError):
         return ""
 
 
 def _git(*words: str) -> str:
-    folder = Path(__file__).parents[1]
-    found = subprocess.run(
-        ["git", *words], cwd=folder, capture_output=True, text=True, timeout=20, check=True
-    )
-    return found.stdout.strip()
+    """Asks the repository that the folder of the kit's source is, and has git run none of the programs that it names.
+
+    A repository above an installed kit, or one that the user's variables name, may be anybody's.
+    """
+    folder = Path(__file__).resolve().parents[2]
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
+    environment |= {"GIT_CEILING_DIRECTORIES": str(folder.parent), "GIT_OPTIONAL_LOCKS": "0"}
+
+    def run(*command: str, check: bool) -> str:
+        found = subprocess.run(
+            ["git", "-c", "core.fsmonitor=false", "-c", "core.hooksPath=/dev/null", *command],
+            cwd=folder,
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=20,
+            check=check,
+        )
+        return found.stdout.strip()
+
+    filters = run("config", "--name-only", "--get-regexp", r"^filter\..*\.(clean|process)$", check=False)
+    without = [word for name in filters.splitlines() for word in ("-c", f"{name}=")]
+    return run(*without, *words, check=True)
 
 
 def _test_agent(group: str, sweep: TrainingSweep, entry: SweepEntry, episodes: int) -> RecordedTest:

@@ -6,7 +6,6 @@ import os
 import shutil
 import signal
 import subprocess
-import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -15,11 +14,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from tests.endings.recorders import RECORDERS, Recorder, Started, until
+from tests.endings.recorders import RECORDERS, Recorder, Started
 from tests.kills.scenarios import Place
+from tests.waiting import wait_until
 
-END_S: Final = 60.0
+END_S: Final = 180.0
 """How long a program may take to end [s]."""
+SOMETHING_S: Final = 180.0
+"""How long a program may take until there is something to keep [s]."""
 DISK_KIB: Final = 4000
 """Size of the file system that becomes full [KiB]."""
 
@@ -42,23 +44,30 @@ class Ending:
         return not self.has_traceback and (self.kept > 0 or not self.had_something)
 
 
-def _until_something(recorder: Recorder) -> float:
-    """Returns how long it took until there was something to keep [s]: a measure of how busy the machine is."""
-    began = time.monotonic()
-    until(recorder.has_something, "something to keep")
-    return time.monotonic() - began
+def _until_something(recorder: Recorder, started: Started) -> float:
+    """Waits until there is something to keep. Returns how much the program computed for it [s of processor time]."""
+    wait_until(recorder.has_something, "something to keep", limit_s=SOMETHING_S)
+    return started.computed_s
+
+
+def _let_compute(started: Started, seconds: float) -> None:
+    """Waits until a program has ended or has computed for so long, however busy the machine is."""
+    until = started.computed_s + seconds
+    wait_until(
+        lambda: started.has_ended or started.computed_s >= until, "a program to compute", limit_s=SOMETHING_S
+    )
 
 
 def _by_signal(number: signal.Signals, recorder: Recorder, folder: Path) -> Ending:
     started = Started(recorder)
-    until(recorder.has_something, "something to keep")
+    _until_something(recorder, started)
     started.process.send_signal(number)
     return _end(recorder, started, outlives=recorder.outlives_terminal and number == signal.SIGHUP)
 
 
 def _by_hang_up(recorder: Recorder, folder: Path) -> Ending:
     started = Started(recorder)
-    until(recorder.has_something, "something to keep")
+    _until_something(recorder, started)
     started.hang_up()
     started.process.send_signal(signal.SIGHUP)
     return _end(recorder, started, outlives=recorder.outlives_terminal)
@@ -66,7 +75,7 @@ def _by_hang_up(recorder: Recorder, folder: Path) -> Ending:
 
 def _by_kill_of_group(recorder: Recorder, folder: Path) -> Ending:
     started = Started(recorder)
-    until(recorder.has_something, "something to keep")
+    _until_something(recorder, started)
     os.killpg(started.process.pid, signal.SIGKILL)
     return _end(recorder, started)
 
@@ -74,15 +83,14 @@ def _by_kill_of_group(recorder: Recorder, folder: Path) -> Ending:
 def _by_partner(recorder: Recorder, folder: Path) -> Ending:
     """The world that is recorded is killed; elsewhere a process that the program has started, if there is one."""
     started = Started(recorder)
-    taken_s = _until_something(recorder)
+    taken_s = _until_something(recorder, started)
     if recorder.partner is not None:
         recorder.partner.kill()
     else:
         for child in _children(started.process.pid):
             with suppress(ProcessLookupError):
                 os.kill(child, signal.SIGKILL)
-        with suppress(subprocess.TimeoutExpired):
-            started.process.wait(max(1.0, taken_s / 2))
+        _let_compute(started, taken_s / 4)
         started.process.send_signal(signal.SIGINT)
     return _end(recorder, started)
 
@@ -90,10 +98,9 @@ def _by_partner(recorder: Recorder, folder: Path) -> Ending:
 def _by_second_writer(recorder: Recorder, folder: Path) -> Ending:
     """A second program of the same kind writes the same name: it is refused, and the first one loses nothing."""
     started = Started(recorder)
-    taken_s = _until_something(recorder)
+    taken_s = _until_something(recorder, started)
     second = Started(recorder)
-    with suppress(subprocess.TimeoutExpired):
-        second.process.wait(max(6.0, 3 * taken_s))
+    _let_compute(second, 2 * taken_s)
     second.process.send_signal(signal.SIGTERM)
     second.process.wait(END_S)
     started.process.send_signal(signal.SIGTERM)
@@ -103,13 +110,12 @@ def _by_second_writer(recorder: Recorder, folder: Path) -> Ending:
 def _by_full_disk(recorder: Recorder, folder: Path) -> Ending:
     """The folder in which it writes is a file system of its own that becomes full; where there is none, another's quota."""
     started = Started(recorder)
-    taken_s = _until_something(recorder)
+    taken_s = _until_something(recorder, started)
     filler = recorder.folder / "filler"
     with suppress(OSError), filler.open("wb", buffering=0) as file:
         while True:
             file.write(bytes(512))
-    with suppress(subprocess.TimeoutExpired):
-        started.process.wait(max(4.0, 2 * taken_s))
+    _let_compute(started, taken_s)
     started.process.send_signal(signal.SIGTERM)
     started.process.wait(END_S)
     filler.unlink(missing_ok=True)
@@ -119,9 +125,8 @@ def _by_full_disk(recorder: Recorder, folder: Path) -> Ending:
 def _by_full_output(recorder: Recorder, folder: Path) -> Ending:
     """Standard output is a full device, and then the program is asked to end."""
     started = Started(recorder, output=Path("/dev/full"))
-    with suppress(TimeoutError):
-        until(lambda: recorder.has_something() or started.process.poll() is not None, "something")
-    has_ended = started.process.poll() is not None and not recorder.has_something()
+    wait_until(lambda: recorder.has_something() or started.has_ended, "something", limit_s=SOMETHING_S)
+    has_ended = started.has_ended and not recorder.has_something()
     started.process.send_signal(signal.SIGTERM)
     return replace(_end(recorder, started), had_something=not has_ended)
 
@@ -170,15 +175,23 @@ def _mount(folder: Path) -> bool:
 
 
 def _end(recorder: Recorder, started: Started, *, outlives: bool = False) -> Ending:
-    """Waits until the program has ended. ``outlives``: it may go on, and is killed then."""
+    """Waits until the program has ended. ``outlives``: it goes on, which is seen by what it records, and is killed then."""
+    before = recorder.kept() if outlives else 0
     try:
-        code = started.process.wait(3.0 if outlives else END_S)
-    except subprocess.TimeoutExpired:
+        wait_until(
+            lambda: started.has_ended or (outlives and recorder.kept() > before + 1),
+            "the end, or more that is recorded" if outlives else "the end",
+            limit_s=END_S,
+        )
+    except AssertionError as error:
         started.process.kill()
-        code = started.process.wait()
-        return Ending(recorder.kept() if outlives else 0, code, "went on" if outlives else "did not end")
+        return Ending(0, started.process.wait(), str(error))
     finally:
         started.hang_up()
+    if not started.has_ended:
+        started.process.kill()
+        return Ending(recorder.kept(), started.process.wait(), "went on")
+    code = started.process.returncode
     text = started.log.read_text(errors="replace")
     lines = [line for line in text.replace("\r", "\n").split("\n") if line.strip()]
     return Ending(

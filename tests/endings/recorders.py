@@ -8,16 +8,19 @@ from __future__ import annotations
 import json
 import os
 import pty
+import shutil
+import sqlite3
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from contextlib import closing, suppress
 from pathlib import Path
 from types import MappingProxyType
-from typing import ClassVar, Final
+from typing import ClassVar, Final, Protocol
 
 from kit.inspection.sockets import running_worlds, sockets_folder
 from kit.learning.tasks.task_spec import TaskSpec
@@ -32,9 +35,17 @@ from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.widgets.program_editor import DRAFT_SUFFIX
 from tests.grader.conftest import FORWARD, write_assignment
 from tests.kills.scenarios import Place
+from tests.waiting import wait_until
 
-WAIT_S: Final = 90.0
-"""How long a program may take until there is something to keep [s]."""
+
+class Terminal(Protocol):
+    """The terminal at which a program runs."""
+
+    shown: bytearray
+    """What the program has shown."""
+
+    def write(self, typed: bytes) -> None:
+        """Types. Raises OSError once the terminal is closed."""
 
 
 class Recorder(ABC):
@@ -70,7 +81,7 @@ class Recorder(ABC):
     def prepare(self) -> None:  # noqa: B027 - few need anything
         """Makes what the program needs."""
 
-    def type_into(self, write: Callable[[bytes], None]) -> None:  # noqa: B027 - to few is anything typed
+    def type_into(self, terminal: Terminal) -> None:  # noqa: B027 - to few is anything typed
         """What a user types, for a while."""
 
     def close(self) -> None:
@@ -108,9 +119,9 @@ class PlayRecording(RunRecording):
         drive = str(self.folder / self.file)
         return ("-m", "kit", "play", "simple", "--plain", "--controller", "teleop", "--record", drive)
 
-    def type_into(self, write: Callable[[bytes], None]) -> None:
+    def type_into(self, terminal: Terminal) -> None:
         for _ in range(400):
-            write(b"drive 0.3 0 2\n")
+            terminal.write(b"drive 0.3 0 2\n")
             time.sleep(0.15)
 
 
@@ -145,6 +156,16 @@ class RunSqliteBag(RunBag):
 
     storage = "sqlite3"
 
+    def has_something(self) -> bool:
+        """Whether a copy of its files, from which what is not committed is rolled back, holds messages."""
+        if not super().has_something():
+            return False
+        with tempfile.TemporaryDirectory() as folder, suppress(OSError, shutil.Error, sqlite3.Error):
+            copy = shutil.copytree(part_path(self.bag) / "bag", Path(folder, "copy"))
+            with closing(sqlite3.connect(next(copy.glob("*.db3")))) as opened:
+                return bool(opened.execute("SELECT count(*) FROM messages").fetchone()[0])
+        return False
+
 
 class RosBag(RunBag):
     """``kit ros bag record``, of a world in another process."""
@@ -156,7 +177,7 @@ class RosBag(RunBag):
     def prepare(self) -> None:
         world = ("-m", "kit", "run", "maze", "--serve", "--steps", "100000000")
         self.partner = self.place.start(*world, output=self.place.folder / "world.txt")
-        until(lambda: bool(list(running_worlds(sockets_folder(self.place.workspace)))), "the world")
+        wait_until(lambda: list(running_worlds(sockets_folder(self.place.workspace))), "the world")
 
 
 class Training(Recorder):
@@ -189,9 +210,9 @@ class Quiz(Recorder):
     def words(self) -> Sequence[str]:
         return ("-m", "kit", "quiz", "--plain", "--again")
 
-    def type_into(self, write: Callable[[bytes], None]) -> None:
-        for _ in range(12):
-            write(b"1\n3\n")
+    def type_into(self, terminal: Terminal) -> None:
+        for _ in range(400):
+            terminal.write(b"1\n3\n")
             time.sleep(0.15)
 
     def has_something(self) -> bool:
@@ -243,9 +264,9 @@ class MapDrawing(Recorder):
     def words(self) -> Sequence[str]:
         return ("-m", "kit", "maps", "new", "hall")
 
-    def type_into(self, write: Callable[[bytes], None]) -> None:
+    def type_into(self, terminal: Terminal) -> None:
         for _ in range(400):
-            write(b" \x1b[C")
+            terminal.write(b" \x1b[C")
             time.sleep(0.1)
 
     def has_something(self) -> bool:
@@ -276,9 +297,12 @@ class Editing(Recorder):
     def words(self) -> Sequence[str]:
         return ("-m", "kit", "play", "simple", "--controller", "mine")
 
-    def type_into(self, write: Callable[[bytes], None]) -> None:
-        for number in range(400):
-            write(b"\x05" if number == 40 else b"#" if number > 60 else b"\x1b[C" if number > 50 else b"")
+    def type_into(self, terminal: Terminal) -> None:
+        wait_until(lambda: b"bumps" in terminal.shown, "the robot on the screen")
+        terminal.write(b"\x05")
+        wait_until(lambda: b"SPEED" in terminal.shown, "the program in the editor")
+        for _ in range(400):
+            terminal.write(b"#")
             time.sleep(0.1)
 
     def has_something(self) -> bool:
@@ -315,6 +339,7 @@ class Started:
         self.log = recorder.place.folder / "output.txt"
         self._own_lock = threading.Lock()
         self._is_open = True
+        self.shown = bytearray()
         self.log.touch()
         with (output or self.log).open("ab") as out:  # both streams at its end: neither over the other
             streams = theirs if recorder.needs_terminal and output is None else out
@@ -334,10 +359,11 @@ class Started:
         self._reading.start()
 
     def _type(self, recorder: Recorder) -> None:
-        with suppress(OSError):
-            recorder.type_into(self._write)
+        with suppress(OSError, AssertionError):
+            recorder.type_into(self)
 
-    def _write(self, typed: bytes) -> None:
+    def write(self, typed: bytes) -> None:
+        """Types. Raises OSError once the terminal is closed."""
         with self._own_lock:
             if not self._is_open:  # its number may be that of another terminal by now
                 raise OSError("the terminal is closed")
@@ -348,6 +374,20 @@ class Started:
             while data := os.read(self.own, 65536):
                 log.write(data)
                 log.flush()
+                self.shown += data
+
+    @property
+    def has_ended(self) -> bool:
+        return self.process.poll() is not None
+
+    @property
+    def computed_s(self) -> float:
+        """Processor time that the program and those of its processes that have ended took [s]; 0 where it has ended."""
+        try:
+            fields = Path(f"/proc/{self.process.pid}/stat").read_bytes().rpartition(b")")[2].split()
+        except OSError:
+            return 0.0
+        return sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
 
     def hang_up(self) -> None:
         """Closes the terminal, as a dropped line does."""
@@ -355,15 +395,6 @@ class Started:
             if self._is_open:
                 self._is_open = False
                 os.close(self.own)
-
-
-def until(condition: Callable[[], bool], what: str, seconds: float = WAIT_S) -> None:
-    """Waits for a state."""
-    end = time.monotonic() + seconds
-    while not condition():
-        if time.monotonic() > end:
-            raise TimeoutError(f"waited in vain for {what}")
-        time.sleep(0.02)
 
 
 def left_parts(folder: Path) -> list[str]:

@@ -3,12 +3,16 @@ tries all of them."""
 
 from __future__ import annotations
 
+import os
+import shutil
+import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from tests.grader.conftest import LOCKS
-from tests.grader.machines import ABSENT, FAILED, MACHINES, SKIPPED, try_attacks, unheld
+from tests.grader.machines import ABSENT, FAILED, MACHINES, ROOT, SKIPPED, try_attacks, unheld
 
 pytestmark = [
     pytest.mark.long,
@@ -50,3 +54,41 @@ def test_what_is_not_held_is_found() -> None:
         "held",
     ]
     assert unheld(lines) == lines[:2]
+
+
+WITHOUT_LANDLOCK = """
+import os, sys
+from tests.grader.machines import become_without_landlock
+become_without_landlock()
+os.execv(sys.executable, [sys.executable, "-P", "-m", "grader", *sys.argv[1:]])
+"""
+CIRCLE = ROOT / "lessons" / "09-your-own-controller" / "circle"
+
+
+@pytest.mark.parametrize(
+    ("words", "level"),
+    [
+        (["check", "{work}"], 1),
+        (["check", "{work}", "--secret"], 1),
+        (["check", "{work}", "--level", "2"], 2),
+        (["cohort", "{folder}", "--queue", "{folder}-queue", "--secret"], 1),
+    ],
+)
+def test_a_kernel_that_refuses_landlock_gives_no_grade_and_says_why(
+    words: list[str], level: int, tmp_path: Path
+) -> None:
+    folder = tmp_path / "in"
+    folder.mkdir()
+    work = Path(shutil.copy(CIRCLE / "starter.py", folder / "ada.py"))
+    given = [word.format(work=work, folder=folder) for word in words]
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT_LANDLOCK, *given, "--assignment", str(CIRCLE)],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert f"does not reach confinement level {level}" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert "points" not in done.stdout

@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import Any, Final
 
@@ -72,3 +73,44 @@ def test_no_environment_decides_a_grade(name: str, tmp_path: Path) -> None:
 )
 def test_nothing_that_a_process_inherits_decides_a_grade(before: str, tmp_path: Path) -> None:
     assert verdict(checked(tmp_path, before, {})) == FORWARD_VERDICT
+
+
+JUMPING: Final = """
+import datetime, random, time
+
+def jumping(told, unit):
+    return lambda: told() + random.choice((-1, 1)) * 864_000 * unit
+
+time.time, time.time_ns = jumping(time.time, 1), jumping(time.time_ns, 10**9)
+
+class Date(datetime.datetime):
+    @classmethod
+    def now(cls, tz=None):
+        return datetime.datetime.fromtimestamp(time.time(), tz)
+
+datetime.datetime = Date
+"""
+"""A machine whose date jumps by ten days whenever it is asked for."""
+
+
+@pytest.mark.long
+def test_a_clock_that_jumps_decides_no_grade(tmp_path: Path) -> None:
+    (tmp_path / "sitecustomize.py").write_text(JUMPING)
+    path = os.pathsep.join((str(tmp_path), str(ROOT)))
+    asked = f"import time; assert abs(time.time() - {time.time()}) > 86_400"
+    subprocess.run([sys.executable, "-c", asked], env={**os.environ, "PYTHONPATH": path}, check=True)
+    assert verdict(checked(tmp_path, "true", {"PYTHONPATH": path})) == FORWARD_VERDICT
+
+
+@pytest.mark.long
+def test_no_git_is_run_in_a_students_checkout(tmp_path: Path) -> None:
+    """A repository's settings name programs that git runs."""
+    marker, programs = tmp_path / "git was run", tmp_path / "programs"
+    programs.mkdir()
+    (programs / "git").write_text(f"#!/bin/sh\ntouch '{marker}'\n")
+    (programs / "git").chmod(0o755)
+    path = os.pathsep.join((str(programs), os.environ["PATH"]))
+    assert verdict(checked(tmp_path, "mkdir -p .git", {"PATH": path})) == FORWARD_VERDICT
+    assert not marker.exists()
+    subprocess.run(["git", "status"], env={**os.environ, "PATH": path}, check=True)
+    assert marker.exists()

@@ -15,6 +15,7 @@ from kit.msg.fields import FLOAT32, FieldKind, FixedArrayKind, MessageKind, Scal
 from kit.msg.geometry_msgs import Twist, TwistWithCovariance
 from kit.msg.interfaces import find_message, interface_names
 from kit.msg.message import Message
+from kit.msg.rcl_interfaces import ParameterValue
 from kit.msg.sensor_msgs import BatteryState, LaserScan, NavSatFix, Range
 from kit.msg.std_msgs import ByteMultiArray, Float32, Float64MultiArray, Int8, String, UInt64
 from tests.cases import every_case
@@ -78,6 +79,7 @@ def test_readings_may_be_infinite() -> None:
             NavSatFix(latitude=math.nan, position_covariance=[math.inf] * 9),
             BatteryState(current=math.nan, cell_voltage=[math.nan, 3.7]),
             Float32(data=math.inf),
+            ParameterValue(double_value=math.inf, double_array_value=array("d", [math.nan])),
             Float64MultiArray(data=[0.5, -math.inf]),
         ):
             copy = receiver.unpack(type(message), carried(sender.pack(message)))

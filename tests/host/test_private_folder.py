@@ -82,24 +82,49 @@ def test_the_next_start_removes_the_folder_of_a_killed_process_and_of_no_living_
             process.stdout.close()
 
 
-def test_a_number_that_another_process_has_got_since_does_not_protect_a_folder(temporary: Path) -> None:
+def test_a_number_that_another_process_has_got_since_does_not_protect_a_folder(
+    temporary: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     own = Path(make_private_folder())
-    start, _, rest = own.name.removeprefix(f"{module.PREFIX}{module._MACHINE}-{os.getpid()}-").partition("-")
-    earlier = own.with_name(f"{module.PREFIX}{module._MACHINE}-{os.getpid()}-{int(start) - 1}-{rest}")
-    earlier.mkdir()
+    start_of = module._start_of_process
+    monkeypatch.setattr(module, "_start_of_process", lambda pid: (start_of(pid) or 0) - 1)
+    earlier = Path(make_private_folder())
+    monkeypatch.undo()
     remove_abandoned_folders(str(temporary))
     assert own.is_dir()
     assert not earlier.exists()
 
 
+def test_its_name_tells_no_process(temporary: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    name = Path(make_private_folder()).name
+    assert str(os.getpid()) not in name.split("-")
+    assert str(module._start_of_process(os.getpid())) not in name.split("-")
+    monkeypatch.setattr(module, "_BOOT", b"another start of the machine")
+    assert Path(make_private_folder()).name.split("-")[3] != name.split("-")[3], (
+        "who knows no secret can compare nothing"
+    )
+
+
+def test_where_there_is_no_proc_a_name_says_the_process(
+    temporary: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "_start_of_process", lambda pid: 0 if pid == os.getpid() else None)
+    own = Path(make_private_folder())
+    left = own.with_name(f"{module.PREFIX}{module._MACHINE}-p{2**22 + 1}-x")
+    left.mkdir()
+    remove_abandoned_folders(str(temporary))
+    assert own.is_dir()
+    assert not left.exists()
+
+
 def test_folders_of_other_machines_and_other_names_stay(temporary: Path) -> None:
     """In a temporary folder that several containers share, a process id says nothing about another's processes."""
     pid = 2**22 + 1  # larger than any
-    names = (f"{module.PREFIX}00000000-{pid}-1-x", f"{module.PREFIX}of-mine", f"kit-{pid}")
+    names = (f"{module.PREFIX}00000000-p{pid}-x", f"{module.PREFIX}of-mine", f"kit-{pid}")
     for name in names:
         (temporary / name).mkdir()
     (temporary / "target").mkdir()
-    link = temporary / f"{module.PREFIX}{module._MACHINE}-{pid}-1-link"
+    link = temporary / f"{module.PREFIX}{module._MACHINE}-p{pid}-link"
     link.symlink_to(temporary / "target")
     remove_abandoned_folders(str(temporary))
     assert all((temporary / name).is_dir() for name in names)

@@ -77,6 +77,15 @@ def test_a_whole_number_keeps_to_its_range(cls: type[Message], low: int, high: i
             cls(data=beyond)
 
 
+def test_a_truth_value_is_a_whole_number_and_travels_as_one() -> None:
+    message = UInt8(data=True)
+    assert (message.data, type(message.data)) == (1, int)
+    message.data = False
+    assert type(message.data) is int
+    with pytest.raises(FieldError):
+        Float32(data=True)
+
+
 def test_a_float32_has_a_range_but_may_be_infinite() -> None:
     assert Float32(data=-math.inf).data == -math.inf
     with pytest.raises(FieldError):

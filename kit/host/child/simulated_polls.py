@@ -81,6 +81,9 @@ def use_simulated_polls(graph: Graph, waits: SimulatedWaits, is_own_code: Callab
     def replace_queues(module: Any) -> None:
         count_in_queue(module.Queue)
         count_in_queue(module.SimpleQueue)
+        count_failures(
+            module.SimpleQueue, "get_nowait"
+        )  # which does not call ``get``, as that of ``Queue`` does
 
     def replace_futures(module: Any) -> None:
         count(module.Future, "done")

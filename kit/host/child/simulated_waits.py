@@ -181,7 +181,12 @@ class SimulatedWaits:
                 self.release()
 
         def make_rlock() -> Any:
-            return threading._PyRLock() if waits.is_program() else make_real_rlock()  # type: ignore[attr-defined]
+            if not waits.is_program():
+                return make_real_rlock()
+            lock = threading._PyRLock()  # type: ignore[attr-defined]
+            lock._block = object.__new__(Lock)  # by itself it would ask who calls, and find this function
+            lock._block._at_fork_reinit()
+            return lock
 
         threading.Lock = threading._allocate_lock = Lock  # type: ignore[attr-defined]
         threading.RLock = make_rlock  # type: ignore[assignment]

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from itertools import count
 from typing import Final
 
-from kit.host.private_folder import is_abandoned, owned_name
+from kit.host.private_folder import abandoned, owned_name
 from kit.host.sandbox.limits import MIB, Limits
 
 MEMBERS: Final = "cgroup.procs"
@@ -235,10 +235,9 @@ def _own_folders() -> list[tuple[str, str]]:
 
 def _remove_abandoned(folder: str) -> None:
     with suppress(OSError), os.scandir(folder) as entries:
-        for each in entries:
-            if is_abandoned(each):
-                with suppress(OSError):
-                    os.rmdir(each.path)
+        for path in abandoned(entries):
+            with suppress(OSError):
+                os.rmdir(path)
 
 
 def _read(file: str) -> str:

@@ -185,8 +185,8 @@ def _parse_scalar(text: str) -> Any:
         return text in _TRUE
     if _INTEGER.fullmatch(text):
         return int(text, 16 if "x" in text else 10)
-    if _FLOAT.fullmatch(text):
-        return float(text)
+    if _FLOAT.fullmatch(text) and math.isfinite(number := float(text)):  # as text, what is beyond all numbers
+        return number
     return _SPECIAL.get(text.lower(), text)
 
 

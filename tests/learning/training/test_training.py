@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import errno
+import io
 import os
+import pickle
 import signal
 import time
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -273,3 +276,42 @@ def test_hard_cases_get_more_of_the_worlds() -> None:
     learner.learn(60 * 400, Onlooker())
     batch = learner._env.unwrapped.batch  # type: ignore[attr-defined]  # not in the protocol
     assert np.bincount(batch.state.case).tolist() == [15, 45]
+
+
+class Spy:
+    """What is pickled in a hostile checkpoint: loading it writes a file."""
+
+    def __init__(self, file: Path) -> None:
+        self.file = file
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Path.touch, (self.file,)
+
+
+@needs_learner
+@pytest.mark.parametrize("name", ["ppo", "dqn", "boltzmann-dqn", "q-learning"])
+def test_a_hostile_checkpoint_runs_nothing(name: str, tmp_path: Path) -> None:
+    """Every part of torch's or numpy's holds an object that would be run by unpickling."""
+    import torch
+
+    choice = TaskSpec("turn")
+    preset = resolve_preset(RunConfig(choice, name))
+    learner = make_learner(ALGORITHMS[name], preset, choice, choice.resolve(), seed=1)
+    parts, ran = learner.save(), tmp_path / "ran"
+    hostile = io.BytesIO()
+    torch.save({"network": Spy(ran)}, hostile)
+    damages = {".pt": hostile, ".npy": io.BytesIO(), ".npz": io.BytesIO()}
+    objects = np.array([Spy(ran)], dtype=object)
+    np.save(damages[".npy"], objects)
+    tried = [part for part in parts if Path(part).suffix in damages]
+    for part in tried:
+        if part.endswith(".npz"):
+            with np.load(io.BytesIO(parts[part])) as stored:
+                np.savez(damages[".npz"], **dict.fromkeys(stored, objects))
+        damage = damages[Path(part).suffix]
+        with pytest.raises((pickle.UnpicklingError, ValueError)):
+            learner.load({**parts, part: damage.getvalue()})
+        assert not ran.exists(), part
+    assert tried
+    torch.load(io.BytesIO(hostile.getvalue()), weights_only=False)
+    assert ran.exists(), "what was refused would have run"

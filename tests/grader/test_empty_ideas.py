@@ -1,0 +1,87 @@
+"""Works without an idea earn little in any exercise: functions next to nothing, the same answer to all questions at most half."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from types import MappingProxyType
+from typing import Final
+
+import pytest
+import yaml
+
+from grader.grading import GradingOptions, grade
+from grader.kinds.answers.kind import AnswersTask
+from grader.reading import read_assignment
+from grader.submission import Submission
+from kit.host.sandbox.confinement import Level
+from kit.school.lessons.reading import lesson_names, lessons_folder
+from tests.kit_content import kit_lesson
+
+IDEAS: Final = MappingProxyType(
+    {
+        "zero": "0.0", "one": "1", "half": "0.5", "true": "True", "false": "False", "none": "None", "empty": "[]",
+        "the first": "given[0]", "the last": "given[-1]", "the most": "max(given)", "the least": "min(given)",
+        "the sum": "sum(given)", "the most of the first": "max(given[0])", "the least of the first": "min(given[0])",
+        "the sum of the first": "sum(given[0])", "the length of the first": "len(given[0])",
+    }
+)  # fmt: skip
+"""By name: what such a function returns."""
+FUNCTION: Final = """
+def {name}(*given, **named):
+    given = [*given, *named.values()]
+    try:
+        return {returned}
+    except Exception:
+        return 0
+"""
+MOST: Final = 0.1
+"""The share of a criterion's points that may be hit by chance."""
+
+
+MOST_OF_ANSWERS: Final = 0.5
+"""The share of an exercise's points that one answer to all of its questions may earn."""
+
+
+def exercises_of(kind: str) -> Iterator[tuple[str, str]]:
+    for name in lesson_names():
+        for exercise in kit_lesson(name).exercises:
+            text = (lessons_folder() / name / exercise.name / "assignment.yaml").read_text()
+            if f"\nkind: {kind}\n" in text:
+                yield name, exercise.name
+
+
+@pytest.mark.daily(7)
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "exercise"), list(exercises_of("function")))
+def test_a_function_without_an_idea_earns_nothing(name: str, exercise: str) -> None:
+    folder = lessons_folder() / name / exercise
+    assignment = read_assignment(folder)
+    functions = yaml.safe_load((folder / "assignment.yaml").read_text())["functions"]
+    for idea, returned in IDEAS.items():
+        source = "".join(FUNCTION.format(name=each["name"], returned=returned) for each in functions)
+        work = Submission(idea, assignment.submit, {assignment.submit: source.encode()})
+        result = grade(assignment, work, GradingOptions(Level.LIMITED))
+        earned = {
+            test.id: test.points for test in result.tests if (test.points or 0) > MOST * test.max_points
+        }
+        assert not earned, idea
+
+
+@pytest.mark.daily(7)
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "exercise"), list(exercises_of("answers")))
+def test_one_answer_to_all_questions_earns_little(name: str, exercise: str) -> None:
+    assignment = read_assignment(lessons_folder() / name / exercise)
+    task: AnswersTask = assignment.task
+    words = {word for question in task.questions for word in question.choices} | {"0", "1", "2", "10"}
+    earned = {}
+    for word in sorted(words):
+        given: dict[str, list[str] | str] = {}
+        for question in task.questions:
+            said = word if word in question.choices or not question.choices else question.choices[0]
+            given[question.name] = [said] if question.is_list else said
+        work = Submission(word, assignment.submit, {assignment.submit: yaml.safe_dump(given).encode()})
+        earned[word] = grade(assignment, work, GradingOptions(Level.LIMITED, secret=True)).points or 0.0
+    assert max(earned.values()) <= MOST_OF_ANSWERS * assignment.max_points, earned
+    if exercise == "what-happens":
+        assert max(earned.values()) > 0, "answers are read"
