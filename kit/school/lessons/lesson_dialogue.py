@@ -459,11 +459,7 @@ class LessonDialogue(Dialogue):
         if self.step.number < len(self.session.lesson.steps):
             is_open = not self.session.lesson_progress.is_step_completed(self.step)
             self.enter(self.session.find_step(self.step.number + 1))
-            return (
-                Remark("The last exercise is not passed yet; b goes back to it.", Tone.DIM)
-                if is_open
-                else None
-            )
+            return Remark("Not passed yet: b goes back to the exercise.", Tone.DIM) if is_open else None
         self.stage.close()
         self.work, self.has_ended, self._looks_at = None, True, ""
         self._following = self.session.following()
@@ -671,7 +667,7 @@ class LessonDialogue(Dialogue):
         if self.has_ended:
             return self._following is not None
         if self.is_waiting:
-            return f"Predict first: press 1 to {len(self.step.options)}. A wrong guess costs nothing."
+            return f"Predict first, 1 to {len(self.step.options)}: a wrong guess costs nothing."
         return True
 
     def can_go_back(self) -> bool | str:
@@ -681,7 +677,7 @@ class LessonDialogue(Dialogue):
         if self.has_scene and not self.is_still:
             return True
         if self.is_waiting:
-            return f"Predict first: press 1 to {len(self.step.options)}. A wrong guess costs nothing."
+            return f"Predict first, 1 to {len(self.step.options)}: a wrong guess costs nothing."
         if self.work is None:
             return False
         return (
@@ -776,7 +772,7 @@ class LessonDialogue(Dialogue):
         return "next lesson" if self.has_ended else "next"
 
     def back_word(self) -> str:
-        return "back; each of these ends the check" if self.busy or self._checked_elsewhere() else "back"
+        return "back, which ends the check" if self.busy or self._checked_elsewhere() else "back"
 
     def predict_keys(self) -> str:
         return f"1-{len(self.step.options)}"

@@ -24,6 +24,7 @@ from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_page import LessonSceneView
 from kit.tui.widgets.program_editor import MAX_BYTES, MOST_COLOURED, ProgramEditor
 from kit.workspace import Workspace, open_workspace
+from tests.kit_content import kit_lesson
 from tests.tui.lesson_folder import write_lessons, write_solutions
 from tests.tui.lesson_stage import Scene, rows, seen, stage, text, until
 from tests.tui.tape import painted
@@ -549,12 +550,12 @@ def test_who_writes_in_the_editor_sees_task_and_verdict(student: Student, size: 
     async def scene(pilot: Pilot[None]) -> None:
         before = (await opened_editor(pilot)).area.text
         assert "Write the colour into" in text(pilot)
-        await pilot.press("end", "enter", "number_sign", "n")
+        await pilot.press("end", "space", *"red")
         assert "not saved" in text(pilot)
         assert f"step {COLOUR} of 5" in rows(pilot)[0], "letters are the program's, not keys of the lesson"
         await pilot.press("ctrl+s")
         await seen(pilot, "That one means stop.")
-        assert student.file.read_text() == before.replace("\n", "\n#n\n", 1)
+        assert student.file.read_text() == before.replace("\n", " red\n", 1)
         await pilot.press("ctrl+z", "ctrl+z")
         assert "not saved" in text(pilot)
         await pilot.press("ctrl+e")
@@ -642,3 +643,26 @@ def test_without_an_easy_editor_e_opens_the_kits_own(
         assert not editor_of(pilot).display, "it was another exercise's file"
 
     stage(student.screen, scene)
+
+
+@pytest.mark.long
+def test_a_maze_in_ascii_is_seen_from_so_near_that_its_passages_are_open(student: Student) -> None:
+    """All of it on nine rows would be a block of wall."""
+
+    def screen(theme: Theme) -> Screen[None]:
+        session = LessonSession(kit_lesson("01-drive"), student.progress, student.workspace)
+        return LessonScreen(theme, session, student.workspace)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "waiting for your prediction")
+        view = pilot.app.screen.query_one(LessonSceneView)
+
+        def picture() -> list[str]:
+            return [each.strip() for each in rows(pilot)[view.region.y : view.region.bottom]]
+
+        await until(pilot, lambda: any("#" in each for each in picture()), "the maze")
+        drawn = "".join(picture())
+        assert drawn.count("#") < 0.6 * len(drawn)
+        assert any(robot in drawn for robot in "v<>^")
+
+    stage(screen, scene, ascii_only=True)
