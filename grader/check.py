@@ -48,7 +48,9 @@ class Check:
         if self.unit == "%":
             measure *= 100.0
         number = f"{measure:.2f}".rstrip("0").rstrip(".") if abs(measure) < 1e6 else f"{measure:g}"
-        return f"{number} {self.unit}".strip()
+        is_plural = self.unit.isalpha() and len(self.unit) > 1 and self.unit.endswith("s")
+        unit = self.unit[:-1] if is_plural and number == "1" else self.unit
+        return f"{number} {unit}".strip()
 
 
 def check(

@@ -41,6 +41,7 @@ from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.confinement import Level, shield_this_process
 from kit.host.sandbox.probe import highest_level_up_to
 from kit.results.grading_result import (
+    PUBLIC_CASES,
     PUBLIC_SEEDS,
     WITH_SECRET,
     CriterionResult,
@@ -356,6 +357,8 @@ class Grading:
         with reading_submission(self.submission.name, AuthorCodeError):
             for criterion in self.assignment.criteria:
                 self._collector.public_evidence(criterion)
+            if self._examples and self._secret and self._collector.collected():
+                self._clock.show_progress(f"{PUBLIC_CASES}{self._public_verdict()}")
         if not self._examples or self._looks_afterwards:
             return
         for criterion in self.assignment.criteria:
@@ -363,6 +366,16 @@ class Grading:
                 scored = self._score_public(criterion)
                 if criterion.seeds is not SeedSet.PUBLIC and all(each.share == 1.0 for each in scored):
                     self._counterexamples[criterion.id] = self._find_counterexample(criterion)
+
+    def _public_verdict(self) -> str:
+        """Says in a few words what the public evidence comes to: all that a student need wait for to go on."""
+        scored = [
+            public
+            for each in self.assignment.criteria
+            if each.visibility is Visibility.VISIBLE and (public := self._score_public(each))
+        ]
+        passed = sum(all(each.share == 1.0 for each in public) for public in scored)
+        return "all passed" if passed == len(scored) else f"{passed} of {len(scored)} criteria passed"
 
     def _score_public(self, criterion: Criterion) -> tuple[_ScoredEvidence, ...]:
         """Scores the public evidence of a criterion alone."""

@@ -372,3 +372,28 @@ def _is_a_verb(line: str) -> bool:
 def test_every_outcome_is_carried_and_once_described() -> None:
     carried = Counter(each for name in NAMES for each in kit_lesson(name).outcome_ids)
     assert set(carried) == set(read_outcomes())
+
+
+@pytest.mark.daily(4)
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "exercise"), EXERCISES, ids=[f"{name}-{each}" for name, each in EXERCISES])
+def test_every_misconception_receives_a_hint_for_what_it_lost_first(
+    name: str, exercise: str, tmp_path: Path
+) -> None:
+    """One that cannot be read needs none: its message names the line."""
+    _, task = exercise_of(name, exercise)
+    assignment = read_assignment(task.folder)
+    solutions, ending = solutions_folder() / name / exercise, Path(assignment.submit).suffix
+    own = {each.id: (*each.hints, *(one.hint for one in each.mistakes)) for each in assignment.criteria}
+    for each in list_wrong_works(solutions / "wrong", ending):
+        work = written_out(each, solutions / f"solution{ending}", tmp_path)
+        result = grade(
+            assignment,
+            read_submission(work, assignment.submit),
+            GradingOptions(Level.LIMITED, secret=True, examples=True),
+        ).for_student()
+        lost = next(one for one in result.tests if not one.is_passed)
+        assert lost.id in each.name.partition("__")[0].split("+"), each.name
+        assert lost.rationale, each.name
+        is_unread = lost.status == "student_error"
+        assert is_unread or (lost.hints and set(lost.hints) <= set(own[lost.id])), (each.name, lost.rationale)

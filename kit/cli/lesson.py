@@ -25,7 +25,7 @@ from kit.run.recording import RecordingError, load_recording
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from kit.run.view import ViewBuilder
-from kit.school.lessons.aside import arguments_of, editor_arguments
+from kit.school.lessons.aside import arguments_of, editor_arguments, keys_of_vi
 from kit.school.lessons.catalogue import list_lessons
 from kit.school.lessons.checking import ExerciseFilesError
 from kit.school.lessons.glossary import UnknownTerm, find_terms, glossary_blocks, read_glossary
@@ -225,7 +225,12 @@ def _edit(request: Edit) -> str:
     if arguments is None or not sys.stdin.isatty():
         return f"No editor can be opened here. Edit {request.file} in another terminal; saving it checks it."
     try:
+        if keys := keys_of_vi(os.environ, arguments):
+            click.echo(keys)
+            input("Enter opens it. ")
         subprocess.run(arguments, cwd=request.file.parent, check=False)
+    except EOFError:
+        return ""
     except OSError as error:
         return f"{arguments[0]} could not be started ({error.strerror}). Name another editor in $EDITOR."
     return ""
@@ -257,6 +262,10 @@ class LineStage:
         self._scene = step.scene or step.playback_scene
 
     def play(self, recording: Recording, place: Scenario, *, still: bool = False) -> None: ...
+
+    def learn(self, scene: LearningScene) -> None:
+        self._scene = scene
+        self.again()
 
     def go(self) -> None:
         self.again()

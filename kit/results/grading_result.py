@@ -46,6 +46,10 @@ class CriterionStatus(StrEnum):
     """An error of the grader, not of the student."""
 
 
+PUBLIC_CASES: Final = "public cases: "
+"""Begins the line of a check's progress that tells what the public cases came to, before any secret one is run."""
+
+
 class GradingVerdict(StrEnum):
     """The verdict on a whole submission."""
 

@@ -12,6 +12,8 @@ from kit.results.grading_result import CriterionResult, CriterionStatus, Grading
 
 INDENT: Final = 5
 """Columns before what is said of a criterion below its title."""
+EVERYTHING: Final = "100 %"
+"""What is expected where nothing needs to be said of it."""
 MAX_RATIONALE: Final = 600
 MAX_VALUE: Final = 300
 """Characters of an expected or actual value that are shown."""
@@ -58,8 +60,8 @@ def points_text(points: float, max_points: float) -> str:
 def criterion_blocks(
     criterion: CriterionResult, *, hints: int = 0, more_hints: str = "", log_lines: int = 0
 ) -> list[Text | Picture]:
-    """One criterion: mark, title and points; of one that is not passed also the rationale, the expected and the actual value,
-    and the next steps.
+    """One criterion: mark, title and points; of one that is not passed also the rationale, the expected and the actual value
+    where it does not name them, and the next steps.
 
     ``hints``: how many of its hints to show. ``more_hints``: how to see more, shown where there are more.
     ``log_lines``: how many of the last lines that a crashed program printed to show.
@@ -69,8 +71,13 @@ def criterion_blocks(
         return blocks
     blocks.append(_paragraph(_shortened(criterion.rationale, MAX_RATIONALE)))
     if criterion.actual:
+        is_said = criterion.actual in criterion.rationale
         values = (("expected:", criterion.expected), ("actual:  ", criterion.actual))
-        blocks += [_paragraph(_shortened(text), Tone.DIM, lead=name) for name, text in values if text]
+        blocks += [
+            _paragraph(_shortened(text), Tone.DIM, lead=name)
+            for name, text in values
+            if text and not (is_said and (text in criterion.rationale or text == EVERYTHING))
+        ]
     of = len(criterion.hints)
     blocks += [
         _paragraph(text, Tone.BOLD, lead=f"Hint {number} of {of}:")

@@ -1,8 +1,9 @@
-"""Drives a robot to a place that the user has clicked, along the widest way; any other driver ends it."""
+"""Drives a robot along a way, such as the widest one to a place that the user has clicked; any other driver ends it."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 from kit.fields.occupancy_grid import occupancy_grid_of
@@ -29,20 +30,17 @@ TURN_IN_PLACE: Final = 0.8
 """Where the heading is off by more [rad], it turns before it drives on."""
 
 
-class PlaceDriver(Observer):
-    """Drives the session's robot. Making it takes a moment, for the way is found; raises NoRoute, and ValueError for a world
-    without walls or without a robot."""
+class WayDriver(Observer):
+    """Drives the session's robot from point to point. Raises ValueError for a world without a robot."""
 
-    def __init__(self, session: Session, place: tuple[float, float]) -> None:
-        """``place``: [m, m]."""
-        scenario = session.scenario
-        if scenario.robot is None:
+    def __init__(self, session: Session, points: Sequence[tuple[float, float]]) -> None:
+        """``points``: of the way, [m, m] each."""
+        if session.scenario.robot is None:
             raise ValueError("There is no robot to drive here.")
         self._session = session
-        self._robot = scenario.robot
+        self._robot = session.scenario.robot
         self._topics = session.command_topics(self._robot)
-        pose = session.runner.simulation.pose(self._robot)
-        self._points = widest_route(occupancy_grid_of(scenario.world), pose[:2], place).points
+        self._points = points
         self._at = 0
         self.is_done = False
 
@@ -69,3 +67,16 @@ class PlaceDriver(Observer):
             command.linear.x = SPEED * max(0.0, 1.0 - abs(error) / TURN_IN_PLACE)
         for topic in self._topics:
             self._session.runner.accept(topic, command)
+
+
+class PlaceDriver(WayDriver):
+    """Drives the session's robot to a place. Making it takes a moment, for the way is found; raises NoRoute, and ValueError
+    for a world without walls or without a robot."""
+
+    def __init__(self, session: Session, place: tuple[float, float]) -> None:
+        """``place``: [m, m]."""
+        scenario = session.scenario
+        if scenario.robot is None:
+            raise ValueError("There is no robot to drive here.")
+        pose = session.runner.simulation.pose(scenario.robot)
+        super().__init__(session, widest_route(occupancy_grid_of(scenario.world), pose[:2], place).points)

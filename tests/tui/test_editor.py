@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from kit.school.lessons import aside
-from kit.school.lessons.aside import editor_arguments, row_count, run_and_copy
+from kit.school.lessons.aside import editor_arguments, has_easy_editor, keys_of_vi, row_count, run_and_copy
 from tests.cases import every_case
 
 FILE = Path("/home/ada/square.py")
@@ -34,8 +34,14 @@ def test_the_named_editor_opens_the_file(
 def test_without_a_name_the_easiest_that_is_here(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(aside.shutil, "which", lambda name: name if name == "vi" else None)
     assert editor_arguments({}, FILE, 1) == ["vi", str(FILE)]
+    assert not has_easy_editor({})
+    assert ":wq" in keys_of_vi({}, ["vi", str(FILE)])
+    assert keys_of_vi({"EDITOR": "vi"}, ["vi", str(FILE)]) == "", "who names it knows it"
     monkeypatch.setattr(aside.shutil, "which", lambda name: None)
     assert editor_arguments({}, FILE, 1) is None
+    monkeypatch.setattr(aside.shutil, "which", lambda name: name)
+    assert has_easy_editor({})
+    assert keys_of_vi({}, ["nano", str(FILE)]) == ""
 
 
 def test_what_a_command_prints_is_copied_and_counted_in_rows(tmp_path: Path) -> None:

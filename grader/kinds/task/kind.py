@@ -80,6 +80,12 @@ def way(evidence: EvidenceRecord, params: NoParams) -> float:
     return _measure(evidence, "way", 0.0)
 
 
+@check(none=0, full=1, unit="%")
+def returns(evidence: EvidenceRecord, params: NoParams) -> float:
+    """One agent is to drive there and back: {actual} of the cases have one that leads from their target to their start."""
+    return _measure(evidence, "returns", 0.0)
+
+
 @check(none=0.9, full=1, unit="%")
 def loops(evidence: EvidenceRecord, params: NoParams) -> float:
     """A robot that never arrives must not earn as much as one that does. That holds for {actual} of the loops that were
@@ -217,6 +223,6 @@ def _explain(posed: PosedTaskProcess, name: str, params: object) -> str:
 
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
-    {each.name: each for each in (sound, places, way, loops, learns, arrives, quick)}
+    {each.name: each for each in (sound, places, way, returns, loops, learns, arrives, quick)}
 )
 KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect, tells_secret_runs=True)

@@ -36,7 +36,7 @@ from kit.learning.policies.policy import Policy, PolicyError
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.learning_task import LearningTask
-from kit.learning.tasks.task_case import TaskCase
+from kit.learning.tasks.task_case import EpisodePlaces, TaskCase
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.presets import LinearSchedule, find_preset
@@ -55,6 +55,8 @@ DRIVES: Final = 32
 """Drives whose mean return is that of arriving."""
 TABLE_EDGES: Final = (0.2,)
 """Between the bins of the tables that learn a task."""
+SAME_PLACE: Final = 0.5
+"""A start that is no farther from a target is at the same place [m]."""
 TESTS: Final = 6
 """Tests during a training."""
 
@@ -208,6 +210,7 @@ class PosedTask:
         return {
             "places": self._measure_places,
             "way": lambda params: PosedMeasure(min(self.ways)),
+            "returns": self._measure_returns,
             "loops": self._measure_loops,
             "learns": self._measure_learning,
             "arrives": self._measure_arriving,
@@ -218,6 +221,13 @@ class PosedTask:
         found = [list(_misplaced(case, params)) for case in self.cases]
         share = sum(not each for each in found) / len(found)
         return PosedMeasure(share, next((text for each in found for text in each), ""))
+
+    def _measure_returns(self, params: Mapping[str, str]) -> PosedMeasure:
+        lonely = [
+            case.name for case in self.cases if not any(_leads_back(case, other) for other in self.cases)
+        ]
+        text = f"No case leads back from the target of {lonely[0]} to its start." if lonely else ""
+        return PosedMeasure(1.0 - len(lonely) / len(self.cases), text)
 
     def _measure_loops(self, params: Mapping[str, str]) -> PosedMeasure:
         if math.isnan(self.arriving_reward):
@@ -284,6 +294,21 @@ def _worst_case(test: EvaluationResult) -> str:
     return f"The worst case is {worst.case}, reached {worst.reached} times in {worst.episodes}."
 
 
+def _leads_back(case: TaskCase, other: TaskCase) -> bool:
+    """Whether some start of ``other`` is at a target of ``case``, and some target of it at a start of that."""
+    return _is_near(case.targets, other.starts[0]) and _is_near(other.targets, case.starts[0])
+
+
+def _is_near(one: EpisodePlaces, other: EpisodePlaces) -> bool:
+    return any(math.dist(a[:2], b[:2]) <= SAME_PLACE for a in _points_of(one) for b in _points_of(other))
+
+
+def _points_of(spots: EpisodePlaces) -> list[tuple[float, float]]:
+    """The corners of an area, or the places of a list [m, m]."""
+    corners = [(spots.area[0], spots.area[1]), (spots.area[2], spots.area[3])] if spots.area else []
+    return corners or [(pose.x, pose.y) for pose in spots.poses]
+
+
 def _misplaced(case: TaskCase, params: Mapping[str, str]) -> Iterator[str]:
     """Names the places of a case that lie elsewhere than asked."""
     for name, asked, spots in (
@@ -293,9 +318,7 @@ def _misplaced(case: TaskCase, params: Mapping[str, str]) -> Iterator[str]:
         if not asked:
             continue
         x1, y1, x2, y2 = (float(number) for number in asked.split())
-        corners = [(spots.area[0], spots.area[1]), (spots.area[2], spots.area[3])] if spots.area else []
-        points = corners or [(pose.x, pose.y) for pose in spots.poses]
-        for x, y in points:
+        for x, y in _points_of(spots):
             if not (x1 <= x <= x2 and y1 <= y <= y2):
                 yield f"{case.name}: ({x:g}, {y:g}), one of its {name}, is not between ({x1:g}, {y1:g}) and ({x2:g}, {y2:g})"
 

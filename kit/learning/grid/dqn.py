@@ -103,6 +103,7 @@ class DqnLearner(GridLearner):
         self.target_parameters = [each.copy() for each in self.network.parameters]
         """The parameters that targets are worked out by."""
         self._replay: list[ReplayedStep] = []
+        """The replay buffer."""
         self._sample_rng = network_rng
         super().__init__(world, settings)
         self._show_values()
@@ -117,27 +118,40 @@ class DqnLearner(GridLearner):
         own = ReplayedStep(
             self.world.number_of(cell), move, reward, self.world.number_of(reached), terminated
         )
-        if len(self._replay) < settings.replay:
-            self._replay.append(own)
-        else:
-            self._replay[self.updates % settings.replay] = own
+        self.store(own)
         chosen = (
             [self._replay[at] for at in self._sample_rng.integers(len(self._replay), size=BATCH)]
             if settings.replay > 1
             else [own]
         )
-        (target,) = self._targets([own])
+        (target,) = self.targets([own])
         cells = np.array([each.cell for each in chosen])
         moves = np.array([each.move for each in chosen])
-        self.network.descend(self._inputs[cells], moves, self._targets(chosen), settings.alpha)
-        if (self.updates + 1) % settings.target_interval == 0:
-            self.target_parameters = [each.copy() for each in self.network.parameters]
+        self.network.descend(self._inputs[cells], moves, self.targets(chosen), settings.alpha)
+        self.synchronise()
         self._show_values()
         return float(target)
 
-    def _targets(self, steps: list[ReplayedStep]) -> FloatArray:
+    def store(self, step: ReplayedStep) -> None:
+        """Puts a step into the replay buffer, in the place of the oldest once it is full."""
+        if len(self._replay) < self.settings.replay:
+            self._replay.append(step)
+        else:
+            self._replay[self.updates % self.settings.replay] = step
+
+    def synchronise(self) -> None:
+        """Renews the copy that targets are worked out by, when it is time."""
+        if (self.updates + 1) % self.settings.target_interval == 0:
+            self.target_parameters = [each.copy() for each in self.network.parameters]
+
+    def next_values(self, steps: list[ReplayedStep]) -> FloatArray:
+        """(steps, moves): the values in the states that the steps led to, by the target network."""
         reached = np.array([each.reached for each in steps])
-        future = self.network.values(self._inputs[reached], self.target_parameters).max(axis=1)
+        return self.network.values(self._inputs[reached], self.target_parameters)
+
+    def targets(self, steps: list[ReplayedStep]) -> FloatArray:
+        """(steps,): what the values of the moves made are moved towards."""
+        future = self.next_values(steps).max(axis=1)
         rewards = np.array([each.reward for each in steps])
         ended = np.array([each.terminated for each in steps])
         targets: FloatArray = rewards + np.where(ended, 0.0, self.settings.gamma * future)

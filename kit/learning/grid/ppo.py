@@ -112,13 +112,11 @@ class PpoLearner(GridLearner):
         )
 
     def _update(self) -> None:
-        settings = self.settings
         cells, moves, rewards, reached, terminated, ended = (
             np.array(part) for part in zip(*self._batch, strict=True)
         )
         values = self.critic[cells]
-        next_values = np.where(terminated, 0.0, self.critic[reached])
-        advantages = advantages_of(rewards, values, next_values, ended, settings.gamma)
+        advantages = self.advantages(rewards, values, self.critic[reached], terminated, ended)
         returns = (advantages + values).ravel()
         weights = ((advantages - advantages.mean()) / (advantages.std() + 1e-8)).ravel()
         cells, moves = cells.ravel(), moves.ravel()
@@ -134,23 +132,46 @@ class PpoLearner(GridLearner):
         """One step up the clipped objective, with the bonus for entropy."""
         settings, rows = self.settings, np.arange(len(cells))
         chances = softmax(self.logits[cells])
-        ratio = chances[rows, moves] / np.maximum(old, 1e-12)
-        if settings.clip > 0:
-            # Outside the clip range the objective is flat where it would gain, so there is no slope.
-            is_flat = ((weights > 0) & (ratio > 1 + settings.clip)) | (
-                (weights < 0) & (ratio < 1 - settings.clip)
-            )
-            weights = np.where(is_flat, 0.0, weights)
         one_hot = np.zeros_like(chances)
         one_hot[rows, moves] = 1.0
-        slope = (weights * ratio)[:, None] * (one_hot - chances)
-        logs = np.log(chances + 1e-12)
-        entropy = -(chances * logs).sum(axis=1, keepdims=True)
-        slope -= settings.entropy * chances * (logs + entropy)
+        pull = self.objective_slope(chances[rows, moves], np.maximum(old, 1e-12), weights)
+        slope = pull[:, None] * (one_hot - chances)
+        slope += settings.entropy * self.entropy_slope(cells)
         totals, counts = np.zeros_like(self.logits), np.zeros(len(self.logits))
         np.add.at(totals, cells, slope)
         np.add.at(counts, cells, 1.0)
         self.logits += settings.alpha * totals / np.maximum(1.0, counts)[:, None]
+
+    def advantages(
+        self,
+        rewards: FloatArray,
+        values: FloatArray,
+        next_values: FloatArray,
+        terminated: BoolArray,
+        ended: BoolArray,
+    ) -> FloatArray:
+        """(steps, worlds): how much better each step went than the critic expected. ``next_values``: of the states reached,
+        also where the episode terminated."""
+        future = np.where(terminated, 0.0, next_values)
+        return advantages_of(rewards, values, future, ended, self.settings.gamma)
+
+    def objective_slope(self, now: FloatArray, then: FloatArray, weights: FloatArray) -> FloatArray:
+        """(steps,): how much the clipped objective of each step grows with the logarithm of its chance. ``now`` and ``then``:
+        the chance of its move; ``weights``: its advantage."""
+        ratio, clip = now / then, self.settings.clip
+        if clip > 0:
+            # Outside the clip range the objective is flat where it would gain, so there is no slope.
+            is_flat = ((weights > 0) & (ratio > 1 + clip)) | ((weights < 0) & (ratio < 1 - clip))
+            weights = np.where(is_flat, 0.0, weights)
+        return weights * ratio
+
+    def entropy_slope(self, cells: IntArray) -> FloatArray:
+        """(steps, moves): how much the entropy in each step's cell grows with each score there."""
+        chances = softmax(self.logits[cells])
+        logs = np.log(chances + 1e-12)
+        entropy = -(chances * logs).sum(axis=1, keepdims=True)
+        slope: FloatArray = -chances * (logs + entropy)
+        return slope
 
     def _show_chances(self) -> None:
         self.values = softmax(self.logits).reshape(self.values.shape)

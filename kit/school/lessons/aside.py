@@ -58,6 +58,21 @@ def editor_arguments(environment: Mapping[str, str], file: Path, line: int) -> l
     return [*words, *([f"+{line}"] if takes_line else []), str(file)]
 
 
+def has_easy_editor(environment: Mapping[str, str]) -> bool:
+    """Whether an editor is named, or one is here that shows its own keys."""
+    return bool(environment.get("VISUAL") or environment.get("EDITOR") or shutil.which(EDITORS[0]))
+
+
+def keys_of_vi(environment: Mapping[str, str], arguments: Sequence[str]) -> str:
+    """Says how to write in vi and how to leave it, where it opens unasked; else empty."""
+    if has_easy_editor(environment) or Path(arguments[0]).name not in EDITORS[1:]:
+        return ""
+    return (
+        f"No editor is named in $EDITOR, and {EDITORS[0]} is not here: {Path(arguments[0]).name} opens. i begins typing, "
+        "Esc ends it; then :wq and Enter save and leave, :q! and Enter leave without saving."
+    )
+
+
 def run_here(
     line: str, arguments: Sequence[str], environment: dict[str, str], folder: Path | None, waits: bool
 ) -> bytes:

@@ -16,7 +16,7 @@ from tempfile import TemporaryFile
 from typing import Any, Final, Self
 
 from kit.host.python_command import python_command
-from kit.results.grading_result import CriterionResult, GradingResult, GradingVerdict
+from kit.results.grading_result import PUBLIC_CASES, CriterionResult, GradingResult, GradingVerdict
 from kit.school.lessons.reading import solutions_folder
 from kit.school.lessons.records import Exercise, Lesson
 from kit.school.lessons.training_curves import TrainingCurves, is_drive_line, read_training_curves
@@ -213,6 +213,7 @@ class ExerciseCheck:
         self._stdout = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
         self._stderr = TemporaryFile()  # noqa: SIM115  # lives as long as the check, and `close` closes it
         self._progress = TemporaryFile()  # noqa: SIM115  # likewise
+        self._public_verdict = ""
         self._curves: TrainingCurves | None = None
         self._curves_end = 0
         """Bytes of the progress that they were read from."""
@@ -266,7 +267,8 @@ class ExerciseCheck:
 
     @property
     def progress(self) -> str:
-        """What the check is doing, in one line: ``episode 2 of 5: office, seed 1``. Empty where nothing was said yet."""
+        """What the check is doing, in one line: ``episode 2 of 5: office, seed 1``; before it, once that is known, what the
+        public cases came to. Empty where nothing was said yet."""
         if self._progress.closed:
             return ""
         end = os.fstat(self._progress.fileno()).st_size
@@ -275,7 +277,11 @@ class ExerciseCheck:
         lines = newest.decode(errors="replace").split("\n")[:-1]
         whole = lines if end <= PROGRESS_BYTES else lines[1:]  # the first one may have lost its beginning
         line = next((each for each in reversed(whole) if not is_drive_line(each)), "")
-        return "".join(filter(str.isprintable, line))
+        self._public_verdict = next(
+            (each for each in reversed(whole) if each.startswith(PUBLIC_CASES)), self._public_verdict
+        )
+        parts = dict.fromkeys(each for each in (self._public_verdict, line) if each)
+        return "".join(filter(str.isprintable, "; ".join(parts)))
 
     @property
     def training_curves(self) -> TrainingCurves | None:

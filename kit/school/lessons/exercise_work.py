@@ -18,6 +18,8 @@ from kit.school.lessons.training_curves import DriveLoop, TestDrive, TrainingCur
 
 RESCAN_S: Final = 1.0
 """Between two looks for files that are new."""
+TO_WRITE: Final = ("TODO", "# write this")
+"""What a starter says of a line that is to be written."""
 MOST_FILES: Final = 200
 """No exercise has more; a folder that was unpacked there by mistake may."""
 
@@ -87,9 +89,9 @@ class ExerciseAttempt:
         return True
 
     def first_todo(self) -> int:
-        """The line of the edited file with the first TODO, as the file is now, counted from 1; 1 where there is none."""
+        """The line of the edited file that is to be written first, as the file is now, counted from 1; 1 where none says so."""
         lines = enumerate(self._read_edited_lines(), 1)
-        return next((number for number, text in lines if "TODO" in text), 1)
+        return next((number for number, text in lines if any(each in text for each in TO_WRITE)), 1)
 
     def _read_edited_lines(self) -> tuple[str, ...]:
         try:
@@ -107,11 +109,23 @@ class ExerciseAttempt:
     @property
     def error_line(self) -> int:
         """The line of the edited file that the last check's first error names; 0 if it names none."""
+        found = self._named_error
+        return 0 if found is None else int(found[1])
+
+    @property
+    def error_text(self) -> str:
+        """What the last check's first error says that names a line of the edited file; empty if none does."""
+        found = self._named_error
+        return "" if found is None else found.string[found.end() :].lstrip(": ,")
+
+    @property
+    def _named_error(self) -> re.Match[str] | None:
         report = self.report
         texts = [] if report is None else [report.problem, *(each.rationale for each in report.lost_criteria)]
         name = re.escape(self.edited_file.name)
-        found = next((match for text in texts if (match := re.search(rf"\b{name}:(\d+)", text))), None)
-        return 0 if found is None else int(found[1])
+        return next(
+            (match for text in texts if (match := re.search(rf"\b{name}:(\d+)(?::\d+)?", text))), None
+        )
 
     @property
     def printed_lines(self) -> list[str]:

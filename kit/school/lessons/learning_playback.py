@@ -14,6 +14,7 @@ from kit.plain_text import counted, wrap
 from kit.render.curve import Axes, Curve, draw_curves, paste_frame, write_text
 from kit.render.encode import AsciiEncoder, Encoder, Frame
 from kit.render.value_grid import ValueGrid, draw_value_grids, value_grids_height, value_grids_width
+from kit.school.lessons.own_learners import make_own_learner
 from kit.school.lessons.records import LearningScene
 
 PACE_EXPONENT: Final = 3.0
@@ -200,6 +201,8 @@ def _described(name: str, learner: GridLearner) -> str:
 
 
 def _new_learners(scene: LearningScene) -> tuple[GridLearner, ...]:
+    if scene.lines is not None:
+        return tuple(make_own_learner(scene.world, each, scene.lines.opened()) for each in scene.learners)
     return tuple(make_grid_learner(scene.world, settings) for settings in scene.learners)
 
 

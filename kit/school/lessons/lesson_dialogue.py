@@ -29,6 +29,7 @@ from kit.school.lessons.lesson_text import (
     status_text,
     verdict_blocks,
 )
+from kit.school.lessons.own_agent import OwnAgentError, OwnAgentFilm, describe_film, make_film
 from kit.school.lessons.reading import TEXT_WIDTH
 from kit.school.lessons.records import (
     CommandKind,
@@ -56,6 +57,14 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, slots=True)
 class Edit:
     """A file to be opened in the student's editor. Comes to a sentence: why no editor opened; empty: one did."""
+
+    file: Path
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class EditHere:
+    """A file to be opened in an editor beside the lesson, where the face has one. Comes to a sentence, as ``Edit``."""
 
     file: Path
     line: int
@@ -98,6 +107,7 @@ class LessonDialogue(Dialogue):
             ProgressError: "This could not be saved: {}",
             ExerciseFilesError: "The exercise files cannot be created: {}",
             DefenceError: "{}",
+            OwnAgentError: "{}",
             WorldError: "{}",
             FileNotFoundError: "{}",
         }
@@ -124,7 +134,11 @@ class LessonDialogue(Dialogue):
         self._allowed_lines: set[str] = set()
         """Commands of somebody else's lesson that the student has seen and let run."""
         self._looks_at = ""
-        """What was just said: ``answer``, ``verdict`` or ``hint``."""
+        """What was just said: ``answer``, ``verdict``, ``hint`` or ``film``."""
+        self._film: OwnAgentFilm | None = None
+        """The film of the student's own agent, in the step that shows it."""
+        self._drive_follows = False
+        """Whether the drive comes once the floor has been learned before one's eyes."""
 
     def begin(self, stage: Stage) -> None:
         """Opens the first step, its scene on this stage."""
@@ -134,6 +148,7 @@ class LessonDialogue(Dialogue):
     def enter(self, step: LessonStep) -> None:
         """Comes to a step."""
         self.step, self.work, self.has_ended, self._problem, self._looks_at = step, None, False, "", ""
+        self._film, self._drive_follows = None, False
         self.is_answer_shown = not self.is_waiting
         if step.exercise is not None:
             try:
@@ -168,7 +183,7 @@ class LessonDialogue(Dialogue):
     @property
     def has_scene(self) -> bool:
         """Whether something moves in this step: its own scene, or the student's run."""
-        return not self.has_ended and (self.step.moves or self.stage.is_recorded)
+        return not self.has_ended and (self.step.moves or self.stage.is_recorded or self._film is not None)
 
     @property
     def begins_still(self) -> bool:
@@ -190,7 +205,10 @@ class LessonDialogue(Dialogue):
     @property
     def is_playing_back(self) -> bool:
         """Whether tables learn or messages move in the picture, or would if they were not held."""
-        return self.step.playback_scene is not None and not self.is_still and not self.has_ended
+        is_learning = self._film is not None and not self.stage.is_recorded
+        return (
+            (self.step.playback_scene is not None or is_learning) and not self.is_still and not self.has_ended
+        )
 
     @property
     def report(self) -> CheckReport | None:
@@ -233,7 +251,7 @@ class LessonDialogue(Dialogue):
                     if isinstance(each, Text) and each.lead and each.lead_tone is Tone.BAD
                 )
                 return next(lost, said[0] if said else None)
-            case "answer":
+            case "answer" | "film":
                 return said[0] if said else None
         return None
 
@@ -302,6 +320,11 @@ class LessonDialogue(Dialogue):
         blocks: list[Block] = []
         if self.chosen is not None and self.is_answer_shown:
             blocks += feedback_blocks(self.step, self.chosen)
+        if self._film is not None:
+            blocks.append(
+                Text(f"{describe_film(self._film)} This shows the drive again, also tomorrow:", Tone.GOOD)
+            )
+            blocks.append(Picture((f"kit replay {shell_path(self._film.file)}",)))
         work, report = self.work, self.report
         if work is not None and report is not None and work.seconds is None:
             if self.stage.is_described and (curves := work.training_curves) is not None:
@@ -396,6 +419,10 @@ class LessonDialogue(Dialogue):
 
     def rested(self) -> bool:
         """The scene has come to its end: what there is to say of a prediction may be said. Returns whether it is now."""
+        if self._film is not None and self._drive_follows:
+            self._drive_follows = False
+            self.stage.play(self._film.recording, self._film.place)
+            return True
         if self.is_answer_shown or self.is_waiting:
             return False
         self._reveal()
@@ -432,11 +459,7 @@ class LessonDialogue(Dialogue):
         if self.step.number < len(self.session.lesson.steps):
             is_open = not self.session.lesson_progress.is_step_completed(self.step)
             self.enter(self.session.find_step(self.step.number + 1))
-            return (
-                Remark("The last exercise is not passed yet; b goes back to it.", Tone.DIM)
-                if is_open
-                else None
-            )
+            return Remark("Not passed yet: b goes back to the exercise.", Tone.DIM) if is_open else None
         self.stage.close()
         self.work, self.has_ended, self._looks_at = None, True, ""
         self._following = self.session.following()
@@ -519,6 +542,21 @@ class LessonDialogue(Dialogue):
 
         return Show(RunCommand(line, folder, command.kind is CommandKind.ALONE), ended)
 
+    def film(self) -> Effect:
+        scene, session = self.step.own_agent, self.session
+        assert scene is not None  # else it is not possible
+
+        def shown(film: OwnAgentFilm) -> Effect:
+            if self.step.own_agent is not scene:  # another step is looked at by now
+                return None
+            self._film, self._drive_follows, self._looks_at = film, True, "film"
+            self.stage.learn(film.scene)
+            return Show(Replay(film.file)) if self.stage.is_described else None
+
+        files = [session.exercise_file(each) for each in session.lesson.exercises if each.name in scene.own]
+        note = "Your lines learn the floor, off screen ..."
+        return Work(note, lambda: make_film(scene, files, session.own_code_level), shown)
+
     def explain_second_terminal(self) -> Effect:
         return Tell(SECOND_TERMINAL, [Marked(second_terminal_here(self.session.workspace))])
 
@@ -542,13 +580,16 @@ class LessonDialogue(Dialogue):
 
     def edit(self) -> Effect:
         work = self._work
+        return Show(Edit(work.edited_file, work.line_to_edit), self._edited)
 
-        def edited(problem: str) -> Effect:
-            if problem:
-                raise Refused(problem)
-            return self.poll()
+    def edit_here(self) -> Effect:
+        work = self._work
+        return Show(EditHere(work.edited_file, work.line_to_edit), self._edited)
 
-        return Show(Edit(work.edited_file, work.line_to_edit), edited)
+    def _edited(self, problem: str) -> Effect:
+        if problem:
+            raise Refused(problem)
+        return self.poll()
 
     def hint(self) -> Effect:
         self._looks_at = "hint"
@@ -626,7 +667,7 @@ class LessonDialogue(Dialogue):
         if self.has_ended:
             return self._following is not None
         if self.is_waiting:
-            return f"Predict first: press 1 to {len(self.step.options)}. A wrong guess costs nothing."
+            return f"Predict first, 1 to {len(self.step.options)}: a wrong guess costs nothing."
         return True
 
     def can_go_back(self) -> bool | str:
@@ -636,7 +677,7 @@ class LessonDialogue(Dialogue):
         if self.has_scene and not self.is_still:
             return True
         if self.is_waiting:
-            return f"Predict first: press 1 to {len(self.step.options)}. A wrong guess costs nothing."
+            return f"Predict first, 1 to {len(self.step.options)}: a wrong guess costs nothing."
         if self.work is None:
             return False
         return (
@@ -700,6 +741,22 @@ class LessonDialogue(Dialogue):
             return False
         return self.session.can_see_solution(self.work.exercise) or "The solution is shown once yours passes."
 
+    def can_film(self) -> bool | str:
+        scene = self.step.own_agent
+        if self.has_ended or scene is None:
+            return False
+        lacking = [
+            str(step.number)
+            for step in self.session.lesson.steps
+            if step.exercise is not None
+            and step.exercise.name in scene.own
+            and not self.session.can_see_solution(step.exercise)
+        ]
+        return (
+            not lacking
+            or f"First pass the exercise of step {' and of step '.join(lacking)}: its lines learn here."
+        )
+
     def can_defend(self) -> bool | str:
         if self.work is None or not self.work.exercise.is_program:
             return False
@@ -715,7 +772,7 @@ class LessonDialogue(Dialogue):
         return "next lesson" if self.has_ended else "next"
 
     def back_word(self) -> str:
-        return "back; each of these ends the check" if self.busy or self._checked_elsewhere() else "back"
+        return "back, which ends the check" if self.busy or self._checked_elsewhere() else "back"
 
     def predict_keys(self) -> str:
         return f"1-{len(self.step.options)}"
@@ -731,6 +788,7 @@ class LessonDialogue(Dialogue):
         ),
         DialogueAction(ACTIONS["check"], check, can_check),
         DialogueAction(ACTIONS["edit_file"], edit, can_edit),
+        DialogueAction(ACTIONS["editor"], edit_here, can_edit, is_for_lines=False, while_busy=True),
         DialogueAction(ACTIONS["hint"], hint, can_hint),
         DialogueAction(ACTIONS["drive"], drive, can_drive),
         DialogueAction(ACTIONS["replay"], replay, can_replay),
@@ -738,6 +796,7 @@ class LessonDialogue(Dialogue):
         DialogueAction(ACTIONS["next"], go_on, can_go_on, word=next_word, while_busy=True),
         DialogueAction(ACTIONS["defend"], defend, can_defend),
         DialogueAction(letter("run_command", "o", "run", "run a command of this step here"), run_command, has_commands),
+        DialogueAction(letter("film", "f", "film", "let your own lines learn the floor, and drive"), film, can_film),
         DialogueAction(ACTIONS["second_terminal"], explain_second_terminal, has_beside),
         DialogueAction(ACTIONS["output"], show_output, can_show_output),
         DialogueAction(

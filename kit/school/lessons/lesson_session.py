@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
+from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
+from kit.host.sandbox.probe import highest_level_up_to
 from kit.results.grading_result import CriterionResult
 from kit.school.game.levels import GameLevel, levels_of_lesson
 from kit.school.lessons import checking
@@ -55,6 +57,12 @@ class LessonSession:
         self.workspace = workspace
         self._lesson_progress = self._read_progress()
         self._reports: dict[str, CheckReport] = {}
+
+    @property
+    def own_code_level(self) -> Level:
+        """The confinement of the student's lines where they are not graded: as in a drive, or as this machine can where
+        somebody else's lesson asks for them. Slow the first time."""
+        return highest_level_up_to(max(Level)) if self.lesson.is_foreign else INTERACTIVE_LEVEL
 
     @property
     def lesson_progress(self) -> LessonProgress:

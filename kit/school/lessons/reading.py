@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import zlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path, PurePosixPath
@@ -18,6 +18,7 @@ from kit.learning.grid.registry import GRID_LEARNERS
 from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.school.lessons.markdown import markdown_to_markup
+from kit.school.lessons.own_learners import OWN_LEARNERS
 from kit.school.lessons.records import (
     CommandKind,
     Exercise,
@@ -289,7 +290,7 @@ def _read_steps(section: Section, folder: Path, *, is_foreign: bool) -> Iterator
             options=tuple(_read_options(each)),
             exercise=_read_exercise(each, folder, seen),
             claims=tuple(_read_claims(each)),
-            learning=_read_learning(each),
+            learning=_read_learning(each, seen),
             graph=_read_graph(each),
         )
         step = _with_numbers(each, step, folder.parent)
@@ -388,7 +389,8 @@ def _read_scene(section: Section, folder: Path) -> LessonScene | None:
     return scene
 
 
-def _read_learning(section: Section) -> LearningScene | None:
+def _read_learning(section: Section, exercises: Collection[str]) -> LearningScene | None:
+    """``exercises``: names of those of the steps before."""
     scene = section.section("learning", None)
     if scene is None:
         return None
@@ -407,7 +409,18 @@ def _read_learning(section: Section) -> LearningScene | None:
         curve_high,
         scene.integer("curve_mean", 1, minimum=1),
         scene.integer("updates", 0, minimum=0, maximum=20_000),
+        scene.texts("own", ()),
     )
+    for name in read.own:
+        if name not in exercises:
+            scene.error(f"no step before this one has the exercise {quoted(name)}", "own")
+    if read.own and (
+        len(read.learners) > 1 or not read.updates or read.learners[0].algorithm not in OWN_LEARNERS
+    ):
+        known = ", ".join(OWN_LEARNERS)
+        scene.error(
+            f"own lines are those of one learner ({known}), and updates says how long it learns", "own"
+        )
     if (read.episodes > 0) == (read.updates > 0):
         scene.error("either episodes or updates says how long the learners learn", "episodes")
     scene.finish()

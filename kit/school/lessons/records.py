@@ -13,6 +13,7 @@ from kit.learning.grid.grid_world import GridWorld
 
 if TYPE_CHECKING:
     from kit.host.sandbox.confinement import Level
+    from kit.school.lessons.own_learners import KeptLines
 
 RECORDING_SUFFIX: Final = ".npz"
 
@@ -78,6 +79,10 @@ class LearningScene:
     """Episodes whose mean is one point of the curve."""
     updates: int = 0
     """Updates of each learner; 0: as many as ``episodes`` need."""
+    own: tuple[str, ...] = ()
+    """The exercises of the lesson whose lines learn, in place of the kit's; see ``own_learners``."""
+    lines: KeptLines | None = None
+    """What those lines answered; None until they have learned."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,7 +207,12 @@ class LessonStep:
     @property
     def playback_scene(self) -> LearningScene | GraphScene | None:
         """What is played without a world, if anything: tables that learn, or nodes that send messages."""
-        return self.learning or self.graph
+        return self.graph if self.own_agent is not None else self.learning or self.graph
+
+    @property
+    def own_agent(self) -> LearningScene | None:
+        """What the student's own lines are to learn in this step, if anything."""
+        return self.learning if self.learning is not None and self.learning.own else None
 
     @property
     def moves(self) -> bool:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     from kit.run.recording import Recording
     from kit.run.scenario import Scenario
-    from kit.school.lessons.records import LessonStep
+    from kit.school.lessons.records import LearningScene, LessonStep
 
 
 class RunStage(Protocol):
@@ -50,6 +50,9 @@ class Stage(RunStage, Protocol):
     def open(self, step: LessonStep, *, still: bool) -> None:
         """Opens the scene of a step, if it has one. ``still``: it stands at its first instant until ``go``."""
 
+    def learn(self, scene: LearningScene) -> None:
+        """Plays tables that learn, in place of the step's scene."""
+
     def hold(self, held: bool) -> None:
         """Has the scene stand still, or go on."""
 
@@ -70,6 +73,8 @@ class NoStage:
     def open(self, step: LessonStep, *, still: bool) -> None: ...
 
     def play(self, recording: Recording, place: Scenario, *, still: bool = False) -> None: ...
+
+    def learn(self, scene: LearningScene) -> None: ...
 
     def go(self) -> None: ...
 

@@ -55,8 +55,13 @@ def progress_bar(progress: LessonProgress, here: LessonStep | None = None) -> st
 
 
 def title(step: LessonStep, caption: Row, width: int) -> Row:
-    """Returns the step's kind and title, and on the right the state of the scene."""
-    return spread(row((f"{_KINDS[step.kind]}: ", "dim"), (step.title, "bold")), caption, width)
+    """Returns the step's kind and title, and on the right the state of the scene, or what is said to the last key. Where not all
+    fit, the kind gives way: the title is whole."""
+    kind = f"{_KINDS[step.kind]}: "
+    said = sum(len(text) for text, _ in caption)
+    if len(kind) + len(step.title) + 1 + said > width:
+        kind = ""
+    return spread(row((kind, "dim"), (step.title, "bold")), caption, width)
 
 
 def checking(seconds: float, progress: str = "") -> Row:

@@ -2,31 +2,37 @@
 
 from __future__ import annotations
 
+import os
 import time
 from asyncio import to_thread
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from textual.app import ComposeResult
+from textual.containers import Container
 
 from kit.dialogue.dialogue import Dialogue
-from kit.document.blocks import Block
+from kit.dialogue.effects import Remark
+from kit.document.blocks import Block, Tone
 from kit.document.layout import Page, place, rows_of
 from kit.document.rows import MARGIN, Row, row, spread, text_width
 from kit.inspection.sockets import sockets_folder
 from kit.run.scenario import find_scenario
-from kit.school.lessons.aside import plain_lines
+from kit.school.lessons.aside import has_easy_editor, plain_lines
 from kit.school.lessons.defence_dialogue import DefenceDialogue
 from kit.school.lessons.exercise_work import ExerciseAttempt
-from kit.school.lessons.lesson_dialogue import Drive, Edit, LessonDialogue, Replay, RunCommand
+from kit.school.lessons.lesson_dialogue import Drive, Edit, EditHere, LessonDialogue, Replay, RunCommand
 from kit.school.lessons.lesson_session import LessonSession
-from kit.school.lessons.records import LessonStep
+from kit.school.lessons.records import LearningScene, LessonStep
 from kit.school.lessons.shell_lines import shell_path
 from kit.school.lessons.training_curves import CURVE_ROWS, ROOMY_CURVE_ROWS
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import base_key, named
+from kit.tui.input.driver import key_driver
 from kit.tui.input.key_parser import KeyRepeated
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows import lesson_rows
+from kit.tui.rows.key_rows import key_row
 from kit.tui.screens.defence import DefenceScreen
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.dialogue import DialogueScreen
@@ -47,12 +53,17 @@ from kit.workspace import Workspace
 if TYPE_CHECKING:
     from kit.run.recording import Recording
     from kit.run.scenario import Scenario
+    from kit.tui.widgets.program_editor import ProgramEditor
 
 ARROWS: Final = ("up", "down", "left", "right")
 HELD: Final = (*ARROWS, "pageup", "pagedown", "space")
 """Keys that do more the longer they are held."""
 MOST_DRAWN: Final = 10
 """Rows of a picture of a check that is shown at once, as many as a step's own has; `w` shows longer ones."""
+EDITING: Final = "-editing"
+"""The screen's class while the editor is beside the task."""
+WIDEST_EDITOR: Final = 100
+"""Columns of the editor, beside the task or below it."""
 BREAKPOINTS = [(0, "-usual"), (130, "-wide")]
 
 
@@ -101,6 +112,11 @@ class ScenePair:
     def play(self, recording: Recording, place: Scenario, *, still: bool = False) -> None:
         self.world.play(recording, place, still=still)
 
+    def learn(self, scene: LearningScene) -> None:
+        self.world.close_session()
+        self._is_played_back = True
+        self.playback.open(scene, still=False)
+
     def go(self) -> None:
         self.scene.go()
 
@@ -126,6 +142,10 @@ class LessonScreen(DialogueScreen, DriveScreen):
     LessonScreen { layout: vertical; }
     LessonScreen #heading, LessonScreen #title, LessonScreen #keys { height: 1; }
     LessonScreen #file, LessonScreen #status { height: auto; }
+    LessonScreen #workplace { height: 1fr; layout: vertical; }
+    LessonScreen ProgramEditor { display: none; width: 1fr; max-width: 100%; height: 1fr; }
+    LessonScreen.-editing ProgramEditor { display: block; }
+    LessonScreen.-editing.-wide #workplace { layout: horizontal; }
     """
     HORIZONTAL_BREAKPOINTS = BREAKPOINTS
 
@@ -138,6 +158,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         self.stage = ScenePair(world, PlaybackSceneView(theme))
         self._page = LessonPage(self.stage.world, self.stage.playback)
         self._strength = 1.0
+        self._editor: ProgramEditor | None = None
         self._passed_work: ExerciseAttempt | None = None
         """What passed last."""
         self._passed_at = 0.0
@@ -148,7 +169,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
         yield TextRows(id="title")
-        yield self._page
+        with Container(id="workplace"):
+            yield self._page
         yield TextRows(id="file")
         yield TextRows(id="status")
         yield TextRows(id="keys")
@@ -175,10 +197,11 @@ class LessonScreen(DialogueScreen, DriveScreen):
         width, dialogue = self.room.width, self.dialogue
         if not self.is_attached:
             return
+        self._show_editor()
         step, work, layout = dialogue.step, dialogue.work, self._layout
         file = (
             lesson_rows.file_rows(shell_path(work.edited_file), work.by_hand, work.has_others, width)
-            if work is not None
+            if work is not None and not self._is_editing  # it names the file itself
             else []
         )
         status = [self._status_row()] if work is not None or dialogue.note is not None else []
@@ -186,7 +209,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         self._rows("status").show_all(status)
         self._rows("heading").show([lesson_rows.heading(dialogue.session.lesson_progress, step, width)])
         self._show_title()
-        self._rows("keys").show([self._keys()])
+        self._show_keys()
         words = self._word_rows()
         # With the empty row before it.
         answer = max((len(self._placed_rows(each)) + 1 for each in dialogue.possible_answers()), default=0)
@@ -212,7 +235,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
             file_line=max(work.error_line, work.changed_line) - 1 if work is not None and has_work else 0,
             log=[row("  ", line) for line in work.printed_lines] if work is not None and has_work else (),
         )
-        self._page.show(content, self.room.height - 3 - len(file) - len(status), layout)
+        room = self.room.height - 3 - len(file) - len(status)
+        self._page.show(content, room - self._editor_rows(room), layout)
 
     def _word_rows(self) -> list[Row]:
         """The words of the step, and below them what is said to what the student did."""
@@ -279,7 +303,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
     @property
     def _width(self) -> int:
         """Width of the words."""
-        return self.room.width if self._layout is PageLayout.STACKED else min(self.room.width, BESIDE)
+        width = self.room.width - self._editor_width
+        return width if self._layout is PageLayout.STACKED else min(width, BESIDE)
 
     @property
     def _playback_rows(self) -> int:
@@ -289,7 +314,9 @@ class LessonScreen(DialogueScreen, DriveScreen):
 
     @property
     def _layout(self) -> PageLayout:
-        if self._playback_rows:  # is low, and as wide as the screen
+        if (
+            self._playback_rows or self._is_editing
+        ):  # it is low and as wide as the screen, or the editor stands there
             return PageLayout.STACKED
         return PageLayout.of(self.room.width, self.room.height, is_wide=self.has_class("-wide"))
 
@@ -330,6 +357,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
         super()._poll()
         if is_checking and not self.dialogue.busy and work is not None and work is self.dialogue.work:
             self._celebrate(work)
+        if self._editor is not None and self._is_editing:
+            self._editor.follow_file()
         if is_read_anew:
             self.show()
 
@@ -349,10 +378,10 @@ class LessonScreen(DialogueScreen, DriveScreen):
     # Keys
 
     def takes_key(self, key: str) -> bool:
-        return not self.is_drive_key(key)
+        return not self._is_writing and not self.is_drive_key(key)
 
     def is_drive_key(self, key: str) -> bool:
-        return self.dialogue.is_driving and base_key(key) in ARROWS
+        return not self._is_writing and self.dialogue.is_driving and base_key(key) in ARROWS
 
     def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         strength = max((push for name, push in state.held.items() if named(name).moves), default=1.0)
@@ -378,7 +407,11 @@ class LessonScreen(DialogueScreen, DriveScreen):
     async def show_request(self, request: object) -> Any:
         match request:
             case Edit(file, line):
-                return edit_aside(self.app, file, line, self.theme.terminal)
+                if has_easy_editor(os.environ):
+                    return edit_aside(self.app, file, line, self.theme.terminal)
+                return self._edit_here(file, line)
+            case EditHere(file, line):
+                return self._edit_here(file, line)
             case RunCommand():
                 return self._run_command(request)
             case Drive():
@@ -386,6 +419,112 @@ class LessonScreen(DialogueScreen, DriveScreen):
             case Replay(file):
                 return await self._replay(file)
         return await super().show_request(request)
+
+    # The editor
+
+    @property
+    def _is_editing(self) -> bool:
+        """Whether the editor is shown."""
+        return self.has_class(EDITING)
+
+    @property
+    def _is_writing(self) -> bool:
+        """Whether keys are letters of the program."""
+        return self._editor is not None and self._editor.area.has_focus
+
+    @property
+    def _editor_width(self) -> int:
+        """Columns of the editor beside the task; 0 where it is below it or not shown."""
+        return min(WIDEST_EDITOR, self.room.width // 2) if self._is_editing and self.has_class("-wide") else 0
+
+    def _editor_rows(self, room: int) -> int:
+        """Rows of the editor below the task, of so many; 0 where it is beside it or not shown."""
+        return room // 2 if self._is_editing and not self.has_class("-wide") else 0
+
+    def _edit_here(self, file: Path, line: int) -> str:
+        """Opens a file in the editor, at a line; says why that is not possible."""
+        from kit.tui.widgets.program_editor import (  # of no use to the first frame
+            ProgramEditor,
+            ProgramFile,
+            ProgramFileError,
+        )
+
+        if self._editor is None or self._editor.program.file != file or not self._is_editing:
+            try:
+                program = ProgramFile(file)
+            except ProgramFileError as error:
+                return str(error)
+            if self._editor is None:
+                self._editor = ProgramEditor(program)
+                self.query_one("#workplace").mount(self._editor)
+            else:
+                self._editor.edit(program)
+        self.add_class(EDITING)
+        self.call_after_refresh(self._write_at, line)
+        return ""
+
+    def _write_at(self, line: int) -> None:
+        if self._editor is not None:
+            self._editor.area.focus()
+            self._editor.go_to_line(line)
+            self.show()
+
+    def _show_editor(self) -> None:
+        """Closes the editor where its file is not the step's, gives it its place, and marks the line that the check names."""
+        work, editor = self.dialogue.work, self._editor
+        if editor is None or not self._is_editing:
+            return
+        if work is None or self.dialogue.has_ended or work.edited_file != editor.program.file:
+            self._close_editor()
+            return
+        height = self.room.height - 3 - 1
+        editor.styles.height = self._editor_rows(height) or "1fr"
+        editor.styles.width = self._editor_width or "1fr"
+        line = 0 if work.seconds is not None else work.error_line
+        editor.show_problem(line or None, work.error_text if line else "")
+
+    def _close_editor(self) -> None:
+        if self._editor is not None and (problem := self._editor.keep_draft()):
+            self.turn.say(Remark(f"What you typed is {problem}", Tone.BAD))
+        self.remove_class(EDITING)
+        self.set_focus(None)
+
+    def action_editor(self) -> None:
+        """Closes the editor, from within it."""
+        self._close_editor()
+        self.show()
+
+    def action_save_program(self) -> None:
+        if self._editor is not None and self._is_editing:
+            self._editor.save()
+
+    def on_program_saved(self) -> None:
+        """Saving checks: the file is looked at as if another editor had saved it."""
+        self._poll()
+
+    def on_editor_left(self) -> None:
+        self.set_focus(None)
+
+    def on_descendant_focus(self) -> None:
+        self._report_releases(False)
+        self._show_keys()
+
+    def on_descendant_blur(self) -> None:
+        self._report_releases(bool(self.theme.terminal.ask_keyboard.value))
+        self._show_keys()
+
+    def _report_releases(self, wanted: bool) -> None:
+        driver = key_driver(self.app)
+        if driver is not None:
+            driver.report_releases(wanted)
+
+    def _show_keys(self) -> None:
+        keys = key_row(("^S", "save and check"), ("Esc", "task"), ("^Z", "undo"), ("^E", "close"))
+        self._rows("keys").show([keys if self._is_writing else self._keys()])
+
+    def on_unmount(self) -> None:
+        if self._editor is not None:
+            self._editor.keep_draft()
 
     def _run_command(self, request: RunCommand) -> str | None:
         self._hold_scene(True)

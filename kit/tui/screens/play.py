@@ -12,7 +12,7 @@ from textual import work
 from textual.binding import BindingType
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
-from kit.dialogue.actions import VIEW_IDS, ScreenAction, ScreenActions
+from kit.dialogue.actions import VIEW_IDS, ScreenActions
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import named
 from kit.tui.input.driver import key_driver
@@ -52,12 +52,6 @@ class PlayScreen(WatchScreen):
         (
             "editor", "save_program", "step", "trainings", "agent_view", "laser_map", "share", "hand_over",
             "drive_mode", "node_keys", "zoom", *VIEW_IDS,
-        ),
-        own=(
-            ScreenAction("editor", "Ctrl-E", "editor", "open or close the program's editor",
-                   (("ctrl+e", "editor"),), "^E"),
-            ScreenAction("save_program", "Ctrl-S", "save", "save the program; the robot uses it at once",
-                   (("ctrl+s", "save_program"),), "^S"),
         ),
         drives=True,
     )  # fmt: skip

@@ -18,6 +18,8 @@ from textual.widget import Widget
 
 from kit.controllers import find_controller
 from kit.document.rows import Row, row
+from kit.render.encode import AsciiEncoder
+from kit.render.roles import Role
 from kit.render.scene import Scene as Picture
 from kit.run.lockstep import Observer
 from kit.run.view import View
@@ -29,6 +31,7 @@ from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import ErrorEvent, WorldView
 
 if TYPE_CHECKING:
+    from kit.render.camera import Camera
     from kit.run.recording import Recording
     from kit.run.runner import Runner
     from kit.run.scenario import Scenario
@@ -39,6 +42,11 @@ if TYPE_CHECKING:
 
 
 TELEOP: Final = "teleop"
+ASCII_WALL: Final = AsciiEncoder.shapes[Role.WALL]
+MOST_WALL: Final = 0.6
+"""The share of a picture in ASCII that may be wall: beyond it no passage is seen any more."""
+READABLE_ROW: Final = 0.25
+"""Height of a row in which passages of half a metre are seen [m]."""
 UNSEEN_FACTOR: Final = 10.0
 """Simulated seconds a second of a scene of which the beginning and the end alone are shown."""
 
@@ -62,6 +70,9 @@ class LessonSceneView(WorldView):
         """Whether any view of this scene was drawn."""
         self._picture: Picture | None = None
         self._announced = self._opening = False
+        self._decided_for: object = None
+        self._decided_size = (0, 0)
+        """The walls and the size for which it was decided whether all of the world is shown."""
         self._recording: tuple[Recording, Scenario] | None = None
         """What is played again, where the scene is a recorded run."""
         self._host = SessionHost(
@@ -203,6 +214,21 @@ class LessonSceneView(WorldView):
         """The newest view, as soon as the link has room."""
         if self.view is not None:
             self.offer(self._newest)
+
+    def _current_camera(self, scene: Picture, columns: int, rows: int) -> Camera:
+        """All of the world; where that is little but wall, a part that is large enough for its passages, with the robot."""
+        if self.encoder.across * self.encoder.down > 1:
+            return super()._current_camera(scene, columns, rows)
+        if self._decided_for is scene.walls and self._decided_size == (columns, rows):
+            return super()._current_camera(scene, columns, rows)
+        self._decided_for, self._decided_size = scene.walls, (columns, rows)
+        self.fit_again()
+        self._camera = camera = super()._current_camera(scene, columns, rows)
+        drawn = "".join(each.strip() for each in self._painter.paint(scene, camera).rows())
+        if drawn and drawn.count(ASCII_WALL) > MOST_WALL * len(drawn):
+            self.follow_at(READABLE_ROW / camera.aspect)
+            camera = super()._current_camera(scene, columns, rows)
+        return camera
 
     def on_unmount(self) -> None:
         self._host.close()

@@ -1,8 +1,9 @@
-"""An editor for a program, beside the robot that it drives: Python in colours, saved on Ctrl-S, errors at their line."""
+"""An editor for a program or a file of answers, beside what it is for: in colours, saved on Ctrl-S, errors at their line."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import stat
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import MappingProxyType
@@ -10,9 +11,11 @@ from typing import ClassVar, Final
 
 from pygments.token import Token  # type: ignore[import-untyped]  # no stubs; only its names are used
 from rich.style import Style
+from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
+from textual.content import Span
 from textual.highlight import HighlightTheme, TokenType, highlight
 from textual.message import Message
 from textual.timer import Timer
@@ -30,6 +33,10 @@ DRAFT_SUFFIX: Final = ".unsaved"
 """Ending of the file beside the program that keeps what was typed and not saved when the screen was left."""
 MAX_BYTES: Final = 1_000_000
 """A file larger than this is no program that anybody types."""
+MOST_COLOURED: Final = 20_000
+"""Characters of a text that is shown in colours: a longer one is read anew at each key, which would be felt."""
+LANGUAGES: Final[Mapping[str, str]] = MappingProxyType({".py": "python", ".yaml": "yaml", ".yml": "yaml"})
+"""The language of a file by its ending, as pygments calls it; others are shown without colours."""
 
 
 DRAFT_INTERVAL_S: Final = 1.0
@@ -73,6 +80,12 @@ class ProgramFile:
     def save(self, text: str) -> None:
         """Writes the file at once or not at all. Raises ProgramFileError."""
         try:
+            if self.file.exists() and not self.file.stat().st_mode & (
+                stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
+            ):
+                raise ProgramFileError(
+                    f"{self.file.name} is read-only: `chmod u+w {self.file.name}` lets you save it."
+                )
             write_atomically(self.file, text.encode())
         except OSError as error:
             raise ProgramFileError(f"{self.file} could not be saved: {error.strerror}.") from error
@@ -153,7 +166,7 @@ SYNTAX_STYLES: Final[Mapping[str, Style]] = MappingProxyType(
 """In the names of the 16 colours, which a theme replaces by its own as it does in all texts."""
 
 
-class PythonStyleNames(HighlightTheme):
+class TokenStyleNames(HighlightTheme):
     """Names of ``SYNTAX_STYLES`` by kind of token."""
 
     STYLES: dict[TokenType, str] = {  # noqa: RUF012 - as Textual declares it
@@ -167,6 +180,7 @@ class PythonStyleNames(HighlightTheme):
         Token.Name.Class: "definition",
         Token.Name.Decorator: "decorator",
         Token.Name.Builtin: "constant",
+        Token.Name.Tag: "definition",
     }
 
 
@@ -174,17 +188,37 @@ class ProgramSaved(Message):
     """The program has been saved."""
 
 
-class PythonTextArea(KitTextArea):
-    """A text area with Python in colours. They come from pygments, which Textual brings along, so that nothing needs
+class PasteRefused(Message):
+    """What was pasted is more than a program may be."""
+
+
+class ProgramTextArea(KitTextArea):
+    """A text area with Python or YAML in colours. They come from pygments, which Textual brings along, so that nothing needs
     to be compiled; Textual's own way is the parser tree-sitter."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+e", "screen.editor", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("ctrl+e", "screen.editor", show=False),
+        Binding("ctrl+s", "screen.save_program", show=False),
+    ]
 
     def __init__(self) -> None:
         self._failed_line: int | None = None
+        self._coloured_as: str | None = None
         super().__init__(
             tab_behavior="indent", show_line_numbers=True, soft_wrap=False, syntax_styles=SYNTAX_STYLES
         )
+
+    def show_text(self, text: str, language: str | None) -> None:
+        """Shows another text. ``language``: the one in which its words are coloured, as pygments calls it; None: none."""
+        self._coloured_as, self._failed_line = language, None
+        self.load_text(text)
+
+    async def _on_paste(self, event: events.Paste) -> None:
+        """Refuses what is too much; what is not, Textual has the text area take afterwards."""
+        if len(self.text) + len(event.text) > MAX_BYTES:
+            event.prevent_default()
+            event.stop()
+            self.post_message(PasteRefused())
 
     def mark_line(self, number: int | None) -> None:
         """Marks a line, from 1, as the one that is wrong; None: none is."""
@@ -192,6 +226,12 @@ class PythonTextArea(KitTextArea):
             self._failed_line = number
             self._build_highlight_map()
             self.refresh()
+            if (
+                number is not None
+                and self.is_mounted
+                and not 0 <= number - 1 - self.scroll_offset.y < self.size.height
+            ):
+                self.scroll_to(y=max(0, number - 1 - self.size.height // 2), animate=False)
 
     def _build_highlight_map(self) -> None:
         """Called by Textual after each change of the text: columns of a line, in bytes, and the name of their style."""
@@ -203,9 +243,7 @@ class PythonTextArea(KitTextArea):
             offset += len(line) + 1
         text = "\n".join(lines)
         number = 0
-        for first, last, style in highlight(
-            text, language="python", theme=PythonStyleNames, tab_size=0
-        ).spans:
+        for first, last, style in self._spans(text):
             if style not in SYNTAX_STYLES:
                 continue
             while number + 1 < len(starts) and starts[number + 1] <= first:
@@ -219,6 +257,11 @@ class PythonTextArea(KitTextArea):
             row_number = self._failed_line - 1
             indent = len(lines[row_number]) - len(lines[row_number].lstrip())
             self._highlight(row_number, indent, len(lines[row_number]), ERROR)
+
+    def _spans(self, text: str) -> Sequence[Span]:
+        if self._coloured_as is None or len(text) > MOST_COLOURED:
+            return ()
+        return highlight(text, language=self._coloured_as, theme=TokenStyleNames, tab_size=0).spans
 
     def _highlight(self, number: int, first: int, last: int, style: str) -> None:
         line = self.document.lines[number]
@@ -241,7 +284,7 @@ class ProgramEditor(Vertical):
         self._program = program
         self._notice: Row = ()
         self._may_overwrite = False
-        self.area = PythonTextArea()
+        self.area = ProgramTextArea()
         self._draft_timer: Timer | None = None
 
     @property
@@ -266,11 +309,11 @@ class ProgramEditor(Vertical):
         if program is not self._program:
             self.keep_draft()
         self._program, self._may_overwrite = program, False
-        self.area.load_text(program.text if program.draft is None else program.draft)
+        text = program.text if program.draft is None else program.draft
+        self.area.show_text(text, LANGUAGES.get(program.file.suffix))
         self._notice = (
             () if program.draft is None else row(("as you left it, not saved: ^S saves it", "warn"))
         )
-        self.area.mark_line(None)
         self._show()
 
     def keep_draft(self) -> str:
@@ -314,12 +357,30 @@ class ProgramEditor(Vertical):
     def show_failure(self, failure: Failure | None) -> None:
         """Marks the line where the program has failed, and says why below."""
         is_here = failure is not None and failure.file == self._program.file.name
-        self.area.mark_line(failure.line if is_here and failure is not None and self.is_saved else None)
-        if failure is not None:
-            place = f"line {failure.line}: " if is_here and failure.line else ""
-            self._show(row((f"{place}{failure.message}".partition("\n")[0], "bad")))
-        else:
-            self._show()
+        self.show_problem(
+            failure.line if is_here and failure is not None else None,
+            "" if failure is None else failure.message,
+        )
+
+    def show_problem(self, line: int | None, message: str) -> None:
+        """Marks a line, from 1, as the one that is wrong, and says what is. An empty message: nothing is."""
+        self.area.mark_line(line if self.is_saved else None)
+        place = f"line {line}: " if line else ""
+        self._show(row((f"{place}{message}".partition("\n")[0], "bad")) if message else ())
+
+    def go_to_line(self, number: int) -> None:
+        """Puts the cursor at a line, from 1, and brings it into sight."""
+        self.area.move_cursor((min(number, len(self.area.document.lines)) - 1, 0))
+        self.area.scroll_cursor_visible(center=True, animate=False)
+
+    def say(self, text: str) -> None:
+        """Says something below the text, until something else is to be said."""
+        self._notice = row((text, "dim"))
+        self._show()
+
+    def on_paste_refused(self) -> None:
+        self._notice = row((f"not pasted: a program has at most {MAX_BYTES // 1_000_000} MB", "bad"))
+        self._show()
 
     def on_text_area_changed(self, event: TextArea.Changed) -> None:
         if not self.is_saved and not self._may_overwrite and self._program.draft is None:

@@ -6,7 +6,7 @@ import math
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from statistics import median
 from typing import TYPE_CHECKING, Final
@@ -267,8 +267,18 @@ class WorldView(FrameView):
 
     def fit(self) -> None:
         """Shows all there is, and stops following."""
-        self._free, self._followed, self._fitted = False, None, None
+        self.fit_again()
         self._redraw()
+
+    def fit_again(self) -> None:
+        """Has the next scene be fitted, whatever is shown now; draws nothing."""
+        self._free, self._followed, self._fitted = False, None, None
+
+    def follow_at(self, cell_width: float) -> None:
+        """Has the next scene be shown with the first robot in it, a character being so wide [m]; draws nothing."""
+        if self._camera is not None:
+            self._camera = replace(self._camera, cell_width=cell_width)
+        self._free, self._followed = True, 0
 
     def zoom(self, steps: int) -> None:
         """Nearer, or farther if negative: about the middle, or about the robot that is followed."""

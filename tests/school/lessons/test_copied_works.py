@@ -1,8 +1,12 @@
-"""What can be copied from a lesson's own pages and hints is no solution: a reward or a task made of it earns at most half."""
+"""What can be copied from the lessons' own pages and hints is no solution: a program, a reward or a task that is made of it
+earns at most half."""
 
 from __future__ import annotations
 
+import ast
+import re
 import shutil
+import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -21,7 +25,8 @@ from kit.school.lessons.records import Exercise, Lesson
 from tests.kit_content import kit_lesson
 
 MOST = 0.5
-KINDS = ("reward", "task")
+PROGRAMS = ("controller", "environment", "function", "launch")
+KINDS = ("reward", "task", *PROGRAMS)
 EXERCISES = [
     pytest.param(lesson, exercise, id=f"{name}-{exercise.name}", marks=[pytest.mark.long])
     for name in lesson_names()
@@ -29,20 +34,70 @@ EXERCISES = [
     for exercise in lesson.exercises
     if read_assignment(exercise.folder).kind in KINDS
 ]
+LESSONS = [kit_lesson(name) for name in lesson_names()]
+TO_WRITE = re.compile(r"^( *).*(?:# write this|TODO).*$", re.MULTILINE)
 PARAMETERS = "reached, collided, distance, previous_distance"
 
 
 def printed(lesson: Lesson, exercise: Exercise) -> Iterator[str]:
     """The blocks of code of the lesson's texts, and what stands alone in a hint."""
-    for step in lesson.steps:
-        yield from ("\n".join(block.lines) for block in parse_markup(step.text) if block.kind == "code")
+    yield from code_of(lesson)
     for criterion in read_assignment(exercise.folder).criteria:
         yield from criterion.hints
 
 
+def code_of(lesson: Lesson) -> Iterator[str]:
+    """The blocks of code on the pages of a lesson."""
+    for step in lesson.steps:
+        yield from ("\n".join(block.lines) for block in parse_markup(step.text) if block.kind == "code")
+
+
+def printed_anywhere(lesson: Lesson, exercise: Exercise) -> list[str]:
+    """What is printed for an exercise, and the blocks of code of all other lessons; each text once."""
+    others = (text for each in LESSONS if each is not lesson for text in code_of(each))
+    return list(dict.fromkeys([*printed(lesson, exercise), *others]))
+
+
+def copied_programs(lesson: Lesson, starter: str) -> Iterator[str]:
+    """The starter with each block of Python of its lesson: in place of what is to be written, what it works out returned, or
+    added at the end; and with all functions and classes that any lesson prints."""
+    blocks = [(each, tree) for text in code_of(lesson) if (tree := parsed(each := textwrap.dedent(text)))]
+    for block, tree in blocks:
+        yield f"{starter}\n\n{block}\n"
+        if TO_WRITE.search(starter):
+            yield in_place_of_marks(starter, block)
+            last = tree.body[-1]
+            if isinstance(last, (ast.Assign, ast.Expr)):
+                returned = f"return {ast.unparse(last.value)}"
+                yield in_place_of_marks(starter, returned)
+    definitions = [
+        block
+        for each in LESSONS
+        for text in code_of(each)
+        if (tree := parsed(block := textwrap.dedent(text)))
+        and all(isinstance(part, (ast.ClassDef, ast.FunctionDef)) for part in tree.body)
+    ]
+    yield "\n\n".join([starter, *definitions])
+
+
+def in_place_of_marks(starter: str, block: str) -> str:
+    """The starter with a block in place of each line that says that it is to be written."""
+    return TO_WRITE.sub(lambda found: textwrap.indent(block, found[1]), starter)
+
+
+def parsed(text: str) -> ast.Module | None:
+    """The block as Python; None where it is none, or states nothing, as a command of one word."""
+    try:
+        tree = ast.parse(text)
+    except SyntaxError:
+        return None
+    is_word = all(isinstance(each, ast.Expr) and isinstance(each.value, ast.Name) for each in tree.body)
+    return None if is_word else tree
+
+
 def copied_rewards(lesson: Lesson, exercise: Exercise) -> Iterator[str]:
     """Each expression that is printed, as a reward."""
-    for text in printed(lesson, exercise):
+    for text in printed_anywhere(lesson, exercise):
         first = text.splitlines()[0].strip().split("  ")[0]
         if "reached" in first or "distance" in first:
             source = f"def reward({PARAMETERS}):\n    return {first}\n"
@@ -56,7 +111,7 @@ def copied_rewards(lesson: Lesson, exercise: Exercise) -> Iterator[str]:
 def copied_tasks(lesson: Lesson, exercise: Exercise, starter: dict[str, Any]) -> Iterator[str]:
     """The starter, with the rewards that are printed, and with every part that is."""
     parts: dict[str, list[Any]] = {}
-    for text in printed(lesson, exercise):
+    for text in printed_anywhere(lesson, exercise):
         for candidate in (text, f"reward: {{terms: {{{text}}}}}"):
             try:
                 found = yaml.safe_load(candidate)
@@ -84,12 +139,15 @@ def copies(lesson: Lesson, exercise: Exercise, folder: Path) -> Iterator[Path]:
     suffix = Path(exercise.file).suffix
     single = exercise.folder / f"{STARTER}{suffix}"
     starter = (single if single.is_file() else file).read_text()
-    texts = (
-        copied_rewards(lesson, exercise)
-        if suffix == ".py"
-        else copied_tasks(lesson, exercise, yaml.safe_load(starter))
-    )
-    for text in texts:
+    kind = read_assignment(exercise.folder).kind
+    texts: Iterator[str]
+    if kind in PROGRAMS:
+        texts = copied_programs(lesson, starter)
+    elif kind == "reward":
+        texts = copied_rewards(lesson, exercise)
+    else:
+        texts = copied_tasks(lesson, exercise, yaml.safe_load(starter))
+    for text in dict.fromkeys(texts):
         file.write_text(text)
         yield folder if whole.is_dir() else file
 
@@ -109,5 +167,7 @@ def test_something_is_copied() -> None:
     """Else the test above would try nothing."""
     rewards = kit_lesson("11-rewards")
     assert len(list(copied_rewards(rewards, rewards.exercises[0]))) >= 2
+    nodes = kit_lesson("02-nodes-and-topics")
+    assert len(list(copied_programs(nodes, "def main():\n    pass  # TODO\n"))) >= 5
     tasks = kit_lesson("24-train-your-own")
     assert len(list(copied_tasks(tasks, tasks.exercises[0], {}))) >= 2

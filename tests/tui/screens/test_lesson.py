@@ -9,11 +9,12 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
+from textual import events
 from textual.pilot import Pilot
 from textual.screen import Screen
 
 from kit.run.view import View
-from kit.school.lessons import checking
+from kit.school.lessons import aside, checking
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.reading import read_lesson
 from kit.school.progress import EventKind, ProgressJournal
@@ -21,9 +22,11 @@ from kit.tui.rows import lesson_rows
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_page import LessonSceneView
+from kit.tui.widgets.program_editor import MAX_BYTES, MOST_COLOURED, ProgramEditor
 from kit.workspace import Workspace, open_workspace
+from tests.kit_content import kit_lesson
 from tests.tui.lesson_folder import write_lessons, write_solutions
-from tests.tui.lesson_stage import Scene, rows, seen, stage, text
+from tests.tui.lesson_stage import Scene, rows, seen, stage, text, until
 from tests.tui.tape import painted
 
 COLOUR, CORNER = 4, 5
@@ -522,3 +525,144 @@ def test_passed_moves_once_unless_motion_is_reduced(
     stage(student.screen, scene, environ={"KIT_REDUCE_MOTION": "1"} if is_still else {})
     assert bool(told) is not is_still
     assert told == sorted(told), "it moved more than once"
+
+
+# The kit's own editor
+
+
+def editor_of(pilot: Pilot[None]) -> ProgramEditor:
+    return pilot.app.screen.query_one(ProgramEditor)
+
+
+async def opened_editor(pilot: Pilot[None], key: str = "ctrl+e") -> ProgramEditor:
+    """Opens the editor of the exercise and waits until one writes in it."""
+    await seen(pilot, "Save the file")
+    await pilot.press(key)
+    await seen(pilot, "^S save and check")
+    return editor_of(pilot)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("size", [(80, 24), (160, 50)])
+def test_who_writes_in_the_editor_sees_task_and_verdict(student: Student, size: tuple[int, int]) -> None:
+    student.goes_to(COLOUR)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        before = (await opened_editor(pilot)).area.text
+        assert "Write the colour into" in text(pilot)
+        await pilot.press("end", "space", *"red")
+        assert "not saved" in text(pilot)
+        assert f"step {COLOUR} of 5" in rows(pilot)[0], "letters are the program's, not keys of the lesson"
+        await pilot.press("ctrl+s")
+        await seen(pilot, "That one means stop.")
+        assert student.file.read_text() == before.replace("\n", " red\n", 1)
+        await pilot.press("ctrl+z", "ctrl+z")
+        assert "not saved" in text(pilot)
+        await pilot.press("ctrl+e")
+        await seen(pilot, "^E editor")
+        await pilot.press("ctrl+e")
+        await seen(pilot, "as you left it, not saved")
+
+    stage(student.screen, scene, size=size)
+
+
+@pytest.mark.long
+def test_the_line_of_an_error_is_marked_and_brought_into_sight(student: Student) -> None:
+    student.goes_to(CORNER)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        editor = await opened_editor(pilot)
+        editor.area.load_text("\n" * 60 + "go = (\n" + "\n" * 30)
+        await pilot.press("ctrl+s")
+        await seen(pilot, "line 61: SyntaxError")
+        assert editor.area._failed_line == 61
+        await seen(pilot, "go = (")
+
+    stage(student.screen, scene)
+
+
+@pytest.mark.long
+def test_the_editor_follows_the_file_and_overwrites_nothing_unasked(student: Student) -> None:
+    student.goes_to(COLOUR)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        editor = await opened_editor(pilot)
+        student.file.write_text("colour: blue\n")
+        await seen(pilot, "read again: it was saved elsewhere")
+        assert editor.area.text == "colour: blue\n"
+        await pilot.press("end", "x")
+        student.file.write_text("colour: green\n")
+        await pilot.press("ctrl+s")
+        await seen(pilot, "changed elsewhere meanwhile")
+        assert student.file.read_text() == "colour: green\n"
+        await pilot.press("ctrl+s")
+        await seen(pilot, "saved")
+        assert student.file.read_text() == "colour: bluex\n"
+        student.file.chmod(0o444)
+        await pilot.press("y", "ctrl+s")
+        await seen(pilot, "is read-only")
+        assert student.file.read_text() == "colour: bluex\n"
+
+    stage(student.screen, scene)
+
+
+@pytest.mark.long
+def test_a_huge_paste_is_refused_and_a_large_one_is_not_coloured(student: Student) -> None:
+    student.goes_to(CORNER)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        editor = await opened_editor(pilot)
+        before = editor.area.text
+        editor.area.post_message(events.Paste("x" * (MAX_BYTES + 1)))
+        await seen(pilot, "not pasted")
+        assert editor.area.text == before
+        editor.area.post_message(events.Paste("def go(): pass\n" * (MOST_COLOURED // 10)))
+        await until(pilot, lambda: len(editor.area.text) > MOST_COLOURED, "what was pasted")
+        assert not any(editor.area._highlights.values())
+        await pilot.press("ctrl+z")
+        await until(pilot, lambda: editor.area.text == before, "the text before")
+
+    stage(student.screen, scene)
+
+
+@pytest.mark.long
+def test_without_an_easy_editor_e_opens_the_kits_own(
+    student: Student, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("VISUAL", "EDITOR"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(aside.shutil, "which", lambda name: None if name == "nano" else f"/usr/bin/{name}")
+    student.goes_to(COLOUR)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await opened_editor(pilot, "e")
+        await pilot.press("escape")
+        await seen(pilot, "^E editor")
+        await pilot.press("n")
+        assert f"step {CORNER} of 5" in rows(pilot)[0]
+        assert not editor_of(pilot).display, "it was another exercise's file"
+
+    stage(student.screen, scene)
+
+
+@pytest.mark.long
+def test_a_maze_in_ascii_is_seen_from_so_near_that_its_passages_are_open(student: Student) -> None:
+    """All of it on nine rows would be a block of wall."""
+
+    def screen(theme: Theme) -> Screen[None]:
+        session = LessonSession(kit_lesson("01-drive"), student.progress, student.workspace)
+        return LessonScreen(theme, session, student.workspace)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "waiting for your prediction")
+        view = pilot.app.screen.query_one(LessonSceneView)
+
+        def picture() -> list[str]:
+            return [each.strip() for each in rows(pilot)[view.region.y : view.region.bottom]]
+
+        await until(pilot, lambda: any("#" in each for each in picture()), "the maze")
+        drawn = "".join(picture())
+        assert drawn.count("#") < 0.6 * len(drawn)
+        assert any(robot in drawn for robot in "v<>^")
+
+    stage(screen, scene, ascii_only=True)

@@ -21,7 +21,7 @@ from kit.tui.widgets.program_editor import (
     ProgramEditor,
     ProgramFile,
     ProgramFileError,
-    PythonTextArea,
+    ProgramTextArea,
     editable_controller,
 )
 from tests.cases import every_case
@@ -52,13 +52,13 @@ def main():
 
 
 def test_the_private_names_of_the_text_area_are_there() -> None:
-    area = PythonTextArea()
+    area = ProgramTextArea()
     assert hasattr(TextArea, "_build_highlight_map")
     assert isinstance(area._highlights, dict)
     assert _text_area_theme.TextAreaTheme("x", syntax_styles={"a": SYNTAX_STYLES["keyword"]}).syntax_styles
 
 
-def styles_in(area: PythonTextArea) -> dict[str, set[str]]:
+def styles_in(area: ProgramTextArea) -> dict[str, set[str]]:
     """The texts that are in each style, each as long as the style goes on."""
     found: dict[str, set[str]] = {}
     for number, marks in area._highlights.items():
@@ -88,15 +88,15 @@ def styles_in(area: PythonTextArea) -> dict[str, set[str]]:
     ],
 )
 def test_python_is_in_colours_line_by_line(code: str, style: str, expected: set[str]) -> None:
-    area = PythonTextArea()
-    area.load_text(code)
+    area = ProgramTextArea()
+    area.show_text(code, "python")
     area._build_highlight_map()
     assert styles_in(area)[style] == expected
 
 
 def test_the_line_of_an_error_is_marked_without_its_indent() -> None:
-    area = PythonTextArea()
-    area.load_text("def go():\n    retrun\n")
+    area = ProgramTextArea()
+    area.show_text("def go():\n    retrun\n", "python")
     area.mark_line(2)
     assert styles_in(area)[ERROR] == {"retrun"}
     area.mark_line(None)
@@ -177,7 +177,7 @@ def test_what_is_saved_drives_at_once_and_an_error_is_shown_at_its_line(
         assert isinstance(screen, PlayScreen)
         await until(pilot, lambda: screen.view is not None and screen.view.speed[0] > 0.05, "it drives")
         await pilot.press("ctrl+e")
-        await until(pilot, lambda: isinstance(screen.focused, PythonTextArea), "the editor")
+        await until(pilot, lambda: isinstance(screen.focused, ProgramTextArea), "the editor")
         await seen(pilot, "Drives ahead")
         editor = screen.query_one(ProgramEditor)
         editor.area.load_text(PROGRAM.replace("= 0.1", "= -0.2"))
@@ -216,7 +216,7 @@ def test_letters_are_typed_in_the_editor_and_drive_beside_it(tmp_path: Path) -> 
         assert isinstance(screen, PlayScreen)
         await until(pilot, lambda: screen.view is not None, "the world")
         await pilot.press("ctrl+e")
-        await until(pilot, lambda: isinstance(screen.focused, PythonTextArea), "the editor")
+        await until(pilot, lambda: isinstance(screen.focused, ProgramTextArea), "the editor")
         editor = screen.query_one(ProgramEditor)
         assert editor.program.file == folder / "my_circle.py"  # the kit's own stays as it is
         await until(
