@@ -32,6 +32,10 @@ class Scenario:
     targets: tuple[tuple[float, float], ...] = ()
     """Where there are several targets: all of them in their order [m, m], the case's first; one that is to be reached
     several times is there as often."""
+    target_heading: float | None = None
+    """The heading asked for at the target [rad]; None: any will do."""
+    leader: str | None = None
+    """The model that is the target, where that moves."""
     level: str | None = None
     """The level of the game under whose conditions this is; None: the map as it is."""
 
@@ -53,6 +57,15 @@ class Scenario:
         """The partners' poses at the start."""
         poses = {model.name: model.pose for model in self.world.models}
         return tuple(poses[name] for name in self.partners)
+
+    @property
+    def leader_frame(self) -> str:
+        """The frame on /tf of the target that moves; empty where nothing publishes it, and where no target moves."""
+        from kit.sim.plugins.model_tf_publisher import (
+            frame_in_world,
+        )  # only where a target moves: it brings the simulator
+
+        return next((frame_in_world(each) for each in self.world.models if each.name == self.leader), "")
 
     @property
     def driven(self) -> Model | None:

@@ -17,9 +17,9 @@ import numpy as np
 from kit.arrays import Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
 from kit.learning.environment.case_arrays import CaseArrays
-from kit.learning.maps.ray_directions import RAY_COUNT, ray_direction
+from kit.learning.maps.ray_directions import ranges_in_directions, ray_direction
 from kit.learning.policies.policy import Policy, PolicyError, PolicyPlayer
-from kit.learning.policies.policy_node import NODE_PARTS, ray_angles
+from kit.learning.policies.policy_node import ray_angles
 from kit.learning.tasks.actions import ContinuousActions, DiscreteActions
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE, ObservationSpec
@@ -29,6 +29,9 @@ from kit.render.scene import ScenePath
 from kit.run.lockstep import Observer
 from kit.sim.simulation import Simulation
 from kit.sim.state import LatestScan
+
+SHOWN_PARTS = ("speeds", "last_action", "own_pose", "target")
+"""Parts of the observation that ``AgentObserver`` can follow in a world."""
 
 ARC_STEP = math.radians(4.0)
 """Between two points of a drawn arc [rad]."""
@@ -221,7 +224,7 @@ class AgentObserver(Observer):
         """
         task = policy.trained_on.resolve()
         policy.check_fits(task)
-        unknown = [part.name for part in task.observation.parts if part.name not in NODE_PARTS]
+        unknown = [part.name for part in task.observation.parts if part.name not in SHOWN_PARTS]
         unknown += ["target"] * (task.observation.target and target is None)
         if unknown or task.robots != len(models):
             raise PolicyError(
@@ -300,7 +303,4 @@ class AgentObserver(Observer):
         """(91,) [m] in the directions that the policy knows; as far as it sees where the lidar does not look."""
         clip = self._task.observation.clip
         angles = np.arctan2(scan.beams.sin, scan.beams.cos)
-        apart = np.abs(np.angle(np.exp(1j * (angles[None, :] - self._angles[:, None]))))
-        nearest = apart.argmin(axis=1)
-        ranges = np.nan_to_num(scan.ranges.astype(np.float64), nan=clip, posinf=clip).clip(0.0, clip)[nearest]
-        return np.where(apart.min(axis=1) <= math.tau / (RAY_COUNT - 1), ranges, clip)
+        return ranges_in_directions(self._angles, scan.ranges, angles, clip).clip(0.0, clip)

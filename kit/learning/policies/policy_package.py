@@ -9,7 +9,7 @@ from typing import Final
 
 from kit.launch.package_creation import PackageFrame, copy_world, new_package_folder, write_package_frame
 from kit.learning.policies.policy import Policy
-from kit.learning.policies.policy_node import TOPIC_PREFIXES, format_policy_node
+from kit.learning.policies.policy_node import RobotTopics, format_policy_node, robot_topics
 
 PROGRAM: Final = "policy"
 
@@ -19,6 +19,7 @@ DEPENDENCIES: Final = (
     "geometry_msgs",
     "nav_msgs",
     "sensor_msgs",
+    "tf2_msgs",
     "python3-numpy",
     "launch_ros",
 )
@@ -27,8 +28,8 @@ DEPENDENCIES: Final = (
 TEMPLATES: Final = "policy_package_files"
 
 
-LIDAR: Final = "static_laser"
-"""What the kit's robots call their lidar's topic."""
+USUAL_TOPICS: Final = RobotTopics("cmd_vel", "scan", "odom")
+"""What most robots call them."""
 
 
 def create_policy_package(policy: Policy, name: str, destination: Path) -> Path:
@@ -39,13 +40,13 @@ def create_policy_package(policy: Policy, name: str, destination: Path) -> Path:
     """
     program = format_policy_node(policy)
     task = policy.trained_on.resolve()
-    used = [(LIDAR, "scan_topic", "scan"), ("cmd_vel", "cmd_vel_topic", "cmd_vel")]
-    seen = task.observation
-    used += [("odom", "odom_topic", "odom")] * (seen.speeds or seen.own_pose or seen.target)
+    names = task.robots_on(task.map_cases()[0][0])
     topics = [
-        (f"{prefix}{topic}", f"{prefix.replace('/', '_')}{argument}", f"{prefix}{usual}")
-        for prefix in TOPIC_PREFIXES[task.robots]
-        for topic, argument, usual in used
+        (topic, f"{name}_{usual}_topic", f"{name}/{usual}")
+        if task.robots > 1
+        else (topic, f"{usual}_topic", usual)
+        for name, robot in zip(names, robot_topics(task), strict=True)
+        for topic, usual in zip(robot, USUAL_TOPICS, strict=True)
     ]
     words = {
         "name": name,
