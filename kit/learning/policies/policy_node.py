@@ -80,8 +80,8 @@ def _refusals(task: LearningTask) -> Iterator[str]:
         )
     if seen.achieved:
         yield from _refusals_to_count(task)
-    if seen.target and task.goal.needs_leader and not leader_frame(task):
-        (leader,) = {case.targets.model for _, case in task.map_cases()[:1]}
+    leader = task.map_cases()[0][1].targets.model
+    if leader is not None and seen.target and not leader_frame(task):
         yield (
             f"a node is not told where {leader} is: give its model a plugin of the type ModelTfPublisher, with "
             "publish_tf_world: true"
@@ -168,7 +168,7 @@ def _format_constants(policy: Policy, task: LearningTask) -> str:
         "SCALE": seen.scale,
         "TARGET_CLIP": MAX_TARGET_DISTANCE,
         "PLACE_CLIP": MAX_COORDINATE,
-        "TARGETS": _usual_targets(task),
+        "TARGETS": usual_targets(task),
         "TARGET_HEADING": float(task.map_cases()[0][1].targets.nominal.theta),
         "TARGET_RADIUS": float(task.target_radius),
         "LEADER_FRAME": leader_frame(task) if seen.target else "",
@@ -186,7 +186,7 @@ def _format_constants(policy: Policy, task: LearningTask) -> str:
     return "\n".join(lines) + f"\nPOLICY = (\n{quoted}\n)\n"
 
 
-def _usual_targets(task: LearningTask) -> list[float]:
+def usual_targets(task: LearningTask) -> list[float]:
     """x and y of the task's targets [m], one after the other; none where every episode has its own, or one that moves."""
     if not task.goal.has_standing_targets:
         return []

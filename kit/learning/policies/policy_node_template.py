@@ -26,6 +26,7 @@ from typing import Any
 
 import numpy as np
 import rclpy
+from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseStamped, Quaternion, Twist
 from nav_msgs.msg import Odometry
 from rclpy.executors import ExternalShutdownException
@@ -98,6 +99,7 @@ class GoalCount:
 
 
 SILENCE = 2.0  # s without a scan until it is said
+PATIENCE = 0.5  # s with scans and without what else it is to be told, until it is said
 CHECK_PERIOD = 0.05  # s
 
 
@@ -239,6 +241,9 @@ class PolicyNode(Node):
         self.motion = {part: [[0.0, 0.0] for _ in TOPICS] for part in ("speeds", "last_action")}
         self.poses: dict[int, tuple[float, float, float]] = {}
         self.pose_stamps: dict[int, float] = {}
+        self.leader_stamp = -math.inf
+        self.stamps: dict[str, float] = {}
+        self.missing_since = math.inf
         self.frames: list[np.ndarray] = []
         self.rays: dict[int, tuple[tuple[float, ...], np.ndarray]] = {}
         self.next_step = self.last_stamp = -math.inf
@@ -272,18 +277,27 @@ class PolicyNode(Node):
         """The time of the node's clock."""
         return self.get_clock().now().nanoseconds * 1e-9
 
+    def hear(self, source: str, stamp: Time) -> float:
+        """The time of a message [s]. Where time goes back, the world has begun again: so does the node."""
+        now: float = stamp.sec + stamp.nanosec * 1e-9
+        if now < self.stamps.get(source, -math.inf):
+            self.stamps.clear()
+            self.poses.clear()
+            self.pose_stamps.clear()
+            self.scans.clear()
+            self.before, self.leader_stamp, self.next_step = None, -math.inf, -math.inf
+            self.forget()
+            if not self.leader_frame:
+                self.begin_route(self.route)
+        self.stamps[source] = now
+        return now
+
     def on_scan(self, robot: int, scan: LaserScan) -> None:
         self.heard[robot] = self.seconds()
         if self.silent[robot]:
             self.silent[robot] = False
             self.get_logger().info(f"scans come on {self.lidars[robot].topic_name}")
-        now = scan.header.stamp.sec + scan.header.stamp.nanosec * 1e-9
-        if now < self.last_stamp:  # the world has begun again
-            self.next_step = -math.inf
-            self.forget()
-            self.before = None
-            if not self.leader_frame:
-                self.begin_route(self.route)
+        now = self.hear(f"scan {robot}", scan.header.stamp)
         self.last_stamp = now
         if now < self.next_step - 0.5 * STEP_TIME:
             return
@@ -299,10 +313,10 @@ class PolicyNode(Node):
             self.step_when_known()
 
     def on_odometry(self, robot: int, odom: Odometry) -> None:
+        self.pose_stamps[robot] = self.hear(f"odometry {robot}", odom.header.stamp)
         self.motion["speeds"][robot] = [odom.twist.twist.linear.x, odom.twist.twist.angular.z]
         place = odom.pose.pose.position
         self.poses[robot] = place.x, place.y, heading_of(odom.pose.pose.orientation)
-        self.pose_stamps[robot] = odom.header.stamp.sec + odom.header.stamp.nanosec * 1e-9
         self.step_when_known()
 
     def on_goal(self, goal: PoseStamped) -> None:
@@ -313,15 +327,16 @@ class PolicyNode(Node):
         for each in message.transforms:
             if each.child_frame_id.lstrip("/") == self.leader_frame:
                 self.target = [each.transform.translation.x, each.transform.translation.y]
+                self.leader_stamp = self.hear("leader", each.header.stamp)
+                self.step_when_known()
 
     def step_when_known(self) -> None:
-        """Acts once every robot has a new scan and, where poses are needed, odometry that is not older."""
+        """Acts once every robot has a new scan and what it is told beside it is not older."""
         if len(self.scans) < len(TOPICS):
             return
-        is_late = self.needs_poses and any(
-            self.pose_stamps.get(robot, math.inf) < self.last_stamp - 1e-6 for robot in range(len(TOPICS))
-        )
-        if not is_late:
+        stamps = [*self.pose_stamps.values()] if self.needs_poses else []
+        stamps += [self.leader_stamp] if self.leader_frame else []
+        if all(stamp > self.last_stamp - 1e-6 for stamp in stamps):
             self.step()
 
     def step(self) -> None:
@@ -392,7 +407,9 @@ class PolicyNode(Node):
             missing = f"no odometry on {', '.join(each.topic_name for each in self.odometry)}"
         else:
             return True
-        self.get_logger().warning(f"the robot stands: {missing}", once=True)
+        self.missing_since = min(self.missing_since, self.seconds())
+        if self.seconds() - self.missing_since >= PATIENCE:
+            self.get_logger().warning(f"the robot stands: {missing}", once=True)
         return False
 
     def told(self, part: str, robot: int) -> list[float]:

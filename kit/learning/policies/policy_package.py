@@ -7,15 +7,26 @@ from pathlib import Path
 from string import Template
 from typing import Final
 
-from kit.launch.package_creation import PackageFrame, copy_world, new_package_folder, write_package_frame
+from kit.launch.package_creation import (
+    PackageFrame,
+    copy_world,
+    new_package_folder,
+    place_models,
+    write_package_frame,
+)
+from kit.learning.environment.episode_start import EpisodeStart, first_start
 from kit.learning.policies.policy import Policy
-from kit.learning.policies.policy_node import RobotTopics, format_policy_node, robot_topics
+from kit.learning.policies.policy_node import RobotTopics, format_policy_node, robot_topics, usual_targets
+from kit.learning.tasks.learning_task import LearningTask
+from kit.run.scenario import BEACON
+from kit.world.catalogue import WORLD_FILE
 
 PROGRAM: Final = "policy"
 
 
 DEPENDENCIES: Final = (
     "rclpy",
+    "builtin_interfaces",
     "geometry_msgs",
     "nav_msgs",
     "sensor_msgs",
@@ -48,7 +59,10 @@ def create_policy_package(policy: Policy, name: str, destination: Path) -> Path:
         for name, robot in zip(names, robot_topics(task), strict=True)
         for topic, usual in zip(robot, USUAL_TOPICS, strict=True)
     ]
+    start = first_start(task)
+    places = {**dict(zip(names, start.robots, strict=True)), BEACON: start.target}
     words = {
+        "target": _target_line(task, start),
         "name": name,
         "topics": repr(topics),
         "simulated": repr({argument: topic for topic, argument, _ in topics}),
@@ -74,4 +88,12 @@ def create_policy_package(policy: Policy, name: str, destination: Path) -> Path:
             text = files("kit.learning.policies").joinpath(TEMPLATES, f"{template}.template").read_text()
             path.write_text(Template(text).substitute(words), encoding="utf-8")
         copy_world(task.map_cases()[0][0].world_file, folder / "world")
+        place_models(folder / "world" / WORLD_FILE, places)
     return destination / name
+
+
+def _target_line(task: LearningTask, start: EpisodeStart) -> str:
+    """The line of the parameters that says where the target is; empty where the program knows it, or it moves."""
+    if not task.goal.has_standing_targets or usual_targets(task) or task.map_cases()[0][1].targets.model:
+        return ""
+    return f"    target: [{start.target.x:.3f}, {start.target.y:.3f}]  # m, in the frame of odometry: of the world beside this\n"

@@ -14,7 +14,7 @@ import numpy as np
 
 from kit.geometry import Pose
 from kit.learning.authoring.task_check import check_task
-from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.episode_start import EpisodeStart, first_start
 from kit.learning.maps.batch_map import UnsupportedWorld, load_batch_map
 from kit.learning.maps.obstacles import Obstacle, phases_of_bodies
 from kit.learning.tasks.catalogue import find_task_file, task_names, tasks_folder
@@ -31,8 +31,6 @@ from kit.world.catalogue import WORLD_FILE, MapCard, MapCase
 from kit.world.problems import Problem, WorldError
 from kit.world.records import Model, PluginSpec, SourceLocation
 
-RACE_SEED = 1
-"""Of the start of a race, where a task draws it."""
 MAX_ROBOTS = 2
 """That one driver can drive as one."""
 
@@ -76,39 +74,6 @@ class TaskLevel(GameLevel):
         """The task's world with its robots at the first case's start, or at the first that is drawn where none is given.
         Their motors give what the task's actions ask for at most. Raises WorldError."""
         return episode_scenario(self, first_start(self.learning_task))
-
-
-@dataclass(frozen=True, slots=True)
-class EpisodeStart:
-    """Where an episode of a task's first case begins, and where its target is."""
-
-    robots: tuple[Pose, ...]
-    target: Pose
-    phase: float | None = None
-    """How far moving models are on their ways, 0 to 1; None: as in their files."""
-
-    @classmethod
-    def drawn(cls, task: LearningTask, seed: int) -> EpisodeStart:
-        """The start of an episode of the first case, drawn as in training. Raises UnsupportedWorld."""
-        batch = BatchEnv(task, 1, seed)
-        batch.reset(seed=seed, cases=np.zeros(1, dtype=np.int64))
-        state = batch.state
-        poses = tuple(Pose(*pose) for pose in state.pose[0].tolist())
-        x, y = state.target[0].tolist()
-        target = Pose(x, y, float(state.target_heading[0]))
-        return cls(poses, target, float(state.phase[0]) if task.random_phase else None)
-
-
-def first_start(task: LearningTask) -> EpisodeStart:
-    """The start of a race: that of the first case, the same for every driver. Raises UnsupportedWorld."""
-    _, case = task.map_cases()[0]
-    robots, target = tuple(places.nominal for places in case.starts), case.targets.nominal
-    if not (case.starts[0].is_area or case.targets.is_area):
-        return EpisodeStart(robots, target)
-    drawn = EpisodeStart.drawn(task, RACE_SEED)
-    return EpisodeStart(
-        drawn.robots if case.starts[0].is_area else robots, drawn.target if case.targets.is_area else target
-    )
 
 
 def episode_scenario(level: TaskLevel, start: EpisodeStart) -> Scenario:
@@ -200,7 +165,8 @@ def task_level(file: Path) -> TaskLevel:
     cases = task.map_cases()
     _, case = cases[0]
     refused = [
-        Problem(SourceLocation(file), f"a level of the game cannot have {each}") for each in _refused(task)
+        Problem(SourceLocation(file), f"a level of the game cannot have {each}")
+        for each in race_refusals(task)
     ]
     if refused:
         raise WorldError(refused)
@@ -231,7 +197,7 @@ def _short(file: Path) -> Path:
     return file.absolute().relative_to(here) if file.absolute().is_relative_to(here) else file
 
 
-def _refused(task: LearningTask) -> Iterator[str]:
+def race_refusals(task: LearningTask) -> Iterator[str]:
     """Names the features that the task asks for and a level cannot have."""
     if task.robots > MAX_ROBOTS:
         yield f"{task.robots} robots, only {MAX_ROBOTS} that are driven as one"

@@ -78,6 +78,8 @@ class Goal(ABC):
     case_targets: ClassVar[CaseTargets] = CaseTargets.NONE
     is_told_later: ClassVar[bool] = False
     """Whether agents that see ``achieved`` are told it one step later: where the newest scan is what is counted."""
+    least_robots: ClassVar[int] = 1
+    """How many robots it needs."""
     reads_lidar: ClassVar[bool] = False
     """Whether what is counted is measured by the robots' lidars."""
     is_lost_at_start: ClassVar[bool] = False
