@@ -100,6 +100,7 @@ class GoalCount:
 
 SILENCE = 2.0  # s without a scan until it is said
 PATIENCE = 0.5  # s with scans and without what else it is to be told, until it is said
+EARLY = 0.25  # a scan that comes by this share of a step too early is taken; a scan twice a step is not
 CHECK_PERIOD = 0.05  # s
 
 
@@ -299,7 +300,7 @@ class PolicyNode(Node):
             self.get_logger().info(f"scans come on {self.lidars[robot].topic_name}")
         now = self.hear(f"scan {robot}", scan.header.stamp)
         self.last_stamp = now
-        if now < self.next_step - 0.5 * STEP_TIME:
+        if now < self.next_step - EARLY * STEP_TIME:
             return
         is_overdue = len(self.scans) == len(TOPICS)  # scans have waited for odometry that has not come
         ranges = self.take_ranges(robot, scan)

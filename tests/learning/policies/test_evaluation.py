@@ -161,7 +161,7 @@ def test_areas_are_drawn_where_starts_and_targets_are_drawn_from_them() -> None:
 def test_a_node_knows_what_the_policy_knows() -> None:
     source = format_policy_node(always(TaskSpec("wheelchairs"), 1))
     compile(source, "node.py", "exec")
-    assert "'left/', 'right/'" in source
+    assert all(f"/{robot}/static_laser" in source for robot in ("left", "right"))
     assert "import kit" not in source
 
 
