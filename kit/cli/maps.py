@@ -61,6 +61,7 @@ def command(ctx: click.Context) -> None:
     kit maps maze                           draw one, with starts and targets
     kit maps new hall                       draw a map on the screen
     kit maps new hall --from hall.txt       read a drawing in characters
+    kit maps new hall --pair                with two robots that drive as one
     kit maps from-photo plan.jpg --width 5  read a photograph of a drawing
 
     Your own maps are folders under worlds/ in your workspace. `kit play`, `kit run` and `kit train` take the folder.
@@ -157,6 +158,7 @@ def _show_card(card: MapCard, glyphs: str | None) -> None:
     show_default=True,
     help="Size of the drawing on the screen, in squares.",
 )
+@click.option("--pair", is_flag=True, help="Two robots start side by side and drive as one.")
 @options.workspace
 @options.glyphs
 @options.color
@@ -165,6 +167,7 @@ def new(
     drawing: Path | None,
     cell: float,
     size: str,
+    pair: bool,
     workspace: Path | None,
     glyphs: str | None,
     color: str | None,
@@ -187,11 +190,11 @@ def new(
     try:
         folder = check_name(name, open_workspace(workspace).worlds)
         if drawing is None:
-            _draw(folder, cell, size, glyphs, color)
+            _draw(folder, cell, size, glyphs, color, is_pair=pair)
             return
         text = sys.stdin.read() if str(drawing) == "-" else drawing.read_text(encoding="utf-8")
         plan = read_drawing(text, cell=cell, name="the drawing" if str(drawing) == "-" else str(drawing))
-        made = write_map(folder, plan, title=_title(name), source="drawn in characters")
+        made = write_map(folder, plan, title=_title(name), source="drawn in characters", is_pair=pair)
         scale = _drawing_scale(plan, cell)
     except UnicodeDecodeError:
         options.fail(f"{drawing} is not text. To read a photograph, use `kit maps from-photo {drawing}`.")
@@ -206,7 +209,9 @@ def _title(name: str) -> str:
     return name.replace("_", " ").replace("-", " ").capitalize()
 
 
-def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str | None) -> None:
+def _draw(
+    folder: Path, cell: float, size: str, glyphs: str | None, color: str | None, *, is_pair: bool
+) -> None:
     """Opens the sheet, and tells what was made of it. The drawing is kept beside the map, to be changed later."""
     from kit.mapmaking.map_drawing import read_drawing
     from kit.mapmaking.map_sketch import MapSketch
@@ -234,7 +239,9 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
         nonlocal scale
         plan = read_drawing(drawn.text, cell=drawn.cell)
         scale = _drawing_scale(plan, drawn.cell)
-        made = write_map(folder, plan, title=_title(folder.name), source="drawn on the screen")
+        made = write_map(
+            folder, plan, title=_title(folder.name), source="drawn on the screen", is_pair=is_pair
+        )
         (folder / "drawing.txt").write_text(drawn.text)
         return made
 

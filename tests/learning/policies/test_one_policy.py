@@ -21,7 +21,8 @@ def test_the_tasks_have_every_goal() -> None:
     assert any(goal.heading_tolerance is not None for goal in goals)
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.long
+@pytest.mark.daily(4)
 @pytest.mark.parametrize("name", TASKS, ids=lambda name: Path(name).stem)
 def test_all_ways_begin_alike_and_do_what_the_policy_chooses(name: str) -> None:
     for way, agreement in compared(name, random_policy(name)).items():
@@ -30,7 +31,8 @@ def test_all_ways_begin_alike_and_do_what_the_policy_chooses(name: str) -> None:
             assert agreement.first_difference < 1e-3, way
 
 
-@pytest.mark.sampled(6)
+@pytest.mark.long
+@pytest.mark.daily(4)
 @pytest.mark.parametrize("name", TASKS, ids=lambda name: Path(name).stem)
 def test_all_ways_end_alike(name: str) -> None:
     """By a policy for which a millimetre changes nothing: it always does the same."""
