@@ -16,7 +16,7 @@ from kit.cli.full_screen import run_screen
 from kit.cli.process import ScreenClosed
 from kit.document.blocks import Block, Picture, Table, Text, labelled_table
 from kit.document.layout import lines_of
-from kit.run.scenario import own_map_folder, scenario_on_map
+from kit.run.scenario import scenario_on_map
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.catalogue import (
     CARD_FILE,
@@ -27,6 +27,7 @@ from kit.world.catalogue import (
     find_map,
     map_names,
     own_card,
+    own_map_folder,
 )
 from kit.world.problems import WorldError
 

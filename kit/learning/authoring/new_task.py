@@ -13,10 +13,17 @@ from kit.learning.tasks.goals.registry import goal_kinds
 from kit.learning.tasks.goals.target import REACH_TARGET
 from kit.learning.tasks.task_reader import TASK_FILE
 from kit.plain_text import quoted
-from kit.run.scenario import own_map_folder
 from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.simulation import load_world
-from kit.world.catalogue import WORLD_FILE, MapCard, allowed_root_of, find_map, map_names, own_card
+from kit.world.catalogue import (
+    WORLD_FILE,
+    MapCard,
+    allowed_root_of,
+    find_map,
+    map_names,
+    own_card,
+    own_map_folder,
+)
 
 NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}")
 STANDARD = """\
