@@ -23,14 +23,14 @@ from grader.assignment import (
     Assignment,
     Criterion,
     KnownMistake,
-    SeedSet,
     TeacherTest,
     Trial,
 )
 from grader.check import Check
 from grader.kinds.contract import AssignmentFiles, find_kind, kind_names
 from grader.scoring import MAX_SHARE_STEPS, Anchors
-from grader.teacher_tests import read_teacher_tests
+from grader.seeds import SeedSet
+from grader.teacher_tests.reading import read_teacher_tests
 from kit.extensions import ExtensionError, admitting, installed_extensions
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS, MIB, Limits

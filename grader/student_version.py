@@ -22,7 +22,7 @@ import yaml
 from grader.assignment import TEACHERS_STEMS, Assignment
 from grader.reading import SECRET_FILE, YAML_LOADER
 from grader.submitted_files import IGNORED_NAMES
-from grader.teacher_tests import read_teacher_tests
+from grader.teacher_tests.reading import read_teacher_tests
 from kit.plain_text import join_names
 from kit.results.grading_result import Visibility
 from kit.school.lessons.reading import ASSIGNMENT_FILE

@@ -13,7 +13,6 @@ from typing import Final
 
 import click
 
-from grader import teacher_tests
 from grader.ci import REPOSITORY_SERVICES, WORKFLOWS, GitSource, GradedWork, workflow
 from grader.cli import options
 from grader.kinds.contract import kind_names
@@ -21,6 +20,7 @@ from grader.new_assignment import CARD
 from grader.reading import budget_lines
 from grader.sheet_reference import SheetKey, documented_attributes, sheet_keys
 from grader.student_version import ReleaseRefused, StudentVersion, missing_for_practice, student_version
+from grader.teacher_tests import reading as teacher_tests
 from kit.cli.options import ExistingPath
 from kit.document.blocks import Block, Code, Table, Text, labelled_table
 from kit.document.layout import lines_of

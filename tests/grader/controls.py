@@ -358,7 +358,7 @@ CONTROLS: Final = (
     ),
     Control(
         "a robot of a world that moves by itself",
-        "grader/kinds/world/checks.py",
+        "grader/kinds/world/run_checks.py",
         "    if run.run.undriven >= LEAST_WAY:\n",
         "    if run.run.undriven < 0.0:\n",
         "grader/kinds/world/test_kind.py::test_a_robot_that_moves_by_itself_is_not_driven",

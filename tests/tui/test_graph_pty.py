@@ -38,12 +38,12 @@ def test_the_running_world_talks_and_goes_on(graph: User) -> None:
     assert first is not None
     graph.until(lambda: first[0] not in graph.text, "a newer one")
     graph.send(b"\r")
-    graph.until(lambda: "in all]" in graph.text, "the whole message")
-    for _ in range(
-        3
-    ):  # the message, the narrowing, the screen; Esc takes a moment to be told from a sequence
-        graph.send(b"\x1b")
-        run_on(graph, 0.3)
+    graph.until(lambda: "Enter close" in graph.text, "the whole message")
+    graph.send(b"\x1b")
+    graph.until(lambda: "Enter message" in graph.text, "the graph again")
+    graph.send(b"\x1b")
+    graph.until(lambda: "only:" not in graph.text and "/odom" in graph.text, "all topics again")
+    graph.send(b"\x1b")
     graph.until(lambda: "nearest" in graph.text, "the world again")
     clock = re.search(r"\d:\d\d\.\d", graph.text)
     assert clock is not None

@@ -31,6 +31,9 @@ SCREENS = {
 }
 """By name: the command, keys after its first picture, and words that are on the screen then."""
 
+UNSEEN = re.compile("([⠄']) \\1 \\1 ")
+"""How a row of places is drawn that the robot has not seen, with and without signs."""
+
 Open = Callable[..., User]
 
 
@@ -56,6 +59,8 @@ def opened(kit: Open, name: str, **environment: str) -> User:
         terminal.until(lambda: "0:0" in terminal.text, "the world")
         terminal.send(keys)
     terminal.until(lambda: words in terminal.text, words)
+    if name == "robot's map":
+        terminal.until(lambda: UNSEEN.search(terminal.text), "places that the robot has not seen")
     return terminal
 
 

@@ -159,6 +159,7 @@ def test_a_new_student_drives_with_an_arrow_key_and_is_in_a_lesson_with_enter(op
     user.send(b"w")
     sees(user, "you drive")
     user.send(b"\r")
+    user.until(lambda: "1-9 open" not in user.text, "the lesson in place of the menu", PATIENCE)
     sees(user, "step 1 of")
     user.send(b"\x1b")
     sees(user, "1-9 open")

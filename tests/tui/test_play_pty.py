@@ -233,7 +233,7 @@ def test_a_world_with_errors_says_so_and_leaves_the_way_out(kit: Open, tmp_path:
     world = tmp_path / "world.yaml"
     world.write_text("properties: {}\nlayers: []\nmodles: []\n")
     terminal = kit("play", str(world), ready="world.yaml:3")
-    terminal.until(lambda: "models" in terminal.text, "models")
+    terminal.until(lambda: "models" in terminal.text and "any key closes" in terminal.text, "what is wrong")
     terminal.send(b" ")
     terminal.until(lambda: "any key closes" not in terminal.text, "the empty screen")
     terminal.send(b"m")
