@@ -41,7 +41,13 @@ class JudgedStrokes:
     doubtful: BoolArray
     """(rows, columns) those that may be something else."""
     remarks: tuple[str, ...] = ()
-    """What is doubtful, and what else is strange, each a sentence."""
+    """What is doubtful, and what else is strange, each in a few words."""
+
+    def doubtful_boxes(self) -> list[tuple[int, int, int, int]]:
+        """Left, top, right and bottom [pixels] of the pieces of what is doubtful, the largest first."""
+        boxes = _boxes(connected_parts(self.doubtful, across_corners=True)).values()
+        ordered = sorted(boxes, key=lambda box: -box.diagonal)
+        return [(box.left, box.top, box.left + box.width, box.top + box.height) for box in ordered]
 
 
 def usual_depth(depth: FloatArray, mask: BoolArray) -> float:
@@ -92,6 +98,8 @@ class _Box:
     row: int
     column: int
     """A pixel of the part."""
+    left: int
+    top: int
 
     @property
     def diagonal(self) -> float:
@@ -107,7 +115,13 @@ def _boxes(parts: np.ndarray) -> dict[int, _Box]:
     for chunk in np.split(order, cuts) if len(order) else ():
         r, c = rows[chunk], columns[chunk]
         found[int(numbers[chunk[0]])] = _Box(
-            int(np.ptp(c)) + 1, int(np.ptp(r)) + 1, len(chunk), int(r[0]), int(c[0])
+            int(np.ptp(c)) + 1,
+            int(np.ptp(r)) + 1,
+            len(chunk),
+            int(r[0]),
+            int(c[0]),
+            int(c.min()),
+            int(r.min()),
         )
     return found
 

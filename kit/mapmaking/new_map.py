@@ -28,6 +28,7 @@ from kit.mapmaking.route import (
 from kit.plain_text import quoted
 from kit.workspace import errors_name_file
 from kit.world.catalogue import CARD_FILE, WORLD_FILE, maps_folder
+from kit.world.connected_parts import connected_parts
 from kit.world.loading import load_world
 
 PICTURE_FILE: Final = "map.png"
@@ -152,8 +153,8 @@ def write_map(
     overlay: Image.Image | None = None,
     is_pair: bool = False,
 ) -> NewMap:
-    """Writes the map's files into a new folder, all or none. ``overlay``: the drawing, as large as the plan, over which
-    walls and way are shown. ``is_pair``: whether two robots start side by side. Raises NoRoute, OSError, and ValueError if there are no walls."""
+    """Writes the map's files into a new folder, all or none. ``overlay``: the drawing, as large as the plan, with its
+    walls tinted, over which the way is shown. ``is_pair``: whether two robots start side by side. Raises NoRoute, OSError, and ValueError if there are no walls."""
     folder.parent.mkdir(parents=True, exist_ok=True)
     with (
         errors_name_file(folder),
@@ -165,8 +166,7 @@ def write_map(
         picture.save(made / PICTURE_FILE)
         (made / MAP_FILE).write_text(MAP_TEXT.format(resolution=plan.resolution))
         (made / ROBOT_FILE).write_text(own_robot_text())
-        middle = (plan.size[0] / 2, plan.size[1] / 2)
-        start, target, route, grid = _place(made, plan, title, middle)
+        start, target, route, grid = _place(made, plan, title, middle_of_floor(plan))
         partner = None
         if is_pair:
             start, partner = _side_by_side(start, grid)
@@ -232,21 +232,51 @@ def _has_room(grid: OccupancyGrid, start: Pose, pose: Pose) -> bool:
     return room[-1] > ROBOT_RADIUS and min(room) > 0.5 * ROBOT_RADIUS
 
 
+def middle_of_floor(plan: WallPlan) -> Point:
+    """A place in the largest room that walls enclose, as far from them as may be [m]; the drawing's middle where none does."""
+    factor = max(1, max(plan.walls.shape) // 250)
+    rows, columns = (length // factor for length in plan.walls.shape)
+    blocks = plan.walls[: rows * factor, : columns * factor].reshape(rows, factor, columns, factor)
+    walls = blocks.any(axis=(1, 3))
+    free = connected_parts(np.pad(~walls, 1, constant_values=True))
+    sizes = np.bincount(free.ravel())
+    sizes[[0, free[0, 0]]] = 0
+    if not sizes.any():
+        used = np.argwhere(plan.walls) if plan.walls.any() else np.array([[0, 0], plan.walls.shape])
+        middle = 0.5 * (used.min(axis=0) + used.max(axis=0))
+        return float(middle[1]) * plan.resolution, float(plan.walls.shape[0] - middle[0]) * plan.resolution
+    room = (free == int(sizes.argmax()))[1:-1, 1:-1]
+    last = room
+    while room.any():
+        last, edge = room, np.pad(room, 1)
+        room = room & edge[:-2, 1:-1] & edge[2:, 1:-1] & edge[1:-1, :-2] & edge[1:-1, 2:]
+    row, column = np.argwhere(last)[0].tolist()
+    height = plan.walls.shape[0]
+    return (column + 0.5) * factor * plan.resolution, (height - (row + 0.5) * factor) * plan.resolution
+
+
+def tint_strokes(drawing: Image.Image, walls: BoolArray, doubtful: BoolArray | None = None) -> Image.Image:
+    """The drawing, as large as the plan, with walls in red and what may be none in blue."""
+    height, width = walls.shape
+    pixels = np.asarray(drawing.convert("RGB").resize((width, height))).copy()
+    for mask, tone in ((walls, (200, 30, 30)), (doubtful, (30, 90, 220))):
+        if mask is not None:
+            pixels[mask] = (pixels[mask] * 0.3 + np.array(tone) * 0.7).astype(np.uint8)
+    return Image.fromarray(pixels)
+
+
 def draw_overlay(
     drawing: Image.Image, plan: WallPlan, route: Route, start: Pose, target: Point
 ) -> Image.Image:
-    """The walls in red over the drawing, the way in blue, the narrowest passage in a ring, S and T."""
+    """The way in green over the tinted drawing, the narrowest passage in a ring, S and T."""
     height, width = plan.walls.shape
     picture = drawing.convert("RGB").resize((width, height))
-    pixels = np.asarray(picture).copy()
-    pixels[plan.walls] = (pixels[plan.walls] * 0.3 + np.array([200, 30, 30]) * 0.7).astype(np.uint8)
-    picture = Image.fromarray(pixels)
     draw = ImageDraw.Draw(picture)
 
     def at(point: Point) -> Point:
         return point[0] / plan.resolution, height - point[1] / plan.resolution
 
-    draw.line([at(point) for point in route.points], fill=(30, 80, 220), width=max(2, width // 300))
+    draw.line([at(point) for point in route.points], fill=(20, 140, 60), width=max(2, width // 300))
     radius = max(6.0, route.width / 2 / plan.resolution)
     x, y = at(route.narrowest)
     draw.ellipse(

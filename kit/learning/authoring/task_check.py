@@ -47,8 +47,8 @@ def _check_case(task: LearningTask, placed: PlacedCase, batch_map: BatchMap) -> 
         is_free &= not (len(touches) or off.any())
         for robot in np.flatnonzero(off):
             placed.error(
-                f"the start ({poses[robot].x:g}, {poses[robot].y:g}) is off the floor: outside the walls around the robot's "
-                "place in the world, or within a wall",
+                f"the start ({poses[robot].x:g}, {poses[robot].y:g}) is inside a wall, or off the floor that the walls around the "
+                "robot's place in the world enclose",
                 (("other_starts",) if robot else ()) + START_KEYS,
             )
         for robot in touches[~off[touches]]:

@@ -249,8 +249,8 @@ def _why_not_dynamic(body: Body, *, is_moved: bool) -> str:
     """What a body lacks that is neither a robot nor fixed."""
     if is_moved:
         return (
-            f'{body.location}: a Tween moves the body {body.name}, which also lacks the line "type: kinematic": so nothing '
-            "else pushes it"
+            f'{body.location}: a Tween moves the body {body.name}, which also lacks the line "type: kinematic": in training '
+            "nothing else may push it"
         )
     return (
         f"{body.location}: nothing drives the body {body.name}, and in training only robots can be pushed. Give it "

@@ -134,7 +134,7 @@ def test_parts_that_the_lidar_sees_hide_what_is_behind_them(workshop: Workshop) 
             {"robot": robot(), "cart": {"bodies": [body("cart")], "plugins": [TRIGGERED | {"mode": "yoyo"}]}},
             'lacks the line "type: kinematic"',
         ),
-        ({"robot_1": robot(), "robot_2": robot()}, "share no layer: add one of"),
+        ({"robot_1": robot(), "robot_2": robot()}, "does not see robot_2, .* looks at wall"),
         ({f"robot_{number}": robot() for number in range(5)}, "not 5"),
     ],
 )
