@@ -370,7 +370,8 @@ def from_photo(
     width_m, height_m = plan.size
     _report(
         made,
-        f"Scale: sheet {width_m:.3g} m by {height_m:.3g} m, outer walls {found.walls_width:.3g} m apart.",
+        f"Scale: sheet {width_m:.3g} m by {height_m:.3g} m, outer walls {found.walls_width:.3g} m apart "
+        f"(from {'--width' if width is not None else '--walls-width'}).",
         glyphs,
         () if keep_all else _doubtful_boxes(found),
     )

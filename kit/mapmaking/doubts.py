@@ -24,7 +24,7 @@ SMALL: Final = 0.075
 """And a piece apart from all others whose box has a shorter diagonal than this share of the sheet's width: writing, slips."""
 LOW: Final = 0.05
 """And one whose box is lower or narrower than this, and holds more strokes than a line along it: a word."""
-CROWDED: Final = 1.7
+CROWDED: Final = 1.3
 """How many times the length of its box the strokes of a word are long."""
 LEAST: Final = 0.02
 """Less than this share of the sheet's width is no reason to doubt."""

@@ -22,7 +22,6 @@ from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.goals.goal import Goal
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE
-from kit.plain_text import join_names
 from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.plugins.laser import LaserParams
 from kit.sim.plugins.model_tf_publisher import frame_in_world
@@ -75,7 +74,7 @@ def _refusals(task: LearningTask) -> Iterator[str]:
     shared = {name for name in _all(topics) if _all(topics).count(name) > 1}
     if shared:
         yield (
-            f"{join_names(task.robots_on(_first_card(task)))} share {join_names(sorted(shared))}: give each of them a "
+            f"{' and '.join(task.robots_on(_first_card(task)))} share {', '.join(sorted(shared))}: give each of them a "
             "namespace of its own in the world's file"
         )
     if seen.achieved:
