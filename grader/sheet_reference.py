@@ -18,8 +18,9 @@ from typing import Final
 
 import yaml
 
+from grader.evidence_digest import YAML_LOADER
 from grader.new_assignment import example_of_kind
-from grader.reading import SECRET_FILE, YAML_LOADER, read_sheet
+from grader.reading import SECRET_FILE, read_sheet
 from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.world.documents import open_document
 from kit.world.key_table import OWN_NAME, FormatKey, format_keys

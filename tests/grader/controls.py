@@ -50,10 +50,10 @@ class Control:
 CONTROLS: Final = (
     Control(
         "a pip.py beside a submission in CI",
-        "grader/ci.py",
+        "grader/ci/services/github.py",
         "        run: python -P -m pip install --quiet",
         "        run: cd $GITHUB_WORKSPACE && python -m pip install --quiet",
-        "grader/test_ci.py::test_a_workflow_grades_and_runs_nothing_of_the_students",
+        "grader/ci/test_services.py::test_a_workflow_grades_and_runs_nothing_of_the_students",
     ),
     Control(
         "a secret handed on by the page cache",
@@ -120,10 +120,10 @@ CONTROLS: Final = (
     ),
     Control(
         "an old result in a checkout",
-        "grader/ci.py",
+        "grader/ci/services/gitlab.py",
         '    - rm -rf "$CI_PROJECT_DIR/.grade"',
         '    - true "$CI_PROJECT_DIR/.grade"',
-        "grader/test_ci.py::test_a_result_that_lay_in_the_checkout_is_not_reported",
+        "grader/ci/test_services.py::test_a_result_that_lay_in_the_checkout_is_not_reported",
     ),
     Control(
         "a header of very many records",
