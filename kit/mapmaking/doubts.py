@@ -142,8 +142,23 @@ def _doubtful_parts(
             min(box.width, box.height) < LOW * width and length > CROWDED * box.diagonal
         ):
             yield number, "small pieces: writing or loose strokes"
-        elif own < THIN * pen and pen - own > 1.0:
+        elif _has_arrows(parts, number, box, pen) or (own < THIN * pen and pen - own > 1.0):
             yield number, "thin lines: measures or writing"
+
+
+def _has_arrows(parts: np.ndarray, number: int, box: _Box, pen: float) -> bool:
+    """Whether a straight line along the sheet's edges is wider at both ends than between them, as a measure is."""
+    piece = parts[box.top : box.top + box.height, box.left : box.left + box.width] == number
+    if box.height > box.width:
+        piece = piece.T
+    rows, columns = piece.shape
+    if columns < 5 * rows:
+        return False
+    extent = rows - piece.argmax(axis=0) - piece[::-1].argmax(axis=0)
+    end = max(3, columns // 6)
+    middle = float(np.median(extent[end:-end]))
+    tips = (float(extent[:end].max()), float(extent[-end:].max()))
+    return middle <= 1.5 * pen and min(tips) > 1.8 * middle
 
 
 def _pen_width(mask: BoolArray) -> float:
@@ -173,7 +188,7 @@ def _beyond(walls: BoolArray, pen: float) -> BoolArray:
 def _thin_bits(walls: BoolArray, pen: float) -> BoolArray:
     """Parts of strokes that a pen of little more than half the walls' width would not pass."""
     size = _odd(0.6 * pen)
-    if size < 3:
+    if size < 5:  # a hand's own unevenness
         return np.zeros_like(walls)
     opened = grown(~grown(~walls, size), size)
     return walls & ~grown(opened, size + 4)
