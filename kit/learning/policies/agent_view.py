@@ -216,9 +216,14 @@ class AgentObserver(Observer):
         models: Sequence[str],
         on_view: Callable[[AgentView], object],
         target: tuple[float, float] | None = None,
+        *,
+        route: Sequence[tuple[float, float]] = (),
+        radius: float = 0.0,
+        leader: str | None = None,
     ) -> None:
         """``models``: the robots that it drives, the left one of two first. ``on_view``: called with every new view.
-        ``target``: of the world [m].
+        ``target``: of the world [m]. ``route``: all targets where there are several, one after the other, each reached within
+        ``radius`` [m]. ``leader``: the model that is the target, where that moves.
 
         PolicyError if the policy perceives what a node does not know, or drives another number of robots.
         """
@@ -234,12 +239,14 @@ class AgentObserver(Observer):
             )
         self._policy, self._task, self._models, self._on_view = policy, task, tuple(models), on_view
         self._target = np.array((math.nan, math.nan) if target is None else target)
+        self._route, self._radius, self._leader = tuple(route), radius, leader
         self._angles = np.array(ray_angles(task))
         self._lidar_heading = CaseArrays(task).robot.lidar.theta
         self._single, self._sectors = task.observation.ray_tables(task.robots)
         self._restart()
 
     def _restart(self) -> None:
+        self._left = self._route
         self._player = self._policy.make_player(1)
         self._expected = ExpectedReturns(self._policy)
         self._frames: list[Float32Array] = []
@@ -258,7 +265,20 @@ class AgentObserver(Observer):
             self._next_s = now + self._task.step_time
             self._look([scans[model] for model in self._models], simulation)
 
+    def _find_target(self, simulation: Simulation) -> None:
+        """Where the target is now: at the model that it moves with, or the next one of a route."""
+        if self._leader is not None:
+            self._target = np.array(simulation.pose(self._leader)[:2])
+            return
+        if len(self._left) > 1 and all(
+            simulation.hull_distance(model, self._left[0]) <= self._radius for model in self._models
+        ):
+            self._left = self._left[1:]
+        if self._left:
+            self._target = np.array(self._left[0])
+
     def _look(self, scans: Sequence[LatestScan], simulation: Simulation) -> None:
+        self._find_target(simulation)
         frame = np.concatenate(
             [self._observe(robot, scan, simulation) for robot, scan in enumerate(scans)]
         ).astype(np.float32)
