@@ -34,7 +34,7 @@ def run_python(program: str, *, folder: Path = ROOT) -> str:
 
 def test_the_page_explains_exactly_the_public_names() -> None:
     chapters = [each.title for each in find_topic("python").document().chapters]
-    assert chapters[1:] == [f"kit.{name}" for name in kit.__all__]
+    assert [each for each in chapters if each.startswith("kit.")] == [f"kit.{name}" for name in kit.__all__]
 
 
 def test_every_public_name_is_listed_and_resolves() -> None:

@@ -13,7 +13,7 @@ import click
 from kit.cli import learning_options, options
 from kit.document.layout import Page, lines_of
 from kit.learning.policies.episode_paths import record_paths
-from kit.learning.policies.evaluation import Evaluator
+from kit.learning.policies.evaluation import evaluate_on
 from kit.learning.policies.paths_picture import build_paths_scene
 from kit.learning.policies.policy import Policy
 from kit.learning.policies.policy_node import format_policy_node
@@ -135,7 +135,8 @@ def command(
                 as_json,
             )
             return
-        result = Evaluator(place).test(found, episodes, derive_seed(seed, "evaluate"), greedy=not sampled)
+        fresh = derive_seed(seed, "evaluate")
+        result = evaluate_on(place, found, episodes, fresh, greedy=not sampled)
         if as_json:
             about = {"policy": title, "steps": found.steps, "disturbances": place.disturbances.as_dict()}
             click.echo(json.dumps({**about, **result.as_dict()}, indent=2))
@@ -238,7 +239,7 @@ def compare_command(
             title, policy = learning_options.find_policy(name, workspace)
             task = learning_options.resolve_test_task(policy, None, on)
             fresh = derive_seed(seed, "evaluate")
-            results[title] = Evaluator(task).test(policy, episodes, fresh, greedy=not sampled)
+            results[title] = evaluate_on(task, policy, episodes, fresh, greedy=not sampled)
         if as_json:
             click.echo(json.dumps({name: result.as_dict() for name, result in results.items()}, indent=2))
         else:

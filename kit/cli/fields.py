@@ -53,6 +53,7 @@ def command() -> None:
     kit fields table                the dissertation's Tables 4.6 and 5.3
 
     A map's charges are in charges.yaml beside its world.yaml; without that file they are derived from the walls.
+    `kit help world-format` lists its keys. A world file of your own has a field where a model named beacon marks the target.
     """
 
 
@@ -287,8 +288,8 @@ def _open_setup(scenario: Scenario, derived: bool) -> ControllerSetup:
 
     if scenario.case is None:
         raise LookupError(
-            f"{scenario.name} has no target, so it has no field: choose one of the kit's maps; "
-            "`kit maps` lists them."
+            f"{scenario.name} has no target, so it has no field: put a model named beacon where the target is, or choose "
+            "one of the kit's maps; `kit maps` lists them."
         )
     return ControllerSetup.load(
         scenario.world.file,

@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+import numpy as np
 
 from kit.cli import options
 from kit.cli.full_screen import run_screen
 from kit.cli.process import ScreenClosed
 from kit.document.blocks import Block, Picture, Table, Text, labelled_table
 from kit.document.layout import lines_of
-from kit.run.scenario import own_map_folder, scenario_on_map
+from kit.run.scenario import scenario_on_map
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.catalogue import (
     CARD_FILE,
@@ -27,6 +28,7 @@ from kit.world.catalogue import (
     find_map,
     map_names,
     own_card,
+    own_map_folder,
 )
 from kit.world.problems import WorldError
 
@@ -34,7 +36,9 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
     from kit.mapmaking.new_map import NewMap, WallPlan
+    from kit.mapmaking.photo import PhotoPlan
     from kit.mapmaking.pixels import Corners
+    from kit.render.scene import ScenePath
     from kit.tui.app import KitApp
     from kit.tui.screens.map_drawing import MapDrawingScreen
     from kit.tui.screens.photo_corners import PhotoCornersScreen
@@ -61,6 +65,7 @@ def command(ctx: click.Context) -> None:
     kit maps maze                           draw one, with starts and targets
     kit maps new hall                       draw a map on the screen
     kit maps new hall --from hall.txt       read a drawing in characters
+    kit maps new hall --pair                with two robots that drive as one
     kit maps from-photo plan.jpg --width 5  read a photograph of a drawing
 
     Your own maps are folders under worlds/ in your workspace. `kit play`, `kit run` and `kit train` take the folder.
@@ -115,7 +120,7 @@ def _own_card_of(name: str, own_card: Any, world_file: str) -> MapCard | None:
     )
 
 
-def _show_card(card: MapCard, glyphs: str | None) -> None:
+def _show_card(card: MapCard, glyphs: str | None, paths: tuple[ScenePath, ...] = ()) -> None:
     from kit.render.encode import ENCODERS
     from kit.render.world_text import scene_rows
     from kit.run.session import Session
@@ -125,6 +130,7 @@ def _show_card(card: MapCard, glyphs: str | None) -> None:
     columns, rows = shutil.get_terminal_size()
     with Session(scenario_on_map(card)) as session:
         scene = ViewBuilder(session).build().scene
+    scene = replace(scene, paths=(*scene.paths, *paths))
     click.echo(f"{card.title}: {card.summary}")
     click.echo("\n".join(scene_rows(scene, columns - 1, max(10, rows - 6), ENCODERS[chosen](True))))
     for case in card.cases:
@@ -157,6 +163,7 @@ def _show_card(card: MapCard, glyphs: str | None) -> None:
     show_default=True,
     help="Size of the drawing on the screen, in squares.",
 )
+@click.option("--pair", is_flag=True, help="Two robots start side by side and drive as one.")
 @options.workspace
 @options.glyphs
 @options.color
@@ -165,6 +172,7 @@ def new(
     drawing: Path | None,
     cell: float,
     size: str,
+    pair: bool,
     workspace: Path | None,
     glyphs: str | None,
     color: str | None,
@@ -187,11 +195,11 @@ def new(
     try:
         folder = check_name(name, open_workspace(workspace).worlds)
         if drawing is None:
-            _draw(folder, cell, size, glyphs, color)
+            _draw(folder, cell, size, glyphs, color, is_pair=pair)
             return
         text = sys.stdin.read() if str(drawing) == "-" else drawing.read_text(encoding="utf-8")
         plan = read_drawing(text, cell=cell, name="the drawing" if str(drawing) == "-" else str(drawing))
-        made = write_map(folder, plan, title=_title(name), source="drawn in characters")
+        made = write_map(folder, plan, title=_title(name), source="drawn in characters", is_pair=pair)
         scale = _drawing_scale(plan, cell)
     except UnicodeDecodeError:
         options.fail(f"{drawing} is not text. To read a photograph, use `kit maps from-photo {drawing}`.")
@@ -206,7 +214,9 @@ def _title(name: str) -> str:
     return name.replace("_", " ").replace("-", " ").capitalize()
 
 
-def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str | None) -> None:
+def _draw(
+    folder: Path, cell: float, size: str, glyphs: str | None, color: str | None, *, is_pair: bool
+) -> None:
     """Opens the sheet, and tells what was made of it. The drawing is kept beside the map, to be changed later."""
     from kit.mapmaking.map_drawing import read_drawing
     from kit.mapmaking.map_sketch import MapSketch
@@ -234,7 +244,9 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
         nonlocal scale
         plan = read_drawing(drawn.text, cell=drawn.cell)
         scale = _drawing_scale(plan, drawn.cell)
-        made = write_map(folder, plan, title=_title(folder.name), source="drawn on the screen")
+        made = write_map(
+            folder, plan, title=_title(folder.name), source="drawn on the screen", is_pair=is_pair
+        )
         (folder / "drawing.txt").write_text(drawn.text)
         return made
 
@@ -282,6 +294,7 @@ def _draw(folder: Path, cell: float, size: str, glyphs: str | None, color: str |
 )
 @click.option("--start", metavar="X,Y", help="Start of the robot [m from the sheet's lower left corner].")
 @click.option("--target", metavar="X,Y", help="Target of the robot, likewise.")
+@click.option("--keep-all", is_flag=True, help="Take all lines for walls, also pale, thin and small ones.")
 @options.workspace
 @options.glyphs
 @options.color
@@ -295,6 +308,7 @@ def from_photo(
     clicks: bool,
     start: str | None,
     target: str | None,
+    keep_all: bool,
     workspace: Path | None,
     glyphs: str | None,
     color: str | None,
@@ -303,14 +317,16 @@ def from_photo(
 
     Draw the walls with a dark pen on white paper. Photograph the whole sheet on a darker table; tilt and shadows are
     fine. The kit finds the sheet, corrects the perspective, finds the lines, closes small gaps, removes specks, and
-    checks that a robot can drive from start to target. Compare overlay.png in the map's folder with your drawing.
+    checks that a robot can drive from start to target. Lines that are much paler, thinner or smaller than the walls, such
+    as the rules of the paper, folds and writing, are left out and told; --keep-all takes them too. Compare overlay.png in
+    the map's folder with your drawing; if no map can be made, it is written here.
 
     \b
     kit maps from-photo plan.jpg --width 5             sheet 5 m wide
     kit maps from-photo plan.jpg hall --walls-width 4  outer walls 4 m apart
     kit maps from-photo plan.jpg --width 5 --click     click the corners
     """
-    from kit.mapmaking.new_map import MapExists, check_name, write_map
+    from kit.mapmaking.new_map import MapExists, check_name, tint_strokes, write_map
     from kit.mapmaking.photo import PAPER, PhotoError, PhotoScale, open_photo, plan_from_photo
     from kit.mapmaking.route import NoRoute
 
@@ -326,28 +342,72 @@ def from_photo(
         photo = open_photo(picture)
         known = _clicked(photo, picture.name, glyphs, color) if clicks else _corners(corners, photo)
         found = plan_from_photo(
-            photo, PhotoScale(width, walls_width), paper=PAPER[paper], corners=known, are_rough=clicks
+            photo,
+            PhotoScale(width, walls_width),
+            paper=PAPER[paper],
+            corners=known,
+            are_rough=clicks,
+            keep_doubtful=keep_all,
         )
+        tinted = tint_strokes(found.sheet, found.plan.walls, None if keep_all else found.strokes.doubtful)
         plan = replace(found.plan, start=places[0], target=places[1])
         made = write_map(
             folder,
             plan,
             title=folder.name.replace("_", " ").capitalize(),
             source=f"a photograph, {picture.name}",
-            overlay=found.sheet,
+            overlay=tinted,
         )
     except OSError as error:
         options.fail(options.describe_os_error(error))
-    except (MapExists, PhotoError, NoRoute, WorkspaceError) as error:
+    except NoRoute as error:
+        shown = Path(f"{folder.name}-overlay.png")
+        tinted.save(shown)
+        _say_doubts(found, keep_all=keep_all)
+        options.fail(f"{error} {shown} shows in red what was read as walls.")
+    except (MapExists, PhotoError, WorkspaceError) as error:
         options.fail(str(error))
     width_m, height_m = plan.size
     _report(
         made,
-        f"Scale: the sheet is {width_m:.3g} m by {height_m:.3g} m, its outer walls {found.walls_width:.3g} m apart: "
-        f"{'--width' if width is not None else '--walls-width'} was read as the width of the "
-        f"{'whole sheet' if width is not None else 'walls'}.",
+        f"Scale: sheet {width_m:.3g} m by {height_m:.3g} m, outer walls {found.walls_width:.3g} m apart "
+        f"(from {'--width' if width is not None else '--walls-width'}).",
         glyphs,
+        () if keep_all else _doubtful_boxes(found),
     )
+    _say_doubts(found, keep_all=keep_all)
+
+
+MAX_BOXES = 40
+"""Pieces of a sheet that are shown as doubtful."""
+
+
+def _say_doubts(found: PhotoPlan, *, keep_all: bool) -> None:
+    """Says what on the sheet may be no wall."""
+    if not found.strokes.remarks:
+        return
+    told = "; ".join(found.strokes.remarks)
+    if keep_all:
+        options.say(f"Taken as walls, as --keep-all says: {told}.")
+    elif found.strokes.doubtful.any():
+        options.say(
+            f"In doubt: {told}. What is dotted in the picture, and blue in overlay.png, was left out; --keep-all takes it too."
+        )
+    else:
+        options.say(f"In doubt: {told}. Compare overlay.png with your drawing.")
+
+
+def _doubtful_boxes(found: PhotoPlan) -> tuple[ScenePath, ...]:
+    """Dotted boxes around the largest pieces of what was left out [m]."""
+    from kit.render.scene import ScenePath
+
+    height, resolution = found.plan.walls.shape[0], found.plan.resolution
+    boxes = []
+    for left, top, right, bottom in found.strokes.doubtful_boxes()[:MAX_BOXES]:
+        corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)]
+        points = np.array([(x * resolution, (height - y) * resolution) for x, y in corners])
+        boxes.append(ScenePath(points, "dotted"))
+    return tuple(boxes)
 
 
 def _clicked(photo: Image, name: str, glyphs: str | None, color: str | None) -> Corners:
@@ -399,11 +459,12 @@ def _drawing_scale(plan: WallPlan, cell: float) -> str:
     return f"Scale: each character is a square of {cell:g} m; the drawing is {width:.3g} m by {height:.3g} m."
 
 
-def _report(made: NewMap, scale: str, glyphs: str | None) -> None:
-    """Draws a map that was made, and tells at which ``scale`` its drawing was read."""
+def _report(made: NewMap, scale: str, glyphs: str | None, doubtful: tuple[ScenePath, ...] = ()) -> None:
+    """Draws a map that was made, and tells at which ``scale`` its drawing was read. ``doubtful``: boxes around what may be a
+    wall and was left out."""
     card = own_card(made.folder / WORLD_FILE)
     assert card is not None  # just written
-    _show_card(card, glyphs)
+    _show_card(card, glyphs, doubtful)
     options.say(scale)
     x, y = made.route.narrowest
     options.say(

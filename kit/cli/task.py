@@ -22,13 +22,16 @@ from kit.learning.authoring.task_text import (
     task_blocks,
     tasks_table,
 )
+from kit.learning.policies.policy_node import node_refusals
 from kit.learning.tasks.catalogue import all_tasks, find_task
+from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.own_files import own_task_files, workspace_folders, workspace_task_file
 from kit.learning.tasks.task_reader import read_task, task_name
 from kit.learning.training.run_check import check_reward
 from kit.plain_text import counted, wrap
 from kit.render.encode import ENCODERS
 from kit.render.world_text import scene_rows
+from kit.school.game.task_levels import race_refusals
 
 
 @click.group()
@@ -69,11 +72,13 @@ def new(name: str, source: str) -> None:
             file = new_task_file(name, source, Path())
         except NewTaskError as error:
             options.fail(str(error))
-        check_task(read_task(file))
+        read = read_task(file)
+        check_task(read)
         own = workspace_task_file(name)
         found_by_name = file.parent.name == name or (own is not None and own.samefile(file))
         shown = name if found_by_name else file
         options.say(f"{file}: edit it; `kit task check {shown}` checks it, `kit train {shown}` trains it.")
+        _say_what_is_not_possible(read.task)
 
 
 @command.command()
@@ -97,6 +102,7 @@ def check(task: str) -> None:
         cases = len(found.map_cases())
         place = shown if shown != task else found.file
         click.echo(f"{place}: valid, version {found.version}; {counted(cases, 'case')}")
+        _say_what_is_not_possible(found)
 
 
 @command.command()
@@ -174,6 +180,14 @@ def list_tasks() -> None:
     ways = "`kit task show NAME` shows one, `kit task new MINE --from NAME` starts your own from it."
     tables = [tasks_table(all_tasks()), *([labelled_table(own, "Your own:", indent=2)] if own else [])]
     click.echo("\n".join(lines_of([*tables, Text(ways)])))
+
+
+def _say_what_is_not_possible(task: LearningTask) -> None:
+    """Prints what a trained agent of a task will not be able to do, before anybody trains one."""
+    for reason in race_refusals(task):
+        options.say(f"It cannot be raced: a level of the game cannot have {reason}.")
+    for reason in node_refusals(task):
+        options.say(f"Its agents can be neither raced nor exported as a node or a package: {reason}.")
 
 
 def _page() -> Page:

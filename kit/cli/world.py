@@ -10,9 +10,8 @@ import click
 from kit.cli import options
 from kit.plain_files import near_file
 from kit.plain_text import counted
-from kit.run.scenario import own_map_folder
 from kit.sim.plugins import plugin_readers, world_plugin_readers
-from kit.world.catalogue import WORLD_FILE, UnknownMap, allowed_root_of, find_map, map_names
+from kit.world.catalogue import WORLD_FILE, UnknownMap, allowed_root_of, find_map, map_names, own_map_folder
 from kit.world.loading import load_world
 from kit.world.problems import Problem, WorldError
 from kit.world.report import world_report, world_report_data

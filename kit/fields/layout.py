@@ -94,15 +94,37 @@ def read_layout(file: Path, grid: OccupancyGrid | None = None) -> ChargeLayout:
 
     Raises WorldError with all that is wrong.
     """
-    surface = None if grid is None else _WallSurface(grid, grid.wall_faces())
+    surface = None if grid is None else WallSurface(grid, grid.wall_faces())
     with open_document(file) as section:
-        intensities = _read_intensities(section.section("intensities"))
-        charges = tuple(_read_charges(section.sections("charges"), surface))
+        intensities, charges = read_charges(section, surface)
     return ChargeLayout(charges, intensities, file, ChargeField.from_charges(charges))
 
 
+def read_charges(section: Section, surface: WallSurface | None) -> tuple[Intensities, tuple[Charge, ...]]:
+    """Reads what a charge file holds; what is wrong is noted in the section.
+
+    ================================ ============================================================================
+    intensities                      how strongly each kind of charge acts
+    intensities.walls                of every charge of the list, times its own factor [N m^2]
+    intensities.target               of the point charge at the target, which must attract [N m^2]
+    intensities.robot                of each robot for the other one [N m^2]
+    intensities.tension              of the point where each of two robots should be [N/m]
+    charges                          the walls' charges; each is one of line, point and composite
+    charges[].times                  factor of the walls' intensity
+    charges[].line                   x1, y1, x2, y2 [m]; instead of it, point: [x, y]
+    charges[].point                  x, y [m]
+    charges[].composite              lines and points that act as one wall with corners
+    charges[].handover               which part of a composite acts: the nearest, or the first line of the list
+    charges[].composite[].line       x1, y1, x2, y2 [m]
+    charges[].composite[].point      x, y [m]
+    ================================ ============================================================================
+    """
+    intensities = _read_intensities(section.section("intensities"))
+    return intensities, tuple(_read_charges(section.sections("charges"), surface))
+
+
 @dataclass(frozen=True, slots=True, eq=False)
-class _WallSurface:
+class WallSurface:
     """The walls that charges are checked against."""
 
     grid: OccupancyGrid
@@ -123,7 +145,7 @@ def _read_intensities(section: Section) -> Intensities:
     return read
 
 
-def _read_charges(sections: Iterable[Section], surface: _WallSurface | None) -> Iterator[Charge]:
+def _read_charges(sections: Iterable[Section], surface: WallSurface | None) -> Iterator[Charge]:
     for section in sections:
         times = section.number("times", 1.0)
         if section.has("composite"):
@@ -138,7 +160,7 @@ def _read_charges(sections: Iterable[Section], surface: _WallSurface | None) -> 
 
 
 def _read_member(
-    section: Section, times: float, surface: _WallSurface | None
+    section: Section, times: float, surface: WallSurface | None
 ) -> LineCharge | PointCharge | None:
     if section.has("line"):
         ax, ay, bx, by = section.numbers("line", length=4)
@@ -162,7 +184,7 @@ def _read_composite(
     parts: tuple[Section, ...],
     times: float,
     handover: Handover,
-    surface: _WallSurface | None,
+    surface: WallSurface | None,
 ) -> CompositeCharge:
     found = []
     for part in parts:
@@ -197,7 +219,7 @@ def _check_corners(section: Section, lines: tuple[LineCharge, ...], points: tupl
 
 
 def _check_not_in_wall(
-    section: Section, key: str, places: list[tuple[float, float]], surface: _WallSurface
+    section: Section, key: str, places: list[tuple[float, float]], surface: WallSurface
 ) -> None:
     for x, y in places:
         depth = wall_depth(surface.grid, surface.wall_faces, x, y)

@@ -6,14 +6,17 @@ import os
 import re
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from string import Template
 from typing import Final
 
+import yaml
+
 from kit.controllers import FOLDER as CONTROLLERS
+from kit.geometry import Pose
 from kit.ros.packages import PackageError
 from kit.world.catalogue import find_map
 
@@ -127,6 +130,38 @@ def copy_world(world_file: Path, folder: Path) -> None:
     """Copies a world and the files that it names, and those that they name, into one folder; ``world.yaml`` is the world."""
     folder.mkdir()
     _copy_with_references(world_file.resolve(), folder, {world_file.resolve(): "world.yaml"})
+
+
+def place_models(world_file: Path, poses: Mapping[str, Pose]) -> None:
+    """Writes other poses of models into a world file; the rest of it stays as it is."""
+    text = world_file.read_text(encoding="utf-8")
+    root = yaml.compose(text, Loader=yaml.SafeLoader)
+    assert isinstance(root, yaml.MappingNode)  # a world that has been read
+    changes = [
+        change
+        for key, models in root.value
+        if key.value == "models"
+        for model in models.value
+        if (change := _change_of_pose(model, poses)) is not None
+    ]
+    for first, end, new in sorted(changes, reverse=True):
+        text = text[:first] + new + text[end:]
+    world_file.write_text(text, encoding="utf-8")
+
+
+def _change_of_pose(model: yaml.MappingNode, poses: Mapping[str, Pose]) -> tuple[int, int, str] | None:
+    """Which characters of the file give way to what, for one model of it; None where its pose stays."""
+    keys = {key.value: (key, value) for key, value in model.value}
+    if keys["name"][1].value not in poses:
+        return None
+    pose = poses[keys["name"][1].value]
+    new = f"[{pose.x:.6g}, {pose.y:.6g}, {pose.theta:.6g}]"
+    if "pose" in keys:
+        value = keys["pose"][1]
+        return value.start_mark.index, value.end_mark.index, new if value.flow_style else f"{new}\n"
+    key, value = keys["name"]
+    before = ", " if model.flow_style else "\n" + " " * key.start_mark.column
+    return value.end_mark.index, value.end_mark.index, f"{before}pose: {new}"
 
 
 def _copy_with_references(file: Path, folder: Path, names: dict[Path, str]) -> None:

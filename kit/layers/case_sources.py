@@ -15,8 +15,7 @@ from kit.layers.planning import DEFAULT_TIME_LIMIT, LayerPlan, solve_layers
 from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import RequirementsFile, is_world_file, read_requirements, requirements_text
 from kit.plain_text import quoted, suggestion
-from kit.run.scenario import own_map_folder
-from kit.world.catalogue import WORLD_FILE, allowed_root_of, find_map, map_names
+from kit.world.catalogue import WORLD_FILE, allowed_root_of, find_map, map_names, own_map_folder
 from kit.world.records import World
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import shutil
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,6 +28,7 @@ from kit.mapmaking.route import (
 from kit.plain_text import quoted
 from kit.workspace import errors_name_file
 from kit.world.catalogue import CARD_FILE, WORLD_FILE, maps_folder
+from kit.world.connected_parts import connected_parts
 from kit.world.loading import load_world
 
 PICTURE_FILE: Final = "map.png"
@@ -53,10 +53,31 @@ layers:
     map: map.yaml
 
 models:
-  - name: serp
-    model: serp.model.yaml
-    pose: [{x:.3f}, {y:.3f}, {theta:.4f}]   # x, y [m], heading [rad]
 """
+
+MODEL_TEXT: Final = """\
+  - name: {name}
+    model: serp.model.yaml
+{namespace}    pose: [{x:.3f}, {y:.3f}, {theta:.4f}]   # x, y [m], heading [rad]
+"""
+NAMESPACE_TEXT: Final = """\
+    namespace: {name}   # its topics are /{name}/cmd_vel, /{name}/odom, ...
+"""
+
+OWN_HULL: Final = (
+    "      - type: polygon                # the hull\n",
+    "layers: [solid]",
+    "layers: [solid, seen]",
+)
+"""Where the kit's robot has its hull, and the layers of it that change: robots on one's own map see each other. The laser stands
+inside its own hull, which it therefore does not see."""
+PAIR: Final = ("left", "right")
+PAIR_GAP: Final = 0.4
+"""Between the origins of two robots that start side by side [m]."""
+PAIR_SEARCH: Final = 0.8
+"""How far from the start room for them is looked for [m]."""
+PAIR_TARGET_RADIUS: Final = 0.4
+"""Within which two robots are in the target at the same time [m]."""
 
 MAP_TEXT: Final = """\
 # Walls from a picture: they run where dark pixels meet bright ones.
@@ -70,12 +91,12 @@ CARD_TEXT: Final = """\
 title: {title}
 summary: {summary}
 source: {source}
-robot: serp
-cases:
+robot: {robot}
+{partner}cases:
   - name: {name}
     start: [{x:.3f}, {y:.3f}, {theta:.4f}]
     target: [{tx:.3f}, {ty:.3f}]
-"""
+{partner_start}"""
 
 
 class MapExists(ValueError):
@@ -108,6 +129,8 @@ class NewMap:
     start: Pose
     target: Point
     route: Route
+    partner: Pose | None = None
+    """Where the second of two robots starts."""
 
 
 def check_name(name: str, folder: Path) -> Path:
@@ -122,10 +145,16 @@ def check_name(name: str, folder: Path) -> Path:
 
 
 def write_map(
-    folder: Path, plan: WallPlan, *, title: str, source: str, overlay: Image.Image | None = None
+    folder: Path,
+    plan: WallPlan,
+    *,
+    title: str,
+    source: str,
+    overlay: Image.Image | None = None,
+    is_pair: bool = False,
 ) -> NewMap:
-    """Writes the map's files into a new folder, all or none. ``overlay``: the drawing, as large as the plan, over which
-    walls and way are shown. Raises NoRoute, OSError, and ValueError if there are no walls."""
+    """Writes the map's files into a new folder, all or none. ``overlay``: the drawing, as large as the plan, with its
+    walls tinted, over which the way is shown. ``is_pair``: whether two robots start side by side. Raises NoRoute, OSError, and ValueError if there are no walls."""
     folder.parent.mkdir(parents=True, exist_ok=True)
     with (
         errors_name_file(folder),
@@ -136,11 +165,12 @@ def write_map(
         picture = Image.fromarray(np.where(plan.walls, 0, 255).astype(np.uint8))
         picture.save(made / PICTURE_FILE)
         (made / MAP_FILE).write_text(MAP_TEXT.format(resolution=plan.resolution))
-        robots = maps_folder() / "robots"
-        shutil.copyfile(robots / ROBOT_FILE, made / ROBOT_FILE)
-        middle = (plan.size[0] / 2, plan.size[1] / 2)
-        start, target, route = _place(made, plan, title, middle)
-        _write_world(made, title, start)
+        (made / ROBOT_FILE).write_text(own_robot_text())
+        start, target, route, grid = _place(made, plan, title, middle_of_floor(plan))
+        partner = None
+        if is_pair:
+            start, partner = _side_by_side(start, grid)
+        _write_world(made, title, start, partner)
         card = CARD_TEXT.format(
             title=quoted(title),
             summary=quoted(
@@ -153,29 +183,100 @@ def write_map(
             theta=start.theta,
             tx=target[0],
             ty=target[1],
+            robot="serp" if partner is None else PAIR[0],
+            partner="" if partner is None else f"partner: {PAIR[1]}\n",
+            partner_start=""
+            if partner is None
+            else f"    partner_start: [{partner.x:.3f}, {partner.y:.3f}, {partner.theta:.4f}]\n"
+            f"    target_radius: {PAIR_TARGET_RADIUS:g}\n",
         )
         (made / CARD_FILE).write_text(card)
         if overlay is not None:
             draw_overlay(overlay, plan, route, start, target).save(made / OVERLAY_FILE)
         made.rename(folder)
-    return NewMap(folder, start, target, route)
+    return NewMap(folder, start, target, route, partner)
+
+
+def own_robot_text() -> str:
+    """The kit's robot as a map of one's own has it."""
+    hull, layers, wanted = OWN_HULL
+    before, found, after = (maps_folder() / "robots" / ROBOT_FILE).read_text().partition(hull)
+    return before + found + after.replace(layers, wanted, 1)
+
+
+def _side_by_side(start: Pose, grid: OccupancyGrid) -> tuple[Pose, Pose]:
+    """Where two robots start, as near the start as there is room: beside each other, else one behind the other. Raises
+    NoRoute."""
+    half = 0.5 * PAIR_GAP
+    steps = np.arange(-PAIR_SEARCH, PAIR_SEARCH + 0.01, 0.05).tolist()
+    shifts = sorted(((dx, dy) for dx in steps for dy in steps), key=lambda shift: math.hypot(*shift))
+    for first, second in (((0.0, half), (0.0, -half)), ((half, 0.0), (-half, 0.0))):
+        for dx, dy in shifts:
+            poses = [Pose(*start.transform_point(x + dx, y + dy), start.theta) for x, y in (first, second)]
+            if all(_has_room(grid, start, pose) for pose in poses):
+                return poses[0], poses[1]
+    raise NoRoute(
+        f"There is no room for two robots at the start ({start.x:.2f}, {start.y:.2f}): side by side they need "
+        f"{PAIR_GAP + 2 * ROBOT_RADIUS:.2f} m. Put S elsewhere, or give the map a larger scale."
+    )
+
+
+def _has_room(grid: OccupancyGrid, start: Pose, pose: Pose) -> bool:
+    """Whether a robot can stand at a pose, and no wall lies between it and the start."""
+    shares = np.linspace(0.0, 1.0, 20)
+    line = [(start.x + share * (pose.x - start.x), start.y + share * (pose.y - start.y)) for share in shares]
+    cells = [grid.cell_at(*point) for point in line]
+    if not all(0 <= row < grid.shape[0] and 0 <= column < grid.shape[1] for row, column in cells):
+        return False
+    room = [float(grid.clearance[cell]) for cell in cells]
+    return room[-1] > ROBOT_RADIUS and min(room) > 0.5 * ROBOT_RADIUS
+
+
+def middle_of_floor(plan: WallPlan) -> Point:
+    """A place in the largest room that walls enclose, as far from them as may be [m]; the drawing's middle where none does."""
+    factor = max(1, max(plan.walls.shape) // 250)
+    rows, columns = (length // factor for length in plan.walls.shape)
+    blocks = plan.walls[: rows * factor, : columns * factor].reshape(rows, factor, columns, factor)
+    walls = blocks.any(axis=(1, 3))
+    free = connected_parts(np.pad(~walls, 1, constant_values=True))
+    sizes = np.bincount(free.ravel())
+    sizes[[0, free[0, 0]]] = 0
+    if not sizes.any():
+        used = np.argwhere(plan.walls) if plan.walls.any() else np.array([[0, 0], plan.walls.shape])
+        middle = 0.5 * (used.min(axis=0) + used.max(axis=0))
+        return float(middle[1]) * plan.resolution, float(plan.walls.shape[0] - middle[0]) * plan.resolution
+    room = (free == int(sizes.argmax()))[1:-1, 1:-1]
+    last = room
+    while room.any():
+        last, edge = room, np.pad(room, 1)
+        room = room & edge[:-2, 1:-1] & edge[2:, 1:-1] & edge[1:-1, :-2] & edge[1:-1, 2:]
+    row, column = np.argwhere(last)[0].tolist()
+    height = plan.walls.shape[0]
+    return (column + 0.5) * factor * plan.resolution, (height - (row + 0.5) * factor) * plan.resolution
+
+
+def tint_strokes(drawing: Image.Image, walls: BoolArray, doubtful: BoolArray | None = None) -> Image.Image:
+    """The drawing, as large as the plan, with walls in red and what may be none in blue."""
+    height, width = walls.shape
+    pixels = np.asarray(drawing.convert("RGB").resize((width, height))).copy()
+    for mask, tone in ((walls, (200, 30, 30)), (doubtful, (30, 90, 220))):
+        if mask is not None:
+            pixels[mask] = (pixels[mask] * 0.3 + np.array(tone) * 0.7).astype(np.uint8)
+    return Image.fromarray(pixels)
 
 
 def draw_overlay(
     drawing: Image.Image, plan: WallPlan, route: Route, start: Pose, target: Point
 ) -> Image.Image:
-    """The walls in red over the drawing, the way in blue, the narrowest passage in a ring, S and T."""
+    """The way in green over the tinted drawing, the narrowest passage in a ring, S and T."""
     height, width = plan.walls.shape
     picture = drawing.convert("RGB").resize((width, height))
-    pixels = np.asarray(picture).copy()
-    pixels[plan.walls] = (pixels[plan.walls] * 0.3 + np.array([200, 30, 30]) * 0.7).astype(np.uint8)
-    picture = Image.fromarray(pixels)
     draw = ImageDraw.Draw(picture)
 
     def at(point: Point) -> Point:
         return point[0] / plan.resolution, height - point[1] / plan.resolution
 
-    draw.line([at(point) for point in route.points], fill=(30, 80, 220), width=max(2, width // 300))
+    draw.line([at(point) for point in route.points], fill=(20, 140, 60), width=max(2, width // 300))
     radius = max(6.0, route.width / 2 / plan.resolution)
     x, y = at(route.narrowest)
     draw.ellipse(
@@ -188,8 +289,8 @@ def draw_overlay(
     return picture
 
 
-def _place(made: Path, plan: WallPlan, title: str, middle: Point) -> tuple[Pose, Point, Route]:
-    """Start and target, asked for or chosen, and the way between them."""
+def _place(made: Path, plan: WallPlan, title: str, middle: Point) -> tuple[Pose, Point, Route, OccupancyGrid]:
+    """Start and target, asked for or chosen, the way between them, and the floor."""
     seed = plan.start or middle
     _write_world(made, title, Pose(*seed, 0.0))
     grid: OccupancyGrid = occupancy_grid_of(load_world(made / WORLD_FILE), MAX_CELLS)
@@ -220,7 +321,7 @@ def _place(made: Path, plan: WallPlan, title: str, middle: Point) -> tuple[Pose,
     route = widest_route(grid, start, target)
     check_closed(grid, start)
     ahead = route.points[min(len(route.points) - 1, 12)]
-    return Pose(*start, math.atan2(ahead[1] - start[1], ahead[0] - start[0])), target, route
+    return Pose(*start, math.atan2(ahead[1] - start[1], ahead[0] - start[0])), target, route, grid
 
 
 def _is_wall(plan: WallPlan, grid: OccupancyGrid) -> BoolArray:
@@ -232,5 +333,10 @@ def _is_wall(plan: WallPlan, grid: OccupancyGrid) -> BoolArray:
     return found
 
 
-def _write_world(made: Path, title: str, start: Pose) -> None:
-    (made / WORLD_FILE).write_text(WORLD_TEXT.format(title=title, x=start.x, y=start.y, theta=start.theta))
+def _write_world(made: Path, title: str, start: Pose, partner: Pose | None = None) -> None:
+    models = {"serp": start} if partner is None else dict(zip(PAIR, (start, partner), strict=True))
+    text = WORLD_TEXT.format(title=title)
+    for name, pose in models.items():
+        namespace = NAMESPACE_TEXT.format(name=name) if partner is not None else ""
+        text += MODEL_TEXT.format(name=name, namespace=namespace, x=pose.x, y=pose.y, theta=pose.theta)
+    (made / WORLD_FILE).write_text(text)

@@ -12,6 +12,7 @@ import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
 
 from kit.arrays import BoolArray
+from kit.mapmaking.doubts import JudgedStrokes
 from kit.mapmaking.new_map import WallPlan
 from kit.mapmaking.pixels import (
     Corners,
@@ -54,6 +55,8 @@ class PhotoPlan:
     sheet: Image.Image
     corners: Corners
     """Corners of the sheet in the photograph [pixels]."""
+    strokes: JudgedStrokes
+    """All that was drawn, of which the plan has the walls."""
 
     @property
     def walls_width(self) -> float:
@@ -113,10 +116,11 @@ def plan_from_photo(
     corners: Corners | None = None,
     are_rough: bool = False,
     options: StrokeOptions = StrokeOptions(),
+    keep_doubtful: bool = False,
 ) -> PhotoPlan:
     """Finds the walls of a drawing in its photograph. ``paper``: longer side of the sheet by its shorter one. ``corners`` [pixels]: of the sheet;
     None: it is looked for. ``are_rough``: the corners were put by hand, and the sheet's edges are looked for near them.
-    Raises PhotoError."""
+    ``keep_doubtful``: whether what may be no wall is taken for one. Raises PhotoError."""
     small = min(1.0, WORKING_WIDTH / photo.width)
     working = photo.resize(
         (round(photo.width * small), round(photo.height * small)), Image.Resampling.LANCZOS
@@ -127,11 +131,11 @@ def plan_from_photo(
             found = refine_corners(working, found)
         size = _sheet_size(found, paper)
         sheet = flattened(working, found, size)
-        walls = find_strokes(sheet, options)
+        strokes = find_strokes(sheet, options)
     except (SheetNotFound, NoStrokes) as error:
         raise PhotoError(str(error)) from None
-    resolution = _resolution(walls, scale)
-    return PhotoPlan(WallPlan(walls, resolution), sheet, _scaled(found, 1 / small))
+    walls = strokes.walls | strokes.doubtful if keep_doubtful else strokes.walls
+    return PhotoPlan(WallPlan(walls, _resolution(walls, scale)), sheet, _scaled(found, 1 / small), strokes)
 
 
 def whole_picture(photo: Image.Image) -> Corners:

@@ -9,6 +9,7 @@ import numpy as np
 from PIL import Image, ImageFilter
 
 from kit.arrays import BoolArray, FloatArray
+from kit.mapmaking.doubts import PALE, JudgedStrokes, judge_strokes, usual_depth
 from kit.mapmaking.pixels import (
     blurred,
     bridged,
@@ -53,16 +54,29 @@ class StrokeOptions:
     """Anything shorter is a speck."""
 
 
-def find_strokes(sheet: Image.Image, options: StrokeOptions = StrokeOptions()) -> BoolArray:
-    """(rows, columns), ``PLAN_PIXELS`` columns: true where a stroke is. ``sheet``: flat. Raises NoStrokes."""
+def find_strokes(sheet: Image.Image, options: StrokeOptions = StrokeOptions()) -> JudgedStrokes:
+    """The strokes of a flat sheet, ``PLAN_PIXELS`` columns wide. Raises NoStrokes."""
     depth = stroke_depth(sheet)
     mask = _stroke_pixels(depth)
+    everything = _plan_of(mask, sheet, options)
+    _check_share(everything)
+    lifted = depth - float(np.median(depth))
+    deep = mask & (lifted > PALE * usual_depth(lifted, mask))
+    return judge_strokes(everything, _plan_of(deep, sheet, options))
+
+
+def _plan_of(mask: BoolArray, sheet: Image.Image, options: StrokeOptions) -> BoolArray:
+    """(rows, columns): the pixels of strokes as a plan, without specks and short breaks."""
     size = (PLAN_PIXELS, round(PLAN_PIXELS * sheet.height / sheet.width))
     plan = np.asarray(Image.fromarray((mask * 255).astype(np.uint8)).resize(size, Image.Resampling.BOX)) > 127
     plan = _without_specks(plan, 0.3 * options.least_length)
     # A line across a corner is no stroke: a stroke goes on for more than twice its width.
     plan = bridged(plan, _odd(options.widest_gap * PLAN_PIXELS), _odd(max(12.0, 2.5 * stroke_width(plan))))
-    plan = _without_specks(plan, options.least_length)
+    return _without_specks(plan, options.least_length)
+
+
+def _check_share(plan: BoolArray) -> None:
+    """Raises NoStrokes where there are hardly any strokes, or too many."""
     share = float(plan.mean())
     if share < 0.001:
         raise NoStrokes(
@@ -72,7 +86,6 @@ def find_strokes(sheet: Image.Image, options: StrokeOptions = StrokeOptions()) -
         raise NoStrokes(
             f"{100 * share:.0f} % of the sheet is dark: this does not look like lines on paper. Photograph a drawing of lines."
         )
-    return plan
 
 
 def stroke_width(mask: BoolArray) -> float:

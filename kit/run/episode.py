@@ -26,7 +26,9 @@ def controller_arguments(scenario: Scenario, home: Pose | None = None) -> list[s
     Parameters: ``home`` [x m, y m, theta rad], ``model`` (the robot's name), ``models`` (all that drive), ``world``
     (its file), ``charges`` (a file, if given), and where the scenario has a target ``target`` [x m, y m] and
     ``target_radius`` [m]. Where it has several, ``target`` is the first, and ``targets`` [x1 m, y1 m, x2 m, y2 m, ...]
-    are all in their order, one that is to be reached in every round once for each round. Relative topics are in the robot's namespace. Empty in a world without a robot.
+    are all in their order, one that is to be reached in every round once for each round.
+    ``target_heading`` [rad] is given where the target has one that is asked for, and ``leader_frame`` where it moves: its
+    frame on /tf. Relative topics are in the robot's namespace. Empty in a world without a robot.
 
     ``home``: where the robot starts, by default where the world has it.
     """
@@ -48,6 +50,10 @@ def controller_arguments(scenario: Scenario, home: Pose | None = None) -> list[s
         parameters["target_radius"] = repr(float(scenario.case.target_radius))
     if len(scenario.targets) > 1:
         parameters["targets"] = json.dumps([float(each) for point in scenario.targets for each in point])
+    if scenario.target_heading is not None:
+        parameters["target_heading"] = repr(float(scenario.target_heading))
+    if scenario.leader is not None and (frame := scenario.leader_frame):
+        parameters["leader_frame"] = json.dumps(frame)
     words = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
     namespace = ["-r", f"__ns:=/{robot.namespace}"] if robot.namespace else []
     return ["--ros-args", *words, *namespace]

@@ -9,11 +9,13 @@ from pathlib import Path
 from kit.geometry import Pose
 from kit.plain_text import quoted
 from kit.workspace import WorkspaceError, expand_home, open_workspace
-from kit.world.catalogue import WORLD_FILE, MapCard, MapCase, find_map, map_names, own_card
+from kit.world.catalogue import WORLD_FILE, MapCard, MapCase, find_map, map_names, own_card, own_map_folder
 from kit.world.records import Model, World
 
 BEACON = "beacon"
 """A model of this name stands where the case's target is."""
+BEACON_RADIUS = 0.2
+"""How near a beacon is near enough, in a world without a card [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +34,10 @@ class Scenario:
     targets: tuple[tuple[float, float], ...] = ()
     """Where there are several targets: all of them in their order [m, m], the case's first; one that is to be reached
     several times is there as often."""
+    target_heading: float | None = None
+    """The heading asked for at the target [rad]; None: any will do."""
+    leader: str | None = None
+    """The model that is the target, where that moves."""
     level: str | None = None
     """The level of the game under whose conditions this is; None: the map as it is."""
 
@@ -53,6 +59,15 @@ class Scenario:
         """The partners' poses at the start."""
         poses = {model.name: model.pose for model in self.world.models}
         return tuple(poses[name] for name in self.partners)
+
+    @property
+    def leader_frame(self) -> str:
+        """The frame on /tf of the target that moves; empty where nothing publishes it, and where no target moves."""
+        from kit.sim.plugins.model_tf_publisher import (
+            frame_in_world,
+        )  # only where a target moves: it brings the simulator
+
+        return next((frame_in_world(each) for each in self.world.models if each.name == self.leader), "")
 
     @property
     def driven(self) -> Model | None:
@@ -86,7 +101,27 @@ def scenario_in_file(file: Path, root: Path | None = None) -> Scenario:
     driven = _models_with_drive(world)
     robot = driven[0] if driven else next((model.name for model in world.models), None)
     title = file.stem if file.stem != "world" else file.parent.name
-    return Scenario(str(file), title, world, robot)
+    return Scenario(str(file), title, world, robot, _case_of_world(world, driven))
+
+
+def _case_of_world(world: World, driven: tuple[str, ...]) -> MapCase | None:
+    """From where the robots stand to the beacon, where a world without a card has both."""
+    poses = {model.name: model.pose for model in world.models}
+    if not driven or BEACON not in poses:
+        return None
+    x, y, _ = poses[BEACON]
+    partner = poses[driven[1]] if len(driven) > 1 else None
+    return MapCase(
+        "to the beacon",
+        poses[driven[0]],
+        (x, y),
+        BEACON_RADIUS,
+        (0.0, 0.0),
+        (0.0, 0.0),
+        is_heading_random=False,
+        group="",
+        partner_start=partner,
+    )
 
 
 def _models_with_drive(world: World) -> tuple[str, ...]:
@@ -157,17 +192,6 @@ def _own_world_file(name: str, root: Path | None = None) -> Path | None:
         return path.absolute() if path.is_file() or path.suffix in (".yaml", ".yml") else None
     except (OSError, ValueError):  # what cannot be a file's name is no map's either
         return None
-
-
-def own_map_folder(name: str) -> Path | None:
-    """The folder of the user's own map of that name in the workspace; None if there is none."""
-    if not name or Path(name).name != name:
-        return None
-    try:
-        folder = open_workspace(make=False).worlds / name
-    except WorkspaceError:
-        return None
-    return folder if (folder / WORLD_FILE).is_file() else None
 
 
 def _scenario_of_case(card: MapCard, case: str | None) -> Scenario:

@@ -11,6 +11,7 @@ from pathlib import Path
 from kit.extensions import folders
 from kit.geometry import Pose
 from kit.plain_text import quoted, suggestion
+from kit.workspace import WorkspaceError, open_workspace
 from kit.world.documents import open_document
 from kit.world.yaml_section import Section
 
@@ -114,6 +115,7 @@ def all_maps(folder: Path | None = None) -> tuple[MapCard, ...]:
 def find_map(name: str, folder: Path | None = None) -> MapCard:
     """Returns the map of that name: its world file, its robot, and its cases with start and target in metres and radians.
 
+    A map of the kit's, of another package's, or one of your own in the workspace; in this order.
     Raises UnknownMap, and WorldError if its card is wrong.
 
     >>> card = kit.find_map("pair_straight")
@@ -121,6 +123,9 @@ def find_map(name: str, folder: Path | None = None) -> MapCard:
     ('left', 'right', ['pair_straight'])
     """
     names = map_names(folder)
+    own = own_map_folder(name) if folder is None and name not in names else None
+    if own is not None and (card := own_card(own / WORLD_FILE)) is not None:
+        return card
     if name not in names:
         raise UnknownMap(f"there is no map {quoted(name)}: {suggestion(name, names)}")
     return _read_card(_map_folder(name, folder))
@@ -132,6 +137,17 @@ def own_card(world_file: Path) -> MapCard | None:
     if world_file.name != WORLD_FILE or not (folder / CARD_FILE).is_file():
         return None
     return replace(_read_card(folder), root=allowed_root_of(world_file) or folder)
+
+
+def own_map_folder(name: str) -> Path | None:
+    """The folder of the user's own map of that name in the workspace; None if there is none."""
+    if not name or Path(name).name != name:
+        return None
+    try:
+        folder = open_workspace(make=False).worlds / name
+    except WorkspaceError:
+        return None
+    return folder if (folder / WORLD_FILE).is_file() else None
 
 
 def map_names(folder: Path | None = None) -> tuple[str, ...]:

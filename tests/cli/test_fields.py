@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from kit.cli import main
+from kit.world.catalogue import maps_folder
 
 
 def kit(*words: str) -> Result:
@@ -94,3 +95,28 @@ def test_a_world_of_ones_own_has_no_target(tmp_path: Path) -> None:
 def test_drive_is_play() -> None:
     found = CliRunner().invoke(main, ["drive", "--help"])
     assert "--controller" in found.output
+
+
+BARE = """\
+properties: {}
+layers: [{name: [seen, felt], map: map.yaml}, {name: tracked}]
+models:
+  - {name: left, model: left.model.yaml, pose: [0, 0, 1.5708]}
+  - {name: beacon, model: beacon.model.yaml, pose: [1.6, 1.6, 0]}
+"""
+
+
+def test_a_bare_world_with_robot_and_beacon_has_a_field(tmp_path: Path) -> None:
+    maps = maps_folder()
+    for name in ("left.model.yaml", "beacon.model.yaml"):
+        (tmp_path / name).write_text((maps / "robots" / name).read_text())
+    for file in (maps / "turn").iterdir():
+        if file.name not in ("world.yaml", "about.yaml"):
+            (tmp_path / file.name).write_bytes(file.read_bytes())
+    (tmp_path / "world.yaml").write_text(BARE)
+    found = CliRunner().invoke(main, ["fields", "show", str(tmp_path / "world.yaml"), "--plain"])
+    assert found.exit_code == 0, found.output
+    assert "derived from the walls" in found.output
+    (tmp_path / "world.yaml").write_text("\n".join(BARE.splitlines()[:-1]) + "\n")
+    found = CliRunner().invoke(main, ["fields", "show", str(tmp_path / "world.yaml"), "--plain"])
+    assert "a model named beacon" in " ".join(found.output.split())

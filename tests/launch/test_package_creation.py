@@ -8,10 +8,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+import yaml
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.launch.package_creation import create_package
+from kit.geometry import Pose
+from kit.launch.package_creation import create_package, place_models
 from kit.ros.packages import PackageError, read_package
 from kit.run.scenario import scenario_in_file
 from kit.world.catalogue import UnknownMap
@@ -102,3 +104,22 @@ def test_packages_and_programs_are_listed(kit: Callable[..., tuple[str, str, int
     assert "not found; available: my_robot" in err
     assert kit("pkg", "create", "my_robot")[2] == 2
     assert kit("launch", "my_robot", "--steps", "5")[2] == 0
+
+
+def test_models_are_placed_and_the_rest_of_a_world_stays(tmp_path: Path) -> None:
+    file = tmp_path / "world.yaml"
+    text = """models:
+  - name: serp   # the robot
+    model: serp.model.yaml
+    pose: [1, 2, 3]   # somewhere
+  - {name: cart, model: cart.model.yaml}
+  - name: beacon
+    model: beacon.model.yaml
+"""
+    file.write_text(text)
+    place_models(file, {"serp": Pose(0.5, -1.0, 0.25), "cart": Pose(2.0, 2.0), "nobody": Pose()})
+    found = yaml.safe_load(file.read_text())["models"]
+    assert [each.get("pose") for each in found] == [[0.5, -1.0, 0.25], [2, 2, 0], None]
+    assert "# the robot" in file.read_text()
+    assert "# somewhere" in file.read_text()
+    assert [each["model"] for each in found] == [f"{name}.model.yaml" for name in ("serp", "cart", "beacon")]

@@ -27,6 +27,8 @@ class Judgement:
     """Pixels of true walls farther than the tolerance from any wall found."""
     extra: int
     """Pixels of found walls farther than the tolerance from any true wall."""
+    remarks: tuple[str, ...] = ()
+    """What the reader doubts."""
 
     @property
     def is_right(self) -> bool:
@@ -36,15 +38,18 @@ class Judgement:
 def judge(photo: Photo) -> Judgement:
     """Reads a photograph and compares."""
     try:
-        found = plan_from_photo(photo.image, PhotoScale(sheet_width=SHEET[0])).plan
+        read = plan_from_photo(photo.image, PhotoScale(sheet_width=SHEET[0]))
     except PhotoError as error:
         return Judgement(str(error), 0, 0)
-    truth, walls = true_mask(photo, SCALE), found.walls
+    truth, walls = true_mask(photo, SCALE), read.plan.walls
     rows, columns = min(truth.shape[0], walls.shape[0]), min(truth.shape[1], walls.shape[1])
     truth, walls = truth[:rows, :columns], walls[:rows, :columns]
     reach = round(TOLERANCE * SCALE)
     return Judgement(
-        "", int((truth & ~spread(walls, reach)).sum()), int((walls & ~spread(truth, reach)).sum())
+        "",
+        int((truth & ~spread(walls, reach)).sum()),
+        int((walls & ~spread(truth, reach)).sum()),
+        read.strokes.remarks,
     )
 
 

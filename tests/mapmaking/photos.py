@@ -14,6 +14,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFilter
 
 from kit.arrays import BoolArray, FloatArray
+from tests.mapmaking.nuisances import CLOSED, NUISANCES, Sheet, closed_room
 
 Points = tuple[tuple[float, float], ...]
 
@@ -75,10 +76,12 @@ class Photo:
     """The walls' middle lines, unbroken [m], x to the right and y up from the sheet's lower left corner."""
     stroke_width: float
     settings: dict[str, float]
+    nuisance: str = ""
+    """What else is on the paper, of ``nuisances.KINDS``; empty: nothing."""
 
 
-def draw_photo(seed: int) -> Photo:
-    """The photograph of that seed."""
+def draw_photo(seed: int, nuisance: str = "") -> Photo:
+    """The photograph of that seed, with this nuisance on its paper."""
     random = np.random.default_rng(seed)
     settings = {
         "tilt": random.uniform(*TILT),
@@ -95,14 +98,27 @@ def draw_photo(seed: int) -> Photo:
         "gaps": float(random.integers(GAPS[0], GAPS[1] + 1)),
         "desk": random.uniform(*DESK),
     }
-    strokes = tuple(_by_hand(line, settings["wobble"], random) for line in draw_plan(random))
+    walls, own = draw_plan(random), np.random.default_rng([seed, 1])
+    if nuisance == CLOSED:
+        walls += closed_room(walls, SHEET, own)
+    strokes = tuple(_by_hand(line, settings["wobble"], random) for line in walls)
     sheet = _draw_sheet(strokes, settings, random)
+    if nuisance in NUISANCES:
+        pen = settings["width"], settings["darkness"]
+        left = NUISANCES[nuisance](Sheet(SHEET, PIXELS_PER_METRE), walls, pen, own)
+        sheet = Image.fromarray(np.clip(np.asarray(sheet, dtype=float) * left, 0, 255).astype(np.uint8))
     to_photo = _camera(settings, random)
     width, height = sheet.size
     corners = _project(to_photo, np.array([(0, 0), (width, 0), (width, height), (0, height)], dtype=float))
     photo = _photograph(sheet, to_photo, settings, random)
     return Photo(
-        seed, photo, tuple((float(x), float(y)) for x, y in corners), strokes, settings["width"], settings
+        seed,
+        photo,
+        tuple((float(x), float(y)) for x, y in corners),
+        strokes,
+        settings["width"],
+        settings,
+        nuisance,
     )
 
 

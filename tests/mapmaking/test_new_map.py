@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from pathlib import Path
 
@@ -10,7 +11,10 @@ from click.testing import CliRunner, Result
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import kit
 from kit.cli import main
+from kit.learning.maps.batch_map import load_batch_map
+from kit.learning.policies.policy_node import robot_topics
 from kit.mapmaking.map_drawing import DrawingError, read_drawing
 from kit.mapmaking.map_sketch import SCALES, MapSketch, squares_between
 from kit.mapmaking.new_map import write_map
@@ -172,3 +176,37 @@ def test_places_that_nobody_gave_are_not_blamed(tmp_path: Path, room: str, said:
     with pytest.raises(NoRoute, match=said):
         write_map(tmp_path / "small", plan, title="Small", source="drawn")
     assert list(tmp_path.iterdir()) == []
+
+
+ROOM = "##########\n#S       #\n#        #\n#       T#\n##########\n"
+
+
+def test_two_robots_on_a_map_of_ones_own_see_each_other_and_are_trained(tmp_path: Path) -> None:
+    """Side by side near the start, each with topics of its own; found by name from Python too."""
+    (tmp_path / "room.txt").write_text(ROOM)
+    words = ["maps", "new", "duo", "--from", str(tmp_path / "room.txt"), "--pair"]
+    made = CliRunner().invoke(main, words)
+    assert made.exit_code == 0, made.output
+    card = kit.find_map("duo")
+    assert (card.robot, card.partner) == ("left", "right")
+    (case,) = card.cases
+    assert case.partner_start is not None
+    assert math.dist(case.start[:2], case.partner_start[:2]) == pytest.approx(0.4, abs=0.01)
+    assert len(load_batch_map(card).starts) == 2
+    new = CliRunner().invoke(main, ["task", "new", "both", "--from", "duo"])
+    assert new.exit_code == 0, new.output
+    assert "neither raced" not in new.output
+    task = kit.find_task("both")
+    assert (task.robots, robot_topics(task)[1].scans) == (2, "/right/static_laser")
+
+
+def test_robots_that_share_their_topics_are_told_at_the_check(tmp_path: Path) -> None:
+    (tmp_path / "room.txt").write_text(ROOM)
+    CliRunner().invoke(main, ["maps", "new", "same", "--from", str(tmp_path / "room.txt"), "--pair"])
+    world = kit.find_map("same").world_file
+    lines = [line for line in world.read_text().splitlines() if "namespace" not in line]
+    world.write_text("\n".join(lines) + "\n")
+    CliRunner().invoke(main, ["task", "new", "alike", "--from", "same"])
+    told = " ".join(CliRunner().invoke(main, ["task", "check", "alike"]).output.split())
+    assert "left and right share cmd_vel" in told.replace("/", "")
+    assert "namespace" in told

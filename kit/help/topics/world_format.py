@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.document.blocks import Chapter, Code
+from kit.fields.layout import read_charges
 from kit.geometry import Pose
 from kit.help.docstrings import docstring_blocks
 from kit.help.key_tables import key_tables
@@ -87,6 +88,11 @@ def model_keys() -> tuple[FormatKey, ...]:
     return format_keys(lambda section: read_model(section, placement, {}, None))
 
 
+def charge_keys() -> tuple[FormatKey, ...]:
+    """The keys of a charge file."""
+    return format_keys(lambda section: read_charges(section, None))
+
+
 def device_keys(device: PluginType | WorldPluginType) -> tuple[FormatKey, ...]:
     """The keys of a device, without those of every plugin."""
     if isinstance(device, PluginType):
@@ -133,6 +139,12 @@ def _chapters() -> tuple[Chapter, ...]:
         ),
         chapter("Model file", *key_tables("model", model_keys(), read_model.__doc__ or "")),
         *_device_chapters(),
+        chapter(
+            "Charge file of a field",
+            "`charges.yaml` beside a world says how its walls act in `kit fields`; without it they are derived from the walls. "
+            "`maps/pair_turn/charges.yaml` is an example.",
+            *key_tables("charges", charge_keys(), read_charges.__doc__ or ""),
+        ),
     )
 
 

@@ -6,16 +6,24 @@ import math
 import re
 from pathlib import Path
 
+from kit.geometry import Pose
 from kit.learning.maps.batch_map import BatchMap, hull_radius, hull_width, load_batch_map, measure_floor
 from kit.learning.tasks.catalogue import task_names, tasks_folder
 from kit.learning.tasks.goals.registry import goal_kinds
 from kit.learning.tasks.goals.target import REACH_TARGET
 from kit.learning.tasks.task_reader import TASK_FILE
 from kit.plain_text import quoted
-from kit.run.scenario import own_map_folder
 from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.sim.simulation import load_world
-from kit.world.catalogue import WORLD_FILE, MapCard, allowed_root_of, find_map, map_names, own_card
+from kit.world.catalogue import (
+    WORLD_FILE,
+    MapCard,
+    allowed_root_of,
+    find_map,
+    map_names,
+    own_card,
+    own_map_folder,
+)
 
 NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,59}")
 STANDARD = """\
@@ -37,7 +45,7 @@ reward:
     collided: -2.0
     reached: 2.0
 goal: {{kind: {goal}}}          # or {other_goals}
-target: {{radius: 0.2}}
+target: {{radius: {radius:g}}}
 step: {{time: 0.2, collision_checks: 2, limit: 400}}
 start: {{noise: 0.05, max_rotation: 0.3}}
 endings: {{collision: terminated, time: truncated}}
@@ -99,6 +107,7 @@ def _standard(batch_map: BatchMap) -> str:
         fast=min(0.4, robot.max_speed),
         slow=min(0.3, robot.max_speed),
         turn=min(1.2, robot.max_turn_rate),
+        radius=0.2 if len(batch_map.starts) == 1 else 0.4,
     )
 
 
@@ -106,10 +115,11 @@ def _world_text(world_file: Path) -> str:
     """A task with the starts and targets of the map's card; without one, from the robot's place in the world to the
     farthest place that it can reach."""
     known = own_card(world_file)
-    if known is not None and known.partner is None:
+    if known is not None:
         cases = "".join(
             f"  - name: {case.name}\n    start: [{case.start.x:g}, {case.start.y:g}, {case.start.theta:g}]\n"
-            f"    target: [{case.target[0]:g}, {case.target[1]:g}]\n"
+            + (f"    other_starts: [{_pose_text(case.partner_start)}]\n" if case.partner_start else "")
+            + f"    target: [{case.target[0]:g}, {case.target[1]:g}]\n"
             for case in known.cases
         )
         return _own_world_text(world_file, load_batch_map(known), cases)
@@ -141,8 +151,13 @@ def _world_text(world_file: Path) -> str:
     return _own_world_text(world_file, batch_map, case)
 
 
+def _pose_text(pose: Pose) -> str:
+    return f"[{pose.x:g}, {pose.y:g}, {pose.theta:g}]"
+
+
 def _own_world_text(world_file: Path, batch_map: BatchMap, cases: str) -> str:
-    robots = ", ".join(batch_map.robot_names)
+    names = ", ".join(batch_map.robot_names)
+    robots = names if len(batch_map.robot_names) == 1 else f"[{names}]"
     return (
         f"summary: Drive to the target\nworld: {world_file.name}\nrobots: {robots}\ncases:\n{cases}"
         f"{_standard(batch_map)}"

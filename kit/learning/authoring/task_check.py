@@ -10,6 +10,7 @@ from kit.kernels import world_kernels
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.maps.batch_map import (
     BatchMap,
+    are_on_floor,
     batch_geometry,
     hull_radius,
     hull_width,
@@ -42,15 +43,33 @@ def _check_case(task: LearningTask, placed: PlacedCase, batch_map: BatchMap) -> 
     for number in range(max(len(places.poses) for places in case.starts)):
         poses = [places.poses[number] for places in case.starts if places.poses]
         touches = np.flatnonzero(touching(batch_map, poses))
-        is_free &= not len(touches)
-        for robot in touches:
+        off = ~are_on_floor(batch_map, np.array([[pose.x, pose.y] for pose in poses]).reshape(-1, 2))
+        is_free &= not (len(touches) or off.any())
+        for robot in np.flatnonzero(off):
+            placed.error(
+                f"the start ({poses[robot].x:g}, {poses[robot].y:g}) is inside a wall, or off the floor that the walls around the "
+                "robot's place in the world enclose",
+                (("other_starts",) if robot else ()) + START_KEYS,
+            )
+        for robot in touches[~off[touches]]:
             x, y, theta = poses[robot]
             placed.error(
                 f"the start ({x:g}, {y:g}, {theta:g} rad) is inside a wall or another robot, or touches one",
                 (("other_starts",) if robot else ()) + START_KEYS,
             )
+    is_free = is_free and _has_floor_to_start_on(placed, batch_map)
     if case.targets.model is None and task.goal.needs_target and is_free:
         _check_targets(task, placed, batch_map)
+
+
+def _has_floor_to_start_on(placed: PlacedCase, batch_map: BatchMap) -> bool:
+    """Whether there is a place in the area where episodes start; if not, that is noted."""
+    starts = placed.case.starts[0]
+    floor = measure_floor(batch_map)
+    if not starts.is_area or len(floor.area_cells(starts.area, floor.clearance > hull_radius(batch_map))):
+        return True
+    placed.error("it has no free floor for a robot to start on", START_KEYS)
+    return False
 
 
 def _check_targets(task: LearningTask, placed: PlacedCase, batch_map: BatchMap) -> None:
@@ -59,9 +78,6 @@ def _check_targets(task: LearningTask, placed: PlacedCase, batch_map: BatchMap) 
     starts = case.starts[0]
     if starts.is_area:
         found = floor.area_cells(starts.area, floor.clearance > hull_radius(batch_map))
-        if not len(found):
-            placed.error("it has no free floor for a robot to start on", START_KEYS)
-            return
         start = Pose(float(found[0, 0]), float(found[0, 1]))
     else:
         start = starts.poses[0]

@@ -93,6 +93,18 @@ def key_tables() -> list[Table]:
     ]
 
 
+def fields_table() -> Table:
+    """What the record that a reward from Python gets tells, field by field: its shape for n worlds, and its meaning."""
+    asked = _transition_docs()
+    rows = []
+    for name in TRANSITION_FIELDS:
+        shape = SHAPE.match(asked[name])
+        axes = "" if shape is None else shape[0].strip().replace("...", "n").replace("(n)", "(n,)")
+        rows.append((name, axes, SHAPE.sub("", asked[name])))
+    columns = tuple(Column(title, CellStyle.TEXT) for title in ("Field", "Shape", "Meaning"))
+    return Table("reward-fields", "", columns, tuple(rows))
+
+
 def _usual_settings(term: str) -> str:
     return "".join(f" {name} {value:g}" for name, value in term_settings(term).items())
 

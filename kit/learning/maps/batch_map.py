@@ -113,11 +113,9 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
     for model in driving:
         _drive(model)
     if not 1 <= len(driving) <= MAX_ROBOTS:
-        raise UnsupportedWorld(
-            f"{name}: the batch engine drives 1 to {MAX_ROBOTS} robots, not {len(driving)}"
-        )
+        raise UnsupportedWorld(f"{name}: training drives 1 to {MAX_ROBOTS} robots, not {len(driving)}")
     for plugin in world.plugins:
-        raise UnsupportedWorld(f"{plugin.location}: the batch engine has no {plugin.type} of the whole world")
+        raise UnsupportedWorld(f"{plugin.location}: training has no {plugin.type} of the whole world")
     obstacles = [
         obstacle for model in world.models if model not in driving for obstacle in _obstacles(model, driving)
     ]
@@ -125,7 +123,7 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
     made = [_robot(model, other, world) for model, other in zip(driving, observers, strict=True)]
     for number, other in enumerate(made[1:], start=1):
         if other != made[0]:
-            raise UnsupportedWorld(f"{driving[number].location}: the batch engine needs identical robots")
+            raise UnsupportedWorld(f"{driving[number].location}: training needs identical robots")
     touched = [
         _walls(world, footprint.mask)
         for model, other in zip(driving, observers, strict=True)
@@ -134,9 +132,7 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
     seen = [_walls(world, _laser(model).mount.bits) for model in driving]
     for each in (*touched, *seen):
         if each != touched[0]:
-            raise UnsupportedWorld(
-                f"{world.file}: the batch engine needs walls that every robot touches and sees"
-            )
+            raise UnsupportedWorld(f"{world.file}: training needs walls that every robot touches and sees")
     for one, other_model in permutations(driving, 2):
         _check_pair(one, other_model, world)
     ends = [layer.walls.segments for layer in touched[0] if layer.walls is not None]
@@ -154,7 +150,7 @@ def batch_geometry(batch_maps: Sequence[BatchMap], noise: float | None = None) -
     for other in batch_maps[1:]:
         if other.robot != first.robot or len(other.starts) != len(first.starts):
             raise UnsupportedWorld(
-                f"the batch engine needs identical robots: those of {first.name} and {other.name} differ"
+                f"training needs identical robots: those of {first.name} and {other.name} differ"
             )
     parts = [
         make_wall_blocks(each.walls, FEW_WALLS if len(each.walls) <= FEW_WALLS else 32) for each in batch_maps
@@ -236,19 +232,30 @@ def _obstacles(model: Model, driving: Sequence[Model]) -> Iterator[Obstacle]:
     for plugin in model.plugins:
         if isinstance(plugin.params, TweenParams):
             if plugin.params.progress is None:
-                raise UnsupportedWorld(f"{plugin.location}: the batch engine has no Tween with a trigger")
+                raise UnsupportedWorld(f"{plugin.location}: training has no Tween with a trigger")
             motions[plugin.params.body] = plugin.params
     for body in model.bodies:
         if body.kind == "dynamic":
-            raise UnsupportedWorld(
-                f"{body.location}: the batch engine moves robots and what a Tween moves, not the body {body.name}"
-            )
+            raise UnsupportedWorld(_why_not_dynamic(body, is_moved=body.name in motions))
         parts = tuple(part for footprint in body.footprints for part in _obstacle_parts(footprint, driving))
         motion = motions.get(body.name)
         if parts or motion is not None:
             if model.joints:
-                raise UnsupportedWorld(f"{model.joints[0].location}: the batch engine has no joints")
+                raise UnsupportedWorld(f"{model.joints[0].location}: training has no joints")
             yield Obstacle(model.name, model.pose.compose(body.pose), parts, motion)
+
+
+def _why_not_dynamic(body: Body, *, is_moved: bool) -> str:
+    """What a body lacks that is neither a robot nor fixed."""
+    if is_moved:
+        return (
+            f'{body.location}: a Tween moves the body {body.name}, which also lacks the line "type: kinematic": in training '
+            "nothing else may push it"
+        )
+    return (
+        f"{body.location}: nothing drives the body {body.name}, and in training only robots can be pushed. Give it "
+        '"type: static" if it stands, or "type: kinematic" and a Tween that moves it'
+    )
 
 
 def _obstacle_parts(footprint: Footprint, driving: Sequence[Model]) -> Iterator[ObstaclePart]:
@@ -257,7 +264,7 @@ def _obstacle_parts(footprint: Footprint, driving: Sequence[Model]) -> Iterator[
     seen = {bool(footprint.category & _laser(model).mount.bits) for model in driving}
     if len(touched) > 1 or len(seen) > 1:
         raise UnsupportedWorld(
-            f"{footprint.location}: the batch engine needs obstacles that all parts of all robots touch, or none, "
+            f"{footprint.location}: training needs obstacles that all parts of all robots touch, or none, "
             "and that all their lidars see or none"
         )
     bits = TOUCHED * touched.pop() | SEEN * seen.pop()
@@ -268,16 +275,14 @@ def _obstacle_parts(footprint: Footprint, driving: Sequence[Model]) -> Iterator[
 def _body(model: Model) -> Body:
     if len(model.bodies) != 1 or model.joints:
         what = model.joints[0] if model.joints else model.bodies[1]
-        raise UnsupportedWorld(f"{what.location}: the batch engine has no joints, and one body per robot")
+        raise UnsupportedWorld(f"{what.location}: training has no joints, and one body per robot")
     return model.bodies[0]
 
 
 def _laser(model: Model) -> LaserParams:
     lasers = [plugin.params for plugin in model.plugins if isinstance(plugin.params, LaserParams)]
     if len(lasers) != 1:
-        raise UnsupportedWorld(
-            f"{model.location}: the batch engine needs a robot with one Laser, not {len(lasers)}"
-        )
+        raise UnsupportedWorld(f"{model.location}: training needs a robot with one Laser, not {len(lasers)}")
     return lasers[0]
 
 
@@ -285,12 +290,12 @@ def _drive(model: Model) -> tuple[PluginSpec, DiffDriveParams]:
     for plugin in model.plugins:
         if not isinstance(plugin.params, (DiffDriveParams, *ONLY_PUBLISH)):
             raise UnsupportedWorld(
-                f"{plugin.location}: the batch engine has no {plugin.type}; robots that it drives have a DiffDrive"
+                f"{plugin.location}: training has no {plugin.type}; robots that it drives have a DiffDrive"
             )
     drives = [(each, each.params) for each in model.plugins if isinstance(each.params, DiffDriveParams)]
     if len(drives) != 1:
         raise UnsupportedWorld(
-            f"{model.location}: the batch engine needs a robot with one DiffDrive, not {len(drives)}"
+            f"{model.location}: training needs a robot with one DiffDrive, not {len(drives)}"
         )
     return drives[0]
 
@@ -306,9 +311,7 @@ def _robot(model: Model, observer: Model, world: World) -> BatchRobot:
     """``observer``: the robot whose lidar may see it."""
     body, laser = _body(model), _laser(model)
     if body.kind != "dynamic" or body.pose != Pose():
-        raise UnsupportedWorld(
-            f"{body.location}: the batch engine needs a dynamic body at the origin of its model"
-        )
+        raise UnsupportedWorld(f"{body.location}: training needs a dynamic body at the origin of its model")
     hull = _hull_footprints(model, observer, world)
     # A lidar does not see a part in which it stands.
     blocking = [
@@ -319,9 +322,7 @@ def _robot(model: Model, observer: Model, world: World) -> BatchRobot:
     plugin, drive = _drive(model)
     for limits in (drive.linear, drive.angular):
         if limits.acceleration > 0.0 or limits.deceleration > 0.0:
-            raise UnsupportedWorld(
-                f"{plugin.location}: the batch engine's motors have no acceleration limits"
-            )
+            raise UnsupportedWorld(f"{plugin.location}: in training motors have no acceleration limits")
     sight = _laser(observer).mount.bits
     untouched = [each for each in body.footprints if each not in hull and each.category & sight]
     return BatchRobot(
@@ -387,7 +388,7 @@ def _agent_rays(laser: LaserParams) -> tuple[float, ...]:
 def _polygons(footprints: Sequence[Footprint]) -> Iterator[CornerPoints]:
     for footprint in footprints:
         if footprint.sensor or not footprint.mask:
-            raise UnsupportedWorld(f"{footprint.location}: the batch engine needs all footprints to collide")
+            raise UnsupportedWorld(f"{footprint.location}: training needs all footprints to collide")
         if isinstance(footprint.shape, Polygon):
             yield footprint.shape.points
         else:
@@ -409,11 +410,31 @@ def _walls(world: World, bits: int) -> tuple[Layer, ...]:
 def _check_pair(one: Model, other: Model, world: World) -> None:
     """Every part of one's hull touches every part of the other's, and no part beside them; and it sees some of the other."""
     mine, theirs = _hull_footprints(one, other, world), _hull_footprints(other, one, world)
-    touch = all(each.mask & part.mask for each in mine for part in theirs)
+    for each in mine:
+        for part in theirs:
+            if not each.mask & part.mask:
+                raise UnsupportedWorld(
+                    f"{part.location}: {one.name} and {other.name} must touch in training, and these parts of them share no "
+                    f'layer: add one of {_layer_names(world, each.mask)} to "layers" here'
+                )
     beside = [part for part in _body(other).footprints if part not in theirs]
-    touch = touch and not any(each.mask & part.mask for each in _body(one).footprints for part in beside)
-    if not touch or not any(_laser(one).mount.bits & part.category for part in _body(other).footprints):
-        raise UnsupportedWorld(f"{one.location}: the batch engine needs robots that touch and see each other")
+    for part in beside:
+        if any(each.mask & part.mask for each in _body(one).footprints):
+            raise UnsupportedWorld(
+                f"{part.location}: {one.name} touches a part of {other.name} that passes through walls: in training robots "
+                "touch what walls stop"
+            )
+    sight = _laser(one).mount.bits
+    if not any(sight & part.category for part in _body(other).footprints):
+        raise UnsupportedWorld(
+            f"{_body(other).footprints[0].location}: {one.name} does not see {other.name}, which it must in training: its "
+            f'laser looks at {_layer_names(world, sight)}: add that to "layers" of a footprint here'
+        )
+
+
+def _layer_names(world: World, bits: int) -> str:
+    """``solid, seen``"""
+    return ", ".join(layer.name for layer in world.layers if layer.bits & bits)
 
 
 # Walls that can be seen
@@ -495,6 +516,15 @@ def measure_floor(batch_map: BatchMap) -> ClearanceGrid:
     x, y = origin[0] + FLOOR_CELL * np.arange(columns), origin[1] + FLOOR_CELL * np.arange(rows)
     room = np.minimum(wall_distances(x, y, batch_map.walls, MARGIN), MARGIN)
     return ClearanceGrid((float(origin[0]), float(origin[1])), FLOOR_CELL, room)
+
+
+def are_on_floor(batch_map: BatchMap, points: FloatArray) -> BoolArray:
+    """(n,) which of the points (n, 2) [m] lie on the floor that closed walls surround, and not within a pillar; all of them
+    where the robot's place in the world is not surrounded."""
+    rings, place = list(_find_rings(batch_map.walls)), np.array([batch_map.starts[0][:2]])
+    if not any(_is_inside(place, batch_map.walls[ring])[0] for ring in rings):
+        return np.ones(len(points), dtype=np.bool_)
+    return _is_inside(points, batch_map.walls[np.concatenate(rings)])
 
 
 def hull_radius(batch_map: BatchMap) -> float:

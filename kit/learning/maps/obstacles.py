@@ -60,6 +60,15 @@ class Obstacle:
         return np.outer(shares, self.motion.delta)
 
 
+def phases_of_bodies(phases: FloatArray, count: int) -> FloatArray:
+    """(n, count) where on their ways the bodies of worlds begin, 0 to 1, from one number of each world (n).
+
+    The phases of several bodies are as if they had been drawn apart.
+    """
+    own: FloatArray = np.modf(phases[:, None] * (1.0 + 7919.0 * np.arange(count)))[0]
+    return own
+
+
 class ObstacleMotions:
     """The obstacles of several maps, and where they are at any time."""
 
@@ -86,9 +95,7 @@ class ObstacleMotions:
         if not self.most:
             return np.zeros((len(maps), 0, 3))
         periods, repeating = self._periods[maps], self._repeating[maps]
-        # The phases of several bodies are as if they had been drawn apart.
-        own = np.modf(phases[:, None] * (1.0 + 7919.0 * np.arange(self.most)))[0]
-        passed = times[:, None] + own * periods
+        passed = times[:, None] + phases_of_bodies(phases, self.most) * periods
         passed = np.where(repeating, np.mod(passed, periods), np.minimum(passed, periods))
         place = passed / periods * MOTION_SAMPLES
         low = np.minimum(place.astype(np.int64), MOTION_SAMPLES - 1)

@@ -17,9 +17,9 @@ import numpy as np
 from kit.arrays import Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
 from kit.learning.environment.case_arrays import CaseArrays
-from kit.learning.maps.ray_directions import RAY_COUNT, ray_direction
+from kit.learning.maps.ray_directions import ranges_in_directions, ray_direction
 from kit.learning.policies.policy import Policy, PolicyError, PolicyPlayer
-from kit.learning.policies.policy_node import NODE_PARTS, ray_angles
+from kit.learning.policies.policy_node import ray_angles
 from kit.learning.tasks.actions import ContinuousActions, DiscreteActions
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE, ObservationSpec
@@ -29,6 +29,9 @@ from kit.render.scene import ScenePath
 from kit.run.lockstep import Observer
 from kit.sim.simulation import Simulation
 from kit.sim.state import LatestScan
+
+SHOWN_PARTS = ("speeds", "last_action", "own_pose", "target")
+"""Parts of the observation that ``AgentObserver`` can follow in a world."""
 
 ARC_STEP = math.radians(4.0)
 """Between two points of a drawn arc [rad]."""
@@ -213,15 +216,20 @@ class AgentObserver(Observer):
         models: Sequence[str],
         on_view: Callable[[AgentView], object],
         target: tuple[float, float] | None = None,
+        *,
+        route: Sequence[tuple[float, float]] = (),
+        radius: float = 0.0,
+        leader: str | None = None,
     ) -> None:
         """``models``: the robots that it drives, the left one of two first. ``on_view``: called with every new view.
-        ``target``: of the world [m].
+        ``target``: of the world [m]. ``route``: all targets where there are several, one after the other, each reached within
+        ``radius`` [m]. ``leader``: the model that is the target, where that moves.
 
         PolicyError if the policy perceives what a node does not know, or drives another number of robots.
         """
         task = policy.trained_on.resolve()
         policy.check_fits(task)
-        unknown = [part.name for part in task.observation.parts if part.name not in NODE_PARTS]
+        unknown = [part.name for part in task.observation.parts if part.name not in SHOWN_PARTS]
         unknown += ["target"] * (task.observation.target and target is None)
         if unknown or task.robots != len(models):
             raise PolicyError(
@@ -231,12 +239,14 @@ class AgentObserver(Observer):
             )
         self._policy, self._task, self._models, self._on_view = policy, task, tuple(models), on_view
         self._target = np.array((math.nan, math.nan) if target is None else target)
+        self._route, self._radius, self._leader = tuple(route), radius, leader
         self._angles = np.array(ray_angles(task))
         self._lidar_heading = CaseArrays(task).robot.lidar.theta
         self._single, self._sectors = task.observation.ray_tables(task.robots)
         self._restart()
 
     def _restart(self) -> None:
+        self._left = self._route
         self._player = self._policy.make_player(1)
         self._expected = ExpectedReturns(self._policy)
         self._frames: list[Float32Array] = []
@@ -255,7 +265,20 @@ class AgentObserver(Observer):
             self._next_s = now + self._task.step_time
             self._look([scans[model] for model in self._models], simulation)
 
+    def _find_target(self, simulation: Simulation) -> None:
+        """Where the target is now: at the model that it moves with, or the next one of a route."""
+        if self._leader is not None:
+            self._target = np.array(simulation.pose(self._leader)[:2])
+            return
+        if len(self._left) > 1 and all(
+            simulation.hull_distance(model, self._left[0]) <= self._radius for model in self._models
+        ):
+            self._left = self._left[1:]
+        if self._left:
+            self._target = np.array(self._left[0])
+
     def _look(self, scans: Sequence[LatestScan], simulation: Simulation) -> None:
+        self._find_target(simulation)
         frame = np.concatenate(
             [self._observe(robot, scan, simulation) for robot, scan in enumerate(scans)]
         ).astype(np.float32)
@@ -300,7 +323,4 @@ class AgentObserver(Observer):
         """(91,) [m] in the directions that the policy knows; as far as it sees where the lidar does not look."""
         clip = self._task.observation.clip
         angles = np.arctan2(scan.beams.sin, scan.beams.cos)
-        apart = np.abs(np.angle(np.exp(1j * (angles[None, :] - self._angles[:, None]))))
-        nearest = apart.argmin(axis=1)
-        ranges = np.nan_to_num(scan.ranges.astype(np.float64), nan=clip, posinf=clip).clip(0.0, clip)[nearest]
-        return np.where(apart.min(axis=1) <= math.tau / (RAY_COUNT - 1), ranges, clip)
+        return ranges_in_directions(self._angles, scan.ranges, angles, clip).clip(0.0, clip)

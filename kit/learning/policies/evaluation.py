@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -20,6 +20,7 @@ from kit.learning.policies.policy_file import load_policy
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.reward import RewardFunction
+from kit.learning.tasks.student_reward import StudentReward, metric_parameters
 from kit.learning.tasks.task_case import TaskCase
 
 PARALLEL_WORLDS = 1024
@@ -67,6 +68,8 @@ class CaseResult:
     """The share by rays of the episodes that reached the target alone: others may end side by side because they began so."""
     reached_by_poses: EpisodeShare = NO_SHARE
     """The same as poses tell."""
+    metrics: Mapping[str, float] = field(default_factory=dict)
+    """Mean sum over an episode of each metric of the task's own reward file, by name."""
 
     @property
     def episodes(self) -> int:
@@ -90,6 +93,10 @@ def _case_cells(case: CaseResult) -> tuple[Cell, ...]:
     _, collided, timed_out = (count / case.episodes for count in case.outcomes)
     beside = (case.reached_by_rays.mean, case.reached_by_poses.mean)
     return (case.case, case.share, case.interval, collided, timed_out, case.steps, *beside)
+
+
+def _mean(numbers: Iterable[float]) -> float:
+    return float(np.mean(list(numbers)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +127,11 @@ class EvaluationResult:
         """Whether two robots drove."""
         return not np.isnan(self.cases[0].adjacency)
 
+    @property
+    def metrics(self) -> dict[str, float]:
+        """Mean sum over an episode of each metric of the task's own reward file, of all cases."""
+        return {name: _mean(case.metrics[name] for case in self.cases) for name in self.cases[0].metrics}
+
     def groups(self) -> dict[str, float]:
         """Mean share by group of cases; those without one are left out."""
         names = dict.fromkeys(case.group for case in self.cases if case.group)
@@ -139,8 +151,11 @@ class EvaluationResult:
         ]
         if self.is_pair:
             columns += [Column("adj rays"), Column("adj poses")]
-        rows = [_case_cells(case)[: len(columns)] for case in self.cases]
-        rows.append(("mean", self.mean, *[""] * (len(columns) - 2)))
+        count = len(columns)
+        own = self.metrics
+        columns += [Column(name, decimals=2) for name in own]
+        rows = [(*_case_cells(case)[:count], *case.metrics.values()) for case in self.cases]
+        rows.append(("mean", self.mean, *[""] * (count - 2), *own.values()))
         worst = self.worst
         note = (
             f"worst: {worst.share:.3f} in {worst.case}; {worst.episodes} episodes each, {self.action_choice}"
@@ -162,6 +177,7 @@ class EvaluationResult:
             "worst": self.worst.share,
             "worst_case": self.worst.case,
             "groups": self.groups(),
+            "metrics": self.metrics,
             "cases": {
                 case.case: {
                     **dict(zip(("reached", "collided", "timed_out"), case.outcomes, strict=True)),
@@ -169,6 +185,7 @@ class EvaluationResult:
                     "interval": list(case.interval),
                     "steps": _number_or_none(case.steps),
                     "reward": case.reward,
+                    "metrics": dict(case.metrics),
                     "adjacency": _number_or_none(case.adjacency),
                     "reached_by_rays": _number_or_none(case.reached_by_rays.mean),
                     "reached_by_poses": _number_or_none(case.reached_by_poses.mean),
@@ -186,9 +203,13 @@ def _number_or_none(number: float) -> float | None:
 class Evaluator:
     """Evaluates policies on a task. Keeps its worlds from one evaluation to the next."""
 
-    def __init__(self, task: LearningTask, reward: RewardFunction | None = None) -> None:
+    def __init__(
+        self, task: LearningTask, reward: RewardFunction | None = None, *, counts_metrics: bool = False
+    ) -> None:
+        """``counts_metrics``: whether the metrics of ``reward`` are told too, that of the task's own file."""
         self.task = task
         self._reward_function = reward
+        self._counts_metrics = counts_metrics
         self._cases = tuple(case for _, case in task.map_cases())
         self._batches: dict[int, BatchEnv] = {}
 
@@ -236,6 +257,8 @@ class Evaluator:
                     if left[episode.world]:
                         left[episode.world] -= 1
                         sums[episode.case].add(episode)
+                        if self._counts_metrics:
+                            sums[episode.case].add_metrics(episode.terms)
                 observations, fresh = step.observations, step.ended
         pair = self.task.robots > 1
         return EvaluationResult(
@@ -257,6 +280,7 @@ class _CaseSums:
     """Steps of the episodes that reached the target."""
     reward: float = 0.0
     adjacency: list[float] = field(default_factory=list)
+    metrics: dict[str, float] = field(default_factory=dict)
     reached: list[tuple[float, float]] = field(default_factory=list)
     """By rays and by poses, of the episodes that reached the target."""
 
@@ -267,6 +291,10 @@ class _CaseSums:
         self.adjacency.append(episode.adjacency)
         if episode.outcome is EpisodeOutcome.REACHED:
             self.reached.append((episode.adjacency, episode.by_poses))
+
+    def add_metrics(self, metrics: Mapping[str, float]) -> None:
+        for name, value in metrics.items():
+            self.metrics[name] = self.metrics.get(name, 0.0) + value
 
     def result(self, case: TaskCase, pair: bool) -> CaseResult:
         reached, collided, timed_out = self.outcomes.values()
@@ -282,7 +310,22 @@ class _CaseSums:
             adjacency_sd=float(np.std(self.adjacency, ddof=1)) if pair and episodes > 1 else np.nan,
             reached_by_rays=told[0],
             reached_by_poses=told[1],
+            metrics={name: total / episodes for name, total in self.metrics.items()},
         )
+
+
+def evaluate_on(
+    task: LearningTask, policy: Policy, episodes: int, seed: int, *, greedy: bool = True
+) -> EvaluationResult:
+    """Tests a policy as ``Evaluator`` does; where the task's own reward file has metrics, with these.
+
+    Raises PolicyError, RewardFileError, and StudentCodeError where the file's code fails.
+    """
+    file = task.reward_file
+    if file is None or not metric_parameters(file):
+        return Evaluator(task).test(policy, episodes, seed, greedy=greedy)
+    with StudentReward(file) as reward:
+        return Evaluator(task, reward, counts_metrics=True).test(policy, episodes, seed, greedy=greedy)
 
 
 def evaluate_policy(
@@ -311,5 +354,5 @@ def evaluate_policy(
             f"a {type(policy).__name__} is not a policy of the kit's: kit.export_policy(model, task) makes one of it."
         )
     policy = policy if isinstance(policy, Policy) else load_policy(policy)
-    evaluator = Evaluator(policy.trained_on.resolve() if task is None else task)
-    return evaluator.test(policy, episodes, seed, greedy=greedy)
+    place = policy.trained_on.resolve() if task is None else task
+    return evaluate_on(place, policy, episodes, seed, greedy=greedy)

@@ -6,55 +6,133 @@ It runs in the kit's worlds as any controller does, and on a robot with a lidar.
 from __future__ import annotations
 
 import base64
+import math
 import zlib
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from importlib.resources import files
 from textwrap import wrap
+from typing import NamedTuple
 
 from kit.learning.environment.case_arrays import CaseArrays
+from kit.learning.maps.ray_directions import LEFT_RAYS
 from kit.learning.policies.policy import Policy, PolicyError
 from kit.learning.policies.policy_file import policy_bytes
 from kit.learning.tasks.actions import DiscreteActions
+from kit.learning.tasks.goals.goal import Goal
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE
-from kit.plain_text import join_names
-
-TOPIC_PREFIXES = {1: ("",), 2: ("left/", "right/")}
-"""Before each robot's ``cmd_vel`` and ``static_laser``."""
-
-
-NODE_PARTS = ("speeds", "last_action", "own_pose", "target")
-"""Parts of the observation beside the scan that a node knows: from odometry, from what it has sent, from a parameter."""
-
+from kit.sim.plugins.diff_drive import DiffDriveParams
+from kit.sim.plugins.laser import LaserParams
+from kit.sim.plugins.model_tf_publisher import frame_in_world
+from kit.sim.simulation import load_world
+from kit.world.catalogue import MapCard
+from kit.world.records import Model
 
 LEARNED_MARK = "# --- what was learned ---\n"
+COUNT_MARK = "# --- how its goal is counted ---\n"
+GOAL_PROGRAMS = "kit.learning.policies.node_goals"
+
+
+class RobotTopics(NamedTuple):
+    """The topics of one robot, relative for one alone."""
+
+    commands: str
+    scans: str
+    odometry: str
 
 
 def format_policy_node(policy: Policy) -> str:
     """The file's text.
 
-    PolicyError for a policy that needs what a node on a robot does not know, such as who has arrived.
+    PolicyError for a policy that needs what a node on a robot does not know, as ``node_refusals`` says.
     """
     task = policy.trained_on.resolve()
     policy.check_fits(task)
-    seen = task.observation
-    unknown = [part.name for part in seen.parts if part.name not in NODE_PARTS]
-    if unknown:
-        raise PolicyError(
-            f"this policy sees what a node does not know: {', '.join(unknown)}. A node knows rays, sectors and "
-            f"{join_names(NODE_PARTS)}: leave the rest out of the task's observation, and train again."
-        )
-    if seen.target and task.goal.node_refusal:
-        raise PolicyError(
-            f"this policy sees its target, which a node cannot tell it: {task.goal.node_refusal}. Leave the target out of "
-            "the task's observation, and train again."
-        )
-    if task.robots not in TOPIC_PREFIXES or not seen.sectors:
-        raise PolicyError("a node can be written for one robot or two that see sectors of a scan.")
+    if refused := node_refusals(task):
+        raise PolicyError(f"no node can be written for this policy: {'; '.join(refused)}.")
     template = files("kit.learning.policies").joinpath("policy_node_template.py").read_text()
     head, _, tail = template.partition(LEARNED_MARK)
-    rest = tail.partition(LEARNED_MARK)[2]
-    return head + LEARNED_MARK + _format_constants(policy, task) + LEARNED_MARK + rest
+    _, _, tail = tail.partition(LEARNED_MARK)
+    between, _, tail = tail.partition(COUNT_MARK)
+    usual, _, rest = tail.partition(COUNT_MARK)
+    count = _goal_program(task.goal) if task.observation.achieved else usual
+    marked = f"{LEARNED_MARK}{_format_constants(policy, task)}{LEARNED_MARK}{between}{COUNT_MARK}{count}{COUNT_MARK}"
+    return f"{head}{marked}{rest}"
+
+
+def node_refusals(task: LearningTask) -> tuple[str, ...]:
+    """Why no node can carry out a policy of this task, which a race and a package do; empty where one can.
+
+    UnsupportedWorld and WorldError for a world that nobody can learn in.
+    """
+    return tuple(_refusals(task))
+
+
+def _refusals(task: LearningTask) -> Iterator[str]:
+    seen, topics = task.observation, robot_topics(task)
+    shared = {name for name in _all(topics) if _all(topics).count(name) > 1}
+    if shared:
+        yield (
+            f"{' and '.join(task.robots_on(_first_card(task)))} share {', '.join(sorted(shared))}: give each of them a "
+            "namespace of its own in the world's file"
+        )
+    if seen.achieved:
+        yield from _refusals_to_count(task)
+    leader = task.map_cases()[0][1].targets.model
+    if leader is not None and seen.target and not leader_frame(task):
+        yield (
+            f"a node is not told where {leader} is: give its model a plugin of the type ModelTfPublisher, with "
+            "publish_tf_world: true"
+        )
+
+
+def _refusals_to_count(task: LearningTask) -> Iterator[str]:
+    goal, known = task.goal, CaseArrays(task).goal_cases
+    if _goal_program(goal) is None:
+        yield f"agents see how much is achieved, which a node cannot count for the goal {goal.kind}"
+    elif not goal.is_route and any(goal.node_facts(each) != goal.node_facts(known[0]) for each in known):
+        yield "agents see how much is achieved, which a node can count for one case only, and there are several"
+
+
+def _all(topics: Sequence[RobotTopics]) -> list[str]:
+    return [name for robot in topics for name in robot]
+
+
+def _goal_program(goal: Goal) -> str | None:
+    """The class by which a node counts a goal, as its file has it; None where a node cannot."""
+    file = files(GOAL_PROGRAMS).joinpath(f"{goal.kind}.py")
+    if not file.is_file():
+        return None
+    return "class GoalCount" + file.read_text().partition("class GoalCount")[2].rstrip() + "\n\n\n"
+
+
+def _first_card(task: LearningTask) -> MapCard:
+    return task.map_cases()[0][0]
+
+
+def _models(task: LearningTask) -> dict[str, Model]:
+    """The models of the first case's world, by name."""
+    card = _first_card(task)
+    return {model.name: model for model in load_world(card.world_file, root=card.root).models}
+
+
+def robot_topics(task: LearningTask) -> tuple[RobotTopics, ...]:
+    """The topics of each robot, as the task's first world has them."""
+    models, found = _models(task), []
+    for name in task.robots_on(_first_card(task)):
+        model = models[name]
+        (drive,) = [each.params for each in model.plugins if isinstance(each.params, DiffDriveParams)]
+        (laser,) = [each.params for each in model.plugins if isinstance(each.params, LaserParams)]
+        topics = RobotTopics(drive.topic, laser.topic, drive.odometry.odom_topic)
+        found.append(topics if task.robots == 1 else RobotTopics(*map(model.topic, topics)))
+    return tuple(found)
+
+
+def leader_frame(task: LearningTask) -> str:
+    """The frame on /tf of the model that is the target of the first case; empty where there is none."""
+    name = task.map_cases()[0][1].targets.model
+    return "" if name is None else frame_in_world(_models(task)[name])
 
 
 def ray_angles(task: LearningTask) -> tuple[float, ...]:
@@ -66,7 +144,7 @@ def ray_angles(task: LearningTask) -> tuple[float, ...]:
 
 def _format_constants(policy: Policy, task: LearningTask) -> str:
     """Formats the constants of the template."""
-    actions = task.actions
+    actions, arrays = task.actions, CaseArrays(task)
     if isinstance(actions, DiscreteActions):
         twists, bounds = actions.twists.tolist(), []
     else:
@@ -79,17 +157,26 @@ def _format_constants(policy: Policy, task: LearningTask) -> str:
         "TWISTS": twists,
         "BOUNDS": bounds,
         "CHOICES": list(policy.choices),
-        "TOPICS": list(TOPIC_PREFIXES[task.robots]),
+        "TOPICS": [list(each) for each in robot_topics(task)],
         "RAYS": single.tolist(),
         "SECTORS": list(seen.sectors),
-        "ANGLES": [round(angle, 6) for angle in ray_angles(task)],
+        "ANGLES": [round(angle, 6) for angle in arrays.robot.ray_angles],
         "PARTS": [part.name for part in seen.parts],
         "FRAMES": seen.frames,
         "CLIP": seen.clip,
         "SCALE": seen.scale,
         "TARGET_CLIP": MAX_TARGET_DISTANCE,
         "PLACE_CLIP": MAX_COORDINATE,
-        "TARGET": _usual_target(task) if seen.target else [],
+        "TARGETS": usual_targets(task),
+        "TARGET_HEADING": float(task.map_cases()[0][1].targets.nominal.theta),
+        "TARGET_RADIUS": float(task.target_radius),
+        "LEADER_FRAME": leader_frame(task) if seen.target else "",
+        "HULL": [] if task.measured_to == "axle" else [[list(c) for c in part] for part in arrays.robot.hull],
+        "HEADING_TOLERANCE": math.pi if task.goal.heading_tolerance is None else task.goal.heading_tolerance,
+        "GOAL": {**task.goal.node_facts(arrays.goal_cases[0]), "step_time": task.step_time}
+        if seen.achieved
+        else {},
+        "LEFT_RAYS": list(LEFT_RAYS) if seen.achieved else [],
     }
     lines = [f"{name} = {value!r}" for name, value in values.items()]
     acting = replace(policy, critic=None)  # all that a node needs
@@ -98,8 +185,13 @@ def _format_constants(policy: Policy, task: LearningTask) -> str:
     return "\n".join(lines) + f"\nPOLICY = (\n{quoted}\n)\n"
 
 
-def _usual_target(task: LearningTask) -> list[float]:
-    """x and y of the task's target [m]; none where it has several, or one that moves."""
-    found = {tuple(case.target) for _, case in task.map_cases() if len(case.targets.poses) == 1}
-    is_one = len(found) == 1 and all(len(case.targets.poses) == 1 for _, case in task.map_cases())
-    return [float(each) for each in found.pop()] if is_one else []
+def usual_targets(task: LearningTask) -> list[float]:
+    """x and y of the task's targets [m], one after the other; none where every episode has its own, or one that moves."""
+    if not task.goal.has_standing_targets:
+        return []
+    found = {
+        task.route(case) or tuple((each.x, each.y) for each in case.targets.poses)
+        for _, case in task.map_cases()
+    }
+    is_one = len(found) == 1 and (task.goal.is_route or len(next(iter(found))) == 1)
+    return [float(each) for place in found.pop() for each in place] if is_one else []

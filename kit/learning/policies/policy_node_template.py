@@ -1,12 +1,17 @@
 """A trained policy drives: scans in, commands out. Needs rclpy and numpy, nothing else.
 
-It subscribes to static_laser, and to odom if it was trained to see its speed, its pose or where the target is, and
-publishes cmd_vel; remap them to the robot's own topics. A message on goal_pose moves the target. Parameters:
+It subscribes to the robots' lidars, and to their odometry if it was trained to see its speed, its pose, where the target is
+or how much of its goal is achieved, and publishes their commands; remap the topics to the robot's own. A message on goal_pose
+moves the target; a target that moves is known by its transform on /tf. Parameters:
 
-    max_scan_age  the robot is told to stand when no scan has come for so long [s]
-    speed_scale   every command is multiplied by this, 0 to 1
-    lidar_yaw     how the lidar is turned on the robot, to the left [rad]
-    target        x and y of the target, in odometry's frame [m]
+    max_scan_age    the robot is told to stand when no scan has come for so long [s]
+    speed_scale     every command is multiplied by this, 0 to 1
+    lidar_yaw       how the lidar is turned on the robot, to the left [rad]
+    target          x and y of the target, in odometry's frame [m]
+    targets         x1, y1, x2, y2, ... of several targets that are to be reached one after the other [m]
+    target_radius   how near the target a robot has arrived [m]
+    target_heading  the heading asked for at the target [rad]
+    leader_frame    the frame on /tf of a target that moves; empty for one that stands
 
 A lidar may have any number of rays: the ones nearest to the directions that the policy knows are taken. A direction that
 it does not look in counts as free.
@@ -17,16 +22,19 @@ import io
 import json
 import math
 import zlib
+from typing import Any
 
 import numpy as np
 import rclpy
-from geometry_msgs.msg import PoseStamped, Twist
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import PoseStamped, Quaternion, Twist
 from nav_msgs.msg import Odometry
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import LaserScan
+from tf2_msgs.msg import TFMessage
 
 # --- what was learned ---
 TRAINED_ON = ""
@@ -34,20 +42,65 @@ STEP_TIME = 0.1  # s
 TWISTS: list[list[float]] = []  # m/s forward and rad/s to the left, move by move
 BOUNDS: list[list[float]] = []  # instead of moves: least and greatest m/s, least and greatest rad/s
 CHOICES: list[int] = []  # how many moves, or pairs of moves, there are to choose from
-TOPICS: list[str] = []  # before each robot's topics
+TOPICS: list[list[str]] = []  # of each robot: its commands, its scans, its odometry
 RAYS: list[list[int]] = []  # by robot: rays given as they are
 SECTORS: list[int] = []  # which sector each ray belongs to
 ANGLES: list[float] = []  # rad, the direction of each ray, to the left of straight ahead
-PARTS: list[str] = []  # what follows the numbers of each robot's scan: speeds, last_action, own_pose, target
+PARTS: list[
+    str
+] = []  # what follows the numbers of each robot's scan: speeds, last_action, own_pose, target and others
 FRAMES = 1  # how many of the last observations it sees, the newest last
 CLIP, SCALE = 2.0, 1.0  # how far it sees [m], and what ranges, distances and coordinates are multiplied by
 TARGET_CLIP, PLACE_CLIP = 4.0, 100.0  # how far it is told of the target, and of its own place [m]
-TARGET: list[float] = []  # x and y [m] where no parameter says them
+TARGETS: list[float] = []  # x1, y1, x2, y2, ... [m] where no parameter says them
+TARGET_HEADING = 0.0  # rad, likewise
+TARGET_RADIUS = 0.0  # m, likewise
+LEADER_FRAME = ""  # likewise
+HULL: list[list[list[float]]] = []  # convex parts of a robot [m]; empty where the middle of its axle arrives
+HEADING_TOLERANCE = math.pi  # how far from the target's heading a robot has still arrived [rad]
+GOAL: dict[str, Any] = {}  # what is known of the goal that is counted
+LEFT_RAYS: list[
+    int
+] = []  # rays to the left, by which the distance to a wall is told; those to the right mirror them
 POLICY = ""
 # --- what was learned ---
 
 
+# --- how its goal is counted ---
+class GoalCount:
+    """How much of the goal is achieved: nothing, where the policy is not told."""
+
+    def __init__(self, facts: dict[str, Any]) -> None:
+        self.needed = 1.0
+        self.is_told_later = False
+
+    def begin(self, poses: np.ndarray) -> float:
+        """The count at the start of an episode, with robots at ``poses`` (robots, 3)."""
+        return 0.0
+
+    def count(
+        self,
+        count: float,
+        poses: np.ndarray,
+        before: np.ndarray,
+        arrived: bool,
+        place: Any,
+        beside: np.ndarray,
+    ) -> float:
+        """The count after a step, in which the robots came from ``before`` (robots, 3) to ``poses``.
+
+        ``arrived``: whether all are in the target, which is at ``place`` (2,); ``beside`` (robots, 2): the nearest things to
+        the left and to the right of each robot's lidar [m].
+        """
+        return count
+
+
+# --- how its goal is counted ---
+
+
 SILENCE = 2.0  # s without a scan until it is said
+PATIENCE = 0.5  # s with scans and without what else it is to be told, until it is said
+EARLY = 0.25  # a scan that comes by this share of a step too early is taken; a scan twice a step is not
 CHECK_PERIOD = 0.05  # s
 
 
@@ -84,8 +137,9 @@ class ExportedPolicy:
             return commands
         parts = np.split(scores, np.cumsum(CHOICES)[:-1])
         best = [int(part.argmax()) for part in parts]
-        moves = list(divmod(best[0], len(TWISTS))) if len(best) < len(TOPICS) else best
-        return [TWISTS[move] for move in moves]
+        if len(best) < len(TOPICS):  # one number for all robots
+            best = [int(move) for move in np.unravel_index(best[0], (len(TWISTS),) * len(TOPICS))]
+        return [TWISTS[move] for move in best]
 
     def bound(self, outputs: np.ndarray) -> np.ndarray:
         """Continuous actions, from -1 to 1."""
@@ -130,11 +184,36 @@ def find_rays(scan: LaserScan, yaw: float) -> np.ndarray:
     return np.where(apart.min(axis=1) <= abs(scan.angle_increment), nearest, -1)
 
 
+def heading_of(turn: Quaternion) -> float:
+    """The rotation about the vertical axis [rad]."""
+    return 2.0 * math.atan2(turn.z, turn.w)
+
+
+def hull_distance(pose: np.ndarray, x: float, y: float) -> float:
+    """From a robot's hull to a point [m]: 0 inside it. From its axle, where that is what arrives."""
+    dx, dy = x - pose[0], y - pose[1]
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    point = np.array([cos * dx + sin * dy, cos * dy - sin * dx])
+    if not HULL:
+        return float(np.hypot(*point))
+    return min(part_distance(np.array(part), point) for part in HULL)
+
+
+def part_distance(corners: np.ndarray, point: np.ndarray) -> float:
+    """From a convex polygon, whose corners go counter-clockwise, to a point [m]: 0 inside it."""
+    sides, to_point = np.roll(corners, -1, axis=0) - corners, point - corners
+    if (sides[:, 0] * to_point[:, 1] - sides[:, 1] * to_point[:, 0] >= 0).all():
+        return 0.0
+    along = np.clip((sides * to_point).sum(axis=1) / (sides**2).sum(axis=1), 0.0, 1.0)
+    return float(np.hypot(*(to_point - along[:, None] * sides).T).min())
+
+
 def observe_scan(robot: int, ranges: np.ndarray) -> np.ndarray:
     """What the policy sees of one robot's scan: some rays, then the shortest of each sector."""
     seen = np.clip(np.nan_to_num(ranges, nan=CLIP, posinf=CLIP), 0.0, CLIP)
-    minima = np.full(max(SECTORS) + 1, CLIP)
-    np.minimum.at(minima, SECTORS, seen)
+    minima = np.full(max(SECTORS, default=-1) + 1, CLIP)
+    if SECTORS:
+        np.minimum.at(minima, SECTORS, seen)
     return np.concatenate((seen[RAYS[robot]], minima)) * SCALE
 
 
@@ -148,30 +227,48 @@ class PolicyNode(Node):
         self.speed_scale = min(1.0, max(0.0, float(self.declare_parameter("speed_scale", 1.0).value)))
         self.lidar_yaw = float(self.declare_parameter("lidar_yaw", 0.0).value)
         self.scans: dict[int, np.ndarray] = {}
-        target = self.declare_parameter("target", TARGET or Parameter.Type.DOUBLE_ARRAY).value
-        self.target = [float(each) for each in target] if target else [math.nan, math.nan]
+        self.beside = np.full((len(TOPICS), 2), math.inf)
+        self.radius = float(self.declare_parameter("target_radius", TARGET_RADIUS).value)
+        self.target_heading = float(self.declare_parameter("target_heading", TARGET_HEADING).value)
+        self.leader_frame = self.declare_parameter("leader_frame", LEADER_FRAME).value
+        target = self.declare_parameter("target", Parameter.Type.DOUBLE_ARRAY).value
+        targets = self.declare_parameter("targets", Parameter.Type.DOUBLE_ARRAY).value
+        self.begin_route(np.array(targets or target or TARGETS, dtype=float).reshape(-1, 2).tolist())
+        self.goal_count = GoalCount(GOAL)
+        self.count = 0.0
+        self.share = self.told_share = 0.0
+        self.before: np.ndarray | None = None
+        self.inside = [False] * len(TOPICS)
         self.motion = {part: [[0.0, 0.0] for _ in TOPICS] for part in ("speeds", "last_action")}
         self.poses: dict[int, tuple[float, float, float]] = {}
+        self.pose_stamps: dict[int, float] = {}
+        self.leader_stamp = -math.inf
+        self.stamps: dict[str, float] = {}
+        self.missing_since = math.inf
         self.frames: list[np.ndarray] = []
         self.rays: dict[int, tuple[tuple[float, ...], np.ndarray]] = {}
         self.next_step = self.last_stamp = -math.inf
         self.is_moving = False
-        self.drives = [self.create_publisher(Twist, f"{prefix}cmd_vel", 10) for prefix in TOPICS]
+        self.drives = [self.create_publisher(Twist, commands, 10) for commands, _, _ in TOPICS]
         self.lidars = [
             self.create_subscription(
-                LaserScan, f"{prefix}static_laser", lambda scan, robot=robot: self.on_scan(robot, scan), 10
+                LaserScan, scans, lambda scan, robot=robot: self.on_scan(robot, scan), 10
             )
-            for robot, prefix in enumerate(TOPICS)
+            for robot, (_, scans, _) in enumerate(TOPICS)
         ]
-        if {"speeds", "own_pose", "target"} & set(PARTS):
+        self.counts_goal = bool({"achieved", "arrived"} & set(PARTS)) or len(self.route) > 1
+        self.needs_poses = self.counts_goal or bool({"own_pose", "target", "target_heading"} & set(PARTS))
+        if self.needs_poses or "speeds" in PARTS:
             self.odometry = [
                 self.create_subscription(
-                    Odometry, f"{prefix}odom", lambda odom, robot=robot: self.on_odometry(robot, odom), 10
+                    Odometry, odometry, lambda odom, robot=robot: self.on_odometry(robot, odom), 10
                 )
-                for robot, prefix in enumerate(TOPICS)
+                for robot, (_, _, odometry) in enumerate(TOPICS)
             ]
         if "target" in PARTS:
             self.goal = self.create_subscription(PoseStamped, "goal_pose", self.on_goal, 10)
+        if self.leader_frame:
+            self.transforms = self.create_subscription(TFMessage, "/tf", self.on_transforms, 100)
         self.heard = [self.seconds()] * len(TOPICS)
         self.silent = [False] * len(TOPICS)
         self.create_timer(CHECK_PERIOD, self.check_scans)
@@ -181,21 +278,73 @@ class PolicyNode(Node):
         """The time of the node's clock."""
         return self.get_clock().now().nanoseconds * 1e-9
 
+    def hear(self, source: str, stamp: Time) -> float:
+        """The time of a message [s]. Where time goes back, the world has begun again: so does the node."""
+        now: float = stamp.sec + stamp.nanosec * 1e-9
+        if now < self.stamps.get(source, -math.inf):
+            self.stamps.clear()
+            self.poses.clear()
+            self.pose_stamps.clear()
+            self.scans.clear()
+            self.before, self.leader_stamp, self.next_step = None, -math.inf, -math.inf
+            self.forget()
+            if not self.leader_frame:
+                self.begin_route(self.route)
+        self.stamps[source] = now
+        return now
+
     def on_scan(self, robot: int, scan: LaserScan) -> None:
         self.heard[robot] = self.seconds()
         if self.silent[robot]:
             self.silent[robot] = False
             self.get_logger().info(f"scans come on {self.lidars[robot].topic_name}")
-        now = scan.header.stamp.sec + scan.header.stamp.nanosec * 1e-9
-        if now < self.last_stamp:  # the world has begun again
-            self.next_step = -math.inf
-            self.forget()
+        now = self.hear(f"scan {robot}", scan.header.stamp)
         self.last_stamp = now
-        if now < self.next_step - 0.5 * STEP_TIME:
+        if now < self.next_step - EARLY * STEP_TIME:
             return
-        self.scans[robot] = observe_scan(robot, self.take_ranges(robot, scan))
-        if len(self.scans) < len(TOPICS) or not self.knows_places():
+        is_overdue = len(self.scans) == len(TOPICS)  # scans have waited for odometry that has not come
+        ranges = self.take_ranges(robot, scan)
+        self.scans[robot] = observe_scan(robot, ranges)
+        if LEFT_RAYS:
+            seen = np.nan_to_num(ranges, nan=math.inf)
+            self.beside[robot] = seen[LEFT_RAYS].min(), seen[::-1][LEFT_RAYS].min()
+        if is_overdue:
+            self.step()
+        else:
+            self.step_when_known()
+
+    def on_odometry(self, robot: int, odom: Odometry) -> None:
+        self.pose_stamps[robot] = self.hear(f"odometry {robot}", odom.header.stamp)
+        self.motion["speeds"][robot] = [odom.twist.twist.linear.x, odom.twist.twist.angular.z]
+        place = odom.pose.pose.position
+        self.poses[robot] = place.x, place.y, heading_of(odom.pose.pose.orientation)
+        self.step_when_known()
+
+    def on_goal(self, goal: PoseStamped) -> None:
+        self.begin_route([[goal.pose.position.x, goal.pose.position.y]])
+        self.target_heading = heading_of(goal.pose.orientation)
+
+    def on_transforms(self, message: TFMessage) -> None:
+        for each in message.transforms:
+            if each.child_frame_id.lstrip("/") == self.leader_frame:
+                self.target = [each.transform.translation.x, each.transform.translation.y]
+                self.leader_stamp = self.hear("leader", each.header.stamp)
+                self.step_when_known()
+
+    def step_when_known(self) -> None:
+        """Acts once every robot has a new scan and what it is told beside it is not older."""
+        if len(self.scans) < len(TOPICS):
             return
+        stamps = [*self.pose_stamps.values()] if self.needs_poses else []
+        stamps += [self.leader_stamp] if self.leader_frame else []
+        if all(stamp > self.last_stamp - 1e-6 for stamp in stamps):
+            self.step()
+
+    def step(self) -> None:
+        """Chooses a command for each robot and publishes it."""
+        if not self.knows_places():
+            return
+        self.count_goal()
         twists = self.model.twists(self.observe())
         self.motion["last_action"] = twists
         for drive, twist in zip(self.drives, twists, strict=True):
@@ -204,35 +353,80 @@ class PolicyNode(Node):
             drive.publish(command)
         self.is_moving = True
         self.scans.clear()
-        self.next_step = now + STEP_TIME
+        self.next_step = self.last_stamp + STEP_TIME
 
-    def on_odometry(self, robot: int, odom: Odometry) -> None:
-        self.motion["speeds"][robot] = [odom.twist.twist.linear.x, odom.twist.twist.angular.z]
-        place, turn = odom.pose.pose.position, odom.pose.pose.orientation
-        self.poses[robot] = place.x, place.y, 2.0 * math.atan2(turn.z, turn.w)
+    def begin_route(self, route: list[list[float]]) -> None:
+        """Goes to these places, one after the other; to none before one is told."""
+        self.route = self.left = route
+        self.target = route[0] if route else [math.nan, math.nan]
 
-    def on_goal(self, goal: PoseStamped) -> None:
-        self.target = [goal.pose.position.x, goal.pose.position.y]
+    def count_goal(self) -> None:
+        """Counts how much of the goal is achieved, and goes on to the next target of a route that is reached."""
+        if not self.counts_goal:
+            return
+        poses = np.array([self.poses[robot] for robot in range(len(TOPICS))])
+        self.find_arrivals(poses)
+        if self.before is None:
+            self.count = self.goal_count.begin(poses)
+            self.share = self.told_share = self.count / self.needed
+        else:
+            arrived = all(self.inside)
+            self.count = self.goal_count.count(
+                self.count, poses, self.before, arrived, np.array(self.target), self.beside
+            )
+            earlier, self.share = self.share, self.count / self.needed
+            self.told_share = earlier if self.goal_count.is_told_later else self.share
+            if arrived and len(self.left) > 1:
+                self.left = self.left[1:]
+                self.target = self.left[0]
+                self.find_arrivals(poses)
+        self.before = poses
+
+    @property
+    def needed(self) -> float:
+        """The count at which the goal is reached."""
+        return float(len(self.route)) if len(self.route) > 1 else self.goal_count.needed
+
+    def find_arrivals(self, poses: np.ndarray) -> None:
+        """Notes which robots are in the target."""
+        x, y = self.target
+        self.inside = [
+            hull_distance(pose, x, y) <= self.radius
+            and abs((pose[2] - self.target_heading + math.pi) % (2 * math.pi) - math.pi) <= HEADING_TOLERANCE
+            for pose in poses
+        ]
 
     def knows_places(self) -> bool:
         """Whether all is known that it is to be told beside scans; says once what is missing."""
         if "target" in PARTS and not all(map(math.isfinite, self.target)):
-            missing = "no target: set the parameter target to [x, y], or publish goal_pose"
-        elif {"own_pose", "target"} & set(PARTS) and len(self.poses) < len(TOPICS):
+            missing = (
+                f"no transform of {self.leader_frame} on /tf"
+                if self.leader_frame
+                else "no target: set the parameter target to [x, y], or publish goal_pose"
+            )
+        elif self.needs_poses and len(self.poses) < len(TOPICS):
             missing = f"no odometry on {', '.join(each.topic_name for each in self.odometry)}"
         else:
             return True
-        self.get_logger().warning(f"the robot stands: {missing}", once=True)
+        self.missing_since = min(self.missing_since, self.seconds())
+        if self.seconds() - self.missing_since >= PATIENCE:
+            self.get_logger().warning(f"the robot stands: {missing}", once=True)
         return False
 
     def told(self, part: str, robot: int) -> list[float]:
         """The numbers of one part of what a robot is told beside its scan."""
         if part in self.motion:
             return self.motion[part][robot]
+        if part == "achieved":
+            return [min(self.told_share, 1.0)]
+        if part == "arrived":
+            return [float(self.inside[robot])]
         x, y, heading = self.poses[robot]
         if part == "own_pose":
             place = (min(max(each, -PLACE_CLIP), PLACE_CLIP) * SCALE for each in (x, y))
             return [*place, math.cos(heading), math.sin(heading)]
+        if part == "target_heading":
+            return [math.cos(self.target_heading - heading), math.sin(self.target_heading - heading)]
         ahead, aside = self.target[0] - x, self.target[1] - y
         turn = (math.atan2(aside, ahead) - heading + math.pi) % (2 * math.pi) - math.pi
         return [min(math.hypot(ahead, aside), TARGET_CLIP) * SCALE, turn / math.pi]

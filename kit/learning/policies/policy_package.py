@@ -7,18 +7,30 @@ from pathlib import Path
 from string import Template
 from typing import Final
 
-from kit.launch.package_creation import PackageFrame, copy_world, new_package_folder, write_package_frame
+from kit.launch.package_creation import (
+    PackageFrame,
+    copy_world,
+    new_package_folder,
+    place_models,
+    write_package_frame,
+)
+from kit.learning.environment.episode_start import EpisodeStart, first_start
 from kit.learning.policies.policy import Policy
-from kit.learning.policies.policy_node import TOPIC_PREFIXES, format_policy_node
+from kit.learning.policies.policy_node import RobotTopics, format_policy_node, robot_topics, usual_targets
+from kit.learning.tasks.learning_task import LearningTask
+from kit.run.scenario import BEACON
+from kit.world.catalogue import WORLD_FILE
 
 PROGRAM: Final = "policy"
 
 
 DEPENDENCIES: Final = (
     "rclpy",
+    "builtin_interfaces",
     "geometry_msgs",
     "nav_msgs",
     "sensor_msgs",
+    "tf2_msgs",
     "python3-numpy",
     "launch_ros",
 )
@@ -27,8 +39,8 @@ DEPENDENCIES: Final = (
 TEMPLATES: Final = "policy_package_files"
 
 
-LIDAR: Final = "static_laser"
-"""What the kit's robots call their lidar's topic."""
+USUAL_TOPICS: Final = RobotTopics("cmd_vel", "scan", "odom")
+"""What most robots call them."""
 
 
 def create_policy_package(policy: Policy, name: str, destination: Path) -> Path:
@@ -39,15 +51,18 @@ def create_policy_package(policy: Policy, name: str, destination: Path) -> Path:
     """
     program = format_policy_node(policy)
     task = policy.trained_on.resolve()
-    used = [(LIDAR, "scan_topic", "scan"), ("cmd_vel", "cmd_vel_topic", "cmd_vel")]
-    seen = task.observation
-    used += [("odom", "odom_topic", "odom")] * (seen.speeds or seen.own_pose or seen.target)
+    names = task.robots_on(task.map_cases()[0][0])
     topics = [
-        (f"{prefix}{topic}", f"{prefix.replace('/', '_')}{argument}", f"{prefix}{usual}")
-        for prefix in TOPIC_PREFIXES[task.robots]
-        for topic, argument, usual in used
+        (topic, f"{name}_{usual}_topic", f"{name}/{usual}")
+        if task.robots > 1
+        else (topic, f"{usual}_topic", usual)
+        for name, robot in zip(names, robot_topics(task), strict=True)
+        for topic, usual in zip(robot, USUAL_TOPICS, strict=True)
     ]
+    start = first_start(task)
+    places = {**dict(zip(names, start.robots, strict=True)), BEACON: start.target}
     words = {
+        "target": _target_line(task, start),
         "name": name,
         "topics": repr(topics),
         "simulated": repr({argument: topic for topic, argument, _ in topics}),
@@ -73,4 +88,12 @@ def create_policy_package(policy: Policy, name: str, destination: Path) -> Path:
             text = files("kit.learning.policies").joinpath(TEMPLATES, f"{template}.template").read_text()
             path.write_text(Template(text).substitute(words), encoding="utf-8")
         copy_world(task.map_cases()[0][0].world_file, folder / "world")
+        place_models(folder / "world" / WORLD_FILE, places)
     return destination / name
+
+
+def _target_line(task: LearningTask, start: EpisodeStart) -> str:
+    """The line of the parameters that says where the target is; empty where the program knows it, or it moves."""
+    if not task.goal.has_standing_targets or usual_targets(task) or task.map_cases()[0][1].targets.model:
+        return ""
+    return f"    target: [{start.target.x:.3f}, {start.target.y:.3f}]  # m, in the frame of odometry: of the world beside this\n"

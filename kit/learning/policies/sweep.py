@@ -10,17 +10,17 @@ import csv
 import hashlib
 import io
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from kit.document.blocks import Block, CellStyle, Column, Picture, Table, Text
+from kit.document.blocks import Block, Cell, CellStyle, Column, Picture, Table, Text
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
-from kit.learning.policies.evaluation import EvaluationResult, Evaluator
+from kit.learning.policies.evaluation import EvaluationResult, evaluate_on
 from kit.learning.policies.policy import Policy
 from kit.learning.policies.policy_file import policy_bytes
 from kit.learning.tasks.disturbances import (
@@ -63,6 +63,8 @@ class SweepPoint:
     worst_case: str
     worst_share: float
     """Success in the case that goes worst."""
+    metrics: Mapping[str, float] = field(default_factory=dict)
+    """Mean of each metric of the task's own reward file, by name."""
 
     @property
     def episodes(self) -> int:
@@ -130,7 +132,7 @@ class PolicySweep:
             name = json.dumps(disturbances.as_dict(), sort_keys=True)
             if name not in known:
                 task = replace(self._task, disturbances=disturbances)
-                result = Evaluator(task).test(self._policy, self._episodes, self._seed, greedy=self._greedy)
+                result = evaluate_on(task, self._policy, self._episodes, self._seed, greedy=self._greedy)
                 known[name] = _counts(result)
                 self._append(name, known[name])
             yield SweepPoint(kind.name, value, **known[name])
@@ -172,6 +174,7 @@ def _counts(result: EvaluationResult) -> dict[str, Any]:
         "timed_out": timed_out,
         "worst_case": worst.case,
         "worst_share": worst.share,
+        "metrics": result.metrics,
     }
 
 
@@ -203,8 +206,9 @@ def _figures(points: Sequence[SweepPoint]) -> Table:
         Column("timed out", decimals=3),
         Column("worst", decimals=3),
         Column("case", CellStyle.TEXT),
+        *(Column(name, decimals=2) for name in points[0].metrics),
     )
-    rows = tuple(
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
         (
             f"{point.value:g}",
             point.share,
@@ -213,6 +217,7 @@ def _figures(points: Sequence[SweepPoint]) -> Table:
             point.timed_out / point.episodes,
             point.worst_share,
             point.worst_case,
+            *point.metrics.values(),
         )
         for point in points
     )
@@ -234,10 +239,12 @@ def sweep_csv(points: Sequence[SweepPoint]) -> str:
     """A table for other programs: a row for each point."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(CSV_HEADER)
+    own = tuple(dict.fromkeys(name for point in points for name in point.metrics))
+    writer.writerow((*CSV_HEADER, *own))
     units = {kind.name: kind.unit for kind in DISTURBANCE_KINDS}
     for point in points:
         measured = (point.episodes, point.share, *point.interval, point.reached, point.collided)
         tail = (point.timed_out, point.worst_case, point.worst_share)
-        writer.writerow((point.kind, units[point.kind], point.value, *measured, *tail))
+        metrics = (point.metrics.get(name, "") for name in own)
+        writer.writerow((point.kind, units[point.kind], point.value, *measured, *tail, *metrics))
     return text.getvalue()

@@ -110,6 +110,10 @@ class _TaskReader:
         robot_names = self._robot_names(cards)
         robots = len(robot_names) or (1 if not cards or cards[0].partner is None else 2)
         goal = read_goal(section.section("goal", None))
+        if robots < goal.least_robots:
+            section.error(
+                f"the goal {goal.kind} needs {goal.least_robots} robots, and here drives {robots}", "goal"
+            )
         cases = CaseReader(cards, robots, goal).read(section)
         reward, reward_file = self._reward(section.section("reward"))
         step, target = section.section("step", None), section.section("target", None)

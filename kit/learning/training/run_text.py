@@ -79,7 +79,15 @@ def comparison_tables(results: Mapping[str, EvaluationResult]) -> list[Table]:
         for name, each in results.items()
         if each.is_pair
     }
+    own = dict.fromkeys(name for result in results.values() for name in result.metrics)
     tables = [_comparison_table("case", shares, with_worst=True)]
+    for metric in own:
+        values = {
+            name: {case.case: case.metrics[metric] for case in each.cases}
+            for name, each in results.items()
+            if metric in each.metrics
+        }
+        tables.append(_comparison_table(metric, values, with_worst=False))
     return [*tables, _comparison_table("adj rays", pairs, with_worst=False)] if pairs else tables
 
 

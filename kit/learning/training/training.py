@@ -210,6 +210,8 @@ class _TrainingLoop:
         self._is_warned = False
         """Whether it has been said that values exceed what rewards can pay."""
         self._success = 1.0
+        self._is_sure = False
+        self._worst = ("", 0.0)
         """The share that reached the goal in the last test."""
         cases = [(case.name, case.group) for _, case in self._task.map_cases()]
         imitates = algorithm.family == "imitation"  # those who demonstrate choose the cases
@@ -242,6 +244,7 @@ class _TrainingLoop:
             self._learner.learn(self._preset.steps, self)
             if self._learner.steps > self._evaluated_at:
                 self._evaluate(last=True)
+            reason += self._describe_missed_goal()
         except StopLearning as halt:
             stopped, reason = isinstance(halt, _StopRequested), str(halt)
         self._report_progress()
@@ -270,6 +273,14 @@ class _TrainingLoop:
             if len(self._first_returns) < COMPARED_EPISODES:
                 self._first_returns.append(episode.reward)
             self._last_returns.append(episode.reward)
+
+    def _describe_missed_goal(self) -> str:
+        """What of the task's goal is not surely reached when all steps are done; empty where nothing is asked for."""
+        goal = getattr(self._preset.stopping_rule, "goal", None)
+        if goal is None or self._is_sure:
+            return ""
+        case, share = self._worst
+        return f", and the goal is not surely reached: success of {goal:g} in every case (in the last test {share:.3f} in {case})"
 
     def _describe_cheat(self) -> str:
         """What the student's reward pays for missing the goal, where that is what has been learned; else empty."""
@@ -318,6 +329,9 @@ class _TrainingLoop:
         decision = self._preset.stopping_rule.evaluate(steps, self._memory, test)
         self._test_count, self._memory = test.test_count, decision.memory
         self._success = float(np.mean([each.reached / each.episodes for each in decision.counts.values()]))
+        shares = {name: count.share for name, count in decision.counts.items()}
+        self._worst = min(shares.items(), key=lambda item: item[1])
+        self._is_sure = decision.stop
         self._evaluated_at, self._next_evaluation = steps, steps + self._preset.stopping_rule.test_interval
         save_policy(policy, self._run.newest_policy)
         if decision.is_best:

@@ -19,7 +19,7 @@ import signal
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from statistics import fmean, median
 from types import MappingProxyType
@@ -31,7 +31,7 @@ from kit.host.job_executors import read_result
 from kit.host.job_folder import JobFolder
 from kit.host.python_command import python_command
 from kit.learning.policies.confidence_intervals import wilson_interval
-from kit.learning.policies.evaluation import Evaluator
+from kit.learning.policies.evaluation import evaluate_on
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.runs import (
@@ -109,6 +109,8 @@ class SweepResult:
     episodes: int = 0
     problem: str = ""
     """Why there is no result; the next start of the sweep tries again."""
+    metrics: Mapping[str, float] = field(default_factory=dict)
+    """Mean of each metric of the task's own reward file, by name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,7 +248,7 @@ class TrainingSweep(JobFolder):
         config, summary = run.config(), run.summary()
         policy = run.policy()
         seed = derive_seed(config.seed, "training sweep")
-        found = Evaluator(policy.trained_on.resolve()).test(policy, self.episodes, seed)
+        found = evaluate_on(policy.trained_on.resolve(), policy, self.episodes, seed)
         return SweepResult(
             steps=summary.steps,
             seconds=summary.seconds,
@@ -255,6 +257,7 @@ class TrainingSweep(JobFolder):
             worst_case=found.worst.case,
             reached=sum(case.reached for case in found.cases),
             episodes=sum(case.episodes for case in found.cases),
+            metrics=found.metrics,
         )
 
     def _save(self, key: str, result: SweepResult) -> None:
@@ -350,18 +353,20 @@ def sweep_table(rows: Sequence[SweepRow]) -> Table:
         Column("steps"),
         Column("minutes", decimals=1, is_spare=True),
     ]
+    own = tuple(dict.fromkeys(name for row in rows for each in row.results for name in each.metrics))
+    columns += [Column(name, decimals=2) for name in own]
     if any(len(row.results) < row.seeds for row in rows):
         columns.append(Column("missing"))
-    cells = tuple((*(row.group[n] for n in shown), *_figures(row))[: len(columns)] for row in rows)
+    cells = tuple((*(row.group[n] for n in shown), *_figures(row, own))[: len(columns)] for row in rows)
     goals = " or ".join(f"{goal:g}" for goal in sorted({row.goal for row in rows}))
     note = f"learned: seeds whose worst case has a success rate of {goals} or more."
     return Table("sweep", "", tuple(columns), cells, note, is_ruled=False)
 
 
-def _figures(row: SweepRow) -> tuple[Cell, ...]:
+def _figures(row: SweepRow, metrics: Sequence[str]) -> tuple[Cell, ...]:
     results, missing = row.results, row.seeds - len(row.results)
     if not results:
-        return (f"0 of {row.seeds}", *[None] * 5, missing)
+        return (f"0 of {row.seeds}", *[None] * (5 + len(metrics)), missing)
     return (
         f"{row.learned} of {len(results)}",
         wilson_interval(row.learned, len(results)),
@@ -369,6 +374,7 @@ def _figures(row: SweepRow) -> tuple[Cell, ...]:
         min(each.worst for each in results),
         f"{median(each.steps for each in results):,.0f}",
         median(each.seconds for each in results) / 60,
+        *(fmean(each.metrics.get(name, math.nan) for each in results) for name in metrics),
         missing or "",
     )
 
@@ -377,11 +383,20 @@ def sweep_table_csv(sweep: TrainingSweep) -> str:
     """A table for other programs: a row for each training."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(CSV_HEADER)
+    own = tuple(dict.fromkeys(name for _, result in _known(sweep) for name in result.metrics))
+    writer.writerow((*CSV_HEADER, *own))
     for entry, result in _known(sweep):
         found = (result.steps, result.seconds, result.mean, result.worst, result.worst_case)
         writer.writerow(
-            (*entry.group, entry.config.seed, *found, result.reached, result.episodes, result.problem)
+            (
+                *entry.group,
+                entry.config.seed,
+                *found,
+                result.reached,
+                result.episodes,
+                result.problem,
+                *(result.metrics.get(name, "") for name in own),
+            )
         )
     return text.getvalue()
 

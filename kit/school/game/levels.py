@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal
 
 from kit.geometry import Pose
 from kit.learning.tasks.goals.goal import Goal
@@ -85,7 +85,7 @@ def apply_conditions(
     ]
     file = maps_folder().joinpath(*CART_MODEL)
     for cart in conditions.carts:
-        model = load_model(file, world, name=cart.name, namespace="", pose=cart.start)
+        model = load_model(file, world, name=cart.name, namespace=cart.name, pose=cart.start)
         models.append(_moving(model, cart))
     return replace(scenario, world=replace(world, models=tuple(models)))
 
@@ -183,7 +183,9 @@ class GameLevel:
     any_order: bool = False
     """Whether the targets may be reached in any order."""
     leader: str = ""
-    """The model that is followed, by a goal that needs one."""
+    """The model that is the target, where that moves."""
+    measured_to: Literal["hull", "axle"] = "hull"
+    """What of a robot must be in the target."""
     reference: str = ""
     """The level whose reference drive is this one's too; empty: it has its own."""
     drive: ReferenceDrive | None = None
@@ -218,7 +220,8 @@ class GameLevel:
 
     def find_scenario(self) -> Scenario:
         """Loads the scenario that is driven, under the level's conditions. Raises LookupError and WorldError."""
-        scenario = replace(find_scenario(self.map_name, self.case, None), level=self.id)
+        scenario = find_scenario(self.map_name, self.case, None)
+        scenario = replace(scenario, level=self.id, leader=self.leader or None)
         if self.targets and scenario.case is not None:
             first = replace(scenario.case, target=self.targets[0])
             scenario = replace(scenario, case=first, targets=self.goal.route(self.targets))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from kit.arrays import FloatArray
+from kit.learning.maps.ray_directions import RAY_COUNT, ranges_in_directions, ray_direction
 from kit.learning.tasks.goals.goal import GoalCase
 from kit.learning.tasks.transition import FAR, EpisodeState, Transition
 from kit.render.scene import Disc
@@ -18,6 +19,7 @@ from kit.sim.simulation import Simulation
 
 USUAL_RADIUS = 0.25
 """Of targets on levels whose map has no case [m]."""
+DIRECTIONS = np.array([ray_direction(ray) for ray in range(RAY_COUNT)])
 
 
 class Objective:
@@ -26,6 +28,8 @@ class Objective:
     def __init__(self, level: GameLevel, scenario: Scenario, step_size: float) -> None:
         """``scenario``: the level's own, as it was loaded; ``step_size``: of its ticks [s]."""
         self._goal, self._any_order, self._leader = level.goal, level.any_order, level.leader
+        self._is_by_axle = level.measured_to == "axle"
+        self._target_heading = np.array([scenario.target_heading or 0.0])
         self._robots = scenario.partners
         self._obstacles = [
             model.name
@@ -36,6 +40,7 @@ class Objective:
         places = self._goal.route(level.targets or (() if case is None else (case.target,)))
         radius = USUAL_RADIUS if case is None else case.target_radius
         self._all = tuple(Disc(x, y, radius) for x, y in places)
+        self._has_moving_disc = bool(self._leader) and self._goal.has_standing_targets
         start = scenario.starts[0]
         goal_case = GoalCase(level.map_card, self._robots, (start.x, start.y), len(level.targets))
         self._count = self._goal.make_count([goal_case], 1, step_size)
@@ -56,7 +61,11 @@ class Objective:
 
     def on_step(self, simulation: Simulation) -> None:
         """Counts one tick."""
-        arrived = next((disc for disc in self.discs if self._is_inside(simulation, disc)), None)
+        if self._has_moving_disc:
+            x, y, _ = simulation.pose(self._leader)
+            self._left = [Disc(x, y, disc.radius) for disc in self._left]
+        poses = np.array([[simulation.pose(name) for name in self._robots]], dtype=np.float64)
+        arrived = next((disc for disc in self.discs if self._is_inside(simulation, disc, poses)), None)
         if self.discs:
             self.target_m = min(
                 max(simulation.hull_distance(name, (disc.x, disc.y)) for name in self._robots)
@@ -66,10 +75,12 @@ class Objective:
         after = replace(
             before,
             step=before.step + 1,
-            pose=np.array([[simulation.pose(name) for name in self._robots]], dtype=np.float64),
+            pose=poses,
             in_target=np.full((1, len(self._robots)), arrived is not None),
             target=self._target(simulation),
         )
+        if self._goal.reads_lidar:
+            after = replace(after, ranges=self._ranges(simulation, poses))
         if self._obstacles:
             after = replace(after, obstacle_distance=self._nearest_obstacles(simulation, after.pose))
         counts = self._count.count(Transition(before, after, max_steps=0))
@@ -95,8 +106,25 @@ class Objective:
         """The targets that may be reached next."""
         return tuple(self._left) if self._any_order else tuple(self._left[:1])
 
-    def _is_inside(self, simulation: Simulation, disc: Disc) -> bool:
-        return all(is_in_target(simulation, name, (disc.x, disc.y), disc.radius) for name in self._robots)
+    def _is_inside(self, simulation: Simulation, disc: Disc, poses: FloatArray) -> bool:
+        """Whether all robots have arrived; ``poses`` (1, robots, 3)."""
+        place = disc.x, disc.y
+        if self._is_by_axle:
+            inside = np.hypot(poses[:, :, 0] - disc.x, poses[:, :, 1] - disc.y) <= disc.radius
+        else:
+            inside = np.array([[is_in_target(simulation, name, place, disc.radius) for name in self._robots]])
+        return bool(self._goal.is_arrived(inside, poses, self._target_heading).all())
+
+    def _ranges(self, simulation: Simulation, poses: FloatArray) -> FloatArray:
+        """(1, robots, 91) [m] what the robots' lidars measured last, in the directions in which agents look."""
+        found = np.full((1, len(self._robots), RAY_COUNT), FAR)
+        scans = {scan.model: scan for scan in simulation.latest_scans()}
+        for number, (name, pose) in enumerate(zip(self._robots, poses[0], strict=True)):
+            if name in scans:
+                scan = scans[name]
+                angles = np.arctan2(scan.beams.sin, scan.beams.cos) + scan.pose.theta - pose[2]
+                found[0, number] = ranges_in_directions(DIRECTIONS, scan.ranges, angles, FAR)
+        return found
 
     def _target(self, simulation: Simulation) -> FloatArray:
         """(1, 2)"""
@@ -123,7 +151,7 @@ def _unknown_state(poses: FloatArray, count: FloatArray) -> EpisodeState:
         in_target=np.zeros(shape, dtype=np.bool_),
         to_go=unknown,
         rotation=unknown,
-        ranges=np.full((*shape, 91), np.nan),
+        ranges=np.full((*shape, RAY_COUNT), np.nan),
         move=unknown,
         twist=np.full((*shape, 2), np.nan),
         forward_steps=unknown,

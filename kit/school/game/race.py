@@ -284,7 +284,9 @@ def run_again(level: GameLevel, recording: Recording) -> tuple[RaceFinish, Recor
     scenario = scenario_from(level, recording.seed)
     if (recording.place, recording.case) != (scenario.name, level.case):
         raise ValueError(f"this is a drive of {recording.place} {recording.case or ''}, not of {level.title}")
-    with Session(scenario, seed=recording.seed, step_size=recording.step_size) as session:
+    with Session(
+        scenario, seed=recording.seed, step_size=recording.step_size, always_scan=level.goal.reads_lidar
+    ) as session:
         referee = RaceReferee(level, scenario, recording.step_size)
         recorder = Recorder.for_scenario(scenario, session.runner.simulation)
         session.runner.observers += [referee, recorder]
@@ -309,7 +311,7 @@ def run_race(
 ) -> tuple[RaceFinish, Recording]:
     """Runs a drive from ``scenario``'s start to its end. ``seed``: of that start."""
     ends_at = time.monotonic() + wall_limit_s
-    with Session(scenario, seed=seed, level=confinement) as session:
+    with Session(scenario, seed=seed, level=confinement, always_scan=level.goal.reads_lidar) as session:
         simulation = session.runner.simulation
         referee, recorder = RaceReferee(level, scenario), Recorder.for_scenario(scenario, simulation)
         session.runner.observers += [referee, recorder]

@@ -5,14 +5,18 @@ Such a level has no reference drive and so no medals: there are the time, each d
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+
 from kit.geometry import Pose
 from kit.learning.authoring.task_check import check_task
-from kit.learning.maps.batch_map import UnsupportedWorld
+from kit.learning.environment.episode_start import EpisodeStart, first_start
+from kit.learning.maps.batch_map import UnsupportedWorld, load_batch_map
+from kit.learning.maps.obstacles import Obstacle, phases_of_bodies
 from kit.learning.tasks.catalogue import find_task_file, task_names, tasks_folder
 from kit.learning.tasks.learning_task import LearningTask, UnknownTask
 from kit.learning.tasks.task_case import TaskCase
@@ -20,10 +24,12 @@ from kit.learning.tasks.task_reader import read_task
 from kit.plain_text import quoted
 from kit.run.scenario import BEACON, Scenario
 from kit.school.game.levels import GameLevel, apply_conditions
+from kit.school.game.starts import LaterCurve
+from kit.sim.plugins.tween import MODES, TweenParams
 from kit.sim.simulation import load_world
 from kit.world.catalogue import WORLD_FILE, MapCard, MapCase
 from kit.world.problems import Problem, WorldError
-from kit.world.records import SourceLocation
+from kit.world.records import Model, PluginSpec, SourceLocation
 
 MAX_ROBOTS = 2
 """That one driver can drive as one."""
@@ -42,62 +48,98 @@ class TaskLevel(GameLevel):
 
     @property
     def command_name(self) -> str:
-        return self.title if self.title in task_names() else str(_short(self._file))
+        return self.title if self.title in task_names() else str(_short(self.file))
 
     @property
     def map_card(self) -> MapCard:
         return self._first_case[0]
 
     @property
-    def _task(self) -> LearningTask:
+    def learning_task(self) -> LearningTask:
+        """The task that poses it."""
         assert self.task is not None  # it is made from one
         return self.task
 
     @property
-    def _file(self) -> Path:
-        assert self._task.file is not None  # every task is a file
-        return self._task.file
+    def file(self) -> Path:
+        """The task's file."""
+        assert self.learning_task.file is not None  # every task is a file
+        return self.learning_task.file
 
     @property
     def _first_case(self) -> tuple[MapCard, TaskCase]:
-        return self._task.map_cases()[0]
+        return self.learning_task.map_cases()[0]
 
     def find_scenario(self) -> Scenario:
-        """The task's world with its robots at the first case's start. Their motors give what the task's actions ask for at
-        most. Raises WorldError."""
-        task, (card, case) = self._task, self._first_case
-        robots = task.robots_on(card)
-        poses = {name: places.nominal for name, places in zip(robots, case.starts, strict=True)}
-        world = load_world(card.world_file, root=card.root)
-        models = [
-            replace(
-                model, pose=poses.get(model.name, Pose(*case.target) if model.name == BEACON else model.pose)
-            )
-            for model in world.models
-        ]
-        models.sort(key=lambda model: robots.index(model.name) if model.name in robots else len(robots))
-        map_case = MapCase(
-            case.name,
-            case.starts[0].nominal,
-            case.target,
-            task.target_radius,
-            (0.0, 0.0),
-            (0.0, 0.0),
-            is_heading_random=False,
-            group=case.group,
-            partner_start=poses[robots[1]] if len(robots) > 1 else None,
+        """The task's world with its robots at the first case's start, or at the first that is drawn where none is given.
+        Their motors give what the task's actions ask for at most. Raises WorldError."""
+        return episode_scenario(self, first_start(self.learning_task))
+
+
+def episode_scenario(level: TaskLevel, start: EpisodeStart) -> Scenario:
+    """The world of a task's first case as an episode begins there. Raises WorldError."""
+    task, (card, case) = level.learning_task, level.learning_task.map_cases()[0]
+    robots = task.robots_on(card)
+    poses = dict(zip(robots, start.robots, strict=True))
+    x, y, heading = start.target
+    world = load_world(card.world_file, root=card.root)
+    models = [
+        replace(model, pose=poses.get(model.name, Pose(x, y) if model.name == BEACON else model.pose))
+        for model in world.models
+    ]
+    if start.phase is not None:
+        models = _moved_on(models, load_batch_map(card, robots).obstacles, start.phase)
+    models.sort(key=lambda model: robots.index(model.name) if model.name in robots else len(robots))
+    map_case = MapCase(
+        case.name,
+        start.robots[0],
+        (x, y),
+        task.target_radius,
+        (0.0, 0.0),
+        (0.0, 0.0),
+        is_heading_random=False,
+        group=case.group,
+        partner_start=poses[robots[1]] if len(robots) > 1 else None,
+    )
+    is_kit_map = card.name in task.maps and card.world_file == card.folder / WORLD_FILE
+    scenario = Scenario(
+        card.name if is_kit_map else str(card.world_file.absolute()),
+        level.title,
+        replace(world, models=tuple(models)),
+        robots[0],
+        map_case,
+        targets=task.route(case),
+        target_heading=None if task.goal.heading_tolerance is None else heading,
+        leader=case.targets.model,
+        level=level.title if level.title in task_names() else str(level.file.absolute()),
+    )
+    return apply_conditions(scenario, level.conditions, task.actions.largest)
+
+
+def _moved_on(models: Sequence[Model], obstacles: Sequence[Obstacle], phase: float) -> list[Model]:
+    """The models as they are on their ways when an episode begins; each is elsewhere, as in training."""
+    phases = dict(
+        zip(
+            (each.name for each in obstacles),
+            phases_of_bodies(np.array([phase]), len(obstacles))[0].tolist(),
+            strict=True,
         )
-        is_kit_map = card.name in task.maps and card.world_file == card.folder / WORLD_FILE
-        scenario = Scenario(
-            card.name if is_kit_map else str(card.world_file.absolute()),
-            self.title,
-            replace(world, models=tuple(models)),
-            robots[0],
-            map_case,
-            targets=task.route(case),
-            level=self.title if self.title in task_names() else str(self._file.absolute()),
-        )
-        return apply_conditions(scenario, self.conditions, task.actions.largest)
+    )
+    return [
+        replace(model, plugins=tuple(_later(each, phases[model.name]) for each in model.plugins))
+        if model.name in phases
+        else model
+        for model in models
+    ]
+
+
+def _later(plugin: PluginSpec, phase: float) -> PluginSpec:
+    """A cart's plugin after this share of its whole way; any other as it is."""
+    params = plugin.params
+    if not isinstance(params, TweenParams) or params.progress is None:
+        return plugin
+    turns = 2.0 * phase if params.progress is MODES["yoyo"] else phase
+    return replace(plugin, params=replace(params, progress=LaterCurve(params.progress, turns)))
 
 
 def find_task_level(name: str) -> TaskLevel | None:
@@ -124,7 +166,7 @@ def task_level(file: Path) -> TaskLevel:
     _, case = cases[0]
     refused = [
         Problem(SourceLocation(file), f"a level of the game cannot have {each}")
-        for each in _refused(task, case)
+        for each in race_refusals(task)
     ]
     if refused:
         raise WorldError(refused)
@@ -143,7 +185,8 @@ def task_level(file: Path) -> TaskLevel:
         time_limit=limit,
         goal=task.goal,
         targets=tuple((each.x, each.y) for each in case.targets.poses) if task.goal.is_route else (),
-        leader=case.targets.model or "" if task.goal.needs_leader else "",
+        leader=case.targets.model or "",
+        measured_to=task.measured_to,
         task=task,
     )
 
@@ -154,23 +197,10 @@ def _short(file: Path) -> Path:
     return file.absolute().relative_to(here) if file.absolute().is_relative_to(here) else file
 
 
-def _refused(task: LearningTask, case: TaskCase) -> Iterator[str]:
+def race_refusals(task: LearningTask) -> Iterator[str]:
     """Names the features that the task asks for and a level cannot have."""
     if task.robots > MAX_ROBOTS:
         yield f"{task.robots} robots, only {MAX_ROBOTS} that are driven as one"
-    if task.goal.race_refusal:
-        yield f'the goal "{task.goal.description}": {task.goal.race_refusal}'
-    if task.goal.heading_tolerance is not None:
-        yield '"heading_tolerance": any heading counts as arrived'
-    if task.goal.has_standing_targets:
-        if task.measured_to == "axle":
-            yield '"measured_to: axle": it measures from the hull to the target'
-        if case.targets.model is not None:
-            yield f"a target that moves with {case.targets.model}"
-        if case.targets.is_area:
-            yield f'a target that is drawn ("{case.targets.description}") in its first case, {case.name}: only a place'
-    if case.starts[0].is_area:
-        yield f'a start that is drawn ("{case.starts[0].description}") in its first case, {case.name}: only a place'
 
 
 def _left_out(task: LearningTask, case: TaskCase) -> Iterator[str]:

@@ -10,6 +10,7 @@ from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
 from kit.sim.plugin_clock import UpdateTimer
 from kit.sim.plugin_messages import TF_TOPIC, read_rate, tf_message, transform_message
 from kit.world.plugin_reader import ModelScope
+from kit.world.records import Model
 from kit.world.yaml_section import Section
 
 
@@ -34,6 +35,15 @@ def read_params(section: Section, scope: ModelScope) -> ModelTfPublisherParams:
         rate=read_rate(section, "update_rate"),
         exclude=frozenset(scope.bodies(section, "exclude")),
     )
+
+
+def frame_in_world(model: Model) -> str:
+    """The frame on /tf that says where a model is in the world; empty where nothing publishes it."""
+    for plugin in model.plugins:
+        params = plugin.params
+        if isinstance(params, ModelTfPublisherParams) and params.world_frame is not None:
+            return model.frame(params.reference)
+    return ""
 
 
 class ModelTfPublisher(Plugin):

@@ -338,11 +338,11 @@ def _read_tasks() -> Sequence[LearningTask]:
 
 def _test_rows(run: TrainingRun, columns: int) -> list[str]:
     from kit.document.layout import Page, lines_of
-    from kit.learning.policies.evaluation import Evaluator
+    from kit.learning.policies.evaluation import evaluate_on
     from kit.learning.policies.seeds import derive_seed
 
     policy = run.policy()
-    result = Evaluator(policy.trained_on.resolve()).test(policy, EPISODES, derive_seed(1, "evaluate"))
+    result = evaluate_on(policy.trained_on.resolve(), policy, EPISODES, derive_seed(1, "evaluate"))
     head = f"trained on {policy.trained_on.title}, {policy.steps:,} steps"
     ways = Text(f"`kit evaluate {run.name} --paths 5` draws its ways.")
     return lines_of([Text(head), result.table(), ways], Page(width=columns))

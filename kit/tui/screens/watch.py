@@ -201,9 +201,17 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         def make(session: Session) -> Observer:
             from kit.learning.policies.agent_view import AgentObserver
 
-            case = session.scenario.case
-            target = None if case is None else case.target
-            return AgentObserver(policy, session.scenario.partners, keep, target)
+            scenario = session.scenario
+            case = scenario.case
+            return AgentObserver(
+                policy,
+                scenario.partners,
+                keep,
+                None if case is None else case.target,
+                route=scenario.targets,
+                radius=0.0 if case is None else case.target_radius,
+                leader=scenario.leader,
+            )
 
         self.host.observe(make)
 

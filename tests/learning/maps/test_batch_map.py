@@ -125,19 +125,23 @@ def test_parts_that_the_lidar_sees_hide_what_is_behind_them(workshop: Workshop) 
             {"robot": robot(plugins=[DRIVE | {"linear_dynamics": {"acceleration_limit": 1}}, LASER])},
             "no acceleration limits",
         ),
-        ({"robot": robot(), "cart": {"bodies": [body("cart")]}}, "not the body cart"),
+        ({"robot": robot(), "cart": {"bodies": [body("cart")]}}, "in training only robots can be pushed"),
         (
             {"robot": robot(), "cart": {"bodies": [body("cart", type="kinematic")], "plugins": [TRIGGERED]}},
             "trigger",
         ),
-        ({"robot_1": robot(), "robot_2": robot()}, "see each other"),
+        (
+            {"robot": robot(), "cart": {"bodies": [body("cart")], "plugins": [TRIGGERED | {"mode": "yoyo"}]}},
+            'lacks the line "type: kinematic"',
+        ),
+        ({"robot_1": robot(), "robot_2": robot()}, "does not see robot_2, .* looks at wall"),
         ({f"robot_{number}": robot() for number in range(5)}, "not 5"),
     ],
 )
 def test_what_it_cannot_represent_it_names(workshop: Workshop, models: Mapped, reason: str) -> None:
     with pytest.raises(UnsupportedWorld, match=reason) as refusal:
         batch_map(workshop, models)
-    assert "the batch engine" in str(refusal.value)
+    assert "training" in str(refusal.value)
 
 
 def test_a_round_robot_with_a_lidar_off_its_origin(workshop: Workshop) -> None:

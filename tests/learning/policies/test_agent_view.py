@@ -147,6 +147,27 @@ def test_it_perceives_what_the_batch_engine_gives(tells_target: bool) -> None:
     assert len(views) >= 3  # after the reset it looks again at once
 
 
+def test_the_target_of_a_route_and_a_leader_are_followed() -> None:
+    policy = random_policy("turn", tells_target=True)
+    scenario = find_scenario("turn", "turn_a_to_b")
+    start = scenario.starts[0]
+    here, there = (start.x, start.y), (1.6, 1.6)
+    told: dict[str, list[float]] = {}
+    for name, extra in (
+        ("alone", {}),
+        ("route", {"route": (here, there), "radius": 0.2}),
+        ("leader", {"leader": "beacon"}),
+    ):
+        views: list[AgentView] = []
+        with Session(scenario, always_scan=True) as session:
+            observer = AgentObserver(policy, scenario.partners, views.append, there, **extra)  # type: ignore[arg-type]
+            session.runner.observers.append(observer)
+            session.runner.tick()
+        told[name] = [number for _, number in views[0].readings]
+    assert told["route"] == told["alone"], "the first target is where it stands: it goes on to the second"
+    assert told["leader"] == pytest.approx(told["alone"], abs=1e-3)
+
+
 def path_start(batch: BatchEnv) -> np.ndarray:
     start: np.ndarray = batch.state.pose[0, 0, :2]
     return start

@@ -12,12 +12,13 @@ from kit.document.layout import lines_of
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
 from kit.learning.policies.episode_paths import record_paths
-from kit.learning.policies.evaluation import Evaluator
+from kit.learning.policies.evaluation import Evaluator, evaluate_on
 from kit.learning.policies.paths_picture import build_paths_scene
 from kit.learning.policies.policy import ActionSampling, Policy, PolicyError, action_counts, task_interface
 from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.policies.policy_node import format_policy_node
 from kit.learning.policies.seeds import derive_seed
+from kit.learning.policies.sweep import PolicySweep, find_kinds, sweep_csv
 from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.learning_task import StartVariation
 from kit.learning.tasks.student_reward import (
@@ -28,6 +29,7 @@ from kit.learning.tasks.student_reward import (
 )
 from kit.learning.tasks.task_case import EpisodePlaces
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.run_text import comparison_tables
 
 STRAIGHT = TaskSpec("hallway", ("straight", "center_door"))
 AHEAD_ONLY = replace(STRAIGHT.resolve(), start=StartVariation(shifted=False))
@@ -161,7 +163,7 @@ def test_areas_are_drawn_where_starts_and_targets_are_drawn_from_them() -> None:
 def test_a_node_knows_what_the_policy_knows() -> None:
     source = format_policy_node(always(TaskSpec("wheelchairs"), 1))
     compile(source, "node.py", "exec")
-    assert "'left/', 'right/'" in source
+    assert all(f"/{robot}/static_laser" in source for robot in ("left", "right"))
     assert "import kit" not in source
 
 
@@ -247,6 +249,18 @@ def test_metrics_of_a_reward_file_are_counted_and_earn_nothing(tmp_path: Path) -
         assert episode.reward == 0.0
         assert episode.terms["half_steps"] == episode.steps / 2
         assert episode.terms["near"] >= 1
+    own = replace(find_task("turn"), reward_file=file)
+    ahead = always(TaskSpec("turn"), 0)
+    result = evaluate_on(own, ahead, episodes=4, seed=1)
+    assert result.metrics["half_steps"] > 1
+    assert {"half_steps", "near"} <= {column.title for column in result.table().columns}
+    (_, half_steps, near) = comparison_tables({"ahead": result})
+    assert half_steps.columns[0].title == "half_steps"
+    assert near.rows
+    sweep = PolicySweep(ahead, own, find_kinds(["latency"]), episodes=2, seed=1)
+    points = list(sweep.points())
+    assert all(point.metrics["half_steps"] > 1 for point in points)
+    assert sweep_csv(points).splitlines()[0].endswith("worst_share,half_steps,near")
     file.write_text("def reward(reached):\n    return 1.0 * reached\n\ndef metric_x(speeed):\n    return 1\n")
     with pytest.raises(RewardFileError, match=r"mine.py:4: metric_x\(\) asks for \"speeed\""):
         reward_parameters(file)

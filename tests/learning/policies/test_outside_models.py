@@ -17,12 +17,15 @@ pytest.importorskip("sb3_contrib")
 import sb3_contrib as contrib
 import stable_baselines3 as sb3
 import torch
+from click.testing import CliRunner
 from stable_baselines3.common.vec_env import VecNormalize
 from torch import nn
 
 import kit
+from kit.cli import main
 from kit.learning.policies.policy import Policy, PolicyError
 from kit.learning.policies.sb3_archive import EXPORT_STATISTICS
+from tests.benchmarks.one_policy import compare
 
 TASKS = {"discrete": "turn", "continuous": "smooth-turn"}
 SMALL_BATCH: dict[str, Any] = {"n_steps": 4, "batch_size": 16}
@@ -233,3 +236,34 @@ class Doubled(nn.Module):
 def test_a_module_that_the_kit_cannot_be_is_refused(module: nn.Module, reason: str) -> None:
     with pytest.raises(PolicyError, match=reason):
         kit.export_policy(module, "turn")
+
+
+def write_zip(folder: Path) -> tuple[Path, str]:
+    """A model of stable-baselines3 as it saves itself, with the weights that it begins with."""
+    model, task = make_model("PPO")
+    model.save(folder / "model.zip")
+    return folder / "model.zip", task
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("origin", ["zip", "module"])
+def test_a_script_races_and_exports_what_was_trained_elsewhere(origin: str, tmp_path: Path) -> None:
+    if origin == "zip":
+        file, task = write_zip(tmp_path)
+        policy = kit.load_policy(file, task=task)
+    else:
+        actor = nn.Sequential(nn.Linear(9, 8), nn.Tanh(), nn.Linear(8, 3))
+        policy = kit.export_policy(actor, "turn")
+    kit.save_policy(policy, tmp_path / "mine.npz")
+    mine = str(tmp_path / "mine.npz")
+    runner = CliRunner()
+    raced = runner.invoke(main, ["game", "race", "turn", "--agent", mine])
+    assert raced.exit_code == 0, raced.output
+    assert "goal" in raced.output
+    words = ["evaluate", mine, "--package", "from_outside", "--dest", str(tmp_path)]
+    made = runner.invoke(main, words)
+    assert made.exit_code == 0, made.output
+    program = (tmp_path / "from_outside/from_outside/policy.py").read_text()
+    assert "import torch" not in program
+    found = compare(kit.load_policy(mine), kit.find_task("turn").file or tmp_path, (5,))[1]
+    assert all(each.same_commands == 1.0 for each in found.values())

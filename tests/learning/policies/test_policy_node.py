@@ -200,9 +200,27 @@ def test_the_nearest_ray_of_any_lidar_is_taken(tmp_path: Path) -> None:
     assert turned[45] == 45 - 22.5 or turned[45] in (22, 23)
 
 
-def test_what_no_lidar_sees_is_no_node() -> None:
-    with pytest.raises(PolicyError, match="does not know: arrived"):
-        format_policy_node(always(TaskSpec("wheelchairs", tells_arrived=True), 1))
+TOLD_WHERE_THINGS_ARE = """
+maps: [crossing]
+cases: [{name: road, start: [0.6, 2.0, 0]}]
+actions: {twists: {forward: [0.4, 0], left: [0, 1.2]}}
+observation: {sectors: 13, achieved: true}
+reward: {terms: {achieving: 1.0}}
+goal: {kind: avoid}
+"""
+
+
+def test_what_a_node_cannot_know_is_no_node_and_the_check_says_so(tmp_path: Path) -> None:
+    file = tmp_path / "clear.yaml"
+    file.write_text(TOLD_WHERE_THINGS_ARE)
+    with pytest.raises(PolicyError, match="goal avoid"):
+        format_policy_node(always(TaskSpec(str(file)).frozen(), 0))
+    told = CliRunner().invoke(main, ["task", "check", str(file)])
+    assert told.exit_code == 0
+    assert "neither raced nor exported" in " ".join(told.output.split())
+    file.write_text(TOLD_WHERE_THINGS_ARE.replace(", achieved: true", ""))
+    compile(format_policy_node(always(TaskSpec(str(file)).frozen(), 0)), "node.py", "exec")
+    assert "exported" not in CliRunner().invoke(main, ["task", "check", str(file)]).output
 
 
 def test_a_node_knows_its_place_and_the_target_from_odometry(tmp_path: Path) -> None:

@@ -78,7 +78,8 @@ def test_a_task_of_any_map_trains(name: str, tmp_path: Path) -> None:
     task_file = new_task_file("mine", name, tmp_path)
     run = create_run(tmp_path, RunConfig(TaskSpec(str(task_file)), steps=20_000))
     ended = train(run)
-    assert (ended.how, ended.reason) == ("finished", "all steps are done")
+    assert ended.how == "finished"
+    assert ended.reason.startswith("all steps are done, and the goal is not surely reached")
     policy = run.policy()
     result = Evaluator(policy.trained_on.resolve()).test(policy, episodes=20, seed=1)
     assert all(case.episodes == 20 for case in result.cases)

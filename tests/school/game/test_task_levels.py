@@ -9,6 +9,7 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.controllers import find_controller
+from kit.learning.environment.episode_start import first_start
 from kit.learning.tasks.catalogue import find_task, task_names
 from kit.mapmaking.map_drawing import read_drawing
 from kit.mapmaking.new_map import write_map
@@ -27,14 +28,6 @@ from kit.workspace import open_workspace
 from kit.world.problems import WorldError
 from tests.learning.tasks.test_many_robots import written as task_of_many_robots
 from tests.school.game.test_race import FORWARD
-
-REFUSED = {
-    "bay-parking": ("heading_tolerance", "axle"),
-    "behind-the-cart": ("start that is drawn",),
-    "gate-anywhere": ("start that is drawn", "through"),
-    "vacuum-cleaner": ("start that is drawn",),
-    "wall-follower": ("with a wall",),
-}
 
 
 @pytest.fixture
@@ -71,14 +64,6 @@ def test_the_motors_give_what_the_actions_ask_for(own_task: Path) -> None:
     assert limits == pytest.approx(find_task(str(own_task)).actions.largest)
 
 
-@pytest.mark.parametrize(("name", "reasons"), REFUSED.items())
-def test_what_a_level_cannot_have_is_named(name: str, reasons: tuple[str, ...]) -> None:
-    with pytest.raises(WorldError) as refusal:
-        find_playable_level(name)
-    for reason in reasons:
-        assert reason in str(refusal.value)
-
-
 @pytest.mark.parametrize("robots", [MAX_ROBOTS, MAX_ROBOTS + 1])
 def test_so_many_robots_are_driven_as_one(robots: int, tmp_path: Path) -> None:
     file = task_of_many_robots(tmp_path, robots)
@@ -90,7 +75,7 @@ def test_so_many_robots_are_driven_as_one(robots: int, tmp_path: Path) -> None:
 
 
 @pytest.mark.sampled(5)
-@pytest.mark.parametrize("name", [name for name in task_names() if name not in REFUSED])
+@pytest.mark.parametrize("name", task_names())
 def test_the_kit_s_tasks_are_levels(name: str) -> None:
     with pytest.raises(UnknownLevel):  # no name means two things
         find_level(name)
@@ -98,7 +83,11 @@ def test_the_kit_s_tasks_are_levels(name: str) -> None:
     card, case = task.map_cases()[0]
     scenario = find_playable_level(name).find_scenario()
     assert set(scenario.partners) == set(task.robots_on(card))
-    assert scenario.start == case.start
+    start = first_start(task)
+    assert scenario.starts == start.robots
+    assert case.starts[0].is_area or scenario.start == case.start
+    again = find_playable_level(name).find_scenario()
+    assert (again.starts, again.case) == (scenario.starts, scenario.case), "the same for every driver"
 
 
 @pytest.mark.long

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import base64
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -42,6 +44,19 @@ class CoverGoal(Goal):
 
     def progress(self, count: float, needed: float) -> str:
         return f"{self.share * count / needed:.0%} of {self.share:.0%} covered"
+
+    def node_facts(self, case: GoalCase) -> dict[str, Any]:
+        from kit.learning.maps.batch_map import FLOOR_CELL  # brings pymunk along
+
+        floor, (x, y) = _floor_to_cover(self, case)
+        packed = base64.b64encode(zlib.compress(np.packbits(floor).tobytes(), 9)).decode()
+        places = {
+            "cell": FLOOR_CELL,
+            "origin": [float(x), float(y)],
+            "shape": list(floor.shape),
+            "floor": packed,
+        }
+        return {**Goal.node_facts(self, case), **places}
 
 
 class _CoverCount(GoalCount):

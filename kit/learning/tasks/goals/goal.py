@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from enum import Enum, auto
-from typing import TYPE_CHECKING, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -78,6 +78,10 @@ class Goal(ABC):
     case_targets: ClassVar[CaseTargets] = CaseTargets.NONE
     is_told_later: ClassVar[bool] = False
     """Whether agents that see ``achieved`` are told it one step later: where the newest scan is what is counted."""
+    least_robots: ClassVar[int] = 1
+    """How many robots it needs."""
+    reads_lidar: ClassVar[bool] = False
+    """Whether what is counted is measured by the robots' lidars."""
     is_lost_at_start: ClassVar[bool] = False
     """Whether a robot that is put back to its start, as a race does after a bump, begins again."""
 
@@ -104,15 +108,11 @@ class Goal(ABC):
         """The target's heading must be kept within this [rad]; None: any heading will do."""
         return None
 
-    @property
-    def race_refusal(self) -> str:
-        """Why it cannot be raced in the simulator; empty if it can."""
-        return ""
-
-    @property
-    def node_refusal(self) -> str:
-        """Why a node on a robot cannot tell an agent its target, where agents see it; empty if it can."""
-        return ""
+    def node_facts(self, case: GoalCase) -> dict[str, Any]:
+        """What the program of a node must know to count it in a case, JSON-able: see ``kit/learning/policies/node_goals``."""
+        settings = {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]  # a dataclass
+        needed = float(self.make_count([case], 1, 1.0).needed[0])
+        return {**settings, "needed": needed, "is_told_later": self.is_told_later}
 
     @property
     def needs_target(self) -> bool:

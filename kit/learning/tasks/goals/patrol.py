@@ -43,10 +43,6 @@ class PatrolGoal(Goal):
     def route(self, targets: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
         return targets * self.rounds
 
-    @property
-    def node_refusal(self) -> str:
-        return "it is told one target, and on a patrol the next one follows when one is reached"
-
 
 class _PatrolCount(GoalCount):
     """The number of targets that have been reached."""

@@ -28,6 +28,7 @@ class WallGoal(Goal):
 
     kind: ClassVar[str] = "wall"
     is_told_later: ClassVar[bool] = True
+    reads_lidar: ClassVar[bool] = True
 
     @classmethod
     def read(cls, section: Section) -> Self:
@@ -52,10 +53,6 @@ class WallGoal(Goal):
 
     def progress(self, count: float, needed: float) -> str:
         return f"{count:.1f} of {needed:g} m along the wall"
-
-    @property
-    def race_refusal(self) -> str:
-        return "the distance to the wall is measured by the lidar, which a race does not read"
 
 
 class _WallCount(GoalCount):

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import ast
+import json
 from dataclasses import fields, replace
+from importlib import import_module
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +18,7 @@ from kit.learning.authoring.new_task import new_task_file
 from kit.learning.authoring.task_check import check_task
 from kit.learning.authoring.task_text import build_case_scene, key_tables, task_blocks
 from kit.learning.environment.batch import BatchEnv
+from kit.learning.policies.policy_node import node_refusals
 from kit.learning.tasks.goals.goal import CaseTargets
 from kit.learning.tasks.goals.registry import goal_kinds
 from kit.learning.tasks.learning_task import LearningTask
@@ -33,10 +37,15 @@ TARGETS = {
     CaseTargets.ROUTE: ", targets: [[1.4, 2.0], [2.0, 2.0]]",
     CaseTargets.LEADER: ", target_model: slow_cart",
 }
+PLACES = {
+    1: ("crossing", "[0.6, 2.0, 0]"),
+    2: ("pair_straight", "[0.475, 0.5, 1.5708], other_starts: [[0.875, 0.5, 1.5708]]"),
+}
+"""A map for so many robots, and where they start."""
 TASK = """\
-maps: [crossing]
-cases: [{{name: road, start: [0.6, 2.0, 0]{targets}}}]
-actions: {{twists: {{forward: [0.4, 0], left: [0, 1.2], right: [0, -1.2]}}}}
+maps: [{map}]
+cases: [{{name: road, start: {start}{targets}}}]
+actions: {{twists: {{forward: [0.4, 0], left: [0, 1.2], right: [0, -1.2]}}, one_number: false}}
 observation: {{sectors: 13, achieved: true}}
 reward: {{terms: {{achieving: 1.0, reached: 1.0}}}}
 goal: {goal}
@@ -54,7 +63,8 @@ def read_goal_task(kind: str, folder: Path, settings: str = "") -> ReadTask:
     targets = TARGETS[KINDS[kind].case_targets] + (
         ", target_heading: 0" if "heading_tolerance" in settings else ""
     )
-    file.write_text(TASK.format(targets=targets, goal=goal))
+    place, start = PLACES[KINDS[kind].least_robots]
+    file.write_text(TASK.format(map=place, start=start, targets=targets, goal=goal))
     return read_task(file)
 
 
@@ -62,8 +72,9 @@ def drive(task: LearningTask, n: int, first: int = 0) -> list[Transition]:
     """Steps of worlds by chance, mostly forward; each world has actions of its own."""
     batch = BatchEnv(task, n, seed=3, first=first)
     batch.reset()
-    actions = [np.random.default_rng(first + i).choice(3, STEPS, p=[0.8, 0.1, 0.1]) for i in range(n)]
-    return [batch.step(each).transition for each in np.array(actions).T]
+    numbers = (STEPS, task.robots) if task.robots > 1 else STEPS
+    actions = [np.random.default_rng(first + i).choice(3, numbers, p=[0.8, 0.1, 0.1]) for i in range(n)]
+    return [batch.step(each).transition for each in np.stack(actions, axis=1)]
 
 
 def test_every_module_of_the_folder_is_a_goal_or_the_contract() -> None:
@@ -81,6 +92,13 @@ def test_a_file_gives_its_settings_and_nothing_else(kind: str, tmp_path: Path) -
         other = {str: "left", int: 2, float: 0.5, type(None): 0.5}[type(value)]
         found = read_goal_task(kind, tmp_path, f", {field.name}: {other}").task.goal
         assert getattr(found, field.name) == other
+    if KINDS[kind].least_robots > 1:
+        file = tmp_path / f"{kind}.yaml"
+        file.write_text(
+            TASK.format(map="crossing", start="[0.6, 2.0, 0]", targets="", goal=f"{{kind: {kind}}}")
+        )
+        with pytest.raises(WorldError, match="needs 2 robots"):
+            read_task(file)
     with pytest.raises(WorldError, match="no_such_setting"):
         read_goal_task(kind, tmp_path, ", no_such_setting: 1")
 
@@ -123,12 +141,8 @@ def test_its_count_grows_and_is_reached_when_full(kind: str, tmp_path: Path) -> 
 
 
 @every_goal
-def test_a_race_counts_it_without_what_a_race_does_not_know_or_refuses_it(kind: str, tmp_path: Path) -> None:
+def test_a_race_counts_it_without_what_a_race_does_not_know(kind: str, tmp_path: Path) -> None:
     read = read_goal_task(kind, tmp_path)
-    if read.task.goal.race_refusal:
-        with pytest.raises(WorldError, match=read.task.goal.race_refusal):
-            task_level(tmp_path / f"{kind}.yaml")
-        return
     level = task_level(tmp_path / f"{kind}.yaml")
     scenario = level.find_scenario()
     objective = Objective(level, scenario, 0.01)
@@ -144,15 +158,49 @@ def test_a_race_counts_it_without_what_a_race_does_not_know_or_refuses_it(kind: 
     count.begin(np.zeros(1, dtype=np.int64), step.case, step.previous_pose)
     other = read.task.goal.make_count(cases, 1, read.task.step_time)
     other.begin(np.zeros(1, dtype=np.int64), step.case, step.previous_pose)
-    unknown = replace(step, before=unsensed(step.before), after=unsensed(step.after))
+    reads_lidar = read.task.goal.reads_lidar
+    unknown = replace(
+        step, before=unsensed(step.before, reads_lidar), after=unsensed(step.after, reads_lidar)
+    )
     assert np.array_equal(count.count(step), other.count(unknown))
 
 
-def unsensed(state: object) -> EpisodeState:
-    """The state as far as a race knows it."""
+def unsensed(state: object, reads_lidar: bool) -> EpisodeState:
+    """The state as far as a race knows it, which reads lidars only where the goal does."""
     known = EpisodeState.of(state)  # type: ignore[arg-type]
-    sensed = ("ranges", "twist", "move", "rotation", "forward_steps", "to_go")
+    sensed = ("twist", "move", "rotation", "forward_steps", "to_go", *(() if reads_lidar else ("ranges",)))
     return replace(known, **{name: np.full(getattr(known, name).shape, np.nan) for name in sensed})
+
+
+@every_goal
+def test_a_node_counts_it_as_training_does_or_is_refused(kind: str, tmp_path: Path) -> None:
+    read = read_goal_task(kind, tmp_path)
+    goal, cases = read.task.goal, BatchEnv(read.task, 1, seed=0)._case_arrays.goal_cases
+    program = files("kit.learning.policies.node_goals").joinpath(f"{kind}.py")
+    if not program.is_file():
+        assert any(f"goal {kind}" in each for each in node_refusals(read.task))
+        return
+    assert node_refusals(read.task) == ()
+    count = import_module(f"kit.learning.policies.node_goals.{kind}").GoalCount(
+        json.loads(json.dumps({**goal.node_facts(cases[0]), "step_time": read.task.step_time}))
+    )
+    assert count.is_told_later == goal.is_told_later
+    steps = drive(read.task, 1)
+    told = count.begin(steps[0].previous_pose[0])
+    assert told == steps[0].before.count[0]
+    for step in steps:
+        told = count.count(
+            told,
+            step.pose[0],
+            step.previous_pose[0],
+            bool(step.in_target.all()),
+            step.target[0],
+            np.stack([step.beside_left[0], step.beside_right[0]], axis=1),
+        )
+        if step.collided[0] or step.ended[0]:
+            break
+        assert told == pytest.approx(step.after.count[0])
+        assert told / count.needed == pytest.approx(step.achieved[0])
 
 
 def test_nobody_else_tells_goals_apart() -> None:

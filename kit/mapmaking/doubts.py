@@ -1,0 +1,230 @@
+"""Tells which strokes on a sheet are walls for sure, and which may be rules, folds, writing, measures or slips of the pen.
+
+Walls are drawn with one pen. So what is much paler or thinner than most, small, or outside of the outer wall is doubtful: it is
+left out, shown, and may be kept on demand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from kit.arrays import BoolArray, FloatArray
+from kit.mapmaking.pixels import brightest_around
+from kit.world.connected_parts import connected_parts
+
+PALE: Final = 0.5
+"""A stroke less deep than this share of the walls' is doubtful."""
+THIN: Final = 0.72
+"""And one narrower than this share of theirs."""
+SMALL: Final = 0.075
+"""And a piece apart from all others whose box has a shorter diagonal than this share of the sheet's width: writing, slips."""
+LOW: Final = 0.05
+"""And one whose box is lower or narrower than this, and holds more strokes than a line along it: a word."""
+CROWDED: Final = 1.3
+"""How many times the length of its box the strokes of a word are long."""
+LEAST: Final = 0.02
+"""Less than this share of the sheet's width is no reason to doubt."""
+ENCLOSED: Final = 0.002
+"""A room without a door has at least this share of the sheet's area."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JudgedStrokes:
+    """The strokes of a sheet."""
+
+    walls: BoolArray
+    """(rows, columns) those that are walls for sure."""
+    doubtful: BoolArray
+    """(rows, columns) those that may be something else."""
+    remarks: tuple[str, ...] = ()
+    """What is doubtful, and what else is strange, each in a few words."""
+
+    def doubtful_boxes(self) -> list[tuple[int, int, int, int]]:
+        """Left, top, right and bottom [pixels] of the pieces of what is doubtful, the largest first."""
+        boxes = _boxes(connected_parts(self.doubtful, across_corners=True)).values()
+        ordered = sorted(boxes, key=lambda box: -box.diagonal)
+        return [(box.left, box.top, box.left + box.width, box.top + box.height) for box in ordered]
+
+
+def usual_depth(depth: FloatArray, mask: BoolArray) -> float:
+    """How deep the deepest strokes of a mask are: the share of the paper's light that they take."""
+    return float(np.percentile(depth[mask], 93.0)) if mask.any() else 0.0
+
+
+def judge_strokes(everything: BoolArray, deep: BoolArray) -> JudgedStrokes:
+    """Judges strokes (rows, columns). ``deep``: those that are not pale."""
+    remarks: list[str] = []
+    walls = everything
+    pale = everything & ~grown(deep, 9)
+    if _extent(pale) >= LEAST * everything.shape[1] and deep.any():
+        walls = deep
+        remarks.append("pale lines: rules of the paper, folds or shadows")
+    parts = connected_parts(walls, across_corners=True)
+    boxes = _boxes(parts)
+    if not boxes:
+        return JudgedStrokes(walls, everything & ~walls, tuple(remarks))
+    main = max(boxes, key=lambda number: boxes[number].diagonal)
+    pen = _pen_width(parts == main)
+    outside = _outside(walls)
+    doubtful = np.zeros_like(walls)
+    for number, reason in _doubtful_parts(parts, boxes, main, pen, outside):
+        doubtful |= parts == number
+        if reason not in remarks:
+            remarks.append(reason)
+    kept = walls & ~doubtful
+    beyond = _beyond(kept, pen)
+    if _extent(beyond) >= LEAST * walls.shape[1]:
+        kept = _without(kept, beyond)
+        remarks.append("lines beyond the outer wall")
+    if _extent(_thin_bits(kept, pen)) >= 2.0 * LEAST * walls.shape[1]:
+        remarks.append("thin lines at the walls, which are kept: folds or rules")
+    rooms = _closed_rooms(kept)
+    if rooms:
+        remarks.append("a room without a door" if rooms == 1 else f"{rooms} rooms without a door")
+    return JudgedStrokes(kept, everything & ~grown(kept, 5), tuple(remarks))
+
+
+@dataclass(frozen=True, slots=True)
+class _Box:
+    """The upright box around a part, in pixels."""
+
+    width: int
+    height: int
+    pixels: int
+    row: int
+    column: int
+    """A pixel of the part."""
+    left: int
+    top: int
+
+    @property
+    def diagonal(self) -> float:
+        return float(np.hypot(self.width, self.height))
+
+
+def _boxes(parts: np.ndarray) -> dict[int, _Box]:
+    rows, columns = np.nonzero(parts)
+    numbers = parts[rows, columns]
+    found = {}
+    order = np.argsort(numbers, kind="stable")
+    cuts = np.flatnonzero(np.diff(numbers[order])) + 1
+    for chunk in np.split(order, cuts) if len(order) else ():
+        r, c = rows[chunk], columns[chunk]
+        found[int(numbers[chunk[0]])] = _Box(
+            int(np.ptp(c)) + 1,
+            int(np.ptp(r)) + 1,
+            len(chunk),
+            int(r[0]),
+            int(c[0]),
+            int(c.min()),
+            int(r.min()),
+        )
+    return found
+
+
+def _doubtful_parts(
+    parts: np.ndarray, boxes: dict[int, _Box], main: int, pen: float, outside: BoolArray
+) -> Iterator[tuple[int, str]]:
+    width = parts.shape[1]
+    near_outside = grown(outside, 3)
+    for number, box in boxes.items():
+        if number == main:
+            continue
+        length = box.pixels / pen
+        own = box.pixels / max(1.0, box.diagonal)
+        if near_outside[box.row, box.column]:
+            yield number, "lines beyond the outer wall"
+        elif box.diagonal < SMALL * width or (
+            min(box.width, box.height) < LOW * width and length > CROWDED * box.diagonal
+        ):
+            yield number, "small pieces: writing or loose strokes"
+        elif _has_arrows(parts, number, box, pen) or (own < THIN * pen and pen - own > 1.0):
+            yield number, "thin lines: measures or writing"
+
+
+def _has_arrows(parts: np.ndarray, number: int, box: _Box, pen: float) -> bool:
+    """Whether a straight line along the sheet's edges is wider at both ends than between them, as a measure is."""
+    piece = parts[box.top : box.top + box.height, box.left : box.left + box.width] == number
+    if box.height > box.width:
+        piece = piece.T
+    rows, columns = piece.shape
+    if columns < 5 * rows:
+        return False
+    extent = rows - piece.argmax(axis=0) - piece[::-1].argmax(axis=0)
+    end = max(3, columns // 6)
+    middle = float(np.median(extent[end:-end]))
+    tips = (float(extent[:end].max()), float(extent[-end:].max()))
+    return middle <= 1.5 * pen and min(tips) > 1.8 * middle
+
+
+def _pen_width(mask: BoolArray) -> float:
+    """The usual width of strokes [pixels]: the median of runs along rows and columns, of which a stroke has its own across it."""
+    runs = []
+    for lines in (mask, mask.T):
+        edges = np.diff(np.pad(lines, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+        starts, stops = np.nonzero(edges == 1)[1], np.nonzero(edges == -1)[1]
+        runs.append(stops - starts)
+    return float(np.median(np.concatenate(runs)))
+
+
+def _outside(walls: BoolArray) -> BoolArray:
+    """What can be reached from the sheet's edge without crossing a wall."""
+    free = connected_parts(np.pad(~walls, 1, constant_values=True))
+    return np.asarray((free == free[0, 0])[1:-1, 1:-1])
+
+
+def _beyond(walls: BoolArray, pen: float) -> BoolArray:
+    """Parts of walls that only touch the outside: no outer wall, which has an inside."""
+    inside = ~walls & ~_outside(walls)
+    if not inside.any():
+        return np.zeros_like(walls)
+    return walls & ~grown(inside, _odd(3.0 * pen) + 2)
+
+
+def _thin_bits(walls: BoolArray, pen: float) -> BoolArray:
+    """Parts of strokes that a pen of little more than half the walls' width would not pass."""
+    size = _odd(0.6 * pen)
+    if size < 5:  # a hand's own unevenness
+        return np.zeros_like(walls)
+    opened = grown(~grown(~walls, size), size)
+    return walls & ~grown(opened, size + 4)
+
+
+def _without(walls: BoolArray, bits: BoolArray) -> BoolArray:
+    """The walls without these bits and what is left of them alone."""
+    kept = walls & ~bits
+    parts = connected_parts(kept, across_corners=True)
+    boxes = _boxes(parts)
+    for number, box in boxes.items():
+        if box.diagonal < SMALL * walls.shape[1]:
+            kept &= parts != number
+    return kept
+
+
+def _closed_rooms(walls: BoolArray) -> int:
+    """How many rooms there are besides the largest that nobody can enter."""
+    free = connected_parts(~walls)
+    sizes = np.bincount(free.ravel())
+    sizes[0] = 0
+    border = np.unique(np.concatenate([free[0], free[-1], free[:, 0], free[:, -1]]))
+    sizes[border] = 0
+    return max(0, int((sizes > ENCLOSED * walls.size).sum()) - 1)
+
+
+def _extent(mask: BoolArray) -> float:
+    """The longest diagonal of a part's box [pixels]."""
+    boxes = _boxes(connected_parts(mask, across_corners=True))
+    return max((box.diagonal for box in boxes.values()), default=0.0)
+
+
+def grown(mask: BoolArray, size: int) -> BoolArray:
+    """The mask with all pixels in a square of ``size`` (odd) around its own."""
+    return np.asarray(brightest_around((mask * 255).astype(np.uint8), size | 1) > 0)
+
+
+def _odd(length: float) -> int:
+    return 2 * round(length / 2) + 1

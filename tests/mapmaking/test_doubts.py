@@ -1,0 +1,113 @@
+"""What on a sheet may be no wall is left out, shown and told; a plain drawing is not doubted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from PIL import Image, ImageDraw
+
+from kit.cli import main
+from kit.mapmaking.photo import PhotoScale, plan_from_photo, whole_picture
+from kit.mapmaking.strokes import find_strokes
+from tests.mapmaking.judging import judge
+from tests.mapmaking.nuisances import KINDS
+from tests.mapmaking.photos import draw_photo
+
+PEN = 12
+
+
+def drawn(size: tuple[int, int] = (1400, 1000)) -> tuple[Image.Image, ImageDraw.ImageDraw]:
+    """Clean paper with two rooms, and what draws on it."""
+    image = Image.new("RGB", size, "white")
+    draw = ImageDraw.Draw(image)
+    draw.rectangle((100, 100, 1300, 900), outline="black", width=PEN)
+    draw.line((700, 100, 700, 600), fill="black", width=PEN)
+    return image, draw
+
+
+def test_a_plain_drawing_is_not_doubted() -> None:
+    image, _ = drawn()
+    found = find_strokes(image)
+    assert found.remarks == ()
+    assert not found.doubtful.any()
+
+
+@pytest.mark.parametrize(
+    ("what", "said"),
+    [
+        ("squares", "pale lines"),
+        ("fold", "pale lines"),
+        ("word", "small pieces"),
+        ("slip", "small pieces"),
+        ("measure", "thin lines"),
+        ("outside", "beyond the outer wall"),
+        ("room", "a room without a door"),
+    ],
+)
+def test_what_else_is_drawn_is_told_and_no_wall(what: str, said: str) -> None:
+    image, draw = drawn()
+    plain = find_strokes(image).walls
+    match what:
+        case "squares":
+            lines = Image.new("RGB", image.size, "white")
+            rules = ImageDraw.Draw(lines)
+            for place in range(20, 1400, 40):
+                rules.line((place, 0, place, 1000), fill=(200, 200, 215), width=2)
+                rules.line((0, place, 1400, place), fill=(200, 200, 215), width=2)
+            image = Image.fromarray(np.minimum(np.asarray(lines), np.asarray(image)))
+        case "fold":
+            draw.line((0, 720, 1400, 730), fill=(190, 190, 190), width=8)
+        case "word":
+            for x in (300, 340, 380):
+                draw.line((x, 400, x + 10, 440), fill="black", width=PEN)
+        case "slip":
+            draw.line((300, 500, 350, 520), fill="black", width=PEN)
+        case "measure":
+            draw.line((150, 800, 600, 800), fill="black", width=4)
+        case "outside":
+            draw.line((40, 200, 40, 700), fill="black", width=PEN)
+        case "room":
+            draw.rectangle((900, 300, 1150, 600), outline="black", width=PEN)
+    found = find_strokes(image)
+    assert any(said in remark for remark in found.remarks), found.remarks
+    if what != "room":  # which is made of walls
+        assert int((found.walls & ~plain).sum()) < 0.02 * plain.sum()
+        assert found.doubtful.any()
+        assert found.doubtful_boxes()
+    everything = plan_from_photo(
+        image, PhotoScale(5.0), corners=whole_picture(image), keep_doubtful=True
+    ).plan.walls
+    assert everything.sum() > plain.sum()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_photograph_is_read_or_doubted(kind: str) -> None:
+    for seed in (51, 52, 53):
+        found = judge(draw_photo(seed, kind))
+        assert found.is_right or found.remarks or found.refusal
+
+
+def test_on_refusal_the_overlay_is_written_and_nothing_is_called_too_small(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    image = Image.new("RGB", (1400, 1000), "white")
+    draw = ImageDraw.Draw(image)
+    draw.rectangle((100, 200, 660, 700), outline="black", width=10)
+    draw.line((380, 200, 380, 520), fill="black", width=10)
+    image.save("crisp.png")
+    words = ["maps", "from-photo", "crisp.png", "hall", "--corners", "whole", "--width"]
+    for width in ("5", "15"):
+        made = CliRunner().invoke(main, [*words, width, "--workspace", str(tmp_path / width)])
+        assert made.exit_code == 0, made.output
+    draw.rectangle((640, 300, 700, 500), fill="white")  # the outer wall is open
+    image.save("crisp.png")
+    refused = CliRunner().invoke(main, [*words, "5", "--workspace", str(tmp_path / "open")])
+    assert refused.exit_code != 0
+    assert "hall-overlay.png" in refused.output
+    with Image.open("hall-overlay.png") as overlay:
+        assert overlay.size[0] > 100
