@@ -53,11 +53,12 @@ MENU: Final = (
     MenuItem("lessons", "Lessons", "All of them, in order: predict, run, explain, change, make."),
     MenuItem("drive", "Drive", "Any map and any program, your own too."),
     MenuItem("levels", "Levels", "The game: stars, ghosts, races against what you wrote and trained."),
+    MenuItem("league", "League", "Your programs and agents against everybody's: races, tag, ratings."),
     MenuItem("train", "Train", "Train an agent to drive, and watch it learn."),
     MenuItem("layers", "Layers", "The fewest layers for what must collide and be seen."),
     MenuItem("quiz", "Quiz", "What do you know, and how sure are you?"),
-    MenuItem("form", "Form", "What you knew before, what you learned, how useful the kit was."),
     MenuItem("progress", "Progress", "What you have done, and how to export it."),
+    MenuItem("form", "Form", "What you knew before, what you learned, how useful the kit was."),
 )
 
 
@@ -70,7 +71,7 @@ def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
         rows.append(
             row(
                 (">" if is_chosen else " ", "bold"),
-                (f" {number + 1}  ", "chosen" if is_chosen else "press"),
+                (f" {number + 1 if number < 9 else ' '}  ", "chosen" if is_chosen else "press"),
                 (f"{item.title:<{TITLE}}", "chosen" if is_chosen else ""),
                 (f" {status:<{TEXT - TITLE - 4}}", "chosen" if is_chosen else "dim"),
             )
@@ -394,6 +395,19 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         await self._open_then_return(
             LayersScreen(self._theme, open_task("two"), "two", saved_to=self._store.workspace.worlds)
         )
+
+    async def _open_league(self) -> None:
+        from kit.school.game.league.entries import LeagueError
+        from kit.school.game.league.league import own_league
+        from kit.tui.screens.league import LeagueScreen
+
+        workspace = self._store.workspace
+        try:
+            league = await to_thread(own_league, workspace)
+        except LeagueError as error:
+            self.app.push_screen(MessageDialog("The league cannot be opened", wrapped(str(error))))
+            return
+        await self._open_then_return(LeagueScreen(self._theme, league, workspace))
 
     async def _open_quiz(self) -> None:
         from kit.tui.screens.quiz import choose_questions
