@@ -267,7 +267,9 @@ def match_replay(theme: Theme, match: Match, recordings: Sequence[Recording]) ->
     if match.is_tag:
         return ReplayScreen(theme, tag_scenario(match.level), recordings[0], f"tag: {title}")
     both = list(zip((first.name, second.name), recordings, strict=True))
-    (robot, longer), other = sorted(both, key=lambda each: -each[1].ticks)  # so that both are seen to their end
+    (robot, longer), other = sorted(
+        both, key=lambda each: -each[1].ticks
+    )  # so that both are seen to their end
     scenario = film_scenario(match.level, longer.seed)
     title = f"{robot} against {other[0]}, the letter {other[0][:1].lower()}"
     return MatchReplayScreen(theme, scenario, longer, title, other)

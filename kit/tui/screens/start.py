@@ -53,13 +53,15 @@ MENU: Final = (
     MenuItem("lessons", "Lessons", "All of them, in order: predict, run, explain, change, make."),
     MenuItem("drive", "Drive", "Any map and any program, your own too."),
     MenuItem("levels", "Levels", "The game: stars, ghosts, races against what you wrote and trained."),
-    MenuItem("league", "League", "Your programs and agents against everybody's: races, tag, ratings."),
     MenuItem("train", "Train", "Train an agent to drive, and watch it learn."),
     MenuItem("layers", "Layers", "The fewest layers for what must collide and be seen."),
     MenuItem("quiz", "Quiz", "What do you know, and how sure are you?"),
-    MenuItem("progress", "Progress", "What you have done, and how to export it."),
     MenuItem("form", "Form", "What you knew before, what you learned, how useful the kit was."),
+    MenuItem("progress", "Progress", "What you have done, and how to export it."),
+    MenuItem("league", "League", "Your programs and agents against everybody's: races, tag, ratings."),
 )
+MENU_KEYS: Final = "123456789l"
+"""The keys of its lines."""
 
 
 def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
@@ -71,7 +73,7 @@ def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
         rows.append(
             row(
                 (">" if is_chosen else " ", "bold"),
-                (f" {number + 1 if number < 9 else ' '}  ", "chosen" if is_chosen else "press"),
+                (f" {MENU_KEYS[number]}  ", "chosen" if is_chosen else "press"),
                 (f"{item.title:<{TITLE}}", "chosen" if is_chosen else ""),
                 (f" {status:<{TEXT - TITLE - 4}}", "chosen" if is_chosen else "dim"),
             )
@@ -133,8 +135,8 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         own=(
             ScreenAction("choose_line", "↑↓ Tab", "choose", "move to the next or previous line of the menu",
                    (("down,tab", "choose(0, 1)"), ("up,shift+tab", "choose(0, -1)"))),
-            ScreenAction("line", "1 to 9", "open", "open that line of the menu",
-                   tuple((str(number), f"open({number - 1})") for number in range(1, 10)), "1-9"),
+            ScreenAction("line", "1 to 9 l", "open", "open that line of the menu",
+                   tuple((key, f"open({number})") for number, key in enumerate(MENU_KEYS)), "1-9"),
             ScreenAction("drive_letters", "W A S D", "drive", "drive the robot in the picture", (), "WASD"),
         ),
     )  # fmt: skip
