@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from enum import Enum
 from pathlib import Path
 from typing import Any, Final
 
 from grader.driving.service_calls import ServiceCall
 from grader.scoring import Anchors
+from grader.seeds import SeedSet
 from kit.geometry import Pose
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
-from kit.plain_text import quoted
 from kit.results.grading_result import Visibility
 from kit.run.scenario import Scenario
-from kit.world.yaml_section import Section
 
-
-class SeedSet(Enum):
-    """Selects the seeds that a criterion is graded on."""
-
-    PUBLIC = "public"
-    SECRET = "secret"
-    ALL = "all"
+TEACHERS_STEMS: Final = ("secret", "solution", "solutions", "wrong", "reference")
+"""Files and folders of an assignment, without their endings, that stay with the teacher."""
+MAX_HINTS: Final = 3
+"""The most hints a criterion may have, from the vaguest to the most specific."""
+MAX_COUNTERPARTS: Final = 4
+"""The most pieces of public evidence that are collected for one criterion to show why secret ones lost points."""
+DEFAULT_SUBMISSION_LIMIT_S: Final = 600.0
+"""The longest wall clock of one submission unless the assignment sets another: well below a CI runner's patience."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,10 +139,6 @@ class GridTask:
     max_steps: int
 
 
-DEFAULT_SUBMISSION_LIMIT_S = 600.0
-"""The longest wall clock of one submission unless the assignment sets another: well below a CI runner's patience."""
-
-
 @dataclass(frozen=True, slots=True)
 class Assignment:
     """One assignment, as its folder describes it."""
@@ -194,53 +187,3 @@ class Assignment:
 
     def trial(self, name: str) -> Trial:
         return next(trial for trial in self.trials if trial.name == name)
-
-
-TEACHERS_STEMS: Final = ("secret", "solution", "solutions", "wrong", "reference")
-"""Files and folders of an assignment, without their endings, that stay with the teacher."""
-
-MAX_HINTS = 3
-"""The most hints a criterion may have, from the vaguest to the most specific."""
-
-
-MAX_SEED: Final = 2**63 - 1
-
-GUESSABLE_BELOW: Final = 2**32
-"""Seeds below can all be tried out within hours by a program that compares what it sees with what they would give."""
-
-MAX_COUNTERPARTS: Final = 4
-"""The most pieces of public evidence that are collected for one criterion to show why secret ones lost points."""
-
-
-def read_seed(section: Section, default: int | None = None) -> int:
-    """Reads the key ``seed``; notes a mistake in the section."""
-    if default is None:
-        return section.integer("seed", minimum=0, maximum=MAX_SEED)
-    return section.integer("seed", default, minimum=0, maximum=MAX_SEED)
-
-
-def read_seeds(section: Section, key: str, default: Sequence[int]) -> tuple[int, ...]:
-    """Reads a list of different seeds; notes a mistake in the section, and returns the default then."""
-    seeds = section.integers(key, default, minimum=0, maximum=MAX_SEED)
-    if len(set(seeds)) < len(seeds):
-        section.error(f"{quoted(key)} names a seed twice", key)
-        return tuple(default)
-    return seeds
-
-
-def counterpart_seed(number: int) -> int:
-    """Returns a public seed, 0 to 999,999, from which a counterpart of secret evidence is made."""
-    return int.from_bytes(hashlib.sha256(f"counterpart {number}".encode()).digest()[:8], "big") % 10**6
-
-
-def short_seeds_warning(secret_seeds: Iterable[int]) -> str:
-    """Returns a warning about secret seeds that can be guessed; empty if there are none."""
-    seeds = tuple(secret_seeds)
-    short = sum(seed < GUESSABLE_BELOW for seed in seeds)
-    if not short:
-        return ""
-    return (
-        f"WARNING: secret.yaml: {short} of {len(seeds)} secret seeds are below {GUESSABLE_BELOW}. A program can find a "
-        "short seed by trying all of them against what it sees, and predict the next grading. Make longer ones with: "
-        "python3 -c 'import secrets; print(secrets.randbits(62))'"
-    )

@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from types import MappingProxyType
 from typing import Final
 
-from grader.assignment import MAX_HINTS, Assignment, Criterion, KnownMistake, SeedSet
+from grader.assignment import MAX_HINTS, Assignment, Criterion, KnownMistake
 from grader.author_code import AuthorCodeError
 from grader.evidence.contract import Evidence, EvidenceCollector, EvidenceOptions
 from grader.evidence.findings import (
@@ -29,9 +29,12 @@ from grader.evidence.findings import (
 from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.contract import find_kind
 from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
+from grader.seeds import SeedSet
 from grader.submission import Submission
 from grader.submitted_files import YAML_ENDINGS, SubmissionRefused, reading_submission
-from grader.teacher_tests import TestOutcome, run_teacher_tests, teacher_test_result, tests_digest
+from grader.teacher_tests.reading import tests_digest
+from grader.teacher_tests.result import teacher_test_result
+from grader.teacher_tests.running import TestOutcome, run_teacher_tests
 from grader.version import grader_version
 from kit.extensions import admitting
 from kit.host.failure import Failure, FailureKind, StudentCodeError

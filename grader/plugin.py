@@ -5,7 +5,7 @@ process runs. A criterion that is not met is a failure; an error of the grader i
 is skipped. Points are in the items' properties, and so in a JUnit report.
 
 Teacher tests beside the assignment (``test_*.py``) get the fixture ``grading``, with the recordings the grader made;
-``@pytest.mark.points(3)`` sets their worth. See ``grader.teacher_tests``.
+``@pytest.mark.points(3)`` sets their worth. See ``grader.teacher_tests.reading``.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from grader.reading import read_assignment
 from grader.reports.cleaning import plain
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
-from grader.teacher_tests import MARK, MARK_HELP
+from grader.teacher_tests.reading import MARK, MARK_HELP
 from kit.host.sandbox.confinement import Level
 from kit.results.grading_result import CriterionResult, CriterionStatus
 from kit.results.result_blocks import format_points

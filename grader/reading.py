@@ -1,134 +1,43 @@
 """Reads an assignment's folder into records; every mistake is reported with its file, line and column.
 
 ``assignment.yaml`` is public. ``secret.yaml``, beside it on the teacher's machine alone, holds further seeds. Other files
-(worlds, ``starter.py``, ``solution.py``, ``wrong/``) are found by their names. The keys under ``budget`` are the limits of each process, and the wall clock of a whole submission.
+(worlds, ``starter.py``, ``solution.py``, ``wrong/``) are found by their names.
 """
 
 from __future__ import annotations
 
-import hashlib
 import math
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, Final
 
-import yaml
-
 from grader.assignment import (
-    DEFAULT_SUBMISSION_LIMIT_S,
     MAX_HINTS,
     Assignment,
     Criterion,
     KnownMistake,
-    SeedSet,
     TeacherTest,
     Trial,
 )
+from grader.budgets import read_budget
 from grader.check import Check
+from grader.evidence_digest import evidence_digest, folder_digest
 from grader.kinds.contract import AssignmentFiles, find_kind, kind_names
 from grader.scoring import MAX_SHARE_STEPS, Anchors
-from grader.teacher_tests import read_teacher_tests
+from grader.seeds import SeedSet
+from grader.teacher_tests.reading import read_teacher_tests
 from kit.extensions import ExtensionError, admitting, installed_extensions
 from kit.host.sandbox.confinement import Level
-from kit.host.sandbox.limits import GRADER_LIMITS, MIB, Limits
 from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.results.grading_result import Visibility
+from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
-SUBMISSION_KEY: Final = "submission"
-MAX_SUBMISSION_LIMIT_S: Final = 4 * 3600.0
-EPISODE_START_S: Final = 10.0
-"""Wall clock granted to the start of each episode [s]."""
-FIRST_EPISODES_S: Final = 120.0
-"""Wall clock granted besides what the episodes may take [s]."""
-
-
-@dataclass(frozen=True, slots=True)
-class BudgetKey:
-    """One key under ``budget``: a number of seconds, MiB or things."""
-
-    name: str
-    limit: str
-    """Name of the field of ``Limits`` that it sets."""
-    meaning: str
-    """What it limits, with its unit, for teachers."""
-    maximum: int
-    minimum: int | None = None
-    """None for seconds, which need only be above 0 and may have a fraction."""
-    factor: int = 1
-    """What one unit of it is in the field's unit."""
-
-    def default(self) -> float:
-        """Returns the grader's own limit, in the unit of the key."""
-        return float(getattr(GRADER_LIMITS, self.limit)) / self.factor
-
-    def read(self, section: Section) -> Any:
-        """Reads the field's value from the section; the grader's own limit where the key is missing."""
-        if self.minimum is None:
-            return section.number(self.name, self.default(), above=0, maximum=self.maximum)
-        default = int(self.default())
-        return self.factor * section.integer(self.name, default, minimum=self.minimum, maximum=self.maximum)
-
-
-BUDGET_KEYS: Final = (
-    BudgetKey("start", "start_s", "seconds until the program is loaded and waits", 120),
-    BudgetKey("reply", "reply_s", "seconds until each reply", 60),
-    BudgetKey("total", "total_s", "seconds of all waiting for replies, in one process", 3600),
-    BudgetKey("cpu", "cpu_s", "seconds of processor time of one process", 3600, minimum=1),
-    BudgetKey("memory", "memory", "MiB of memory of one process", 64 * 1024, minimum=256, factor=MIB),
-    BudgetKey("disk", "scratch", "MiB of all files that it writes", 10 * 1024, minimum=1, factor=MIB),
-    BudgetKey("files", "files", "files and folders that it writes", 10**6, minimum=10),
-    BudgetKey("messages", "messages", "messages and requests that it sends in one tick", 10**6, minimum=1),
-)
-"""Every key but ``submission``, in the order in which they are listed for teachers."""
-
-
-def read_budget(section: Section | None, trials: tuple[Trial, ...]) -> tuple[Limits, float]:
-    """Reads the limits of each process, and the wall clock of the whole submission [s]."""
-    if section is None:
-        return GRADER_LIMITS, default_submission_limit_s(trials, GRADER_LIMITS)
-    limits = replace(GRADER_LIMITS, **{key.limit: key.read(section) for key in BUDGET_KEYS})
-    default = default_submission_limit_s(trials, limits)
-    limit_s = section.number(SUBMISSION_KEY, default, above=0, maximum=MAX_SUBMISSION_LIMIT_S)
-    section.finish()
-    return limits, limit_s
-
-
-def default_submission_limit_s(trials: tuple[Trial, ...], limits: Limits) -> float:
-    """Returns the wall clock of one submission [s] by what its episodes may take.
-
-    Each simulated second is granted a second of wall clock, of which it usually takes a tenth.
-    """
-    one_process_s = limits.start_wall_s + (limits.total_s or 0.0)
-    if not trials:
-        return max(DEFAULT_SUBMISSION_LIMIT_S, one_process_s)
-    episodes_s = sum(
-        (EPISODE_START_S + trial.time_s) * len((*trial.seeds, *trial.secret_seeds)) for trial in trials
-    )
-    return max(min(FIRST_EPISODES_S + episodes_s, DEFAULT_SUBMISSION_LIMIT_S), one_process_s)
-
-
-def budget_lines() -> Iterator[tuple[str, str]]:
-    """Yields each key with what it means and its default, for teachers."""
-    for key in BUDGET_KEYS:
-        yield key.name, f"{key.meaning}; {key.default():g} unless it is set"
-    longest = f"{DEFAULT_SUBMISSION_LIMIT_S:g}"
-    meaning = (
-        f"seconds of wall clock of the whole submission; by default what its episodes take, at most {longest}"
-    )
-    yield SUBMISSION_KEY, meaning
-
-
-YAML_LOADER: Final = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-"""The one that the kit reads with, which takes some texts that the other does not."""
-ASSIGNMENT_FILE: Final = "assignment.yaml"
 SECRET_FILE: Final = "secret.yaml"
 
 
@@ -160,63 +69,6 @@ def _check_packages(section: Section, packages: tuple[str, ...]) -> None:
                 f"parts of the kit has that name: {suggestion(name, known)}",
                 "packages",
             )
-
-
-JUDGEMENT_KEYS: Final = ("title", "id", "checks", "tests")
-"""Keys of the sheet that decide what evidence is worth and what is said of it, not what is found. What a criterion asks for
-is part of what is found about it: see ``grader.evidence.findings``."""
-
-
-def evidence_digest(folder: Path, test_files: Sequence[str], packages: tuple[str, ...] = ()) -> str:
-    """Returns a digest of what decides what is found about a submission: of the sheet only the keys and values that count,
-    however they are written, and of the other files all but the teacher's own tests."""
-    parsed = hashlib.sha256(
-        folder_digest(folder, ignored=(ASSIGNMENT_FILE, *test_files), packages=packages).encode()
-    )
-    with suppress(
-        OSError, UnicodeDecodeError, yaml.YAMLError
-    ):  # the sheet's own reader reports what is wrong with it
-        root = yaml.compose((folder / ASSIGNMENT_FILE).read_text(encoding="utf-8-sig"), Loader=YAML_LOADER)
-        if isinstance(root, yaml.MappingNode):
-            kept = [pair for pair in root.value if pair[0].value not in JUDGEMENT_KEYS]
-            parsed.update(repr(_content(yaml.MappingNode(root.tag, kept))).encode())
-    return parsed.hexdigest()[:16]
-
-
-def _content(node: yaml.Node) -> object:
-    """What a YAML node says, without how it is written."""
-    if isinstance(node, yaml.MappingNode):
-        return {_content(key): _content(value) for key, value in node.value}
-    if isinstance(node, yaml.SequenceNode):
-        return [_content(each) for each in node.value]
-    return str(node.value)
-
-
-def folder_digest(folder: Path, *, ignored: Sequence[str] = (), packages: tuple[str, ...] = ()) -> str:
-    """Returns a digest of all files in the folder that grading depends on, but for those of these names, and of the versions
-    of the packages that it needs."""
-    parsed = hashlib.sha256()
-    sources = {each.source for each in installed_extensions() if each.package in packages} if packages else ()
-    for source in sorted(sources):
-        parsed.update(source.encode())
-    for file in sorted(path for path in folder.rglob("*") if path.is_file()):
-        name = file.relative_to(folder)
-        if (
-            str(name) in ignored
-            or Path(name.parts[0]).name.partition(".")[0] in IGNORED_STEMS
-            or TRANSLATION.fullmatch(name.as_posix())
-            or any(part.startswith((".", "__")) for part in name.parts)
-        ):
-            continue
-        parsed.update(repr((name.as_posix(), file.stat().st_size)).encode())
-        parsed.update(file.read_bytes())
-    return parsed.hexdigest()[:16]
-
-
-IGNORED_STEMS: Final = ("README", "starter", "solution", "wrong")
-"""Files and folders, without their endings, that may change without changing the assignment's version."""
-TRANSLATION: Final = re.compile(r"assignment\.[a-z]{2}\.yaml")
-"""Words in another language, which change nothing of what is graded either."""
 
 
 def read_sheet(

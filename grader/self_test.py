@@ -20,10 +20,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
 
-from grader.assignment import Assignment, SeedSet
+from grader.assignment import Assignment
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.scoring import required_passes, unfair_fail_probability
+from grader.seeds import SeedSet
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
 from kit.host.sandbox.confinement import Level

@@ -18,8 +18,9 @@ from typing import Final
 
 import yaml
 
+from grader.evidence_digest import YAML_LOADER
 from grader.new_assignment import example_of_kind
-from grader.reading import SECRET_FILE, YAML_LOADER, read_sheet
+from grader.reading import SECRET_FILE, read_sheet
 from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.world.documents import open_document
 from kit.world.key_table import OWN_NAME, FormatKey, format_keys
@@ -114,10 +115,14 @@ def documented_attributes(record: type) -> Iterator[tuple[str, str]]:
     assert isinstance(tree, ast.ClassDef)  # the source of a class
     for node, after in zip_longest(tree.body, tree.body[1:]):
         if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
-            text = f"{' '.join(_text_of(after).split())} ({ast.unparse(node.annotation)})"
-            yield node.target.id, text.strip()
+            yield node.target.id, f"{_plain(_text_of(after))} ({ast.unparse(node.annotation)})".strip()
         elif isinstance(node, ast.FunctionDef) and node.decorator_list and (told := ast.get_docstring(node)):
-            yield node.name, " ".join(told.split())
+            yield node.name, _plain(told)
+
+
+def _plain(docstring: str) -> str:
+    """A docstring in one line, with code between single backticks as in the kit's texts."""
+    return " ".join(docstring.split()).replace("``", "`")
 
 
 def _text_of(node: ast.stmt | None) -> str:

@@ -32,6 +32,7 @@ from kit.school.lessons.reading import (
 from kit.school.lessons.records import Exercise, Lesson, StepKind
 from kit.workspace import open_workspace
 from tests.cases import every_case
+from tests.driving_program import driving_program
 from tests.kit_content import kit_lesson
 from tests.solutions.misconceptions import Misconception, misconceptions
 
@@ -246,28 +247,6 @@ def test_an_untouched_starter_earns_at_most_a_fifth(name: str, exercise: str, se
     assert result.points <= STARTER_SHARE * result.max_points, {each.id: each.points for each in result.tests}
 
 
-PROBE = """
-import rclpy
-from geometry_msgs.msg import Twist
-from rclpy.node import Node
-
-
-class Probe(Node):
-    def __init__(self):
-        super().__init__("probe")
-        self.drive = self.create_publisher(Twist, "cmd_vel", 10)
-        self.create_timer(0.1, self.go)
-
-    def go(self):
-        command = Twist()
-        command.linear.x, command.angular.z = SPEED, RATE
-        self.drive.publish(command)
-
-
-def main(args=None):
-    rclpy.init(args=args)
-    rclpy.spin(Probe())
-"""
 CONTROLLERS = [
     (name, exercise.name)
     for name in NAMES
@@ -285,7 +264,7 @@ def test_standing_still_driving_straight_and_turning_earn_at_most_a_fifth(
 ) -> None:
     _, task = exercise_of(name, exercise)
     assignment = read_assignment(task.folder)
-    source = PROBE.replace("SPEED", str(speed)).replace("RATE", str(rate))
+    source = driving_program(speed, rate)
     submission = Submission("probe", assignment.submit, {assignment.submit: source.encode()})
     result = grade(assignment, submission, GradingOptions(Level.LIMITED, secret=True))
     assert result.points is not None

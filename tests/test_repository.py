@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 import kit
-from grader.ci import ACTIONS
+from grader.ci.services.github import ACTIONS
 from tests.public_schemas import why_invalid
 
 ROOT = Path(__file__).parents[1]

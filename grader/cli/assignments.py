@@ -14,25 +14,17 @@ from typing import Final
 import click
 
 from grader.assignment import Assignment
+from grader.budgets import budget_lines
 from grader.check import Check
-from grader.ci import (
-    GRADESCOPE,
-    GRADESCOPE_ARCHIVE,
-    REPOSITORY_SERVICES,
-    WORKFLOWS,
-    CiService,
-    GitSource,
-    GradedWork,
-    gradescope_archive,
-    warnings,
-    workflow,
-)
+from grader.ci import SERVICES
+from grader.ci.ci_service import CiRunner, GitSource, GradedWork
+from grader.ci.warnings import warnings
 from grader.cli import options
 from grader.cli.progress import shown_progress
 from grader.grading import GradingOptions, LevelTooLow
 from grader.kinds.contract import KINDS_PACKAGE, find_kind, kind_names
 from grader.new_assignment import example_of_exercise, example_of_kind, make_assignment
-from grader.reading import SECRET_FILE, budget_lines
+from grader.reading import SECRET_FILE
 from grader.reports.cleaning import plain
 from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds, works_of
 from kit.cli.options import ExistingPath, describe_os_error
@@ -233,7 +225,7 @@ PLAIN_PATH: Final = re.compile(r"[A-Za-z0-9_./-]+")
 
 
 @click.command()
-@click.argument("service", type=click.Choice([*sorted(WORKFLOWS), GRADESCOPE]))
+@click.argument("service", type=click.Choice([*SERVICES]))
 @click.option(
     "--assignment",
     "folders",
@@ -248,12 +240,12 @@ PLAIN_PATH: Final = re.compile(r"[A-Za-z0-9_./-]+")
     metavar="ADDRESS[@VERSION]",
     help="Repository to clone the kit from: https://..., optionally with a branch or tag.",
 )
-@click.option("--python", default=CiService().python, show_default=True, help="Version of Python.")
-@click.option("--runner", default=CiService().image, show_default=True, help="GitHub's runner.")
+@click.option("--python", default=CiRunner().python, show_default=True, help="Version of Python.")
+@click.option("--runner", default=CiRunner().image, show_default=True, help="GitHub's runner.")
 @click.option(
     "--write",
     is_flag=True,
-    help="Write the file to its place below the current folder instead of printing it; always so for gradescope.",
+    help="Write the file to its place below the current folder instead of printing it; always so for an archive.",
 )
 def ci(service: str, folders: tuple[str, ...], kit: str, python: str, runner: str, write: bool) -> None:
     """Print a workflow that grades every push: for GitHub Actions, GitLab CI or Classroom 50; or make Gradescope's
@@ -269,10 +261,11 @@ def ci(service: str, folders: tuple[str, ...], kit: str, python: str, runner: st
     Anyone who can push can change the workflow and the assignment in a repository, so these results are only for practice.
     For the grade, run `grader cohort` on the submissions.
     """
-    read = [(*_graded_work(each), each) for each in folders]
-    if len(read) > 1 and service not in REPOSITORY_SERVICES:
+    chosen = SERVICES[service]
+    works, assignments = zip(*map(_graded_work, folders), strict=True)
+    if len(works) > 1 and not chosen.is_in_students_repository:
         options.fail(f"{service} takes one assignment.")
-    if len({work.work for work, _, _ in read}) < len(read):
+    if len({each.work for each in works}) < len(works):
         options.fail(
             "Two assignments have one work: say where each lies, such as tasks/one=one/controller.py."
         )
@@ -280,19 +273,16 @@ def ci(service: str, folders: tuple[str, ...], kit: str, python: str, runner: st
         options.fail("Give Python's version and the runner in letters, digits, _ . - and /.")
     try:
         source = GitSource.read(kit)
-        for _, assignment, _ in read:
-            for warning in warnings(assignment, service):
+        for assignment in assignments:
+            for warning in warnings(assignment, chosen):
                 click.echo(warning, err=True)
-        if service == GRADESCOPE:
-            file, data = Path(GRADESCOPE_ARCHIVE), gradescope_archive(read[0][1], source)
-        else:
-            text = workflow(service, [work for work, _, _ in read], source, CiService(python, runner))
-            file, data = Path(WORKFLOWS[service][0]), text.encode()
+        data = chosen.write(works, source, CiRunner(python, runner))
     except (ValueError, OSError) as error:
         options.fail(f"{error}.")
-    if not write and service != GRADESCOPE:
+    if not write and chosen.is_text:
         click.echo(data.decode(), nl=False)
         return
+    file = Path(chosen.place)
     if file.exists():
         options.fail(f"{file} already exists; remove it first. One workflow takes several --assignment.")
     file.parent.mkdir(parents=True, exist_ok=True)

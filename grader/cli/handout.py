@@ -13,14 +13,15 @@ from typing import Final
 
 import click
 
-from grader import teacher_tests
-from grader.ci import REPOSITORY_SERVICES, WORKFLOWS, GitSource, GradedWork, workflow
+from grader.budgets import budget_lines
+from grader.ci import REPOSITORY_SERVICES, SERVICES
+from grader.ci.ci_service import CiRunner, GitSource, GradedWork
 from grader.cli import options
 from grader.kinds.contract import kind_names
 from grader.new_assignment import CARD
-from grader.reading import budget_lines
 from grader.sheet_reference import SheetKey, documented_attributes, sheet_keys
 from grader.student_version import ReleaseRefused, StudentVersion, missing_for_practice, student_version
+from grader.teacher_tests import reading as teacher_tests
 from kit.cli.options import ExistingPath
 from kit.document.blocks import Block, Code, Table, Text, labelled_table
 from kit.document.layout import lines_of
@@ -88,8 +89,8 @@ def release(
         if repository:
             source = GitSource.read(kit or "")
             work = GradedWork(ASSIGNMENT_FOLDER, WORK_FOLDER, ASSIGNMENT_FOLDER)
-            text = workflow(service, [work], source)
-            files = repository_files(version, WORKFLOWS[service][0], text, assignment.submit)
+            workflow = SERVICES[service].write([work], source, CiRunner())
+            files = repository_files(version, str(SERVICES[service].place), workflow, assignment.submit)
     except ReleaseRefused as refused:
         options.fail(f"Not released.\n{refused}")
     except (ValueError, OSError) as error:
@@ -115,7 +116,7 @@ def release(
 
 
 def repository_files(
-    version: StudentVersion, workflow_path: str, workflow_text: str, submit: str
+    version: StudentVersion, workflow_path: str, workflow: bytes, submit: str
 ) -> Mapping[str, bytes]:
     """Returns the files of a student's repository: the assignment, their work, which begins as the starter, and the workflow."""
     files = {f"{ASSIGNMENT_FOLDER}/{name}": data for name, data in version.files.items()}
@@ -132,7 +133,7 @@ def repository_files(
             f"\nYour work lies in `{WORK_FOLDER}/`. Every push is graded for practice; the run's summary says how it went.\n"
         ).encode()
     )
-    files[workflow_path] = workflow_text.encode()
+    files[workflow_path] = workflow
     return files
 
 

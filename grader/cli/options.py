@@ -77,7 +77,7 @@ def warn_of_unused_secrets(assignment: Assignment, *, secret: bool) -> None:
 
 def warn_of_short_seeds(assignment: Assignment) -> None:
     """Prints a warning on standard error where secret seeds can be guessed."""
-    from grader.assignment import short_seeds_warning
+    from grader.seeds import short_seeds_warning
 
     warning = short_seeds_warning(assignment.secret_seeds)
     if warning:

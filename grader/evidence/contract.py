@@ -12,8 +12,9 @@ from functools import cached_property, partial
 from itertools import chain
 from typing import Any, Final, Protocol
 
-from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, SeedSet, Trial, counterpart_seed
+from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, Trial
 from grader.evidence.submission_clock import SubmissionClock
+from grader.seeds import SeedSet, counterpart_seed
 from kit.host.failure import Failure, FailureKind
 from kit.host.sandbox.confinement import Level
 

@@ -18,7 +18,8 @@ from kit.learning.training.runs import RunError
 from kit.study import study_document
 from kit.study.printed_tables import study_chapters
 from kit.study.recorded_results import VARIANT_OPTIONS, RecordedResultError, StudyVariant
-from kit.study.study_document import DOCUMENT, check_document
+from kit.study.study_check import check_document
+from kit.study.study_document import DOCUMENT
 from kit.study.study_report import duration_text
 from kit.study.study_runs import StudyRun
 from kit.workspace import Workspace

@@ -221,7 +221,7 @@ def _start_static_transform(request: StartRequest, context: StartContext) -> Pro
 
 
 def _start_turtlesim(request: StartRequest, context: StartContext) -> Process:
-    from kit.launch.turtlesim_node import PERIOD_S, TurtlesimNode  # only now: it brings numpy
+    from kit.launch.turtlesim.node import PERIOD_S, TurtlesimNode
 
     world = Path(__file__).parent / "share" / "turtlesim" / "world" / "world.yaml"
     try:

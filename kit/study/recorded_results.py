@@ -388,6 +388,14 @@ def find_recorded_result(
     return own or read_recorded_result(SHIPPED_FOLDER / f"{log_name(number, variant)}.jsonl")
 
 
+def find_recorded_results(
+    table: PrintedTable, workspace: Workspace | None
+) -> dict[StudyVariant, RecordedResult]:
+    """Returns the results of a table's trainings that there are, by variant. Raises RecordedResultError."""
+    found = {variant: find_recorded_result(workspace, table, variant) for variant in VARIANTS}
+    return {variant: result for variant, result in found.items() if result is not None}
+
+
 def read_recorded_result(file: Path) -> RecordedResult | None:
     """None if there is no such file. RecordedResultError; a last line that was cut off is left out."""
     try:

@@ -23,7 +23,9 @@ from kit.study.recorded_results import (
     StudyVariant,
     recorded_result_file,
 )
-from kit.study.study_document import DOCUMENT, README, recorded_study_document, summary_lines
+from kit.study.study_check import README
+from kit.study.study_document import DOCUMENT, recorded_study_document
+from kit.study.study_summary import summary_lines
 from kit.workspace import Workspace
 
 HEADING = "## The dissertation, reproduced\n"

@@ -18,25 +18,8 @@ from kit.run.recording import load_recording, rerun
 from kit.run.scenario import find_scenario
 from kit.school.progress import EventKind, ProgressJournal
 from tests.cases import every_case
+from tests.driving_program import driving_program
 from tests.kit_content import kit_levels
-
-DRIVER = """
-import rclpy
-from geometry_msgs.msg import Twist
-from rclpy.node import Node
-
-class Driver(Node):
-    def __init__(self):
-        super().__init__("driver")
-        self.drive = self.create_publisher(Twist, "cmd_vel", 10)
-        self.create_timer(0.1, self.go)
-
-    def go(self):
-        command = Twist()
-        command.linear.x = {speed}
-        self.drive.publish(command)
-        {more}
-"""
 
 Say = Callable[[str], str]
 
@@ -44,7 +27,7 @@ Say = Callable[[str], str]
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     file = tmp_path / "driver.py"
-    file.write_text(DRIVER.format(speed=0.2, more="print('going')"))
+    file.write_text(driving_program(0.2, then="print('going')"))
     return file
 
 
@@ -104,7 +87,7 @@ def test_a_saved_controller_is_read_again_and_a_broken_one_leaves_the_old_one(sa
     answer = say("run 1")
     assert "driver.py:1" in answer
     assert "distance 0.4 m" in answer
-    file.write_text(DRIVER.format(speed=0.4, more="raise ValueError('enough')"))
+    file.write_text(driving_program(0.4, then="raise ValueError('enough')"))
     answer = say("run 1")
     assert "driver drives" in answer
     assert "enough" in answer

@@ -12,7 +12,7 @@ import pytest
 from kit.layers.case_sources import open_task
 from kit.learning.policies.policy_file import load_policy
 from kit.learning.tasks.catalogue import find_task, task_names
-from kit.learning.tasks.rewards import TERMS
+from kit.learning.tasks.reward_terms import TERMS
 from kit.learning.tasks.transition import TRANSITION_FIELDS
 from kit.mapmaking.map_drawing import read_drawing
 from kit.mapmaking.new_map import write_map

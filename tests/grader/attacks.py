@@ -153,7 +153,7 @@ WORKED_ONCE: Mapping[str, tuple[str, ...]] = MappingProxyType(
             "grader/cli/test_check_level.py::test_a_lesson_checked_for_somebody_else_writes_nothing",
         ),
         "a pip.py, git or result.json beside a submission in CI": (
-            "grader/test_ci.py::test_a_workflow_grades_and_runs_nothing_of_the_students",
+            "grader/ci/test_services.py::test_a_workflow_grades_and_runs_nothing_of_the_students",
         ),
         "a reward so large that the iteration over it never ends": (
             "grader/kinds/reward/test_kind.py::test_the_iteration_ends_whatever_the_rewards_are",
@@ -237,8 +237,8 @@ WORKED_ONCE: Mapping[str, tuple[str, ...]] = MappingProxyType(
 THIRD_ROUND: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingProxyType(
     {
         "a pip.py beside a submission in CI": (
-            ("grader/test_ci.py::test_a_workflow_grades_and_runs_nothing_of_the_students",),
-            ("grader/test_ci.py::test_the_hostile_files_would_be_run_in_the_checkout",),
+            ("grader/ci/test_services.py::test_a_workflow_grades_and_runs_nothing_of_the_students",),
+            ("grader/ci/test_services.py::test_the_hostile_files_would_be_run_in_the_checkout",),
         ),
         "a secret handed on by the page cache": (
             ("grader/test_secrets.py::test_nothing_that_a_student_reads_of_is_run_after_a_secret_run",),
@@ -281,8 +281,8 @@ THIRD_ROUND: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingProx
             ),
         ),
         "an old result in a checkout": (
-            ("grader/test_ci.py::test_a_result_that_lay_in_the_checkout_is_not_reported",),
-            ("grader/test_ci.py::test_the_hostile_files_would_be_run_in_the_checkout",),
+            ("grader/ci/test_services.py::test_a_result_that_lay_in_the_checkout_is_not_reported",),
+            ("grader/ci/test_services.py::test_the_hostile_files_would_be_run_in_the_checkout",),
         ),
         "a header of very many records": (
             ("grader/test_submission.py::test_a_header_of_very_many_records_is_refused_at_once",),

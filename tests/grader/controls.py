@@ -50,10 +50,10 @@ class Control:
 CONTROLS: Final = (
     Control(
         "a pip.py beside a submission in CI",
-        "grader/ci.py",
+        "grader/ci/services/github.py",
         "        run: python -P -m pip install --quiet",
         "        run: cd $GITHUB_WORKSPACE && python -m pip install --quiet",
-        "grader/test_ci.py::test_a_workflow_grades_and_runs_nothing_of_the_students",
+        "grader/ci/test_services.py::test_a_workflow_grades_and_runs_nothing_of_the_students",
     ),
     Control(
         "a secret handed on by the page cache",
@@ -120,10 +120,10 @@ CONTROLS: Final = (
     ),
     Control(
         "an old result in a checkout",
-        "grader/ci.py",
+        "grader/ci/services/gitlab.py",
         '    - rm -rf "$CI_PROJECT_DIR/.grade"',
         '    - true "$CI_PROJECT_DIR/.grade"',
-        "grader/test_ci.py::test_a_result_that_lay_in_the_checkout_is_not_reported",
+        "grader/ci/test_services.py::test_a_result_that_lay_in_the_checkout_is_not_reported",
     ),
     Control(
         "a header of very many records",
@@ -358,7 +358,7 @@ CONTROLS: Final = (
     ),
     Control(
         "a robot of a world that moves by itself",
-        "grader/kinds/world/checks.py",
+        "grader/kinds/world/run_checks.py",
         "    if run.run.undriven >= LEAST_WAY:\n",
         "    if run.run.undriven < 0.0:\n",
         "grader/kinds/world/test_kind.py::test_a_robot_that_moves_by_itself_is_not_driven",

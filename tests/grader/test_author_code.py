@@ -22,7 +22,7 @@ from kit.host.sandbox.confinement import Level
 from kit.host.wire import Json
 from kit.results.grading_result import CriterionStatus
 from tests.grader.conftest import FORWARD, LOCKS
-from tests.grader.test_teacher_tests import OWN, folder_with
+from tests.grader.teacher_tests.test_running import OWN, folder_with
 
 pytestmark = pytest.mark.skipif(not LOCKS, reason="this machine has no level 1")
 

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from grader.budgets import BUDGET_KEYS, SUBMISSION_KEY
 from grader.grading import GradingOptions, grade
-from grader.reading import BUDGET_KEYS, SUBMISSION_KEY, read_assignment
+from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.confinement import Level
 from kit.results.grading_result import CriterionStatus, GradingVerdict

@@ -16,11 +16,12 @@ from click.testing import CliRunner
 import grader.check as contract
 from grader.__main__ import VERBS, main
 from grader.assignment import Assignment
+from grader.budgets import BUDGET_KEYS
 from grader.driving import checks as drives
 from grader.grading import GradingOptions, LevelTooLow, grade, open_grading
 from grader.kinds.contract import find_kind, kind_names
 from grader.kinds.controller import kind as controller
-from grader.reading import BUDGET_KEYS, read_assignment
+from grader.reading import read_assignment
 from grader.self_test import try_works, unfair_fail_odds
 from grader.submission import Submission
 from kit.host.process import child_seed

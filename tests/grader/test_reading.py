@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.reading import folder_digest, read_assignment
+from grader.evidence_digest import folder_digest
+from grader.reading import read_assignment
 from grader.scoring import Anchors
 from kit.world.problems import WorldError
 from tests.cases import every_case

@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from grader.__main__ import main
-from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, counterpart_seed, short_seeds_warning
+from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord, FixedEvidence
 from grader.evidence.submission_clock import SubmissionClock
 from grader.grading import Grading, GradingOptions, grade
@@ -23,6 +23,7 @@ from grader.reading import read_assignment
 from grader.reports import FORMATS
 from grader.reports.formats.text_report import write_text
 from grader.scoring import round_share
+from grader.seeds import counterpart_seed, short_seeds_warning
 from grader.submission import Submission
 from kit.host.failure import Failure, FailureKind
 from kit.host.process import child_seed

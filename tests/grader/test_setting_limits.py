@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import pytest
 
-from grader.assignment import MAX_HINTS, MAX_SEED
+from grader.assignment import MAX_HINTS
+from grader.budgets import MAX_SUBMISSION_LIMIT_S
 from grader.kinds.controller import kind as controller
 from grader.kinds.drive import kind as drive
 from grader.kinds.environment import kind as environment
@@ -19,8 +20,9 @@ from grader.kinds.reward import kind as reward
 from grader.kinds.task import kind as task
 from grader.kinds.training import kind as training
 from grader.kinds.world import kind as world
-from grader.reading import MAX_SUBMISSION_LIMIT_S, read_assignment
+from grader.reading import read_assignment
 from grader.scoring import MAX_SHARE_STEPS
+from grader.seeds import MAX_SEED
 from kit.school.lessons.reading import lessons_folder
 from kit.world.problems import WorldError
 from tests.grader.conftest import QUICK, TEMPLATES, write_assignment

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from grader.budgets import default_submission_limit_s
 from grader.grading import GradingOptions, grade
-from grader.reading import default_submission_limit_s, read_assignment
+from grader.reading import read_assignment
 from grader.submission import Submission, read_submission
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS

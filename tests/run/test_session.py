@@ -20,32 +20,13 @@ from kit.run.scenario import find_scenario, scenario_on_map
 from kit.run.session import Session
 from kit.run.view import ROBOT_SIDES, ViewBuilder
 from kit.world.catalogue import UnknownMap, find_map
+from tests.driving_program import driving_program
 from tests.kit_content import kit_maps
 
-DRIVER = """
-import rclpy
-from geometry_msgs.msg import Twist
-from rclpy.node import Node
 
-class Driver(Node):
-    def __init__(self):
-        super().__init__("driver")
-        self.drive = self.create_publisher(Twist, "cmd_vel", 10)
-        self.count = 0
-        self.create_timer(0.05, self.go)
-
-    def go(self):
-        self.count += 1
-        command = Twist()
-        command.linear.x = {speed}
-        self.drive.publish(command)
-        {more}
-"""
-
-
-def write(folder: Path, speed: float = 0.2, more: str = "pass") -> Path:
+def write(folder: Path, speed: float = 0.2, then: str = "") -> Path:
     file = folder / "driver.py"
-    file.write_text(DRIVER.format(speed=speed, more=more))
+    file.write_text(driving_program(speed, then=then, period_s=0.05))
     return file
 
 
@@ -97,16 +78,16 @@ def test_the_template_runs_and_does_nothing_yet(tmp_path: Path) -> None:
 
 def test_the_robot_stops_when_its_controller_does(tmp_path: Path) -> None:
     with Session(scenario_on_map(find_map("simple"))) as session:
-        session.drive_with(
-            find_controller(str(write(tmp_path, 0.2, "if self.count == 10: raise ValueError('tired')")))
-        )
+        file = write(tmp_path, 0.2, "if self.count == 10: raise ValueError('tired')")
+        session.drive_with(find_controller(str(file)))
         session.wait_until_driven()
         run(session, 0.3)
         assert speed(session) == pytest.approx(0.2, abs=1e-6)
         run(session, 0.6)
         assert session.failure is not None
         assert "tired" in str(session.failure)
-        assert session.failure.line == 18
+        (line,) = (at for at, text in enumerate(file.read_text().splitlines(), 1) if "tired" in text)
+        assert session.failure.line == line
         assert speed(session) == pytest.approx(0.0, abs=1e-9)
 
 

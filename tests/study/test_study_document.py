@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.study import recorded_results, study_document
+from kit.study import recorded_results, study_check, study_document
 from kit.study.printed_tables import ADJACENCY, FIGURE, SUCCESS, parts_of, printed_table
 from kit.study.recorded_results import (
     SHIPPED_FOLDER,
@@ -29,13 +29,10 @@ from kit.study.recorded_results import (
     find_recorded_result,
     read_recorded_result,
 )
-from kit.study.study_document import (
-    check_document,
-    incomparable_rows,
-    recorded_study_document,
-    summary_lines,
-)
+from kit.study.study_check import check_document, incomparable_rows
+from kit.study.study_document import recorded_study_document
 from kit.study.study_runs import StudyRun
+from kit.study.study_summary import summary_lines
 from kit.workspace import Workspace
 
 CASES = tuple(case for _, case in printed_table("3.5").cases)
@@ -92,8 +89,8 @@ def shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with one log and the document that follows from it."""
     for module in (recorded_results, study_document):
         monkeypatch.setattr(module, "SHIPPED_FOLDER", tmp_path)
-    monkeypatch.setattr(study_document, "DOCUMENT", tmp_path / "STUDY.md")
-    monkeypatch.setattr(study_document, "README", tmp_path / "README.md")
+    monkeypatch.setattr(study_check, "DOCUMENT", tmp_path / "STUDY.md")
+    monkeypatch.setattr(study_check, "README", tmp_path / "README.md")
     log = tmp_path / "3.5.jsonl"
     settings = RecordedSettings(
         "3.5", "hallway-seed-as-run", "boltzmann-dqn", "seed", 100, None, {"numpy": "2"}, "kit study 3.5"

@@ -22,30 +22,12 @@ from kit.run.headless import run_headless
 from kit.run.recording import load_recording, rerun
 from kit.run.recording_file import RecordingFile
 from kit.run.scenario import find_scenario
+from tests.driving_program import driving_program
 from tests.tui.input.conftest import Terminal
 from tests.tui.tape import Display
 from tests.tui.widgets.test_world_view_pty import assert_rests, run_on
 
 ROBOT = re.compile("[►◥▲◤◄◣▼◢]")
-CONTROLLER = """
-import rclpy
-from geometry_msgs.msg import Twist
-from rclpy.node import Node
-
-
-class Mine(Node):
-    def __init__(self):
-        super().__init__("mine")
-        self.drive = self.create_publisher(Twist, "cmd_vel", 10)
-        self.create_timer(0.1, self.go)
-
-    def go(self):
-        command = Twist()
-        command.angular.z = 0.5
-        {line}
-        self.drive.publish(command)
-"""
-
 KIT = str(Path(kit_package.__file__).with_name("__main__.py"))
 KEYBOARD = re.compile(rb"\x1b\[[<>=][\d;]*u")
 """pyte prints a part of these; a real terminal shows nothing."""
@@ -181,22 +163,24 @@ def test_a_saved_controller_is_read_again_and_a_broken_one_leaves_the_old_one_ru
     kit: Open, tmp_path: Path
 ) -> None:
     file = tmp_path / "mine.py"
-    file.write_text(CONTROLLER.format(line="pass"))
+    file.write_text(driving_program(turning=0.5))
     terminal = kit("play", "simple", "--controller", str(file))
     terminal.until(lambda: "turning   0.50" in terminal.text, "the controller at work")
-    file.write_text(CONTROLLER.format(line="command.angular.z = -0.25"))
+    file.write_text(driving_program(turning=-0.25))
     terminal.until(lambda: "turning  -0.25" in terminal.text, "the new version")
-    file.write_text(CONTROLLER.format(line="command.angular.z = ("))
-    terminal.until(lambda: "mine.py:16" in terminal.text, "the error with file and line")
+    broken = driving_program(turning="(")
+    file.write_text(broken)
+    line = broken.splitlines().index("        command.angular.z = (") + 1
+    terminal.until(lambda: f"mine.py:{line}" in terminal.text, "the error with file and line")
     terminal.until(lambda: "turning  -0.25" in terminal.text, "turning  -0.25")
-    file.write_text(CONTROLLER.format(line="raise RuntimeError('no')"))
+    file.write_text(driving_program(then="raise RuntimeError('no')"))
     terminal.until(lambda: "RuntimeError: no" in terminal.text, "the failure")
     clock = re.search(r"\d:\d\d\.\d", terminal.text)
     assert clock is not None
     terminal.until(lambda: clock[0] not in terminal.text, "the world to go on all the same")
-    file.write_text(CONTROLLER.format(line="command.angular.z = 0.75"))
+    file.write_text(driving_program(turning=0.75))
     terminal.until(lambda: "turning   0.75" in terminal.text, "the repaired version")
-    terminal.until(lambda: "RuntimeError" not in terminal.text, "the failure to be forgotten")
+    terminal.until(lambda: "RuntimeError: no" not in terminal.text, "the failure to be forgotten")
 
 
 @pytest.mark.parametrize(("name", "sent"), [("SIGTERM", signal.SIGTERM), ("SIGHUP", signal.SIGHUP)])

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from grader.assignment import Assignment, Shift, Trial, read_seeds
+from grader.assignment import Assignment, Shift, Trial
 from grader.driving.checks import CHECKS
 from grader.driving.service_calls import read_service_call
 from grader.evidence.contract import (
@@ -19,6 +19,7 @@ from grader.evidence.contract import (
     EvidenceOptions,
 )
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.seeds import read_seeds
 from kit.geometry import Pose
 from kit.plain_text import quoted, suggestion
 from kit.run.runner import is_truth_named

@@ -30,7 +30,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from grader.assignment import Assignment, read_seed
+from grader.assignment import Assignment
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once
 from grader.kinds.controller.kind import read_scenario
@@ -41,6 +41,7 @@ from grader.kinds.environment.examination import (
     EnvironmentTask,
     examine_environment,
 )
+from grader.seeds import read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.process import child_seed
 from kit.host.wire import MAX_NAME, printable

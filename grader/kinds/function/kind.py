@@ -33,7 +33,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Final, Self
 
-from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, SeedSet, counterpart_seed, read_seed
+from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion
 from grader.author_code import UNINTELLIGIBLE, AuthorCodeError, run_author_code
 from grader.check import check
 from grader.evidence.contract import (
@@ -44,6 +44,7 @@ from grader.evidence.contract import (
     EvidenceRecord,
 )
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.seeds import SeedSet, counterpart_seed, read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json, printable

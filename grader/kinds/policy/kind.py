@@ -20,10 +20,11 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from grader.assignment import Assignment, read_seed
+from grader.assignment import Assignment
 from grader.check import Check, NoParams, check
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once
+from grader.seeds import read_seed
 from grader.submitted_files import reading_submission
 from grader.task_files import read_task_choice
 from kit.array_archives import READ_ERRORS, check_arrays

@@ -24,12 +24,13 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from grader.assignment import Assignment, read_seed
+from grader.assignment import Assignment
 from grader.check import Check, NoParams, check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, SingleEvidence
 from grader.evidence.training_results import PosedTaskPlan
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
 from grader.kinds.task.task_process import PosedTaskProcess
+from grader.seeds import read_seed
 from grader.submitted_files import reading_submission
 from kit.host.failure import StudentCodeError
 from kit.host.wire import printable

@@ -20,7 +20,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from grader.assignment import MAX_SEED, Assignment
+from grader.assignment import Assignment
 from grader.check import Check, check
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.evidence.training_results import (
@@ -31,6 +31,7 @@ from grader.evidence.training_results import (
     TrainingSettings,
 )
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once, read_submitted_yaml
+from grader.seeds import MAX_SEED
 from grader.task_files import read_task_choice
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import printable

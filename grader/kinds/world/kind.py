@@ -18,7 +18,7 @@ from functools import partial
 from pathlib import Path
 from typing import Final, Self
 
-from grader.assignment import Assignment, Criterion, Shift, Trial, read_seeds
+from grader.assignment import Assignment, Criterion, Shift, Trial
 from grader.evidence.contract import (
     EpisodeCollector,
     EpisodeSpec,
@@ -28,10 +28,11 @@ from grader.evidence.contract import (
     EvidenceRecord,
 )
 from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
-from grader.kinds.world.checks import CHECKS, RUN_CHECKS, explain
+from grader.kinds.world.checks import CHECKS, NAMES_NEEDING_RUN, explain
 from grader.kinds.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.kinds.world.faults import WorldContents, WorldRun
 from grader.kinds.world.world_process import READ_TIMEOUT_S, WorldProcess
+from grader.seeds import read_seeds
 from kit.controllers import find_controller
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox.confinement import Level
@@ -116,7 +117,7 @@ class WorldCollector:
         self._clock = options.clock
         self._process: WorldProcess | None = None
         self._read: EvidenceRecord | None = None
-        driven = [each for each in assignment.criteria if each.check in RUN_CHECKS]
+        driven = [each for each in assignment.criteria if each.check in NAMES_NEEDING_RUN]
         self._runs = EpisodeCollector(assignment, options, self._run, driven)
 
     def __enter__(self) -> Self:
@@ -129,14 +130,14 @@ class WorldCollector:
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         first = self._read_contents()
         contents: WorldContents | None = first.content
-        if criterion.check not in RUN_CHECKS or contents is None or contents.world.problems:
+        if criterion.check not in NAMES_NEEDING_RUN or contents is None or contents.world.problems:
             return [first]
         return self._runs.evidence(criterion)
 
     def public_evidence(self, criterion: Criterion) -> Sequence[Evidence]:
         first = self._read_contents()
         contents: WorldContents | None = first.content
-        if criterion.check not in RUN_CHECKS or contents is None or contents.world.problems:
+        if criterion.check not in NAMES_NEEDING_RUN or contents is None or contents.world.problems:
             return [first]
         return self._runs.public_evidence(criterion)
 
@@ -144,7 +145,7 @@ class WorldCollector:
         return [*([] if self._read is None else [self._read]), *self._runs.collected()]
 
     def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
-        return self._runs.counterparts(criterion) if criterion.check in RUN_CHECKS else iter(())
+        return self._runs.counterparts(criterion) if criterion.check in NAMES_NEEDING_RUN else iter(())
 
     def _read_contents(self) -> EvidenceRecord:
         if self._read is None:

@@ -9,8 +9,8 @@ from kit.host.child.student_module import StudentProgram
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.wire import MAX_TEXT, Json
 from kit.ros import install_import_names
-from kit.ros.launch.actions import MARKUP_SUFFIXES, description_of
 from kit.ros.launch.context import LaunchError
+from kit.ros.launch.description_sources import MARKUP_SUFFIXES, description_of
 from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.service import LaunchService, Request
 from kit.ros.launch.unavailable import install_unavailable_imports

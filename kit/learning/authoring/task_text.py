@@ -20,7 +20,8 @@ from kit.learning.tasks.curriculum import practices
 from kit.learning.tasks.goals.registry import goal_kinds
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.observations import PART_NAMES, ObservationSpec
-from kit.learning.tasks.rewards import TERMS, TermWeight, term_settings
+from kit.learning.tasks.reward import TermWeight
+from kit.learning.tasks.reward_terms import TERMS, term_settings
 from kit.learning.tasks.task_case import EpisodePlaces, TaskCase
 from kit.learning.tasks.transition import TRANSITION_FIELDS, Transition
 from kit.plain_text import counted, join_names

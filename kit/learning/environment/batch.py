@@ -18,7 +18,8 @@ from kit.learning.environment.disturbance_state import DisturbanceState
 from kit.learning.maps.batch_map import BatchMap
 from kit.learning.tasks.actions import DiscreteActions, TwistTable
 from kit.learning.tasks.learning_task import LearningTask
-from kit.learning.tasks.rewards import FORWARD_SHARE, Reward, RewardFunction
+from kit.learning.tasks.reward import Reward, RewardFunction
+from kit.learning.tasks.reward_terms import FORWARD_SHARE
 from kit.learning.tasks.task_case import TaskCase
 from kit.learning.tasks.transition import (
     FAR,

@@ -25,7 +25,7 @@ from kit.learning.maps.batch_map import BatchMap
 from kit.learning.maps.obstacles import Obstacle
 from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS, find_task
 from kit.learning.tasks.learning_task import LearningTask, UnknownTask
-from kit.learning.tasks.rewards import RewardFunction
+from kit.learning.tasks.reward import RewardFunction
 from kit.plain_text import quoted, suggestion
 from kit.render.image import draw_image, image_camera
 from kit.render.scene import Disc, Scene, SceneBody, Trail

@@ -14,7 +14,7 @@ from kit.learning.environment.env import Observation, TaskEnv, resolve_task
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.catalogue import WHEELCHAIRS
 from kit.learning.tasks.learning_task import LearningTask
-from kit.learning.tasks.rewards import RewardFunction
+from kit.learning.tasks.reward import RewardFunction
 
 try:
     from pettingzoo import ParallelEnv

@@ -17,7 +17,7 @@ from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats,
 from kit.learning.environment.mirror import TaskMirror
 from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.learning_task import LearningTask
-from kit.learning.tasks.rewards import RewardFunction
+from kit.learning.tasks.reward import RewardFunction
 
 try:
     from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper

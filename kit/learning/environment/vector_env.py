@@ -32,7 +32,7 @@ from kit.learning.environment.env import (
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS
 from kit.learning.tasks.learning_task import LearningTask
-from kit.learning.tasks.rewards import RewardFunction
+from kit.learning.tasks.reward import RewardFunction
 from kit.render.world_text import TerminalPicture
 
 

@@ -19,7 +19,7 @@ from kit.learning.policies.policy import Policy, PolicyError
 from kit.learning.policies.policy_file import load_policy
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.learning_task import LearningTask
-from kit.learning.tasks.rewards import RewardFunction
+from kit.learning.tasks.reward import RewardFunction
 from kit.learning.tasks.task_case import TaskCase
 
 PARALLEL_WORLDS = 1024

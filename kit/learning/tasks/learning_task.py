@@ -15,7 +15,7 @@ from kit.learning.tasks.disturbances import UNDISTURBED, Disturbances
 from kit.learning.tasks.goals.goal import Goal
 from kit.learning.tasks.goals.target import REACH_TARGET
 from kit.learning.tasks.observations import ObservationSpec
-from kit.learning.tasks.rewards import Reward
+from kit.learning.tasks.reward import Reward
 from kit.learning.tasks.task_case import TaskCase
 from kit.learning.tasks.transition import Array, Transition
 from kit.plain_text import quoted, suggestion

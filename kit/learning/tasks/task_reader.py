@@ -21,7 +21,9 @@ from kit.learning.tasks.disturbances import UNDISTURBED, DisturbanceError, Distu
 from kit.learning.tasks.goals.registry import read_goal
 from kit.learning.tasks.learning_task import PRESET_NAMES, Ending, LearningTask, StartVariation
 from kit.learning.tasks.observations import PART_NAMES, ObservationSpec
-from kit.learning.tasks.rewards import REWARDS, TERMS, Reward, TermWeight, UnknownRewardTerm, term_settings
+from kit.learning.tasks.reward import Reward, TermWeight, UnknownRewardTerm
+from kit.learning.tasks.reward_terms import TERMS, term_settings
+from kit.learning.tasks.rewards import REWARDS
 from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import WORLD_FILE, MapCard, UnknownMap, allowed_root_of, find_map

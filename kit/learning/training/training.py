@@ -31,7 +31,7 @@ from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.curriculum import CasePractice, practices
 from kit.learning.tasks.learning_task import LearningTask
-from kit.learning.tasks.rewards import RewardFunction
+from kit.learning.tasks.reward import RewardFunction
 from kit.learning.tasks.student_reward import RewardFileError, StudentReward
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import (

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from kit.launch.turtlesim_node import PERIOD_S, TurtlesimNode
+from kit.launch.turtlesim.node import PERIOD_S, TurtlesimNode
 from kit.msg.geometry_msgs import Twist
 from kit.msg.turtlesim import Pose
 from kit.ros.graph.graph import Graph

@@ -15,7 +15,8 @@ from kit.learning.tasks.actions import Move
 from kit.learning.tasks.catalogue import HALLWAY, TASKS, TURN, WHEELCHAIRS
 from kit.learning.tasks.learning_task import LearningTask, StartVariation
 from kit.learning.tasks.observations import MAX_TARGET_DISTANCE
-from kit.learning.tasks.rewards import ALGORITHM_1, RewardFunction
+from kit.learning.tasks.reward import RewardFunction
+from kit.learning.tasks.rewards import ALGORITHM_1
 from kit.learning.tasks.transition import Array, Transition, bearing_of_target, distance_to_target
 from tests.learning.worlds import (
     FOUR_MOVES,

@@ -24,14 +24,8 @@ from kit.learning.tasks.catalogue import (
 )
 from kit.learning.tasks.disturbances import Disturbances
 from kit.learning.tasks.learning_task import LearningTask, UnknownTask
-from kit.learning.tasks.rewards import (
-    ALGORITHM_1,
-    ALGORITHM_2,
-    ALGORITHM_3,
-    REWARD_SCALE,
-    REWARDS,
-    turn_completed_reward,
-)
+from kit.learning.tasks.reward_terms import turn_completed_reward
+from kit.learning.tasks.rewards import ALGORITHM_1, ALGORITHM_2, ALGORITHM_3, REWARD_SCALE, REWARDS
 from kit.learning.tasks.task_reader import read_task
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.sim.simulation import Simulation, load_world

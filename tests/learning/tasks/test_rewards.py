@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from kit.learning.tasks.actions import Move
+from kit.learning.tasks.reward import Reward, TermWeight, UnknownRewardTerm
+from kit.learning.tasks.reward_terms import TERMS
 from kit.learning.tasks.rewards import (
     ALGORITHM_1,
     ALGORITHM_1_AS_RUN,
@@ -16,10 +18,6 @@ from kit.learning.tasks.rewards import (
     PROGRESS,
     REWARDS,
     SIDE_BY_SIDE,
-    TERMS,
-    Reward,
-    TermWeight,
-    UnknownRewardTerm,
 )
 from kit.learning.tasks.transition import Transition
 from tests.cases import every_case

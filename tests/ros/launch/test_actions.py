@@ -12,7 +12,6 @@ from kit.ros.launch.actions import (
     DeclareLaunchArgument,
     EmitEvent,
     IncludeLaunchDescription,
-    LaunchDescriptionSource,
     LogError,
     LogInfo,
     OpaqueCoroutine,
@@ -24,6 +23,7 @@ from kit.ros.launch.actions import (
     UnregisterEventHandler,
 )
 from kit.ros.launch.context import LaunchError
+from kit.ros.launch.description_sources import LaunchDescriptionSource
 from kit.ros.launch.entity import (
     IfCondition,
     LaunchConfigurationEquals,

@@ -9,8 +9,8 @@ import pytest
 
 from kit.launch.launch_file_process import LIMITS
 from kit.ros.launch import file_substitutions
-from kit.ros.launch.actions import LaunchDescriptionSource
 from kit.ros.launch.context import LaunchContext, LaunchError
+from kit.ros.launch.description_sources import LaunchDescriptionSource
 from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.frontend.substitution_parser import (
     SubstitutionSyntaxError,

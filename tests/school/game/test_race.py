@@ -37,6 +37,7 @@ from kit.school.lessons.reading import find_lesson, lesson_names
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.workspace import open_workspace
 from kit.world.problems import WorldError
+from tests.driving_program import driving_program
 from tests.kit_content import kit_levels
 from tests.school.game.measured_drivers import drive as drive_from
 from tests.school.game.measured_drivers import keys_drive, targets_of
@@ -46,28 +47,6 @@ LEVELS = kit_levels()
 FIRST = LEVELS[0]
 STRAIGHT = replace(FIRST, goal=REACH_TARGET, targets=())
 """The same level, one way only."""
-
-FORWARD = """
-import rclpy
-from geometry_msgs.msg import Twist
-from rclpy.node import Node
-
-
-class Forward(Node):
-    def __init__(self):
-        super().__init__("forward")
-        self.drive = self.create_publisher(Twist, "cmd_vel", 1)
-        self.create_timer(0.1, self.go)
-
-    def go(self):
-        command = Twist()
-        command.linear.x = {speed}
-        self.drive.publish(command)
-
-
-rclpy.init()
-rclpy.spin(Forward())
-"""
 
 JUMP = """
 import rclpy
@@ -105,7 +84,7 @@ def test_every_level_can_be_opened_one_after_the_other() -> None:
 @pytest.mark.parametrize(("speed", "reached"), [(0.4, True), (0.0, False)], ids=["drives", "stands"])
 def test_a_program_races(tmp_path: Path, speed: float, reached: bool) -> None:
     file = tmp_path / "mine.py"
-    file.write_text(FORWARD.format(speed=speed))
+    file.write_text(driving_program(speed))
     finish, recording = race_controller(replace(STRAIGHT, time_limit=12.0), find_controller(str(file)))
     assert finish.reached is reached
     assert finish.failure is None
@@ -115,7 +94,7 @@ def test_a_program_races(tmp_path: Path, speed: float, reached: bool) -> None:
 @pytest.mark.long
 def test_no_program_drives_faster_than_the_motors(tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
-    file.write_text(FORWARD.format(speed=30.0))
+    file.write_text(driving_program(30.0))
     finish, _ = race_controller(replace(STRAIGHT, time_limit=6.0), find_controller(str(file)))
     assert finish.reached
     assert finish.seconds > 3.0
@@ -138,7 +117,7 @@ for place in {places!r}:
         pathlib.Path(place).write_text("three stars")
     except OSError:
         pass
-""" + FORWARD.format(speed=0.4)
+""" + driving_program(0.4)
 
 
 @pytest.mark.skipif(
@@ -206,10 +185,10 @@ def test_every_controller_of_the_kit_and_its_copies_earn_nothing(tmp_path: Path)
         assert facts_of_program(controller.file).is_shipped
         copy.write_text(f"# my own work\n{controller.file.read_text()}")
         assert facts_of_program(copy).is_shipped, controller.name
-    copy.write_text(FORWARD.format(speed=0.4))
+    copy.write_text('"""Two lines."""\n\nx = 1  # one\n# not this one\ny = 2\n')
     facts = facts_of_program(copy)
     assert not facts.is_shipped
-    assert facts.code_lines == 14
+    assert facts.code_lines == 2
 
 
 def test_a_drive_is_recorded_with_its_medal_stars_and_ghost(

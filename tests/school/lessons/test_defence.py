@@ -17,36 +17,13 @@ from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressJournal
 from kit.school.report.class_data import student_work
 from kit.tui.rows.lesson_rows import stars
-
-PROGRAM = '''"""Tells the robot the same again and again."""
-
-import rclpy
-from geometry_msgs.msg import Twist
-from rclpy.node import Node
-
-
-class Steady(Node):
-    def __init__(self):
-        super().__init__("steady")
-        self.drive = self.create_publisher(Twist, "cmd_vel", 10)
-        self.create_timer(0.1, self.go)
-
-    def go(self):
-        command = Twist()
-        command.linear.x, command.angular.z = SPEED, TURN
-        self.drive.publish(command)
-
-
-def main(args=None):
-    rclpy.init(args=args)
-    rclpy.spin(Steady())
-'''
+from tests.driving_program import driving_program
 
 
 def program(folder: Path, speed: float, turn: float) -> tuple[Path, Path]:
     """A program, and a recording of it."""
     file, run = folder / "steady.py", folder / "run.npz"
-    file.write_text(PROGRAM.replace("SPEED", str(speed)).replace("TURN", str(turn)))
+    file.write_text(driving_program(speed, turn))
     kit.run_episode("simple", str(file), seconds=1.0, seed=1, record=str(run))
     return file, run
 

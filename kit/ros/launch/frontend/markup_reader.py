@@ -11,8 +11,6 @@ from kit.plain_text import nearest_name
 from kit.ros.launch.actions import (
     DeclareBooleanLaunchArgument,
     DeclareLaunchArgument,
-    ForEach,
-    ForLoop,
     IncludeLaunchDescription,
     Log,
     LogDebug,
@@ -22,12 +20,12 @@ from kit.ros.launch.actions import (
     ScopedIncludeLaunchDescription,
     Shutdown,
     TimerAction,
-    with_loop_values,
 )
 from kit.ros.launch.context import LaunchError, LaunchFileLocation
 from kit.ros.launch.entity import Action, Condition, IfCondition, LaunchDescription, UnlessCondition
 from kit.ros.launch.frontend.element import Element, Problems, TextPosition, Texts
 from kit.ros.launch.frontend.substitution_parser import split_words
+from kit.ros.launch.loops import ForEach, ForLoop, with_loop_values
 from kit.ros.launch.parameters import Parameter, ParameterFile, ParameterValue
 from kit.ros.launch.processes import (
     ComposableNode,

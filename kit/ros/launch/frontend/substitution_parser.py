@@ -8,7 +8,6 @@ from types import MappingProxyType
 from typing import Final, NamedTuple
 
 from kit.plain_text import nearest_name
-from kit.ros.launch.actions import ForEachVar, ForLoopIndex
 from kit.ros.launch.file_substitutions import (
     Command,
     ExecutableInPackage,
@@ -16,6 +15,7 @@ from kit.ros.launch.file_substitutions import (
     FindPackagePrefix,
     FindPackageShare,
 )
+from kit.ros.launch.loops import ForEachVar, ForLoopIndex
 from kit.ros.launch.substitutions import (
     AllSubstitution,
     AndSubstitution,

@@ -5,8 +5,8 @@
 from typing import TYPE_CHECKING, Any
 
 from kit.ros.late_names import import_late_name
-from kit.ros.launch.actions import LaunchDescriptionSource
 from kit.ros.launch.context import LaunchContext
+from kit.ros.launch.description_sources import LaunchDescriptionSource
 from kit.ros.launch.entity import Action, Condition, LaunchDescription, LaunchDescriptionEntity
 from kit.ros.launch.event_handlers import EventHandler
 from kit.ros.launch.events import Event

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
-    from kit.ros.launch.actions import LaunchDescriptionSource as LaunchDescriptionSource
     from kit.ros.launch.context import LaunchContext as LaunchContext
+    from kit.ros.launch.description_sources import LaunchDescriptionSource as LaunchDescriptionSource
     from kit.ros.launch.entity import LaunchDescription as LaunchDescription
     from kit.ros.launch.normalization import (
         normalize_to_list_of_substitutions as normalize_to_list_of_substitutions,
@@ -22,7 +22,7 @@ else:
     _LATE_NAMES = {
         "LaunchContext": "kit.ros.launch.context:LaunchContext",
         "LaunchDescription": "kit.ros.launch.entity:LaunchDescription",
-        "LaunchDescriptionSource": "kit.ros.launch.actions:LaunchDescriptionSource",
+        "LaunchDescriptionSource": "kit.ros.launch.description_sources:LaunchDescriptionSource",
         "SomeSubstitutionsType": "kit.ros.launch.substitutions:SomeText",
         "normalize_to_list_of_substitutions": "kit.ros.launch.normalization:normalize_to_list_of_substitutions",
         "perform_substitutions": "kit.ros.launch.normalization:perform",

@@ -31,7 +31,8 @@ from kit.arrays import FloatArray
 from kit.host.failure import FailureKind
 from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
-from kit.learning.tasks.rewards import ALGORITHM_1, ALGORITHM_3, Reward, RewardFunction
+from kit.learning.tasks.reward import Reward, RewardFunction
+from kit.learning.tasks.rewards import ALGORITHM_1, ALGORITHM_3
 from kit.learning.tasks.student_reward import LARGEST_REWARD, reward_columns
 
 ROOM = GridTask(

@@ -17,7 +17,7 @@ from PIL import Image
 from grader.check import NoParams
 from grader.evidence.contract import EvidenceRecord
 from grader.grading import GradingOptions, grade
-from grader.kinds.world.checks import CHECKS, MAX_FAULTS_SHOWN, RUN_CHECKS, explain, join_faults
+from grader.kinds.world.checks import CHECKS, MAX_FAULTS_SHOWN, NAMES_NEEDING_RUN, explain, join_faults
 from grader.kinds.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.kinds.world.faults import WorldContents, WorldRun
 from grader.kinds.world.world_process import WorldProcess
@@ -123,7 +123,7 @@ def test_a_world_that_does_not_load_earns_nothing_and_breaks_nothing(folder: Pat
     found = seen(folder)
     for name, check in CHECKS.items():
         given = check.params()
-        if name not in RUN_CHECKS:
+        if name not in NAMES_NEEDING_RUN:
             assert not check.anchors.share(check.measure(EvidenceRecord(found), given)) > 0
         assert explain(found, name, given)
 

@@ -15,7 +15,8 @@ import numpy as np
 from kit.learning.environment.env import TaskEnv, TurnEnv
 from kit.learning.policies.confidence_intervals import lower_bound
 from kit.learning.tasks.catalogue import TURN
-from kit.learning.tasks.rewards import ALGORITHM_3, Reward, TermWeight
+from kit.learning.tasks.reward import Reward, TermWeight
+from kit.learning.tasks.rewards import ALGORITHM_3
 from kit.learning.tasks.transition import EpisodeState, Transition
 from kit.learning.training.presets import LinearSchedule
 from kit.learning.training.tabular import QLearning, Sarsa, TableLearner

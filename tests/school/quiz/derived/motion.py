@@ -15,6 +15,7 @@ from kit.run.session import Session
 from kit.school.quiz.items import QuizItem
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import find_map
+from tests.driving_program import driving_program
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 from tests.sim.workshop import Workshop
 
@@ -179,27 +180,7 @@ def sign_at_left_wall(item: QuizItem, folder: Path) -> Finding:
     return Finding(best, {"A positive one": 1, "A negative one": -1, "Zero, and more speed": 0})
 
 
-ENDLESS = """
-import rclpy
-from geometry_msgs.msg import Twist
-from rclpy.node import Node
-
-
-class Driver(Node):
-    def __init__(self):
-        super().__init__("driver")
-        self.drive = self.create_publisher(Twist, "cmd_vel", 10)
-        self.count = 0
-        self.create_timer(0.05, self.go)
-
-    def go(self):
-        self.count += 1
-        command = Twist()
-        command.linear.x = 0.2
-        self.drive.publish(command)
-        while self.count == 5:
-            pass
-"""
+ENDLESS = driving_program(0.2, then="while self.count == 5:\n    pass", period_s=0.05)
 
 
 def endless_loop(item: QuizItem, folder: Path) -> Finding:

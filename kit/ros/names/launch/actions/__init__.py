@@ -6,8 +6,6 @@ from kit.ros.launch.actions import (
     DeclareBooleanLaunchArgument,
     DeclareLaunchArgument,
     EmitEvent,
-    ForEach,
-    ForLoop,
     IncludeLaunchDescription,
     Log,
     LogDebug,
@@ -22,6 +20,7 @@ from kit.ros.launch.actions import (
     TimerAction,
     UnregisterEventHandler,
 )
+from kit.ros.launch.loops import ForEach, ForLoop
 from kit.ros.launch.processes import ExecuteLocal, ExecuteProcess
 from kit.ros.launch.settings import (
     AppendEnvironmentVariable,

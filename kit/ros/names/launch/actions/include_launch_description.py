@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
-    from kit.ros.launch.actions import (
-        IncludeLaunchDescription as IncludeLaunchDescription,
+    from kit.ros.launch.actions import IncludeLaunchDescription as IncludeLaunchDescription
+    from kit.ros.launch.context import LaunchContext as LaunchContext
+    from kit.ros.launch.description_sources import (
         LaunchDescriptionSource as _AnyLaunchDescriptionSource,
         LaunchDescriptionSource as LaunchDescriptionSource,
     )
-    from kit.ros.launch.context import LaunchContext as LaunchContext
     from kit.ros.launch.entity import Action as Action, LaunchDescriptionEntity as LaunchDescriptionEntity
     from kit.ros.launch.normalization import (
         normalize_to_list_of_substitutions as normalize_to_list_of_substitutions,
@@ -30,12 +30,12 @@ if TYPE_CHECKING:
 else:
     _LATE_NAMES = {
         "Action": "kit.ros.launch.entity:Action",
-        "AnyLaunchDescriptionSource": "kit.ros.launch.actions:LaunchDescriptionSource",
+        "AnyLaunchDescriptionSource": "kit.ros.launch.description_sources:LaunchDescriptionSource",
         "Entity": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "IncludeLaunchDescription": "kit.ros.launch.actions:IncludeLaunchDescription",
         "LaunchContext": "kit.ros.launch.context:LaunchContext",
         "LaunchDescriptionEntity": "kit.ros.launch.entity:LaunchDescriptionEntity",
-        "LaunchDescriptionSource": "kit.ros.launch.actions:LaunchDescriptionSource",
+        "LaunchDescriptionSource": "kit.ros.launch.description_sources:LaunchDescriptionSource",
         "Parser": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "SetLaunchConfiguration": "kit.ros.launch.settings:SetLaunchConfiguration",
         "SomeSubstitutionsType": "kit.ros.launch.substitutions:SomeText",

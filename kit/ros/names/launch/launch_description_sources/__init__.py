@@ -5,7 +5,7 @@
 from typing import TYPE_CHECKING, Any
 
 from kit.ros.late_names import import_late_name
-from kit.ros.launch.actions import (
+from kit.ros.launch.description_sources import (
     LaunchDescriptionSource as AnyLaunchDescriptionSource,
     LaunchDescriptionSource as FrontendLaunchDescriptionSource,
     LaunchDescriptionSource as PythonLaunchDescriptionSource,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
-    from kit.ros.launch.actions import (
+    from kit.ros.launch.description_sources import (
         LaunchDescriptionSource as _FrontendLaunchDescriptionSource,
         LaunchDescriptionSource as LaunchDescriptionSource,
     )
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     get_launch_description_from_frontend_launch_file: Any
 else:
     _LATE_NAMES = {
-        "FrontendLaunchDescriptionSource": "kit.ros.launch.actions:LaunchDescriptionSource",
-        "LaunchDescriptionSource": "kit.ros.launch.actions:LaunchDescriptionSource",
+        "FrontendLaunchDescriptionSource": "kit.ros.launch.description_sources:LaunchDescriptionSource",
+        "LaunchDescriptionSource": "kit.ros.launch.description_sources:LaunchDescriptionSource",
         "Parser": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "SomeSubstitutionsType": "kit.ros.launch.substitutions:SomeText",
         "get_launch_description_from_frontend_launch_file": "!launch's own process, in whose place `kit launch FILE` runs launch files",

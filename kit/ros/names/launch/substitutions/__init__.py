@@ -2,8 +2,8 @@
 
 # Made by: python -m tests.ros.import_names
 
-from kit.ros.launch.actions import ForEachVar, ForLoopIndex
 from kit.ros.launch.file_substitutions import Command, FileContent, PathSubstitution
+from kit.ros.launch.loops import ForEachVar, ForLoopIndex
 from kit.ros.launch.substitutions import (
     AllSubstitution,
     AndSubstitution,

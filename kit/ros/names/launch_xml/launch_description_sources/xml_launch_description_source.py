@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
-    from kit.ros.launch.actions import (
+    from kit.ros.launch.description_sources import (
         LaunchDescriptionSource as _FrontendLaunchDescriptionSource,
         LaunchDescriptionSource as _XMLLaunchDescriptionSource,
     )
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     Parser: Any
 else:
     _LATE_NAMES = {
-        "FrontendLaunchDescriptionSource": "kit.ros.launch.actions:LaunchDescriptionSource",
+        "FrontendLaunchDescriptionSource": "kit.ros.launch.description_sources:LaunchDescriptionSource",
         "Parser": "!launch's own reader of XML files; `kit launch FILE` reads them",
         "SomeSubstitutionsType": "kit.ros.launch.substitutions:SomeText",
-        "XMLLaunchDescriptionSource": "kit.ros.launch.actions:LaunchDescriptionSource",
+        "XMLLaunchDescriptionSource": "kit.ros.launch.description_sources:LaunchDescriptionSource",
     }
 
     def __getattr__(name):

@@ -2,6 +2,6 @@
 
 # Made by: python -m tests.ros.import_names
 
-from kit.ros.launch.actions import LaunchDescriptionSource as YAMLLaunchDescriptionSource
+from kit.ros.launch.description_sources import LaunchDescriptionSource as YAMLLaunchDescriptionSource
 
 __all__ = ["YAMLLaunchDescriptionSource"]

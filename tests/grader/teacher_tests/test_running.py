@@ -14,7 +14,8 @@ from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
-from grader.teacher_tests import TestDeadline, TestTimeUsedUp, read_teacher_tests
+from grader.teacher_tests.deadline import TestDeadline, TestTimeUsedUp
+from grader.teacher_tests.reading import read_teacher_tests
 from kit.host.sandbox.confinement import Level
 from kit.results.grading_result import (
     CriterionResult,
@@ -244,7 +245,7 @@ def test_tests_have_a_clock_and_what_makes_them_slow_is_not_taken_for_a_fault_of
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A program could make a test of what it did endless, and would get no grade instead of none of the points."""
-    monkeypatch.setattr("grader.teacher_tests.MIN_TIME_S", 10.0)
+    monkeypatch.setattr("grader.teacher_tests.running.MIN_TIME_S", 10.0)
     sheet = QUICK + "tests: [test_own.py]\nbudget: {submission: 1.5}\n"
     result, tests = graded(folder_with(tmp_path, SLOW, sheet))
     assert tests["test_it_drives"].points == 1.0

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import pytest
 
-from kit.launch import turtlesim_node
-from kit.launch.turtlesim_node import SIDE_M, SPACING_M, Paper, Pen
+from kit.launch.turtlesim import paper as paper_module
+from kit.launch.turtlesim.paper import SIDE_M, SPACING_M, Paper, Pen
 from kit.msg.action_msgs import GoalStatus
 from kit.msg.rcl_interfaces import Parameter as ParameterMessage
 from kit.msg.rcl_interfaces import ParameterType, ParameterValue, SetParameters
@@ -181,7 +181,7 @@ def test_a_goal_turns_the_turtle_and_another_aborts_it(field: Make) -> None:
 def test_of_what_is_drawn_so_many_points_are_kept_and_the_oldest_go_first(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(turtlesim_node, "MAX_POINTS", 10)
+    monkeypatch.setattr(paper_module, "MAX_POINTS", 10)
     paper, step = Paper(), 2 * SPACING_M
 
     def draw(pen: Pen, first: int, last: int) -> list[list[int]]:

@@ -19,17 +19,23 @@ import yaml
 from click.testing import CliRunner
 
 from grader.__main__ import main
-from grader.ci import REPOSITORY_SERVICES, GitSource, GradedWork, warnings, workflow
+from grader.ci import REPOSITORY_SERVICES, SERVICES
+from grader.ci.ci_service import CiRunner, GitSource, GradedWork
+from grader.ci.warnings import warnings
 from grader.reading import read_assignment
 from kit.host.sandbox import probe
 from tests.cases import every_case
 from tests.grader.conftest import FORWARD, LOCKS, QUICK, write_assignment
 from tests.public_schemas import why_invalid
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 KIT = GitSource("https://example.org/somebody/kit", "v1")
 ONE = GradedWork("tasks-one", "controller.py", "tasks/one")
 TWO = GradedWork("tasks-two", "two/controller.py", "tasks/two")
+
+
+def workflow(service: str, works: Sequence[GradedWork], kit: GitSource) -> str:
+    return SERVICES[service].write(works, kit, CiRunner()).decode()
 
 
 def made(service: str) -> tuple[str, Any]:
@@ -78,10 +84,10 @@ def test_every_action_is_githubs_own_and_pinned_by_a_hash() -> None:
 )
 def test_what_students_should_not_read_is_named(tmp_path: Path, name: str, named: str) -> None:
     folder = write_assignment(tmp_path / "task")
-    assert list(warnings(read_assignment(folder), "github")) == []
+    assert list(warnings(read_assignment(folder), SERVICES["github"])) == []
     (folder / name).parent.mkdir(exist_ok=True)
     (folder / name).write_text("seeds: {turn: [12345678901234]}\n" if name == "secret.yaml" else "")
-    (told,) = warnings(read_assignment(folder), "github")
+    (told,) = warnings(read_assignment(folder), SERVICES["github"])
     assert named in told
 
 
