@@ -55,15 +55,15 @@ def command(context: click.Context, workspace: Path | None, folder: Path | None,
     """Enter programs and agents in a league; all meet all in races and at tag, and are rated.
 
     \b
-    kit league                                   the standings; Enter: matches, replays
-    kit league submit --controller my_chaser.py  enter a program
-    kit league submit --agent my_run             enter an agent that you trained
-    kit league run                               drive the matches that are missing
-    kit league matches [NAME]                    list matches
-    kit league replay 3                          watch match 3
-    kit league verify                            drive matches anew and compare
-    kit league withdraw NAME                     take your entry out
-    kit league new FOLDER                        a league for a class
+    kit league                          standings; Enter: matches, replays
+    kit league submit --controller FILE enter a program
+    kit league submit --agent RUN       enter an agent that you trained
+    kit league run                      drive the matches that are missing
+    kit league matches [NAME]           list matches
+    kit league replay 3                 watch match 3
+    kit league verify                   drive matches anew and compare
+    kit league withdraw NAME            take your entry out
+    kit league new FOLDER               a league for a class
 
     In a race each entrant drives a level alone, from five starts, and the middle drives are compared. At tag two robots share
     one world: a program is told is_catcher (std_msgs/Bool) and, as goal_pose (geometry_msgs/PoseStamped), where the
