@@ -19,6 +19,7 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
         "kit.cli.game",
         "Play levels for medals and stars; race programs and agents.",
     ),
+    "league": ("kit.cli.league", "Enter programs and agents; all meet all in races and at tag."),
     "run": ("kit.cli.run", "Run a world without a screen and print a summary."),
     "replay": ("kit.cli.replay", "Replay a recorded run, or check that it repeats bit for bit."),
     "maps": ("kit.cli.maps", "List the maps, show one, or make your own."),

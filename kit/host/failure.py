@@ -165,8 +165,8 @@ def too_much_kept(limit: int, file: Path) -> Failure:
     return Failure(FailureKind.FLOOD, message, file.name)
 
 
-def reserved_name(message: str, file: Path) -> Failure:
-    """Makes the failure of a program with a node whose name is the run's own."""
+def refused_name(message: str, file: Path) -> Failure:
+    """Makes the failure of a program that uses a name which is not its own."""
     return Failure(FailureKind.EXCEPTION, printable(message), file.name)
 
 

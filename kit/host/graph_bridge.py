@@ -16,7 +16,7 @@ from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from kit.host.codec import Codec, NotFiniteError
-from kit.host.proxy_nodes import GraphDiff, ProxyClient, ProxyNodes
+from kit.host.proxy_nodes import GraphDiff, NameScope, ProxyClient, ProxyNodes
 from kit.host.waiter import AllThreadsWaiter, TickSource
 from kit.host.wire import Json, ProtocolError, integer, items, kept_size
 from kit.msg.message import Message, is_request_or_response
@@ -41,14 +41,17 @@ class PendingEvent(NamedTuple):
 class GraphBridge(ABC):
     """One end of a bridge: keeps proxies of the other end's nodes, and the events that wait to be sent."""
 
-    def __init__(self, graph: Graph, *, in_child: bool, shares_interfaces: bool) -> None:
-        """``shares_interfaces``: sends and takes the definitions of interfaces that are not the kit's own."""
+    def __init__(
+        self, graph: Graph, *, in_child: bool, shares_interfaces: bool, scope: NameScope | None = None
+    ) -> None:
+        """``shares_interfaces``: sends and takes the definitions of interfaces that are not the kit's own. ``scope``: the
+        names that the other end may use, by default all."""
         self.graph = graph
         self.pending: list[PendingEvent] = []
         """Messages, requests and responses for the other end, oldest first."""
         self._codec = Codec(in_child=in_child)
         self._proxies = ProxyNodes(
-            graph, self, allow_unknown_types=in_child, shares_interfaces=shares_interfaces
+            graph, self, allow_unknown_types=in_child, shares_interfaces=shares_interfaces, scope=scope
         )
         self._diff = GraphDiff(graph, self._proxies, shares_interfaces=shares_interfaces)
         self._handlers: dict[str, Callable[[list[Json]], None]] = {
@@ -140,10 +143,11 @@ class ParentBridge(GraphBridge):
         max_kept: int | None = None,
         *,
         shares_interfaces: bool = False,
+        scope: NameScope | None = None,
     ) -> None:
         """``max_messages``: messages, requests and responses that the child may send within one tick; ``max_kept``:
-        bytes of messages that are kept for it here."""
-        super().__init__(graph, in_child=False, shares_interfaces=shares_interfaces)
+        bytes of messages that are kept for it here; ``scope``: the names that it may use, by default all."""
+        super().__init__(graph, in_child=False, shares_interfaces=shares_interfaces, scope=scope)
         self._requests: dict[int, _PendingRequest] = {}
         self._is_publishing = False
         self._max_messages = max_messages
@@ -157,7 +161,7 @@ class ParentBridge(GraphBridge):
 
     def apply_events(self, events: Sequence[GraphEvent]) -> None:
         """Applies what has happened in the child. Raises ProtocolError, MessageLimitError, KeptLimitError,
-        ReservedNameError."""
+        ReservedNameError, ForeignNameError."""
         with self.graph.lock:
             self._count_messages(events)
             for event in events:

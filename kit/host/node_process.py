@@ -14,7 +14,7 @@ from typing import Self
 from kit.host.failure import (
     StudentCodeError,
     protocol_violation,
-    reserved_name,
+    refused_name,
     too_many_messages,
     too_much_kept,
 )
@@ -22,7 +22,7 @@ from kit.host.graph_bridge import KeptLimitError, MessageLimitError, ParentBridg
 from kit.host.process import HostedFile, PackageProgram, StudentProcess
 from kit.host.program_terminal import ProgramStreams
 from kit.host.protocol import HOLD_NS, Ended, Frame, Reply
-from kit.host.proxy_nodes import ReservedNameError
+from kit.host.proxy_nodes import ForeignNameError, NameScope, ReservedNameError
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.host.wire import ProtocolError
@@ -50,6 +50,7 @@ class NodeProcess(HostedFile):
         loads_first: bool = False,
         streams: ProgramStreams | None = None,
         replaces: NodeProcess | None = None,
+        scope: NameScope | None = None,
     ) -> None:
         """``args``: what would follow the file's name on a command line, such as ``--ros-args -p speed:=0.4``.
 
@@ -64,11 +65,13 @@ class NodeProcess(HostedFile):
         ``streams``: what the program reads and writes where it is run by hand.
 
         ``replaces``: the process that is to end before this one joins. That its nodes have the same names is no mistake.
+
+        ``scope``: the names that it may use, where other programs take part that it must not disturb; by default all.
         """
         self.file = file
         self._graph = graph
         self._limits = limits
-        self._bridge = ParentBridge(graph, limits.messages, limits.kept)
+        self._bridge = ParentBridge(graph, limits.messages, limits.kept, scope=scope)
         self._now_ns = graph.now_ns
         self._wake_ns: int | None = None
         self._first_answer: Frame | None = None
@@ -99,9 +102,10 @@ class NodeProcess(HostedFile):
         seed: int = 0,
         limits: Limits = INTERACTIVE_LIMITS,
         level: Level = INTERACTIVE_LEVEL,
+        scope: NameScope | None = None,
     ) -> Self:
         """Starts a process and waits until its nodes are in the graph. Raises StudentCodeError if it fails before."""
-        process = cls(graph, file, args=args, seed=seed, limits=limits, level=level)
+        process = cls(graph, file, args=args, seed=seed, limits=limits, level=level, scope=scope)
         try:
             process.wait_until_started()
         except BaseException:  # Ctrl-C too: the process must not outlive it; raised again
@@ -197,8 +201,8 @@ class NodeProcess(HostedFile):
         except KeptLimitError:
             self._process.fail(too_much_kept(self._limits.kept or 0, self.file))
             self._bridge.clear()
-        except ReservedNameError as problem:
-            self._process.fail(reserved_name(str(problem), self.file))
+        except (ReservedNameError, ForeignNameError) as problem:
+            self._process.fail(refused_name(str(problem), self.file))
             self._bridge.clear()
         except ProtocolError as problem:
             self._process.fail(protocol_violation(str(problem)))

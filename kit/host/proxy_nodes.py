@@ -16,7 +16,7 @@ arrives at them is passed on instead of being queued for a callback. Both sides 
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Sequence
-from typing import Any, Final, Protocol, TypeVar, cast
+from typing import Any, Final, NamedTuple, Protocol, TypeVar, cast
 
 from kit.host.wire import MAX_ID, MAX_NAME, Json, ProtocolError, integer, items, text
 from kit.msg.definition_writer import definitions_of
@@ -63,6 +63,34 @@ class ReservedNameError(ProtocolError):
 
     def __init__(self, name: str) -> None:
         super().__init__(f"the node name {name} is reserved for the run: give your node another name.")
+
+
+class ForeignNameError(ProtocolError):
+    """A program has used a name that is not its own, in a run in which several programs have a namespace each."""
+
+    def __init__(self, kind: str, name: str, namespace: str) -> None:
+        super().__init__(
+            f"a {kind} named {name} is not its own: in this run a program may use names below {namespace} alone, as it does "
+            "with names that begin without a slash."
+        )
+
+
+class NameScope(NamedTuple):
+    """The names that a program may use in a run with several programs: those below its namespace, and a few more."""
+
+    namespace: str
+    """``/first``"""
+    heard: frozenset[str] = frozenset(("/clock", "/tf", "/tf_static"))
+    """Topics that it may subscribe to."""
+    told: frozenset[str] = frozenset(("/rosout", "/parameter_events"))
+    """Topics that it may publish on and subscribe to."""
+
+    def check(self, kind: str, name: str) -> None:
+        """``kind``: ``node``, ``publisher``, ``subscription``, ``service`` or ``client``. Raises ForeignNameError."""
+        is_heard = kind == "subscription" and name in self.heard
+        is_told = kind in ("publisher", "subscription") and name in self.told
+        if not (is_heard or is_told or name.startswith(f"{self.namespace}/")):
+            raise ForeignNameError(kind, name, self.namespace)
 
 
 class ProxyListener(Protocol):
@@ -161,7 +189,8 @@ def _never_called(request: Any, response: Any = None) -> Any:
 
 
 class ProxyNodes:
-    """The other side's nodes and endpoints. Events are checked: raises ProtocolError, ReservedNameError."""
+    """The other side's nodes and endpoints. Events are checked: raises ProtocolError, ReservedNameError,
+    ForeignNameError."""
 
     def __init__(
         self,
@@ -170,9 +199,11 @@ class ProxyNodes:
         *,
         allow_unknown_types: bool = False,
         shares_interfaces: bool = False,
+        scope: NameScope | None = None,
     ) -> None:
         """``allow_unknown_types``: an endpoint may have an interface that this process has no definition of;
-        ``shares_interfaces``: the other side sends definitions."""
+        ``shares_interfaces``: the other side sends definitions; ``scope``: the names that it may use, by default all."""
+        self._scope = scope
         self._interfaces = ReceivedInterfaces() if shares_interfaces else None
         self._graph = graph
         self._listener = listener
@@ -239,6 +270,7 @@ class ProxyNodes:
         full_name = f"{space.rstrip('/')}/{node_name}"
         if full_name in self._graph.reserved_names:
             raise ReservedNameError(full_name)
+        self._check_scope("node", full_name)
         self._nodes[number] = node = ProxyNode(self._graph, node_name, space)
         self._handles.add(node.handle)
 
@@ -248,6 +280,7 @@ class ProxyNodes:
         handle, name, profile = self._find_node(node).handle, text(topic, MAX_NAME), _read_qos(qos)
         cls = self._find_type(type_text, Message)
         _check_name(validate_full_topic_name, name)
+        self._check_scope(kind, name)
         number = self._check_new(identity)
         if kind == "publisher":
             quiet = PublisherEventCallbacks(use_default_callbacks=False)
@@ -269,6 +302,7 @@ class ProxyNodes:
         handle, service_name = self._find_node(node).handle, text(name, MAX_NAME)
         cls = self._find_type(type_text, Definition)
         _check_name(validate_full_topic_name, service_name)
+        self._check_scope(kind, service_name)
         number = self._check_new(identity)
         profile, group = QoSProfile(depth=10), MutuallyExclusiveCallbackGroup()
         if kind == "service":
@@ -298,6 +332,10 @@ class ProxyNodes:
             self._endpoints.pop(identity).destroy()
         else:
             raise ProtocolError(f"nothing has the number {identity}, which is gone")
+
+    def _check_scope(self, kind: str, name: str) -> None:
+        if self._scope is not None:
+            self._scope.check(kind, name)
 
     def _check_new(self, identity: Json) -> int:
         number = integer(identity)

@@ -384,8 +384,7 @@ class Session:
 
     def command_topics(self, model: str) -> tuple[str, ...]:
         """Topics on which a model's devices subscribe to Twists."""
-        ends = self.runner.simulation.model_endpoints(model)
-        return tuple(end.topic for end in ends if end.direction == "subscribe" and end.type is Twist)
+        return self.runner.simulation.command_topics(model)
 
     def _print(self, line: str) -> None:
         self.log_line(line, self.controller.name if self.controller else "")

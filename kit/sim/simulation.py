@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any, Final, cast
 
 from kit.geometry import Pose
+from kit.msg.geometry_msgs import Twist
 from kit.sim.bodies import PhysicalBody
 from kit.sim.laser_scene import LaserScene, footprint_outlines, hull_distance
 from kit.sim.physics import Physics
@@ -229,6 +230,11 @@ class Simulation:
         """Those of one model's plugins; none if it is not there."""
         instance = self._instance.models.get(model)
         return [] if instance is None else [end for plugin in instance.plugins for end in plugin.endpoints]
+
+    def command_topics(self, model: str) -> tuple[str, ...]:
+        """The topics on which a model's plugins take Twists."""
+        ends = self.model_endpoints(model)
+        return tuple(end.topic for end in ends if end.direction == "subscribe" and end.type is Twist)
 
     def accept(self, topic: str, message: Any) -> None:
         """Hands a message to every plugin that subscribes to the topic; to none, if none does."""

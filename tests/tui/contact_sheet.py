@@ -106,6 +106,7 @@ VISITS: Final = {
     "form": ScreenVisit(("form",), ("3",)),
     "train": ScreenVisit(keys=("5",)),
     "progress": ScreenVisit(keys=("9",)),
+    "league": ScreenVisit(keys=("l",), seconds=3.0),
     "help": ScreenVisit(("play", "simple"), ("?",)),
     "keys": ScreenVisit(("keys",)),
 }

@@ -17,6 +17,7 @@ from kit.host.failure import Failure, FailureKind
 from kit.host.private_folder import private_folder
 from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.confinement import Level as Confinement
+from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.host.sandbox.probe import is_level_available
 from kit.run.episode import EndCondition, EndReason, run_until, when, when_failed
 from kit.run.lockstep import Observer
@@ -204,16 +205,19 @@ def race_controller(
     on_second: Callable[[float], None] | None = None,
     wall_limit_s: float = math.inf,
     seed: int = OWN_SEED,
+    confinement: Confinement | None = None,
+    limits: Limits = INTERACTIVE_LIMITS,
 ) -> tuple[RaceFinish, Recording]:
     """Lets a controller drive the level once, as fast as the simulation runs. ``wall_limit_s``: seconds of wall clock after
-    which it has failed. ``seed``: of the start."""
+    which it has failed. ``seed``: of the start. ``confinement``: by default that of a program which drives for medals."""
 
     def install_driver(session: Session) -> None:
         session.drive_with(controller)
         session.wait_until_driven()
 
-    scenario, confinement = scenario_from(level, seed), _confinement(controller)
-    return run_race(level, scenario, install_driver, on_second, confinement, wall_limit_s, seed)
+    confinement = _confinement(controller) if confinement is None else confinement
+    scenario = scenario_from(level, seed)
+    return run_race(level, scenario, install_driver, on_second, confinement, wall_limit_s, seed, limits)
 
 
 def race_from_all_starts(
@@ -308,10 +312,13 @@ def run_race(
     confinement: Confinement = INTERACTIVE_LEVEL,
     wall_limit_s: float = math.inf,
     seed: int = OWN_SEED,
+    limits: Limits = INTERACTIVE_LIMITS,
 ) -> tuple[RaceFinish, Recording]:
     """Runs a drive from ``scenario``'s start to its end. ``seed``: of that start."""
     ends_at = time.monotonic() + wall_limit_s
-    with Session(scenario, seed=seed, level=confinement, always_scan=level.goal.reads_lidar) as session:
+    with Session(
+        scenario, seed=seed, level=confinement, limits=limits, always_scan=level.goal.reads_lidar
+    ) as session:
         simulation = session.runner.simulation
         referee, recorder = RaceReferee(level, scenario), Recorder.for_scenario(scenario, simulation)
         session.runner.observers += [referee, recorder]

@@ -11,7 +11,7 @@ import hashlib
 import io
 import json
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -20,9 +20,7 @@ import numpy as np
 
 from kit.array_archives import READ_ERRORS, unpack_arrays
 from kit.arrays import FloatArray
-from kit.msg.geometry_msgs import Twist
 from kit.run.recording import ACCEPT, Recording, RecordingError, recording_from_header, recording_header
-from kit.run.scenario import Scenario
 from kit.school.game.levels import GameLevel
 from kit.school.game.medal import Medal, medal_of
 from kit.school.game.player_progress import BY_HAND, ExtraRule, kept_rules
@@ -31,6 +29,7 @@ from kit.school.game.references import reference_recording, reference_seconds
 from kit.school.game.starts import OWN_SEED, scenario_from, seeds_of
 from kit.sim.simulation import STEP_SIZE_S, Simulation
 from kit.workspace import write_atomically
+from kit.world.records import World
 
 FORMAT: Final = 1
 TRACK_STRIDE: Final = 10
@@ -66,14 +65,16 @@ def platform_name() -> str:
     return f"{platform.system()} {platform.machine()}, {versions}"
 
 
-def share_drives(recordings: Sequence[Recording], file: Path) -> None:
-    """Writes the inputs of a driver's recordings of one level, whole or not at all. Raises OSError."""
+def share_drives(recordings: Sequence[Recording], file: Path, remarks: Sequence[str] = ()) -> None:
+    """Writes the inputs of a driver's recordings of one level, whole or not at all. ``remarks``: what went wrong with each
+    program. Raises OSError."""
     content = {
         "format": FORMAT,
         "platform": platform_name(),
         "drives": [
-            {**recording_header(each), "ticks": each.ticks, "digest": _digest(each)} for each in recordings
+            {**recording_header(each), "ticks": each.ticks, "digest": digest_of(each)} for each in recordings
         ],
+        "remarks": list(remarks),
     }
     data = io.BytesIO()
     np.savez_compressed(data, drives=np.frombuffer(json.dumps(content).encode(), dtype=np.uint8))
@@ -82,22 +83,8 @@ def share_drives(recordings: Sequence[Recording], file: Path) -> None:
 
 def judge_shared_drives(data: bytes, level: GameLevel, driver: DriverKind) -> JudgedDrive:
     """Runs the drives of a file of ``share_drives`` again and judges them. Raises DriveRefused."""
-    content = _read(data)
-    recordings = [_stripped_recording(each) for each in content["drives"]]
-    wanted = (OWN_SEED,) if driver is DriverKind.KEYS else seeds_of(level)
-    if tuple(sorted(each.seed for each in recordings)) != wanted:
-        raise DriveRefused(f"it has not one drive from each of the {len(wanted)} starts")
-    is_same_platform = content["platform"] == platform_name()
-    drives = []
-    for recording, entry in zip(recordings, content["drives"], strict=True):
-        _check_inputs(recording, level)
-        try:
-            finish, again = run_again(level, recording)
-        except (ValueError, RecordingError) as error:
-            raise DriveRefused(str(error)) from None
-        if is_same_platform and _digest(again) != entry["digest"]:
-            raise DriveRefused("run again, it is another drive")
-        drives.append((finish, again))
+    shared = read_shared_drives(data)
+    drives = drives_again(shared, level, (OWN_SEED,) if driver is DriverKind.KEYS else seeds_of(level))
     counts = middle_drive([finish for finish, _ in drives])
     finish, again = drives[counts]
     if not finish.reached:
@@ -112,8 +99,60 @@ def judge_shared_drives(data: bytes, level: GameLevel, driver: DriverKind) -> Ju
         kept_rules(level, finish, BY_HAND),
         tracks,
         TRACK_STRIDE * again.step_size,
-        is_same_platform,
+        shared.is_same_platform,
     )
+
+
+def drives_again(
+    shared: SharedDrives, level: GameLevel, seeds: Sequence[int]
+) -> list[tuple[RaceFinish, Recording]]:
+    """Runs the drives of a level again: one from each of these starts. Raises DriveRefused."""
+    if tuple(sorted(each.seed for each in shared.recordings)) != tuple(seeds):
+        raise DriveRefused(f"it has not one drive from each of the {len(seeds)} starts")
+    drives = []
+    for number, recording in enumerate(shared.recordings):
+        try:
+            scenario = scenario_from(level, recording.seed)
+        except ValueError as error:
+            raise DriveRefused(str(error)) from None
+        check_inputs(recording, scenario.world, scenario.partners, level.time_limit, ALLOWED_SERVICES)
+        try:
+            finish, again = run_again(level, recording)
+        except (ValueError, RecordingError) as error:
+            raise DriveRefused(str(error)) from None
+        shared.check_same(number, again)
+        drives.append((finish, again))
+    return drives
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SharedDrives:
+    """The content of a file of ``share_drives``."""
+
+    is_same_platform: bool
+    recordings: tuple[Recording, ...]
+    """Without poses."""
+    digests: tuple[str, ...]
+    """Of their poses."""
+    remarks: tuple[str, ...]
+    """What went wrong with each program, where that was noted; a board takes nothing from them."""
+
+    def check_same(self, number: int, again: Recording) -> None:
+        """Raises DriveRefused if a drive, run again, is another one; on another platform it may be."""
+        if self.is_same_platform and digest_of(again) != self.digests[number]:
+            raise DriveRefused("run again, it is another drive")
+
+
+def read_shared_drives(data: bytes) -> SharedDrives:
+    """Reads a file of ``share_drives``. Raises DriveRefused."""
+    content = _read(data)
+    try:
+        digests = tuple(str(each["digest"]) for each in content["drives"])
+    except KeyError as error:
+        raise DriveRefused(f"a drive is damaged ({error})") from None
+    recordings = tuple(_stripped_recording(each) for each in content["drives"])
+    remarks = tuple(map(str, content["remarks"]))
+    return SharedDrives(content["platform"] == platform_name(), recordings, digests, remarks)
 
 
 def _read(data: bytes) -> dict[str, Any]:
@@ -125,7 +164,10 @@ def _read(data: bytes) -> dict[str, Any]:
         content = json.loads(bytes(packed))
         if content["format"] != FORMAT or not isinstance(content["platform"], str):
             raise DriveRefused("it was shared by another version of the kit")
-        if not all(isinstance(each, dict) for each in content["drives"]):
+        if (
+            not all(isinstance(each, dict) for each in content["drives"])
+            or type(content["remarks"]) is not list
+        ):
             raise DriveRefused("it holds something else than drives")
     except DriveRefused:
         raise
@@ -138,7 +180,7 @@ def _stripped_recording(entry: Mapping[str, Any]) -> Recording:
     """A shared drive as a recording without poses."""
     try:
         ticks = int(entry["ticks"])
-        if not 0 < ticks <= 10**6:
+        if not 0 <= ticks <= 10**6:
             raise ValueError(f"{ticks} ticks")
         header = {**entry, "models": []}
         return recording_from_header(header, np.empty((0, 3)), np.zeros(ticks, dtype=np.int64))
@@ -146,28 +188,25 @@ def _stripped_recording(entry: Mapping[str, Any]) -> Recording:
         raise DriveRefused(f"a drive is damaged ({error})") from None
 
 
-def _check_inputs(recording: Recording, level: GameLevel) -> None:
-    """Raises DriveRefused for a drive with another clock, or inputs that are no commands to its own robots."""
-    if recording.step_size != STEP_SIZE_S or recording.ticks * recording.step_size > level.time_limit + 1.0:
+def check_inputs(
+    recording: Recording,
+    world: World,
+    robots: Sequence[str],
+    time_limit: float,
+    services: Collection[str] = (),
+) -> None:
+    """Raises DriveRefused for a drive with another clock, or inputs that are no commands to these robots. ``time_limit``: of
+    the drive [s]. ``services``: those that may have been called."""
+    if recording.step_size != STEP_SIZE_S or recording.ticks * recording.step_size > time_limit + 1.0:
         raise DriveRefused("its clock is not that of the level")
-    try:
-        scenario = scenario_from(level, recording.seed)
-    except ValueError as error:
-        raise DriveRefused(str(error)) from None
-    topics = command_topics(scenario)
+    simulation = Simulation(world, seed=OWN_SEED, has_subscribers=lambda topic: False)
+    topics = {topic for robot in robots for topic in simulation.command_topics(robot)}
     for each in recording.inputs:
         if each.kind == ACCEPT:
             if not each.content or each.content[0] not in topics:
                 raise DriveRefused("it moves something else than its robots")
-        elif each.kind not in ALLOWED_SERVICES:
+        elif each.kind not in services:
             raise DriveRefused(f"the world was changed during the race ({each.kind})")
-
-
-def command_topics(scenario: Scenario) -> frozenset[str]:
-    """The topics on which the driven robots take commands."""
-    simulation = Simulation(scenario.world, seed=OWN_SEED, has_subscribers=lambda topic: False)
-    ends = [end for name in scenario.partners for end in simulation.model_endpoints(name)]
-    return frozenset(end.topic for end in ends if end.direction == "subscribe" and end.type is Twist)
 
 
 def _is_reference(level: GameLevel, recording: Recording) -> bool:
@@ -179,6 +218,6 @@ def _is_reference(level: GameLevel, recording: Recording) -> bool:
     return bool(np.array_equal(reference.poses[:rows], recording.poses[:rows]))
 
 
-def _digest(recording: Recording) -> str:
+def digest_of(recording: Recording) -> str:
     """Equal for drives whose poses are equal to the bit."""
     return hashlib.sha256(np.ascontiguousarray(recording.poses).tobytes()).hexdigest()

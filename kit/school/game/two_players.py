@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
@@ -113,31 +113,17 @@ def shared_scenario(level: GameLevel) -> Scenario:
     raise CannotShare(f"{level.title} has no room for a second robot at its start: choose another level.")
 
 
-@dataclass(slots=True)
-class _Player:
-    model: str
-    push: tuple[float, float] = (0.0, 0.0)
-    """Forward and left, each from -1 to 1."""
-    score: float = 0.0
-    sent: tuple[float, float] | None = None
-    topics: tuple[str, ...] = field(default=())
+class SharedReferee(Observer):
+    """Judges a game of two robots in one world. Belongs to the thread that ticks."""
 
-
-class SharedGame(Observer):
-    """Moves both robots as their players push, and judges. Belongs to the thread that ticks, but for ``push``."""
-
-    def __init__(self, scenario: Scenario, mode: SharedMode, runner: Runner) -> None:
+    def __init__(self, scenario: Scenario, mode: SharedMode, simulation: Simulation) -> None:
         """``scenario``: of ``shared_scenario``."""
         assert scenario.robot is not None
         assert scenario.case is not None
         self.mode: Final = mode
-        self._runner = runner
-        self._players = (_Player(scenario.robot), _Player(GUEST))
-        for player in self._players:
-            ends = runner.simulation.model_endpoints(player.model)
-            player.topics = tuple(
-                end.topic for end in ends if end.direction == "subscribe" and end.type is Twist
-            )
+        self.robots: Final = (scenario.robot, GUEST)
+        self._simulation = simulation
+        self._scores = [0.0] * PLAYERS
         self._targets = scenario.targets or (scenario.case.target,)
         self._radius = scenario.case.target_radius
         self._phase = SharedPhase.WAITING
@@ -145,6 +131,83 @@ class SharedGame(Observer):
         self._catcher: int | None = 0 if mode is SharedMode.TAG else None
         self._caught_ns = 0
         self._winner: int | None = None
+
+    @property
+    def is_over(self) -> bool:
+        return self._phase is SharedPhase.OVER
+
+    @property
+    def state(self) -> SharedGameState:
+        """State after the last tick."""
+        return SharedGameState(
+            self._phase,
+            (self._now_ns - self._since_ns) / 1e9,
+            tuple(map(self._simulation.pose, self.robots)),
+            tuple(self._scores),
+            self._catcher,
+            self._winner,
+        )
+
+    def begin(self) -> None:
+        """The game runs from the next tick on."""
+        self._enter(SharedPhase.RUNNING)
+
+    def on_step(self, simulation: Simulation) -> None:
+        if simulation.time_ns < self._now_ns:  # the world was reset: the phase begins again
+            self._since_ns = self._caught_ns = 0
+        self._now_ns = simulation.time_ns
+        seconds = (self._now_ns - self._since_ns) / 1e9
+        if self._phase is SharedPhase.COUNTDOWN and seconds >= COUNTDOWN:
+            self.begin()
+        elif self._phase is SharedPhase.RUNNING:
+            if self.mode is SharedMode.RACE:
+                self._judge_race(simulation)
+            else:
+                self._judge_tag(simulation, seconds)
+
+    def _enter(self, phase: SharedPhase) -> None:
+        self._phase, self._since_ns = phase, self._now_ns
+
+    def _judge_race(self, simulation: Simulation) -> None:
+        for number, robot in enumerate(self.robots):
+            target = self._targets[round(self._scores[number])]
+            if is_in_target(simulation, robot, target, self._radius):
+                self._scores[number] += 1
+            if self._scores[number] == len(self._targets):
+                self._winner = number
+                self._enter(SharedPhase.OVER)
+                return
+
+    def _judge_tag(self, simulation: Simulation, seconds: float) -> None:
+        assert self._catcher is not None
+        step = simulation.step_size
+        poses = [simulation.pose(robot) for robot in self.robots]
+        self._scores[self._catcher] += step
+        is_near = math.dist(poses[0][:2], poses[1][:2]) <= TAG_DISTANCE
+        if is_near and self._now_ns - max(self._caught_ns, self._since_ns) >= TAG_PAUSE * 1e9:
+            self._catcher, self._caught_ns = 1 - self._catcher, self._now_ns
+        if seconds >= TAG_SECONDS:
+            first, second = self._scores
+            self._winner = None if math.isclose(first, second, abs_tol=step) else int(second < first)
+            self._enter(SharedPhase.OVER)
+
+
+@dataclass(slots=True)
+class _Player:
+    topics: tuple[str, ...]
+    push: tuple[float, float] = (0.0, 0.0)
+    """Forward and left, each from -1 to 1."""
+    sent: tuple[float, float] | None = None
+
+
+class SharedGame(SharedReferee):
+    """Moves both robots as their players push, and judges. Belongs to the thread that ticks, but for ``push``."""
+
+    def __init__(self, scenario: Scenario, mode: SharedMode, runner: Runner) -> None:
+        """``scenario``: of ``shared_scenario``."""
+        super().__init__(scenario, mode, runner.simulation)
+        self._runner = runner
+        self._players = tuple(_Player(runner.simulation.command_topics(robot)) for robot in self.robots)
 
     def push(self, player: int, linear: float, angular: float) -> None:
         """What a player's keys ask for now, forward and left, each from -1 to 1; more is cut. From any thread."""
@@ -164,58 +227,9 @@ class SharedGame(Observer):
         elif self._phase is SharedPhase.COUNTDOWN:
             self._enter(SharedPhase.WAITING)
 
-    @property
-    def state(self) -> SharedGameState:
-        """State after the last tick."""
-        simulation = self._runner.simulation
-        return SharedGameState(
-            self._phase,
-            (self._now_ns - self._since_ns) / 1e9,
-            tuple(simulation.pose(player.model) for player in self._players),
-            tuple(player.score for player in self._players),
-            self._catcher,
-            self._winner,
-        )
-
     def on_step(self, simulation: Simulation) -> None:
-        if simulation.time_ns < self._now_ns:  # the world was reset: the phase begins again
-            self._since_ns = self._caught_ns = 0
-        self._now_ns = simulation.time_ns
-        seconds = (self._now_ns - self._since_ns) / 1e9
-        if self._phase is SharedPhase.COUNTDOWN and seconds >= COUNTDOWN:
-            self._enter(SharedPhase.RUNNING)
-        elif self._phase is SharedPhase.RUNNING:
-            if self.mode is SharedMode.RACE:
-                self._judge_race(simulation)
-            else:
-                self._judge_tag(simulation, seconds)
+        super().on_step(simulation)
         self._move()
-
-    def _enter(self, phase: SharedPhase) -> None:
-        self._phase, self._since_ns = phase, self._now_ns
-
-    def _judge_race(self, simulation: Simulation) -> None:
-        for number, player in enumerate(self._players):
-            target = self._targets[round(player.score)]
-            if is_in_target(simulation, player.model, target, self._radius):
-                player.score += 1
-            if player.score == len(self._targets):
-                self._winner = number
-                self._enter(SharedPhase.OVER)
-                return
-
-    def _judge_tag(self, simulation: Simulation, seconds: float) -> None:
-        assert self._catcher is not None
-        step = simulation.step_size
-        poses = [simulation.pose(player.model) for player in self._players]
-        self._players[self._catcher].score += step
-        is_near = math.dist(poses[0][:2], poses[1][:2]) <= TAG_DISTANCE
-        if is_near and self._now_ns - max(self._caught_ns, self._since_ns) >= TAG_PAUSE * 1e9:
-            self._catcher, self._caught_ns = 1 - self._catcher, self._now_ns
-        if seconds >= TAG_SECONDS:
-            first, second = (player.score for player in self._players)
-            self._winner = None if math.isclose(first, second, abs_tol=step) else int(second < first)
-            self._enter(SharedPhase.OVER)
 
     def _move(self) -> None:
         """Hands on what has changed; robots stand still unless the game runs."""

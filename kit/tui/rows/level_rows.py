@@ -18,6 +18,7 @@ from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.leaderboard import LeaderboardEntry, PlayerStanding
 from kit.school.game.levels import GameLevel, GameWorld, all_levels, all_worlds
 from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time
+from kit.school.game.needed import Bin
 from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.starts import SEEDS
@@ -422,6 +423,20 @@ def sector_rows(splits: Sequence[Split]) -> list[Row]:
         )
         for number, each in enumerate(splits, 1)
     ]
+
+
+def needed_rows(bins: Sequence[Bin]) -> list[Row]:
+    """A histogram of what all players of this machine needed; empty for one without bins."""
+    most = max((each.count for each in bins), default=0)
+    if not most:
+        return []
+    players = sum(each.count for each in bins)
+    rows = [row((f"   what {players} players here needed", "dim"))]
+    for each in bins:
+        bar = "=" * round(BAR * each.count / most) if each.count else ""
+        own = " < you" if each.holds_own else ""
+        rows.append(row(f"   to {each.high:7.2f} s  {each.count:3} ", bar, (own, "bold")))
+    return rows
 
 
 def won_besides(level: GameLevel, record: DriveRecord) -> list[Row]:

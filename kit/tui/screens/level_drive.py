@@ -33,6 +33,7 @@ from kit.school.game.drive_records import DriveRecord, card_rows, record_drive, 
 from kit.school.game.ghosts import Ghost, GhostComparison, Split, compare_tracks, gains_along
 from kit.school.game.levels import GameLevel
 from kit.school.game.medal import Medal, medal_of
+from kit.school.game.needed import histogram, seconds_needed
 from kit.school.game.player_progress import BY_HAND, DriverFacts
 from kit.school.game.race import (
     DriverKind,
@@ -142,6 +143,8 @@ class DriveResultScreen(ModalScreen[Wish]):
         ]
         self._photo_finish = photo_finish(result)
         self._after_finish = level_rows.won_besides(result.level, record)
+        self._needed: list[Row] = []
+        """What all players needed, once that is known."""
         self._shown = 0
         self._note: Row = ()
         self._spark = SPARKS if self._is_joyful and not theme.terminal.reduce_motion.value else 0
@@ -169,7 +172,16 @@ class DriveResultScreen(ModalScreen[Wish]):
 
     @work(exclusive=True, group="map")
     async def _draw_map(self) -> None:
-        self._world.show(await to_thread(scene_of_drive, self._result))
+        result = self._result
+        self._world.show(await to_thread(scene_of_drive, result))
+        if not result.finish.reached:
+            return
+        seconds = await to_thread(seconds_needed, result.level, result.driver)
+        was_all_shown = self._shown >= len(self._revealed)
+        self._needed = level_rows.needed_rows(histogram(seconds, result.finish.seconds))
+        if was_all_shown:
+            self._shown = len(self._revealed)
+        self._show()
 
     def _twinkle(self) -> None:
         self._spark -= 1
@@ -197,10 +209,13 @@ class DriveResultScreen(ModalScreen[Wish]):
 
     @property
     def _revealed(self) -> list[Row]:
-        """The rows that appear one after the other; without the photo finish where it would push others off the screen."""
-        rows = [*self._before_finish, *self._photo_finish, *self._after_finish]
-        if len(rows) + len(self._fixed) + len(self._medal) + ROWS_AROUND <= self.app.size.height:
-            return rows
+        """The rows that appear one after the other; without the photo finish, and then what others needed, where they would
+        push others off the screen."""
+        room = self.app.size.height - len(self._fixed) - len(self._medal) - ROWS_AROUND
+        for photo_finish, needed in ((self._photo_finish, self._needed), ([], self._needed)):
+            rows = [*self._before_finish, *photo_finish, *self._after_finish, *needed]
+            if len(rows) <= room:
+                return rows
         return [*self._before_finish, *self._after_finish]
 
     def _show(self) -> None:

@@ -58,7 +58,10 @@ MENU: Final = (
     MenuItem("quiz", "Quiz", "What do you know, and how sure are you?"),
     MenuItem("form", "Form", "What you knew before, what you learned, how useful the kit was."),
     MenuItem("progress", "Progress", "What you have done, and how to export it."),
+    MenuItem("league", "League", "Your programs and agents against everybody's: races, tag, ratings."),
 )
+MENU_KEYS: Final = "123456789l"
+"""The keys of its lines."""
 
 
 def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
@@ -70,7 +73,7 @@ def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
         rows.append(
             row(
                 (">" if is_chosen else " ", "bold"),
-                (f" {number + 1}  ", "chosen" if is_chosen else "press"),
+                (f" {MENU_KEYS[number]}  ", "chosen" if is_chosen else "press"),
                 (f"{item.title:<{TITLE}}", "chosen" if is_chosen else ""),
                 (f" {status:<{TEXT - TITLE - 4}}", "chosen" if is_chosen else "dim"),
             )
@@ -132,8 +135,8 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         own=(
             ScreenAction("choose_line", "↑↓ Tab", "choose", "move to the next or previous line of the menu",
                    (("down,tab", "choose(0, 1)"), ("up,shift+tab", "choose(0, -1)"))),
-            ScreenAction("line", "1 to 9", "open", "open that line of the menu",
-                   tuple((str(number), f"open({number - 1})") for number in range(1, 10)), "1-9"),
+            ScreenAction("line", "1 to 9 l", "open", "open that line of the menu",
+                   tuple((key, f"open({number})") for number, key in enumerate(MENU_KEYS)), "1-9"),
             ScreenAction("drive_letters", "W A S D", "drive", "drive the robot in the picture", (), "WASD"),
         ),
     )  # fmt: skip
@@ -394,6 +397,19 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         await self._open_then_return(
             LayersScreen(self._theme, open_task("two"), "two", saved_to=self._store.workspace.worlds)
         )
+
+    async def _open_league(self) -> None:
+        from kit.school.game.league.entries import LeagueError
+        from kit.school.game.league.league import own_league
+        from kit.tui.screens.league import LeagueScreen
+
+        workspace = self._store.workspace
+        try:
+            league = await to_thread(own_league, workspace)
+        except LeagueError as error:
+            self.app.push_screen(MessageDialog("The league cannot be opened", wrapped(str(error))))
+            return
+        await self._open_then_return(LeagueScreen(self._theme, league, workspace))
 
     async def _open_quiz(self) -> None:
         from kit.tui.screens.quiz import choose_questions

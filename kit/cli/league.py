@@ -1,0 +1,300 @@
+"""``kit league``: programs and agents that meet each other, rated by what came of it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from kit.cli import options
+from kit.cli.full_screen import show_screen
+from kit.controllers import find_controller, prepare_workspace
+from kit.document.layout import lines_of
+from kit.plain_text import counted
+from kit.workspace import Workspace, WorkspaceError
+
+if TYPE_CHECKING:
+    from textual.screen import Screen
+
+    from kit.host.job_folder import JobExecutor
+    from kit.school.game.league.league import League
+    from kit.tui.app import KitApp
+
+INCOMPLETE = 1
+"""Exit code of ``run`` and ``verify``: matches are missing, or are others than their programs drive."""
+
+
+@contextmanager
+def _open_league(context: click.Context) -> Iterator[tuple[League, Workspace]]:
+    """The league that the group's options name, and the workspace; every error of the user's ends the verb with a message."""
+    from kit.school.game.league.entries import LeagueError
+    from kit.school.game.league.league import own_league
+
+    workspace, folder = context.obj
+    try:
+        opened = prepare_workspace(workspace)
+        yield own_league(opened, folder), opened
+    except (LeagueError, WorkspaceError) as error:
+        options.fail(str(error))
+
+
+@click.group(invoke_without_command=True)
+@options.workspace
+@click.option(
+    "--folder",
+    type=click.Path(path_type=Path),
+    help="Folder of the league (default: $KIT_LEAGUE, or your own).",
+)
+@click.option("--plain", is_flag=True, help="Print the standings as text instead of a full screen.")
+@click.pass_context
+def command(context: click.Context, workspace: Path | None, folder: Path | None, plain: bool) -> None:
+    """Enter programs and agents in a league; all meet all in races and at tag, and are rated.
+
+    \b
+    kit league                          standings; Enter: matches, replays
+    kit league submit --controller FILE enter a program
+    kit league submit --agent RUN       enter an agent that you trained
+    kit league run                      drive the matches that are missing
+    kit league matches [NAME]           list matches
+    kit league replay 3                 watch match 3
+    kit league verify                   drive matches anew and compare
+    kit league withdraw NAME            take your entry out
+    kit league new FOLDER               a league for a class
+
+    In a race each entrant drives a level alone, from five starts, and the middle drives are compared. At tag two robots share
+    one world: a program is told is_catcher (std_msgs/Bool) and, as goal_pose (geometry_msgs/PoseStamped), where the
+    other robot is; it has a namespace of its own and can use no name outside. Who was the catcher for the shorter time has
+    won; each pair plays twice. Programs are confined as when they are graded.
+
+    Ratings follow Bradley and Terry: 400 points more mean ten times as many wins. Only the commands of a drive are stored:
+    everybody's kit runs them again and judges them, so a result that is no drive does not count.
+    """
+    context.obj = workspace, folder
+    if context.invoked_subcommand is not None:
+        return
+    with _open_league(context) as (league, opened):
+        terminal = options.terminal(plain=plain)
+        if not terminal.plain.value:
+
+            def make_screen(app: KitApp) -> Screen[None]:
+                from kit.tui.screens.league import LeagueScreen
+
+                return LeagueScreen(app.kit_theme, league, opened)
+
+            league.programme()
+            show_screen(terminal, make_screen)
+        _print_standings(league)
+
+
+@command.command("new")
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option("--title", default="The class's league", show_default=True, help="What it is called.")
+@click.option(
+    "--race", "races", multiple=True, metavar="LEVEL", help="A level of its races; repeat for more."
+)
+@click.option(
+    "--tag", "tag", multiple=True, metavar="LEVEL", help="A level on which tag is played; repeat for more."
+)
+def new(folder: Path, title: str, races: tuple[str, ...], tag: tuple[str, ...]) -> None:
+    """Make a league in FOLDER that all users of this machine can enter; you run its matches."""
+    from kit.school.game.league.entries import LeagueError
+    from kit.school.game.league.league import RACES, TAG, League
+
+    try:
+        given = bool(races or tag)
+        league = League.make(folder, title, races if given else RACES, tag if given else TAG)
+    except LeagueError as error:
+        options.fail(str(error))
+    options.say(f"To enter it: kit league --folder {league.folder} submit --controller FILE")
+
+
+@command.command("submit")
+@click.option("--controller", help="Controller name, or a Python file with a ROS 2 node.")
+@click.option("--agent", help="Name of a training run, or a policy file.")
+@click.option("--name", help="Name of the entry (default: that of the file or the run).")
+@click.pass_context
+def submit(context: click.Context, controller: str | None, agent: str | None, name: str | None) -> None:
+    """Enter a program or an agent, or renew your entry of that name."""
+    from kit.school.game.league import entries
+    from kit.school.game.race import DriverKind
+
+    if (controller is None) == (agent is None):
+        options.fail("Give either --controller NAME or --agent RUN.")
+    with _open_league(context) as (league, workspace):
+        try:
+            if controller is not None:
+                found = find_controller(controller, workspace.controllers)
+                driver, own_name, program = DriverKind.CONTROLLER, found.name, found.file.read_bytes()
+            else:
+                driver, own_name = DriverKind.AGENT, Path(agent or "").stem
+                program = entries.program_of_agent(agent or "", workspace.runs)
+        except (LookupError, OSError) as error:
+            options.fail(options.describe_error(error))
+        league.programme()
+        entries.submit(league.folder, name or own_name, driver, program)
+        options.say(f"{name or own_name} is entered. `kit league run` drives its matches.")
+
+
+@command.command("withdraw")
+@click.argument("name")
+@click.pass_context
+def withdraw(context: click.Context, name: str) -> None:
+    """Take your entry NAME out of the league; its matches count no more."""
+    from kit.school.game.league import entries
+
+    with _open_league(context) as (league, _):
+        entries.withdraw(league.folder, name)
+        options.say(f"{name} is withdrawn.")
+
+
+@command.command("run")
+@click.option(
+    "--level",
+    type=click.Choice(["0", "1", "2", "3"]),
+    help="How far programs are confined from now on (`kit doctor` lists what this machine has).",
+)
+@options.executor_options("Processes", "Where matches are driven.", may_have_none=False)
+@click.pass_context
+def run(context: click.Context, level: str | None, executor: JobExecutor) -> None:
+    """Drive the matches that are missing. What is interrupted goes on where it was.
+
+    Exit code: 0 all matches are driven; 1 some are not; 2 the league cannot be run.
+    """
+    from kit.host.job_executors import ExecutorUnavailable
+    from kit.host.sandbox.confinement import Level
+    from kit.host.sandbox.probe import is_level_available
+
+    with _open_league(context) as (league, _):
+        if not league.is_mine:
+            options.fail(
+                f"{league.folder} belongs to another user: only results of its owner count, so its owner runs it."
+            )
+        if level is not None:
+            league.confine(Level(int(level)))
+        confinement = league.programme().confinement
+        if not is_level_available(confinement):
+            options.fail(
+                f"This machine cannot confine programs at level {confinement:d}. If all of them are your own: kit league run --level 0"
+            )
+        keys = league.waiting()
+        league.remove_stale_results()
+        done: list[str] = []
+
+        def count(key: str) -> None:
+            done.append(key)
+            if sys.stderr.isatty():
+                click.echo(f"\r{len(done)} of {len(keys)} driven", nl=False, err=True)
+
+        try:
+            executor.run(league, keys, count)
+        except (ExecutorUnavailable, OSError) as error:
+            options.fail(options.describe_error(error))
+        if done and sys.stderr.isatty():
+            click.echo("", err=True)
+        _print_standings(league)
+        if left := league.waiting():
+            options.say(f"{counted(len(left), 'job')} left no result: run it again.", err=True)
+            raise SystemExit(INCOMPLETE)
+
+
+@command.command("matches")
+@click.argument("name", required=False)
+@click.pass_context
+def matches(context: click.Context, name: str | None) -> None:
+    """List all matches, or those of the entry NAME, with the numbers that `kit league replay` takes."""
+    from kit.school.game.league.entries import find_entry
+    from kit.school.game.league.league_blocks import matches_table
+    from kit.school.game.league.standings import read_standings
+
+    with _open_league(context) as (league, _):
+        if name is not None:
+            find_entry(league.entries(), name)
+        found = read_standings(league)
+        table = matches_table(found.matches, name)
+        click.echo("\n".join(lines_of([table])) if table.rows else "No match has been driven yet.")
+
+
+@command.command("replay")
+@click.argument("number", type=click.IntRange(1))
+@click.pass_context
+def replay(context: click.Context, number: int) -> None:
+    """Watch match NUMBER of `kit league matches`, with both robots."""
+    from kit.school.game.league.league_blocks import match_sentence
+    from kit.school.game.league.standings import match_recordings, read_standings
+
+    with _open_league(context) as (league, _):
+        found = read_standings(league).matches
+        if number > len(found):
+            options.fail(f"There are only matches 1 to {len(found)}; `kit league matches` lists them.")
+        match = found[number - 1]
+        terminal = options.terminal()
+        if terminal.plain.value:
+            click.echo(f"{match_sentence(match)} Watching it needs a full-screen terminal.")
+            return
+
+        recordings = match_recordings(league, match)
+
+        def make_screen(app: KitApp) -> Screen[None]:
+            from kit.tui.screens.league import match_replay
+
+            return match_replay(app.kit_theme, match, recordings)
+
+        show_screen(terminal, make_screen)
+
+
+@command.command("verify")
+@click.pass_context
+def verify(context: click.Context) -> None:
+    """Drive all matches anew with the programs that are entered, and compare them with the results, to the bit.
+
+    Exit code: 0 all are what their programs drive here; 1 some are not; 2 the league cannot be read.
+    """
+    from kit.school.game.league.verification import differing_jobs
+
+    with _open_league(context) as (league, _):
+        found = differing_jobs(league)
+        for job in found.differing:
+            names = " against ".join(each.name for each in job.entrants)
+            click.echo(
+                f"{job.level.title}, {names}: the programs drive something else than the result shows."
+            )
+        click.echo(f"{found.compared} compared, {len(found.differing)} different.")
+        if found.differing:
+            raise SystemExit(INCOMPLETE)
+
+
+@command.command("work", hidden=True)
+@click.argument("league_folder", type=click.Path(path_type=Path))
+@click.option("--shard", help="Share i of n, such as 0/4.")
+def work(league_folder: Path, shard: str | None) -> None:
+    """Drive the matches whose keys come on standard input, or a share of all that are missing."""
+    from kit.host.job_executors import read_shard
+    from kit.host.job_folder import serve_keys
+    from kit.school.game.league.entries import LeagueError
+    from kit.school.game.league.league import League
+
+    league = League(league_folder)
+    try:
+        if shard is None:
+            serve_keys(league.run_job)
+            return
+        share = read_shard(shard)
+        if share is None:
+            options.fail(f"{shard}: give the share and the number of shares, counting from 0, such as 0/4.")
+        for key in league.waiting(share):
+            league.run_job(key)
+    except LeagueError as error:
+        options.fail(str(error))
+
+
+def _print_standings(league: League) -> None:
+    from kit.school.game.league.league_blocks import standings_table, summary_blocks
+    from kit.school.game.league.standings import read_standings
+
+    found = read_standings(league)
+    table = [standings_table(found)] if found.places else []
+    click.echo("\n".join(lines_of([*summary_blocks(found), *table])))

@@ -1,0 +1,155 @@
+"""The entries of a league: a folder with one program for each entrant, named after it and after who drives.
+
+An agent enters as the ROS 2 node that it would be on a robot, so a match runs programs alone. A file belongs to who has put it
+there; in a class's folder nobody can replace or remove another's.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from kit.controllers import ControllerFile, controller_title, kit_controllers
+from kit.plain_files import open_plain_file
+from kit.plain_text import quoted, suggestion
+from kit.school.game.race import DriverKind
+from kit.workspace import open_common_folder, write_atomically
+
+FOLDER: Final = "entries"
+DRIVERS: Final = (DriverKind.CONTROLLER, DriverKind.AGENT)
+MAX_BYTES: Final = 4 << 20
+"""Of an entry's file; an agent's network lies in it."""
+MAX_ENTRIES: Final = 500
+NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
+
+
+class LeagueError(Exception):
+    """The league cannot do this; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One entrant."""
+
+    name: str
+    driver: DriverKind
+    file: Path
+    digest: str
+    """Of the program; a match counts for exactly these programs."""
+    is_mine: bool
+    problem: str = ""
+    """Why it takes part in no match; empty if it does."""
+
+    @property
+    def program(self) -> ControllerFile:
+        return ControllerFile(self.name, self.file, controller_title(self.file))
+
+
+def read_entries(folder: Path) -> tuple[Entry, ...]:
+    """All entries of a league, by name. What is no entry's file is passed over. Raises LeagueError."""
+    try:
+        files = sorted((folder / FOLDER).iterdir())
+    except OSError:
+        raise LeagueError(f"{folder}: there is no league; `kit league new {folder}` makes one.") from None
+    shipped = {_digest(each.file.read_bytes()) for each in kit_controllers()}
+    found: list[Entry] = []
+    for file in files:
+        name, _, kind = file.name.removesuffix(".py").partition(".")
+        drivers = [driver for driver in DRIVERS if driver.value == kind]
+        if (
+            not file.name.endswith(".py")
+            or not drivers
+            or not NAME.fullmatch(name)
+            or len(found) == MAX_ENTRIES
+        ):
+            continue
+        content, is_mine, problem = b"", False, ""
+        try:
+            with open_plain_file(file, follows_links=False) as opened:
+                is_mine = os.fstat(opened.fileno()).st_uid == os.getuid()
+                content = opened.read(MAX_BYTES + 1)
+        except OSError as error:
+            problem = f"its file cannot be read ({error.strerror})"
+        digest = _digest(content)
+        same = [each.name for each in found if each.digest == digest]
+        if not problem:
+            if len(content) > MAX_BYTES:
+                problem = f"its file is larger than {MAX_BYTES >> 20} MiB"
+            elif digest in shipped:
+                problem = "this program comes with the kit"
+            elif name in [each.name for each in found]:
+                problem = "its name is taken"
+            elif same:
+                problem = f"it is the same program as {same[0]}"
+        found.append(Entry(name, drivers[0], file, digest, is_mine, problem))
+    return tuple(found)
+
+
+def submit(folder: Path, name: str, driver: DriverKind, program: bytes) -> Path:
+    """Adds an entry, or renews one's own of that name. Returns its file. Raises LeagueError."""
+    if not NAME.fullmatch(name):
+        raise LeagueError(f"{quoted(name)} cannot be an entry's name: 1 to 32 letters, digits, - and _.")
+    if len(program) > MAX_BYTES:
+        raise LeagueError(f"The program is larger than {MAX_BYTES >> 20} MiB.")
+    for each in read_entries(folder):
+        if each.name == name and not each.is_mine:
+            raise LeagueError(f"Another user has entered {name}: choose another name with --name.")
+        if each.digest == _digest(program) and each.name != name:
+            raise LeagueError(f"{each.name} is the same program.")
+    if _digest(program) in {_digest(each.file.read_bytes()) for each in kit_controllers()}:
+        raise LeagueError(
+            "This program comes with the kit, and takes part in no league: copy it and make it yours."
+        )
+    file = folder / FOLDER / f"{name}.{driver.value}.py"
+    try:
+        if problem := open_common_folder(file.parent):
+            raise LeagueError(f"{file.parent}: {problem}.")
+        write_atomically(file, program)
+        for other in DRIVERS:
+            if other is not driver:
+                file.with_name(f"{name}.{other.value}.py").unlink(missing_ok=True)
+    except OSError as error:
+        raise LeagueError(f"{file} cannot be written ({error.strerror}).") from None
+    return file
+
+
+def withdraw(folder: Path, name: str) -> None:
+    """Removes one's own entry; its matches count no more. Raises LeagueError."""
+    entry = find_entry(read_entries(folder), name)
+    try:
+        entry.file.unlink()
+    except OSError as error:
+        raise LeagueError(f"{entry.file} cannot be removed ({error.strerror}).") from None
+
+
+def find_entry(entries: Sequence[Entry], name: str) -> Entry:
+    """The entry of a name. Raises LeagueError."""
+    for each in entries:
+        if each.name == name:
+            return each
+    names = [each.name for each in entries]
+    raise LeagueError(f"There is no entry {quoted(name)}: {suggestion(name, names)}")
+
+
+def program_of_agent(name: str, runs: Path) -> bytes:
+    """The node of a training run, by name, or of a policy file. Raises LeagueError."""
+    from kit.learning.policies.policy import PolicyError
+    from kit.learning.policies.policy_file import load_policy
+    from kit.learning.policies.policy_node import format_policy_node
+    from kit.learning.training.runs import RunError, find_run
+
+    try:
+        file = Path(name)
+        policy = load_policy(file) if file.is_file() else find_run(runs, name).policy()
+        return format_policy_node(policy).encode()
+    except (PolicyError, RunError, LookupError) as error:
+        raise LeagueError(str(error)) from None
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()

@@ -1,0 +1,399 @@
+"""A league's folder: who is entered, on which levels all meet all, and the recordings of what they drove.
+
+Whoever owns the folder runs the matches, and only files of the owner count as results; others may enter and look. A result
+holds commands, never a score: everybody's own kit runs the recordings again, and judges them. A programme's races are driven
+by each entrant alone, from the starts of every program, so a match compares two drives; at tag two programs share one world,
+and each pair plays twice, so that each of them begins once as the catcher. Nothing depends on the time of day.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
+from itertools import permutations
+from pathlib import Path
+from typing import Any, ClassVar, Final
+
+from kit import __version__
+from kit.controllers import ControllerFile
+from kit.host.job_executors import in_shard, read_result
+from kit.host.job_folder import JobFolder
+from kit.host.private_folder import private_folder
+from kit.host.python_command import python_command
+from kit.host.sandbox.confinement import Level as Confinement
+from kit.host.sandbox.limits import GRADER_LIMITS
+from kit.plain_files import open_plain_file, read_plain_file
+from kit.run.recording import Recording, RecordingError
+from kit.school.game.league.entries import FOLDER as ENTRIES
+from kit.school.game.league.entries import Entry, LeagueError, read_entries
+from kit.school.game.league.tag_game import play_tag, tag_again, tag_scenario
+from kit.school.game.levels import GameLevel, UnknownLevel, find_level
+from kit.school.game.race import RaceFinish, race_controller
+from kit.school.game.shared_drives import (
+    MAX_FILE_BYTES,
+    DriveRefused,
+    check_inputs,
+    drives_again,
+    platform_name,
+    read_shared_drives,
+    share_drives,
+)
+from kit.school.game.starts import seeds_of
+from kit.school.game.two_players import TAG_SECONDS, CannotShare, SharedPhase
+from kit.workspace import Workspace, make_private_folder, open_common_folder, write_atomically
+
+FOLDER_VARIABLE: Final = "KIT_LEAGUE"
+MANIFEST: Final = "league.json"
+MAX_MANIFEST_BYTES: Final = 1 << 16
+RESULTS: Final = "results"
+RACES: Final = ("left-turn", "parking", "slalom", "racetrack")
+"""Levels of a new league's races."""
+TAG: Final = ("two-doors", "the-forest")
+"""Levels on which a new league plays tag."""
+WALL_LIMIT_S: Final = 300.0
+"""Of one drive [s of wall clock]."""
+MAX_JUDGED: Final = 20_000
+"""Results whose judgement is kept in memory."""
+
+
+@dataclass(frozen=True, slots=True)
+class Programme:
+    """What a league's entrants do, and how far their programs are confined."""
+
+    title: str
+    races: tuple[GameLevel, ...]
+    tag: tuple[GameLevel, ...]
+    confinement: Confinement
+
+
+@dataclass(frozen=True, slots=True)
+class LeagueJob:
+    """One drive of an entrant from all starts of a level, or one game of tag."""
+
+    key: str
+    level: GameLevel
+    entrants: tuple[Entry, ...]
+    """One for a drive; for a game of tag two, of which the first begins as the catcher."""
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedJob:
+    """What came of a job, as its recordings have shown, run again."""
+
+    finishes: tuple[RaceFinish, ...] = ()
+    """Of the drives, one from each start."""
+    scores: tuple[float, ...] = ()
+    """Of a game: for how long each was the catcher [s]."""
+    winner: int | None = None
+    """Of a game; None if it was a draw."""
+    remarks: tuple[str, ...] = ()
+    """Why programs have stopped: of each drive, or of both entrants; empty where they have not."""
+    is_same_platform: bool = True
+    """Whether it was driven on a machine like this one, and so is the same to the bit."""
+
+
+@dataclass(frozen=True, slots=True)
+class League(JobFolder):
+    """The folder of a league; its jobs are the drives and games that its entrants owe."""
+
+    judgements: Path | None = None
+    """Where this user keeps what was judged once; None: nowhere."""
+    job_name: ClassVar[str] = "kit-league"
+
+    @classmethod
+    def make(cls, folder: Path, title: str, races: Sequence[str], tag: Sequence[str]) -> League:
+        """Makes a league's folder, to whose entries every user of the machine can add. Raises LeagueError."""
+        league = cls(folder)
+        if (folder / MANIFEST).exists():
+            raise LeagueError(f"{folder} has a league already.")
+        content = {
+            "title": title,
+            "races": list(races),
+            "tag": list(tag),
+            "confinement": int(Confinement.FILTERED),
+        }
+        read_programme(json.dumps(content).encode(), folder)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            if problem := open_common_folder(folder / ENTRIES):
+                raise LeagueError(f"{folder / ENTRIES}: {problem}.")
+            (folder / RESULTS).mkdir(mode=0o755, exist_ok=True)
+            league._write(content)
+        except OSError as error:
+            raise LeagueError(f"{folder}: the league cannot be made ({error.strerror}).") from None
+        return league
+
+    def _write(self, content: dict[str, Any]) -> None:
+        write_atomically(self.folder / MANIFEST, (json.dumps(content, indent=1) + "\n").encode())
+
+    @property
+    def is_mine(self) -> bool:
+        """Whether this user owns it, and so runs its matches."""
+        return self.owner == os.geteuid()
+
+    @property
+    def owner(self) -> int:
+        """The number of the user whose results count. Raises LeagueError."""
+        try:
+            return (self.folder / MANIFEST).lstat().st_uid
+        except OSError:
+            raise LeagueError(f"{self.folder}: there is no league; `kit league new` makes one.") from None
+
+    def programme(self) -> Programme:
+        """Raises LeagueError."""
+        try:
+            content = read_plain_file(self.folder / MANIFEST, MAX_MANIFEST_BYTES)
+        except OSError:
+            raise LeagueError(f"{self.folder}: there is no league; `kit league new` makes one.") from None
+        return read_programme(content, self.folder)
+
+    def confine(self, level: Confinement) -> None:
+        """From now on runs programs at this level of confinement. Raises LeagueError."""
+        programme = self.programme()
+        if programme.confinement is level:
+            return
+        try:
+            self._write(
+                {
+                    "title": programme.title,
+                    "races": [each.id for each in programme.races],
+                    "tag": [each.id for each in programme.tag],
+                    "confinement": int(level),
+                }
+            )
+        except OSError as error:
+            raise LeagueError(f"{self.folder}: {error.strerror}.") from None
+
+    def entries(self) -> tuple[Entry, ...]:
+        """Raises LeagueError."""
+        return read_entries(self.folder)
+
+    def entrants(self) -> list[Entry]:
+        """The entries that take part. Raises LeagueError."""
+        return [each for each in self.entries() if not each.problem]
+
+    def jobs(self) -> list[LeagueJob]:
+        """All that has to be driven: none while fewer than two are entered. Raises LeagueError."""
+        entrants, programme = self.entrants(), self.programme()
+        if len(entrants) < 2:
+            return []
+        drives = [drive_job(level, each) for level in programme.races for each in entrants]
+        games = [tag_job(level, *pair) for level in programme.tag for pair in permutations(entrants, 2)]
+        return [*drives, *games]
+
+    # What a job folder says
+
+    @property
+    def worker_command(self) -> list[str]:
+        return python_command("kit", "league", "work", str(self.folder.absolute()))
+
+    @property
+    def shard_command(self) -> list[str]:
+        return self.worker_command
+
+    def keys(self) -> list[str]:
+        return list(dict.fromkeys(job.key for job in self.jobs()))
+
+    def is_waiting(self, key: str) -> bool:
+        return key in self.waiting()
+
+    def waiting(self, shard: tuple[int, int] = (0, 1)) -> tuple[str, ...]:
+        waiting = dict.fromkeys(job.key for job in self.jobs() if self.judge(job) is None)
+        return tuple(key for key in waiting if in_shard(key, shard))
+
+    def run_job(self, key: str) -> None:
+        """Drives or plays a job; its result is written whole or not at all. Raises OSError and LeagueError."""
+        job = next((each for each in self.jobs() if each.key == key), None)
+        if job is None:
+            return  # somebody has withdrawn meanwhile
+        recordings, remarks = drive(job, self.programme().confinement)
+        share_drives(recordings, self.result_file(key), remarks)
+
+    def record_loss(self, key: str) -> None:
+        """Nothing is written: a job that was lost waits for the next run."""
+
+    # Results
+
+    def result_file(self, key: str) -> Path:
+        return self.folder / RESULTS / f"{key}.npz"
+
+    def judge(self, job: LeagueJob) -> JudgedJob | None:
+        """What came of a job; None where it has no result that counts: it was not run, or the file is not the owner's or
+        something else than commands that lead to what it shows. Raises LeagueError."""
+        content = self._read_result(job)
+        if content is None:
+            return None
+        if self.judgements is None:
+            return _judge(content, job.level, len(job.entrants))
+        return _judge_once(self.judgements, content, job.level, len(job.entrants))
+
+    def recordings(self, job: LeagueJob) -> tuple[Recording, ...]:
+        """The recordings of a job, run again: of a drive from each start, of a game one. Raises LeagueError."""
+        content = self._read_result(job)
+        try:
+            if content is None:
+                raise DriveRefused("it is gone")
+            return _rerun(content, job.level, len(job.entrants))[1]
+        except (DriveRefused, RecordingError, ValueError) as error:
+            raise LeagueError(f"This match cannot be shown: {error}.") from None
+
+    def _read_result(self, job: LeagueJob) -> bytes | None:
+        """The content of a job's result; None if there is none of the owner's."""
+        try:
+            with open_plain_file(self.result_file(job.key), follows_links=False) as opened:
+                content = opened.read(MAX_FILE_BYTES + 1)
+                return content if os.fstat(opened.fileno()).st_uid == self.owner else None
+        except OSError:
+            return None
+
+    def remove_stale_results(self) -> None:
+        """Removes the results of those who have withdrawn or entered another program."""
+        wanted = set(self.keys())
+        for file in (self.folder / RESULTS).glob("*.npz"):
+            if file.stem not in wanted:
+                with suppress(OSError):
+                    file.unlink()
+
+
+def own_league(workspace: Workspace, folder: Path | None = None) -> League:
+    """The league of a folder; by default that which ``$KIT_LEAGUE`` names, or one's own in the workspace, which is made where it
+    is missing. Raises LeagueError."""
+    named, judgements = folder or os.environ.get(FOLDER_VARIABLE), workspace.folder / "judgements"
+    if named:
+        return League(Path(named), judgements)
+    own = workspace.folder / "league"
+    if not (own / MANIFEST).exists():
+        League.make(own, "Your league", RACES, TAG)
+    return League(own, judgements)
+
+
+def drive_job(level: GameLevel, entry: Entry) -> LeagueJob:
+    """A drive of an entrant from all starts of a level."""
+    return LeagueJob(_key("drive", level.id, entry.digest), level, (entry,))
+
+
+def tag_job(level: GameLevel, first: Entry, second: Entry) -> LeagueJob:
+    """A game of tag, which ``first`` begins as the catcher."""
+    return LeagueJob(_key("tag", level.id, first.digest, second.digest), level, (first, second))
+
+
+def drive(job: LeagueJob, confinement: Confinement) -> tuple[list[Recording], list[str]]:
+    """Runs a job's programs. Returns its recordings, and why programs have stopped: of each drive, or of both players."""
+    with private_folder() as folder:  # the programs as they were entered, whatever their owners do meanwhile
+        programs = [_copied(each, folder, number) for number, each in enumerate(job.entrants)]
+        if len(programs) > 1:
+            game = play_tag(job.level, programs, confinement, GRADER_LIMITS)
+            return [game.recording], list(game.failures)
+        drives = [
+            race_controller(
+                job.level,
+                programs[0],
+                wall_limit_s=WALL_LIMIT_S,
+                seed=seed,
+                confinement=confinement,
+                limits=GRADER_LIMITS,
+            )
+            for seed in seeds_of(job.level)
+        ]
+    remarks = ["" if finish.failure is None else str(finish.failure) for finish, _ in drives]
+    return [recording for _, recording in drives], remarks
+
+
+def _copied(entry: Entry, folder: Path, number: int) -> ControllerFile:
+    """An entrant's program as a file that nobody changes. Raises LeagueError if it is another one than was read."""
+    part = folder / str(number)
+    part.mkdir()
+    file = part / f"{entry.name}.py"
+    try:
+        with open_plain_file(entry.file, follows_links=False) as opened:
+            content = opened.read()
+    except OSError as error:
+        raise LeagueError(f"{entry.file}: {error.strerror}.") from None
+    if hashlib.sha256(content).hexdigest() != entry.digest:
+        raise LeagueError(f"{entry.file} has changed meanwhile: run the league again.")
+    file.write_bytes(content)
+    return replace(entry.program, file=file)
+
+
+def read_programme(content: bytes, folder: Path) -> Programme:
+    """Reads a league's manifest. Raises LeagueError."""
+    file = folder / MANIFEST
+    try:
+        told = json.loads(content)
+        title, confinement = str(told["title"])[:80], Confinement(told["confinement"])
+        names = {kind: [str(each) for each in told[kind]] for kind in ("races", "tag")}
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        raise LeagueError(
+            f"{file}: a league has a title, races, tag (lists of levels) and confinement ({error})."
+        ) from None
+    if not names["races"] and not names["tag"]:
+        raise LeagueError(f"{file}: a league needs at least one level, in races or tag.")
+    try:
+        races, tag = (tuple(find_level(each) for each in dict.fromkeys(names[kind])) for kind in names)
+        for level in tag:
+            tag_scenario(level)
+    except (UnknownLevel, CannotShare) as error:
+        raise LeagueError(f"{file}: {error}") from None
+    return Programme(title, races, tag, confinement)
+
+
+@lru_cache(MAX_JUDGED)
+def _judge_once(folder: Path, content: bytes, level: GameLevel, players: int) -> JudgedJob | None:
+    """Judges the content of a result once, and keeps that in ``folder``: thousands of drives would take minutes each time."""
+    told = json.dumps(
+        [__version__, platform_name(), repr(level), players, hashlib.sha256(content).hexdigest()]
+    )
+    file = folder / f"{hashlib.sha256(told.encode()).hexdigest()[:32]}.json"
+    with suppress(OSError, ValueError, KeyError, TypeError):
+        return _judgement(read_result(file))
+    judged = _judge(content, level, players)
+    with suppress(OSError):  # it is judged again next time
+        make_private_folder(folder)
+        write_atomically(file, json.dumps({"judged": None if judged is None else asdict(judged)}).encode())
+    return judged
+
+
+def _judgement(content: dict[str, Any]) -> JudgedJob | None:
+    """What ``_judge_once`` has kept. Raises ValueError, KeyError or TypeError for anything else."""
+    judged = content["judged"]
+    if judged is None:
+        return None
+    finishes = tuple(RaceFinish(**{**each, "splits": tuple(each["splits"])}) for each in judged["finishes"])
+    scores, remarks = tuple(map(float, judged["scores"])), tuple(map(str, judged["remarks"]))
+    return JudgedJob(finishes, scores, judged["winner"], remarks, bool(judged["is_same_platform"]))
+
+
+def _judge(content: bytes, level: GameLevel, players: int) -> JudgedJob | None:
+    """Judges the content of a result; None if it is refused."""
+    with suppress(DriveRefused, RecordingError, ValueError):
+        return _rerun(content, level, players)[0]
+    return None
+
+
+def _rerun(content: bytes, level: GameLevel, players: int) -> tuple[JudgedJob, tuple[Recording, ...]]:
+    """Runs what a result holds again, and judges it. Raises DriveRefused, RecordingError and ValueError."""
+    shared = read_shared_drives(content)
+    if players == 1:
+        drives = drives_again(shared, level, seeds_of(level))
+        finishes = tuple(finish for finish, _ in drives)
+        judged = JudgedJob(finishes, remarks=shared.remarks, is_same_platform=shared.is_same_platform)
+        return judged, tuple(recording for _, recording in drives)
+    if len(shared.recordings) != 1:
+        raise DriveRefused("it is not one game")
+    scenario = tag_scenario(level)
+    (recording,) = shared.recordings
+    check_inputs(recording, scenario.world, scenario.drivers, TAG_SECONDS)
+    state, again = tag_again(level, recording)
+    shared.check_same(0, again)
+    if state.phase is not SharedPhase.OVER:
+        raise DriveRefused("the game was not played to its end")
+    return JudgedJob((), state.scores, state.winner, shared.remarks, shared.is_same_platform), (again,)
+
+
+def _key(*parts: str) -> str:
+    return hashlib.sha256(json.dumps(parts).encode()).hexdigest()[:32]

@@ -1,0 +1,99 @@
+"""What is shown of a league: its standings and its matches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText
+from kit.school.game.league.standings import DRAW, Match, Place, Standings
+
+TEXT = CellStyle.TEXT
+
+
+def summary_blocks(standings: Standings) -> list[Block]:
+    """Who is the champion, what is still to be run, and who takes no part."""
+    blocks: list[Block] = []
+    champion = standings.champion
+    if len(standings.places) < 2:
+        alone = "Nobody is" if not standings.places else f"{standings.places[0].entry.name} alone is"
+        blocks.append(Text(f"{alone} entered: a league needs two. Enter with `kit league submit`."))
+    elif champion is None:
+        blocks.append(Text("No match has been won yet. `kit league run` runs what is missing."))
+    elif standings.is_certain:
+        blocks.append(Text(f"{champion.entry.name} is the champion.", Tone.GOOD))
+    else:
+        second = standings.places[1].entry.name
+        text = f"leads; the interval overlaps with that of {second}, so the difference may be chance."
+        blocks.append(Text(f"{champion.entry.name} {text}", Tone.GOOD))
+    if standings.waiting:
+        text = f"{standings.waiting} of {standings.jobs} drives and games are still to be run."
+        blocks.append(Text(text, Tone.DIM, is_tight=True))
+    blocks += [Text(f"{each.name} takes no part: {each.problem}.", Tone.WARN) for each in standings.refused]
+    return blocks
+
+
+def standings_table(standings: Standings) -> Table:
+    """The entrants by rating."""
+    has_divisions = any(each.division > 1 for each in standings.places)
+    columns = (
+        *((Column("division", TEXT),) if has_divisions else ()),
+        Column(""),
+        Column("", TEXT),
+        Column("driver", TEXT, is_spare=True),
+        Column("rating", decimals=0),
+        Column("95 %", decimals=0),
+        Column("won"),
+        Column("drawn"),
+        Column("lost"),
+    )
+    rows = tuple(
+        (*((f"{each.division}",) if has_divisions else ()), *_place_cells(place, each))
+        for place, each in enumerate(standings.places, 1)
+    )
+    return Table("standings", "", columns, rows, grouped=has_divisions)
+
+
+def _place_cells(place: int, each: Place) -> tuple[Cell, ...]:
+    name = ToneText(each.entry.name, Tone.BOLD if each.entry.is_mine else Tone.PLAIN)
+    rating = each.rating
+    has_played = each.won + each.drawn + each.lost > 0
+    points, interval = (rating.points, (rating.low, rating.high)) if has_played else (None, None)
+    driver = each.entry.driver.phrase.removeprefix("by ")
+    return f"{place}.", name, driver, points, interval, each.won, each.drawn, each.lost
+
+
+def match_sentence(match: Match) -> str:
+    """What a match was and how it ended."""
+    first, second = match.entrants
+    ended = "draw" if match.winner is None else f"{match.winner.name} won"
+    what = "tag" if match.is_tag else "race"
+    return f"{what}, {match.level.title}: {first.name} ({match.details[0]}) against {second.name} ({match.details[1]}): {ended}."
+
+
+def matches_table(matches: Sequence[Match], name: str | None = None) -> Table:
+    """Matches with a number each, from 1; ``name``: only those of this entrant."""
+    columns = (
+        Column("", CellStyle.TEXT),
+        Column("", CellStyle.TEXT),
+        Column("first", TEXT),
+        Column("", TEXT),
+        Column("second", TEXT),
+        Column("first did", TEXT, is_spare=True),
+        Column("second did", TEXT, is_spare=True),
+    )
+    rows = tuple(
+        (
+            f"{number}",
+            f"{'tag' if match.is_tag else 'race'}, {match.level.title}",
+            match.entrants[0].name,
+            "draw" if match.points == DRAW else "beat" if match.points > DRAW else "lost to",
+            match.entrants[1].name,
+            *(
+                detail if match.is_same_platform else f"{detail} (another machine)"
+                for detail in match.details
+            ),
+        )
+        for number, match in enumerate(matches, 1)
+        if name is None or name in (each.name for each in match.entrants)
+    )
+    return Table("matches", "", columns, rows)

@@ -1,0 +1,181 @@
+"""The standings of a league: the matches that were driven, what each was worth, ratings, divisions and the champion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Final
+
+import numpy as np
+
+from kit.run.recording import Recording
+from kit.school.game.league.entries import Entry
+from kit.school.game.league.league import JudgedJob, League, LeagueJob, drive_job, tag_job
+from kit.school.game.league.ratings import Rating, rate
+from kit.school.game.levels import GameLevel
+from kit.school.game.race import finish_order, middle_drive
+from kit.sim.simulation import STEP_SIZE_S
+
+DIVISION_SIZE: Final = 6
+"""Entrants of each division but the last."""
+DRAW: Final = 0.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Match:
+    """One meeting of two entrants that has been driven."""
+
+    level: GameLevel
+    is_tag: bool
+    entrants: tuple[Entry, Entry]
+    """At tag the first began as the catcher."""
+    points: float
+    """Of the first: 1 it won, 0 it lost, 0.5 a draw."""
+    details: tuple[str, str]
+    """What each did, in words."""
+    jobs: tuple[LeagueJob, ...]
+    """Of a race each one's drives, of tag their game."""
+    is_same_platform: bool
+    """Whether all of it was driven on a machine like this one, and so is the same to the bit."""
+
+    @property
+    def winner(self) -> Entry | None:
+        return None if self.points == DRAW else self.entrants[int(self.points < DRAW)]
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """One entrant's place."""
+
+    entry: Entry
+    rating: Rating
+    won: int
+    drawn: int
+    lost: int
+    division: int
+    """From 1."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Standings:
+    """A league as it stands."""
+
+    title: str
+    places: tuple[Place, ...]
+    """By rating, best first."""
+    matches: tuple[Match, ...]
+    jobs: int
+    """Drives and games that all entrants owe."""
+    waiting: int
+    """Those that are still to be run."""
+    refused: tuple[Entry, ...]
+    """Entries that take no part."""
+
+    @property
+    def champion(self) -> Place | None:
+        """The best of the first division; None while nobody has won a match, or fewer than two are entered."""
+        best = self.places[0] if len(self.places) > 1 else None
+        return best if best is not None and best.won else None
+
+    @property
+    def is_certain(self) -> bool:
+        """Whether the champion's interval lies above that of the next."""
+        return len(self.places) > 1 and self.places[0].rating.low > self.places[1].rating.high
+
+    def matches_of(self, name: str) -> list[Match]:
+        return [each for each in self.matches if name in (entry.name for entry in each.entrants)]
+
+
+def read_standings(league: League) -> Standings:
+    """Runs all recordings of a league again and judges them. Slow: about a second for every ten matches that were not judged
+    before. Raises LeagueError."""
+    programme = league.programme()
+    entries = league.entries()
+    entrants = [each for each in entries if not each.problem]
+    matches = []
+    jobs = league.jobs()
+    waiting = sum(league.judge(job) is None for job in jobs)
+    for first, second in combinations(entrants, 2):
+        for level in programme.races:
+            drives = drive_job(level, first), drive_job(level, second)
+            judged = league.judge(drives[0]), league.judge(drives[1])
+            if judged[0] is not None and judged[1] is not None:
+                matches.append(race_match(drives, (judged[0], judged[1])))
+        for level in programme.tag:
+            for pair in ((first, second), (second, first)):
+                job = tag_job(level, *pair)
+                game = league.judge(job)
+                if game is not None:
+                    matches.append(tag_match(job, game))
+    refused = tuple(each for each in entries if each.problem)
+    return Standings(programme.title, _places(entrants, matches), tuple(matches), len(jobs), waiting, refused)
+
+
+def match_recordings(league: League, match: Match) -> tuple[Recording, ...]:
+    """The recordings of a match, run again: of a race the two drives from the start of the first one's that counts, of tag the
+    game. Raises LeagueError."""
+    if match.is_tag:
+        return league.recordings(match.jobs[0])
+    judged = league.judge(match.jobs[0])
+    drives = [league.recordings(job) for job in match.jobs]
+    first = drives[0][0 if judged is None else middle_drive(judged.finishes)]
+    return first, next(each for each in drives[1] if each.seed == first.seed)
+
+
+def race_match(jobs: tuple[LeagueJob, LeagueJob], judged: tuple[JudgedJob, JudgedJob]) -> Match:
+    """Compares two entrants' middle drives: at the goal, without a bump, soon. Less than a tick apart is a draw."""
+    finishes = [each.finishes[middle_drive(each.finishes)] for each in judged]
+    first, second = map(finish_order, finishes)
+    is_draw = first[:2] == second[:2] and (first[0] or abs(first[2] - second[2]) < STEP_SIZE_S)
+    details = []
+    for finish, each in zip(finishes, judged, strict=True):
+        remark = each.remarks[middle_drive(each.finishes)] if each.remarks else ""
+        if finish.reached:
+            bumps = ", touched something" if finish.collisions else ""
+            details.append(f"{finish.seconds:.2f} s{bumps}")
+        else:
+            details.append(remark or finish.foul or "did not arrive")
+    points = DRAW if is_draw else float(first < second)
+    entrants = jobs[0].entrants[0], jobs[1].entrants[0]
+    is_same = all(each.is_same_platform for each in judged)
+    return Match(jobs[0].level, False, entrants, points, (details[0], details[1]), jobs, is_same)
+
+
+def tag_match(job: LeagueJob, game: JudgedJob) -> Match:
+    """The shorter time as the catcher wins. Whose program has failed has lost, whatever the time says."""
+    first_failed, second_failed = (bool(each) for each in (*game.remarks, "", "")[:2])
+    if first_failed != second_failed:
+        points = float(second_failed)
+    elif first_failed or game.winner is None:
+        points = DRAW
+    else:
+        points = float(game.winner == 0)
+    remarks = (*game.remarks, "", "")
+    details = [
+        remark or f"catcher for {seconds:.1f} s"
+        for remark, seconds in zip(remarks, game.scores, strict=False)
+    ]
+    entrants = job.entrants[0], job.entrants[1]
+    return Match(job.level, True, entrants, points, (details[0], details[1]), (job,), game.is_same_platform)
+
+
+def _places(entrants: Sequence[Entry], matches: Sequence[Match]) -> tuple[Place, ...]:
+    numbers = {each.name: number for number, each in enumerate(entrants)}
+    points = np.zeros((len(entrants), len(entrants)))
+    counts = np.zeros((len(entrants), 3), dtype=int)
+    for match in matches:
+        first, second = (numbers[each.name] for each in match.entrants)
+        points[first, second] += match.points
+        points[second, first] += 1.0 - match.points
+        result = 1 if match.points == DRAW else 0 if match.points > DRAW else 2
+        counts[first, result] += 1
+        counts[second, 2 - result] += 1
+    rated = sorted(
+        zip(entrants, rate(points), counts.tolist(), strict=True),
+        key=lambda each: (-round(each[1].points, 6), each[0].name),
+    )
+    return tuple(
+        Place(entry, rating, won, drawn, lost, 1 + number // DIVISION_SIZE)
+        for number, (entry, rating, (won, drawn, lost)) in enumerate(rated)
+    )

@@ -1,0 +1,307 @@
+"""The league: its standings, the matches of each entrant, and each match as a replay with both."""
+
+from __future__ import annotations
+
+import os
+from asyncio import to_thread
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import ClassVar, Final
+
+from textual import events, work
+from textual.app import ComposeResult
+from textual.binding import BindingType
+
+from kit.controllers import user_controllers
+from kit.dialogue.actions import ScreenActions, letter
+from kit.document.layout import Page, rows_of
+from kit.document.rows import Row, row, side_by_side, spread
+from kit.document.tables import list_rows
+from kit.host.job_folder import JobExecutor
+from kit.render.scene import Scene
+from kit.run.recording import Recording
+from kit.run.scenario import Scenario
+from kit.school.game.ghosts import Ghost
+from kit.school.game.league.entries import LeagueError, program_of_agent, submit
+from kit.school.game.league.league import League
+from kit.school.game.league.league_blocks import matches_table, standings_table, summary_blocks
+from kit.school.game.league.standings import Match, Standings, match_recordings, read_standings
+from kit.school.game.league.tag_game import tag_scenario
+from kit.school.game.race import DriverKind
+from kit.school.game.starts import film_scenario
+from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
+from kit.tui.screens.lesson_drive import ReplayScreen
+from kit.tui.screens.level_drive import ghost_marks
+from kit.tui.screens.level_pictures import ghost_paths
+from kit.tui.theme import Theme
+from kit.tui.widgets.text_rows import RowsScreen, TextRows
+from kit.workspace import Workspace
+
+WIDE: Final = 110
+"""Columns from which the matches stand beside the standings."""
+STANDINGS_WIDTH: Final = 68
+
+
+class LeagueScreen(RowsScreen[None]):
+    """Enter goes from an entrant to its matches, and from a match to its replay."""
+
+    AUTO_FOCUS = ""
+    screen_actions = ScreenActions(
+        "league",
+        ("choose", "open", "enter_program", "run_matches", "help", "back"),
+        own=(
+            letter("enter_program", "e", "enter", "enter one of your programs or agents"),
+            letter("run_matches", "t", "run", "run the matches that have not been driven"),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
+    DEFAULT_CSS = """
+    LeagueScreen { layout: vertical; }
+    LeagueScreen #heading, LeagueScreen #note, LeagueScreen #keys { height: 1; }
+    LeagueScreen #body { height: 1fr; }
+    """
+
+    def __init__(self, theme: Theme, league: League, workspace: Workspace) -> None:
+        super().__init__()
+        self._theme = theme
+        self._league = league
+        self._workspace = workspace
+        self._standings: Standings | None = None
+        self._chosen = 0
+        self._match: int | None = None
+        """The number of the chosen one among the entrant's matches; None while an entrant is chosen."""
+        self._note = ""
+        self._is_running = False
+
+    def compose(self) -> ComposeResult:
+        for name in ("heading", "body", "note", "keys"):
+            yield TextRows(id=name)
+
+    def on_mount(self) -> None:
+        self._note = "Running the drives again ..."
+        self._read()
+
+    def on_resize(self, event: events.Resize) -> None:
+        self.call_after_refresh(self._show)
+
+    @work(exclusive=True, group="read")
+    async def _read(self) -> None:
+        await self._read_now()
+
+    async def _read_now(self, note: str = "") -> None:
+        try:
+            self._standings = await to_thread(read_standings, self._league)
+            self._note = note
+        except LeagueError as error:
+            self._note = str(error)
+        self._chosen = min(self._chosen, max(0, len(self._entrants) - 1))
+        if self._match is not None:
+            self._match = min(self._match, len(self._matches) - 1) if self._matches else None
+        if self.is_attached:
+            self._show()
+
+    # What is shown
+
+    @property
+    def _entrants(self) -> list[str]:
+        return [] if self._standings is None else [each.entry.name for each in self._standings.places]
+
+    @property
+    def _matches(self) -> Sequence[Match]:
+        """Those of the chosen entrant."""
+        if self._standings is None or not self._entrants:
+            return ()
+        return self._standings.matches_of(self._entrants[self._chosen])
+
+    def _show(self) -> None:
+        if not self.is_attached:
+            return
+        width, height = self.size.width, self.size.height - 3
+        standings = self._standings
+        title = "League" if standings is None else standings.title
+        place = f"{self._league.folder}".replace(str(Path.home()), "~", 1)
+        self._rows("heading").show([spread(row((title, "bold")), row((place, "dim")), width)])
+        body = [] if standings is None else self._body(standings, width, height)
+        self._rows("body").show(body)
+        self._rows("note").show([row((f"  {self._note}", "dim"))])
+        labels = {"open": "matches" if self._match is None else "replay"}
+        self._rows("keys").show([footer(self.screen_actions, width, labels=labels)])
+
+    def _body(self, standings: Standings, width: int, height: int) -> list[Row]:
+        is_wide = width >= WIDE
+        left_width = STANDINGS_WIDTH if is_wide else width
+        head = [row(), *rows_of(summary_blocks(standings), Page(left_width - 4, margin=2)), row()]
+        room = height - len(head)
+        left: list[Row] = list(head)
+        if standings.places:
+            left += list_rows(standings_table(standings), left_width, room, self._chosen)
+        if self._match is None and not is_wide:
+            return left
+        name = self._entrants[self._chosen] if self._entrants else ""
+        table = matches_table(self._matches)
+        right: list[Row] = [row(), row((f"   Matches of {name}" if name else "", "bold")), row()]
+        if table.rows:
+            right_width = width - left_width if is_wide else width
+            if self._match is None:
+                right += rows_of([replace(table, is_ruled=False)], Page(right_width - 3, margin=3))
+            else:
+                right += list_rows(table, right_width, height - len(right), self._match)
+        elif name:
+            right.append(row(("   None has been driven yet.", "dim")))
+        return side_by_side(left, right, left_width) if is_wide else right
+
+    # Keys
+
+    def action_choose(self, columns: int, rows: int) -> None:
+        if self._match is not None and columns >= 0:
+            self._match = max(0, min(self._match + rows, len(self._matches) - 1))
+        elif columns < 0:
+            self._match = None
+        elif columns > 0:
+            self._match = 0 if self._matches else None
+        else:
+            self._chosen = max(0, min(self._chosen + rows, len(self._entrants) - 1))
+        self._show()
+
+    @work(exclusive=True, group="open")
+    async def action_open(self) -> None:
+        if self._match is None:
+            self._match = 0 if self._matches else None
+            self._show()
+            return
+        self._tell("Running the drives again ...")
+        try:
+            match = self._matches[self._match]
+            recordings = await to_thread(match_recordings, self._league, match)
+        except LeagueError as error:
+            self._tell(str(error))
+            return
+        self._tell("")
+        self.app.push_screen(match_replay(self._theme, match, recordings))
+
+    def action_back(self) -> None:
+        if self._match is not None:
+            self._match = None
+            self._show()
+            return
+        super().action_back()
+
+    def action_help(self) -> None:
+        self.app.push_screen(HelpDialog("The league", self.screen_actions, NOTES))
+
+    @work(exclusive=True, group="enter")
+    async def action_enter_program(self) -> None:
+        """Has the user choose a program or an agent, and enters it."""
+        programs = {each.name: each for each in user_controllers(self._workspace.controllers)}
+        runs = await to_thread(_agents, self._workspace.runs)
+        choices = [PickerItem(f"program {name}", name, each.title) for name, each in programs.items()]
+        choices += [PickerItem(f"agent {name}", name, "an agent that you trained") for name in runs]
+        picked = await self.app.push_screen_wait(Picker("Which of yours enters the league?", choices))
+        if picked is None:
+            return
+        kind, _, name = picked.partition(" ")
+        try:
+            if kind == "program":
+                driver, program = DriverKind.CONTROLLER, programs[name].file.read_bytes()
+            else:
+                driver, program = (
+                    DriverKind.AGENT,
+                    await to_thread(program_of_agent, name, self._workspace.runs),
+                )
+            await to_thread(submit, self._league.folder, name, driver, program)
+        except (LeagueError, OSError) as error:
+            self.app.push_screen(MessageDialog("Not entered", wrapped(str(error))))
+            return
+        await self._read_now(f"{name} is entered.")
+
+    @work(group="run")
+    async def action_run_matches(self) -> None:
+        """Runs what is missing, in processes of their own; what is done stays where the screen is left."""
+        if self._is_running or self._standings is None:
+            return
+        if not self._league.is_mine:
+            self._tell("Who owns the league's folder runs the matches: only the owner's results count.")
+            return
+        self._is_running = True
+        try:
+            keys = await to_thread(self._league.waiting)
+            done = 0
+
+            def count(key: str) -> None:
+                nonlocal done
+                done += 1
+                self.app.call_from_thread(self._tell_running, done, len(keys))
+
+            if keys:
+                self._tell_running(0, len(keys))
+                executor = JobExecutor(jobs=os.cpu_count() or 1)
+                await to_thread(executor.run, self._league, keys, count)
+        except (LeagueError, OSError) as error:
+            self.app.push_screen(MessageDialog("The league cannot be run", wrapped(str(error))))
+        finally:
+            self._is_running = False
+        await self._read_now("All matches are driven." if not keys else f"{len(keys)} were driven.")
+
+    def _tell_running(self, done: int, count: int) -> None:
+        self._tell(f"Driving: {done} of {count}.")
+
+    def _tell(self, note: str) -> None:
+        self._note = note
+        self._show()
+
+
+NOTES: Final = (
+    ("rating", "400 points more: wins ten times as often (Bradley-Terry)"),
+    ("95 %", "where the rating lies, as far as these matches tell"),
+    ("race", "each drives alone from five starts; the middle drives compare"),
+    ("tag", "two robots in one world; the shorter time as catcher wins"),
+)
+
+
+def match_replay(theme: Theme, match: Match, recordings: Sequence[Recording]) -> ReplayScreen:
+    """The replay of a match, with both. ``recordings``: of ``match_recordings``."""
+    first, second = match.entrants
+    title = f"{first.name} against {second.name}"
+    if match.is_tag:
+        return ReplayScreen(theme, tag_scenario(match.level), recordings[0], f"tag: {title}")
+    both = list(zip((first.name, second.name), recordings, strict=True))
+    (robot, longer), other = sorted(
+        both, key=lambda each: -each[1].ticks
+    )  # so that both are seen to their end
+    scenario = film_scenario(match.level, longer.seed)
+    title = f"{robot} against {other[0]}, the letter {other[0][:1].lower()}"
+    return MatchReplayScreen(theme, scenario, longer, title, other)
+
+
+class MatchReplayScreen(ReplayScreen):
+    """One entrant's drive, and the other's as a letter on a dotted way."""
+
+    def __init__(
+        self,
+        theme: Theme,
+        place: Scenario,
+        recording: Recording,
+        title: str,
+        other: tuple[str, Recording],
+    ) -> None:
+        super().__init__(theme, place, recording, title)
+        name, drive = other
+        tracks = tuple(drive.track(robot) for robot in place.partners) if drive.ticks else ()
+        self._ghost = Ghost(name, drive.ticks * drive.step_size, tracks, drive.step_size)
+        self._way = tuple(ghost_paths(self._ghost))
+
+    def _newest_scene(self) -> Scene:
+        scene = super()._newest_scene()
+        if self.view is None:
+            return scene
+        marks = ghost_marks((self._ghost,), self.view.time_s)
+        return replace(scene, paths=(*self._way, *scene.paths), marks=(*scene.marks, *marks))
+
+
+def _agents(runs: Path) -> list[str]:
+    """The names of all trainings."""
+    from kit.learning.training.runs import list_runs
+
+    return [each.name for each in list_runs(runs)]

@@ -1,0 +1,457 @@
+"""The league: who meets whom, what a match is worth, and what counts for nothing: cheats, crashes, a clock that was set back."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kit.controllers import kit_controllers
+from kit.host.sandbox.confinement import Level
+from kit.school.game.league import league as league_module
+from kit.school.game.league.entries import MAX_BYTES, LeagueError, read_entries, submit, withdraw
+from kit.school.game.league.league import League, LeagueJob, drive_job, own_league, read_programme, tag_job
+from kit.school.game.league.league_blocks import standings_table, summary_blocks
+from kit.school.game.league.standings import DRAW, Match, Standings, match_recordings, read_standings
+from kit.school.game.league.tag_game import play_tag, tag_again, tag_scenario
+from kit.school.game.league.verification import differing_jobs
+from kit.school.game.levels import find_level
+from kit.school.game.race import DriverKind
+from kit.school.game.shared_drives import digest_of, share_drives
+from kit.school.game.two_players import TAG_SECONDS
+from kit.workspace import open_workspace
+
+LEVEL = find_level("first-drive")
+ARENA = find_level("two-doors")
+CONTROLLER = DriverKind.CONTROLLER
+LASER = (Path(__file__).parents[1] / "laser_program.py").read_bytes()
+
+FRAME = """
+import rclpy
+from rclpy.node import Node
+from geometry_msgs.msg import PoseStamped, Twist
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import Bool
+
+class Player(Node):
+    def __init__(self):
+        super().__init__("player")
+        self.drive = self.create_publisher(Twist, "cmd_vel", 1)
+        self.begin()
+
+    def go(self, linear, angular=0.0):
+        command = Twist()
+        command.linear.x, command.angular.z = linear, angular
+        self.drive.publish(command)
+{body}
+
+rclpy.init()
+rclpy.spin(Player())
+"""
+STANDS = FRAME.format(body="\n    def begin(self):\n        pass\n").encode()
+CHASES = FRAME.format(
+    body="""
+    def begin(self):
+        self.catches, self.pose, self.other = False, None, None
+        from nav_msgs.msg import Odometry
+        self.create_subscription(Bool, "is_catcher", self.told, 1)
+        self.create_subscription(Odometry, "odom", self.here, 1)
+        self.create_subscription(PoseStamped, "goal_pose", self.there, 1)
+
+    def told(self, message):
+        self.catches = message.data
+
+    def here(self, message):
+        self.pose = message.pose.pose
+
+    def there(self, message):
+        import math
+        other = message.pose.position
+        if self.pose is None or not self.catches:
+            return self.go(-0.3)
+        at, turned = self.pose.position, self.pose.orientation
+        heading = math.atan2(other.y - at.y, other.x - at.x) - 2.0 * math.atan2(turned.z, turned.w)
+        self.go(0.3, 3.0 * math.remainder(heading, math.tau))
+"""
+).encode()
+CRASHES = b"raise RuntimeError('no')\n"
+GIVES_UP = FRAME.format(
+    body="""
+    def begin(self):
+        self.create_timer(0.5, self.end)
+
+    def end(self):
+        raise RuntimeError("enough")
+"""
+).encode()
+"""Does not arrive, and needs less time for it than one that stands to the end."""
+
+
+def make_league(folder: Path, *, races: bool = True, tag: bool = False, **programs: bytes) -> League:
+    league = League.make(folder / "league", "Ours", [LEVEL.id] if races else [], [ARENA.id] if tag else [])
+    league.confine(Level.LIMITED)
+    for name, program in programs.items():
+        submit(league.folder, name, CONTROLLER, program)
+    return league
+
+
+@pytest.fixture(scope="module")
+def driven_once(tmp_path_factory: pytest.TempPathFactory) -> League:
+    """Of one who arrives and one who does not."""
+    league = make_league(tmp_path_factory.mktemp("driven"), laser=LASER, stands=GIVES_UP)
+    run(league)
+    return league
+
+
+@pytest.fixture
+def driven(driven_once: League, tmp_path: Path) -> League:
+    """The same, for a test to change."""
+    return League(Path(shutil.copytree(driven_once.folder, tmp_path / "league")))
+
+
+def run(league: League) -> Standings:
+    """Drives what is missing in this process."""
+    for key in league.waiting():
+        league.run_job(key)
+    return read_standings(league)
+
+
+def names(standings: Standings) -> list[str]:
+    return [each.entry.name for each in standings.places]
+
+
+@pytest.mark.long
+def test_all_meet_all_and_the_best_is_champion(tmp_path: Path) -> None:
+    league = make_league(tmp_path, laser=LASER, stands=GIVES_UP, crashes=CRASHES)
+    assert len(league.waiting()) == 3
+    standings = run(league)
+    assert (standings.waiting, len(standings.matches)) == (0, 3)
+    assert standings.champion is not None
+    assert standings.champion.entry.name == "laser"
+    assert (standings.champion.won, standings.champion.lost) == (2, 0)
+    by_pair = {tuple(sorted(entry.name for entry in each.entrants)): each for each in standings.matches}
+    assert by_pair["crashes", "stands"].points == DRAW  # neither arrives
+    assert "RuntimeError" in " ".join(by_pair["crashes", "laser"].details)
+    assert len(standings_table(standings).rows) == 3
+    assert sum(each.rating.points for each in standings.places) == pytest.approx(3 * 1500.0)
+
+
+@pytest.mark.long
+def test_two_play_tag_in_one_world_and_each_begins_once(tmp_path: Path) -> None:
+    league = make_league(tmp_path, races=False, tag=True, chases=CHASES, stands=STANDS)
+    standings = run(league)
+    assert [each.is_tag for each in standings.matches] == [True, True]
+    assert {each.entrants[0].name for each in standings.matches} == {"chases", "stands"}
+    assert names(standings) == ["chases", "stands"]
+    assert all(each.winner is not None and each.winner.name == "chases" for each in standings.matches)
+    (recording,) = match_recordings(league, standings.matches[0])
+    assert recording.ticks * recording.step_size == pytest.approx(TAG_SECONDS)
+    assert all(len(recording.track(robot)) for robot in tag_scenario(ARENA).drivers)
+
+
+def test_a_replay_shows_both_drives_of_a_race_from_one_start(driven: League) -> None:
+    (match,) = read_standings(driven).matches
+    drives = match_recordings(driven, match)
+    assert len(drives) == 2
+    assert drives[0].seed == drives[1].seed
+
+
+def test_a_lone_entrant_drives_nothing_and_nobody_is_champion(tmp_path: Path) -> None:
+    league = make_league(tmp_path)
+    for count in range(2):
+        standings = read_standings(league)
+        assert (league.waiting(), len(standings.places), standings.champion) == ((), count, None)
+        assert summary_blocks(standings)
+        submit(league.folder, "laser", CONTROLLER, LASER)
+
+
+def test_who_withdraws_takes_the_matches_along_and_a_new_program_drives_anew(driven: League) -> None:
+    league = driven
+    submit(league.folder, "crashes", CONTROLLER, CRASHES)
+    assert len(run(league).matches) == 3
+    withdraw(league.folder, "crashes")
+    standings = read_standings(league)
+    assert (names(standings), len(standings.matches), standings.waiting) == (["laser", "stands"], 1, 0)
+    league.remove_stale_results()
+    assert len(list((league.folder / "results").iterdir())) == 2
+    submit(league.folder, "stands", CONTROLLER, GIVES_UP + b"# again\n")
+    assert len(league.waiting()) == 1
+    assert read_standings(league).matches == ()
+    with pytest.raises(LeagueError):
+        withdraw(league.folder, "crashes")
+
+
+def test_a_clock_that_was_set_back_changes_nothing(driven: League) -> None:
+    league = driven
+    before = standings_table(read_standings(league))
+    for file in league.folder.rglob("*"):
+        os.utime(file, (0, 0))
+    assert standings_table(read_standings(league)) == before
+    assert league.waiting() == ()
+
+
+def test_what_was_judged_is_kept_for_the_next_look_and_damage_of_it_is_passed_over(
+    driven: League, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    league = League(driven.folder, tmp_path / "judged")
+    before = standings_table(read_standings(league))
+    (first, *_) = (tmp_path / "judged").iterdir()
+    league_module._judge_once.cache_clear()
+    with monkeypatch.context() as patched:
+        patched.setattr(league_module, "_judge", lambda *told: pytest.fail("judged again"))
+        assert standings_table(read_standings(league)) == before
+    league_module._judge_once.cache_clear()
+    first.write_text('{"judged": {"finishes": 3}}')
+    assert standings_table(read_standings(league)) == before
+
+
+def test_divisions_hold_six_each(tmp_path: Path) -> None:
+    programs = {f"stands{number}": STANDS + b"#" * number for number in range(1, 9)}
+    standings = read_standings(make_league(tmp_path, **programs))
+    assert [each.division for each in standings.places] == [1] * 6 + [2] * 2
+    assert standings_table(standings).grouped
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"{",
+        b"[]",
+        b"{}",
+        b'{"title": "x", "races": [], "tag": [], "confinement": 1}',
+        b'{"title": "x", "races": ["nowhere"], "tag": [], "confinement": 1}',
+        b'{"title": "x", "races": [], "tag": ["crossing"], "confinement": 1}',
+        b'{"title": "x", "races": ["parking"], "tag": [], "confinement": 9}',
+    ],
+)
+def test_a_damaged_league_says_what_is_wrong(tmp_path: Path, content: bytes) -> None:
+    with pytest.raises(LeagueError, match=r"league\.json"):
+        read_programme(content, tmp_path)
+
+
+def test_no_league_or_a_second_one_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(LeagueError):
+        League(tmp_path).programme()
+    with pytest.raises(LeagueError):
+        submit(tmp_path, "laser", CONTROLLER, LASER)
+    make_league(tmp_path)
+    with pytest.raises(LeagueError):
+        make_league(tmp_path)
+    own = own_league(open_workspace(tmp_path / "home"))
+    assert own.is_mine
+    assert own_league(open_workspace(tmp_path / "home")) == own
+
+
+# Cheats: entries
+
+EntryCheat = Callable[[League], None]
+
+
+def copy_of_the_kits_own(league: League) -> None:
+    shipped = kit_controllers()[0].file
+    shutil.copy(shipped, league.folder / "entries" / "mine.controller.py")
+
+
+def anothers_program_again(league: League) -> None:
+    (league.folder / "entries" / "mine.controller.py").write_bytes(LASER)
+
+
+def link_to_anothers_program(league: League) -> None:
+    (league.folder / "entries" / "mine.controller.py").symlink_to("laser.controller.py")
+
+
+def one_name_twice(league: League) -> None:
+    (league.folder / "entries" / "laser.agent.py").write_bytes(LASER + b"#\n")
+
+
+def program_that_fills_the_disk(league: League) -> None:
+    (league.folder / "entries" / "mine.controller.py").write_bytes(b"#" * (MAX_BYTES + 1))
+
+
+@pytest.mark.parametrize(
+    "cheat",
+    [
+        copy_of_the_kits_own,
+        anothers_program_again,
+        link_to_anothers_program,
+        one_name_twice,
+        program_that_fills_the_disk,
+    ],
+    ids=lambda each: each.__name__,
+)
+def test_what_is_nobodys_own_program_takes_no_part(tmp_path: Path, cheat: EntryCheat) -> None:
+    league = make_league(tmp_path, laser=LASER, stands=GIVES_UP)
+    cheat(league)
+    entries = read_entries(league.folder)
+    assert len(entries) == 3
+    assert len(league.entrants()) == 2
+    assert sum(bool(each.problem) for each in entries) == 1
+
+
+# Cheats: results
+
+ResultCheat = Callable[[League, LeagueJob, LeagueJob], None]
+"""Of the job of one who arrives, and that of one who does not."""
+
+
+def change(file: Path, changed: Callable[[dict[str, Any]], None]) -> None:
+    with np.load(file) as stored:
+        content = json.loads(bytes(stored["drives"]))
+    changed(content)
+    data = io.BytesIO()
+    np.savez_compressed(data, drives=np.frombuffer(json.dumps(content).encode(), dtype=np.uint8))
+    file.write_bytes(data.getvalue())
+
+
+def score_that_is_claimed(league: League, good: LeagueJob, bad: LeagueJob) -> None:
+    league.result_file(bad.key).write_bytes(json.dumps({"reached": True, "seconds": 0.1}).encode())
+
+
+def commands_that_come_sooner(league: League, good: LeagueJob, bad: LeagueJob) -> None:
+    shutil.copy(league.result_file(good.key), league.result_file(bad.key))
+
+    def sooner(content: dict[str, Any]) -> None:
+        for drive in content["drives"]:
+            drive["inputs"] = [[max(0, tick - 5), kind, what] for tick, kind, what in drive["inputs"]]
+
+    change(league.result_file(bad.key), sooner)
+
+
+def robot_that_is_moved(league: League, good: LeagueJob, bad: LeagueJob) -> None:
+    robot = LEVEL.find_scenario().partners[0]
+
+    def moved(content: dict[str, Any]) -> None:
+        for drive in content["drives"]:
+            drive["inputs"].insert(0, [0, "move_model", [robot, [0.625, 0.5, 0.0]]])
+
+    change(league.result_file(bad.key), moved)
+
+
+def other_robot_that_is_moved(league: League, good: LeagueJob, bad: LeagueJob) -> None:
+    def moved(content: dict[str, Any]) -> None:
+        twist = {"linear": {"x": 1.0}, "angular": {}}
+        content["drives"][0]["inputs"] = [
+            [0, "accept", ["/beacon/cmd_vel", "geometry_msgs/msg/Twist", twist]]
+        ]
+
+    change(league.result_file(bad.key), moved)
+
+
+def one_good_start_five_times(league: League, good: LeagueJob, bad: LeagueJob) -> None:
+    (recording, *_) = league.recordings(good)
+    share_drives([recording] * 5, league.result_file(bad.key), [""] * 5)
+
+
+def result_of_somebody_else(league: League, good: LeagueJob, bad: LeagueJob) -> None:
+    target = league.folder / "elsewhere.npz"
+    shutil.copy(league.result_file(good.key), target)
+    league.result_file(bad.key).unlink()
+    league.result_file(bad.key).symlink_to(target)
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize(
+    "cheat",
+    [
+        score_that_is_claimed,
+        commands_that_come_sooner,
+        robot_that_is_moved,
+        other_robot_that_is_moved,
+        one_good_start_five_times,
+        result_of_somebody_else,
+    ],
+    ids=lambda each: each.__name__,
+)
+def test_a_result_that_was_not_driven_counts_for_nothing_and_is_driven_anew(
+    driven: League, cheat: ResultCheat
+) -> None:
+    league = driven
+    good, bad = (drive_job(LEVEL, each) for each in league.entrants())
+    cheat(league, good, bad)
+    assert league.judge(bad) is None
+    assert league.waiting() == (bad.key,)
+    assert read_standings(league).matches == ()
+
+
+def test_only_results_of_the_owner_count(driven: League, monkeypatch: pytest.MonkeyPatch) -> None:
+    league = driven
+    assert len(read_standings(league).matches) == 1
+    monkeypatch.setattr(League, "owner", property(lambda self: os.geteuid() + 1))
+    assert not league.is_mine
+    assert read_standings(league).matches == ()
+
+
+@pytest.mark.long
+def test_a_result_of_another_program_is_found_by_driving_anew(driven: League) -> None:
+    league = driven
+    found = differing_jobs(league)
+    assert (found.compared, found.differing) == (2, ())
+    good, bad = (drive_job(LEVEL, each) for each in league.entrants())
+    shutil.copy(league.result_file(good.key), league.result_file(bad.key))  # the owner himself, for a friend
+    assert [each.key for each in differing_jobs(league).differing] == [bad.key]
+
+
+# Cheats: programs at tag
+
+TAG_CHEATS = {
+    "steers the other robot": 'self.create_publisher(Twist, "/second/cmd_vel", 1)',
+    "blinds the other robot": 'self.create_publisher(LaserScan, "/second/static_laser", 1)',
+    "tells the other it is not the catcher": 'self.create_publisher(Bool, "/second/is_catcher", 1)',
+    "looks through the other's laser": (
+        'self.create_subscription(LaserScan, "/second/static_laser", lambda scan: None, 1)'
+    ),
+    "moves robots by the world's service": (
+        'self.create_client(__import__("flatland_msgs.srv").srv.MoveModel, "/move_model")'
+    ),
+    "stops the world": 'self.create_client(__import__("std_srvs.srv").srv.Empty, "/pause")',
+    "takes the other's place": 'rclpy.create_node("player", namespace="/second", use_global_arguments=False)',
+}
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("line", TAG_CHEATS.values(), ids=list(TAG_CHEATS))
+def test_a_program_that_reaches_out_of_its_namespace_has_lost(tmp_path: Path, line: str) -> None:
+    cheat = FRAME.format(body=f"\n    def begin(self):\n        {line}\n").encode()
+    league = make_league(tmp_path, races=False, tag=True, cheat=cheat, stands=STANDS)
+    cheater, honest = league.entrants()
+    job = tag_job(ARENA, cheater, honest)
+    league.run_job(job.key)
+    (match,) = read_standings(league).matches
+    assert match.winner == honest
+    assert "not its own" in match.details[0]
+    assert match.details[1].startswith("catcher for")
+
+
+@pytest.mark.long
+def test_who_crashes_late_has_lost_although_it_was_never_the_catcher(tmp_path: Path) -> None:
+    body = """
+    def begin(self):
+        self.create_timer(1.0, self.end)
+
+    def end(self):
+        raise RuntimeError("late")
+"""
+    league = make_league(
+        tmp_path, races=False, tag=True, crashes=FRAME.format(body=body).encode(), stands=STANDS
+    )
+    matches: tuple[Match, ...] = run(league).matches
+    assert [each.winner.name for each in matches if each.winner is not None] == ["stands"] * 2
+
+
+@pytest.mark.long
+def test_a_game_run_again_is_the_same_to_the_bit(tmp_path: Path) -> None:
+    league = make_league(tmp_path, races=False, tag=True, chases=CHASES, stands=STANDS)
+    programs = [each.program for each in league.entrants()]
+    game = play_tag(ARENA, programs, Level.LIMITED, league_module.GRADER_LIMITS)
+    state, again = tag_again(ARENA, game.recording)
+    assert digest_of(again) == digest_of(game.recording)
+    assert (state.scores, state.winner) == (game.state.scores, game.state.winner)
+    with pytest.raises(ValueError, match="is a game on"):
+        tag_again(LEVEL, game.recording)

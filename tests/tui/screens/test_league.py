@@ -1,0 +1,54 @@
+"""The league on a full screen: its standings, an entrant's matches, a replay with both."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from textual.pilot import Pilot
+
+from kit.school.game.league.league import own_league
+from kit.tui.screens.league import LeagueScreen, MatchReplayScreen
+from kit.workspace import open_workspace
+from tests.school.game.league.test_league import GIVES_UP, LASER, make_league, run
+from tests.tui.lesson_stage import seen, stage, text, until
+
+
+def test_an_empty_league_says_how_to_enter_and_a_program_enters_by_a_key(tmp_path: Path) -> None:
+    workspace = open_workspace(tmp_path / "home")
+    (workspace.controllers / "mine.py").write_bytes(LASER)
+    league = own_league(workspace)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Nobody is entered")
+        await pilot.press("enter", "down")  # nothing to open or choose
+        await pilot.press("e")
+        await seen(pilot, "Which of yours enters")
+        await pilot.press("enter")
+        await seen(pilot, "mine is entered.")
+        assert "alone is entered" in text(pilot)
+
+    stage(lambda theme: LeagueScreen(theme, league, workspace), scene)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("size", [(80, 24), (120, 35), (200, 50)])
+def test_from_the_standings_to_a_match_and_its_replay(tmp_path: Path, size: tuple[int, int]) -> None:
+    workspace = open_workspace(tmp_path / "home")
+    league = make_league(tmp_path, laser=LASER, stands=GIVES_UP)
+    run(league)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "laser leads")
+        await pilot.press("enter")
+        await seen(pilot, "Matches of laser")
+        await seen(pilot, "Enter replay")
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, MatchReplayScreen), "the replay")
+        await seen(pilot, "laser against stands")
+        await pilot.press("escape")
+        await seen(pilot, "Matches of laser")
+        await pilot.press("escape")
+        await seen(pilot, "Enter matches")
+
+    stage(lambda theme: LeagueScreen(theme, league, workspace), scene, size=size)
