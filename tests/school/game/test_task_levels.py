@@ -26,8 +26,8 @@ from kit.school.progress import ProgressJournal
 from kit.sim.plugins.diff_drive import DiffDriveParams
 from kit.workspace import open_workspace
 from kit.world.problems import WorldError
+from tests.driving_program import driving_program
 from tests.learning.tasks.test_many_robots import written as task_of_many_robots
-from tests.school.game.test_race import FORWARD
 
 
 @pytest.fixture
@@ -93,7 +93,7 @@ def test_the_kit_s_tasks_are_levels(name: str) -> None:
 @pytest.mark.long
 def test_a_program_races_on_a_task_for_its_own_best_and_no_medal(own_task: Path, tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
-    file.write_text(FORWARD.format(speed=0.4))
+    file.write_text(driving_program(0.4))
     level, workspace = task_level(own_task), open_workspace()
     finish, recording = race_controller(level, find_controller(str(file)))
     assert finish.reached
@@ -119,7 +119,7 @@ def test_a_program_races_on_a_task_for_its_own_best_and_no_medal(own_task: Path,
 @pytest.mark.long
 def test_the_verb_races_a_task_and_speaks_of_no_medal(own_task: Path, tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
-    file.write_text(FORWARD.format(speed=0.4))
+    file.write_text(driving_program(0.4))
     result = CliRunner().invoke(main, ["game", "race", "dash", "--controller", str(file)])
     assert result.exit_code == 0, result.output
     assert "reached the goal" in result.output
