@@ -90,7 +90,7 @@ _SHARED: Final = (
     ),
     ScreenAction("quit", "Ctrl-C", "quit", "quit the kit", (("ctrl+c,ctrl+q", "app.quit"),), "^C", has_priority=True),
     letter("help", "?", "help", "show this page", name="question_mark"),
-    ScreenAction("palette", "Ctrl-P", "commands", "list all commands; type to find one", (("ctrl+p", "app.palette"),)),
+    ScreenAction("palette", "Ctrl-P", "find", "list all commands; type to find one", (("ctrl+p", "app.palette"),), "^P"),
     ScreenAction("glossary", ",", "glossary", "open the glossary, which explains the terms", (("comma", "app.glossary"),)),
     letter("restart", "r", "restart", "start the scene, the drive or the world again"),
     letter("check", "c", "check", "check the exercise; saving the file checks it too"),

@@ -13,7 +13,7 @@ from kit.document.rows import Row, row
 
 KEY_WIDTH: Final = 17
 """Columns of the keys on a help page."""
-KEPT: Final = frozenset(("help", "back", "quit"))
+KEPT: Final = frozenset(("help", "back", "quit", "palette"))
 """Actions that a narrow line of keys leaves out last."""
 _NO_LABELS: Final[Mapping[str, str]] = MappingProxyType({})
 
@@ -35,11 +35,11 @@ def footer(
     labels: Mapping[str, str] = _NO_LABELS,
     keys: Mapping[str, str] = _NO_LABELS,
 ) -> Row:
-    """One row of at most ``width`` columns. ``without``: ids of actions that do nothing now. ``labels``, ``keys``:
+    """One row of at most ``width`` columns, which ends in the key of all commands where there is one. ``without``: ids of actions that do nothing now. ``labels``, ``keys``:
     other words and keys than the actions', by id."""
     parts = {
         each: (keys.get(each, screen[each].footer_keys), labels.get(each, screen[each].label))
-        for each in screen.footer
+        for each in (*screen.footer, *(each for each in screen.off_footer if each == "palette"))
         if each not in without
     }
     while sum(len(key) + len(label) + 2 for key, label in parts.values()) - 1 > width:

@@ -646,7 +646,10 @@ def shared_message(
         )
     scores = row(
         " ",
-        *(f"{name or NOBODY} {_score(mode, state, number)}   " for number, name in enumerate(state.names)),
+        *(
+            f"{'you' if number == me else name or NOBODY}: {_score(mode, state, number)}   "
+            for number, name in enumerate(state.names)
+        ),
     )
     if state.phase is SharedPhase.OVER:
         return row((f" {_end(state, me)}", "good" if state.winner == me is not None else "bold")), scores
@@ -670,4 +673,6 @@ def _score(mode: SharedMode, state: SharedGameState, number: int) -> str:
 def _end(state: SharedGameState, me: int | None) -> str:
     if state.winner is None:
         return "Nobody has won."
-    return "You have won." if state.winner == me else f"{state.names[state.winner] or 'The other'} has won."
+    if me is not None:
+        return "You have won." if state.winner == me else "The other player has won."
+    return f"{state.names[state.winner] or NOBODY} has won."

@@ -122,7 +122,10 @@ class LeagueScreen(RowsScreen[None]):
         standings = self._standings
         title = "League" if standings is None else standings.title
         place = f"{self._league.folder}".replace(str(Path.home()), "~", 1)
-        self._rows("heading").show([spread(row((title, "bold")), row((place, "dim")), width)])
+        has_room = len(title) + len(place) + 2 <= width
+        self._rows("heading").show(
+            [spread(row((title, "bold")), row((place if has_room else "", "dim")), width)]
+        )
         body = [] if standings is None else self._body(standings, width, height)
         self._rows("body").show(body)
         self._rows("note").show([row((f"  {self._note}", "dim"))])

@@ -71,6 +71,7 @@ SIGNS_OF_KEYS: Final = {
     "/": "slash",
     "^C": "ctrl+c",
     "^E": "ctrl+e",
+    "^P": "ctrl+p",
     "^S": "ctrl+s",
 }
 """What is printed for a key, and Textual's name of it. A letter or digit is its own name."""

@@ -167,7 +167,7 @@ def test_lines_are_chosen_with_tab_too(house: House) -> None:
         await pilot.press("tab")
         assert "> 2  Lessons" in text(pilot)
         await pilot.press("shift+tab", "shift+tab", "enter")
-        await seen(pilot, "exercises passed")
+        await seen(pilot, "Nobody is entered")
 
     house.play(scene)
 
