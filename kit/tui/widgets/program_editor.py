@@ -274,7 +274,8 @@ class ProgramEditor(Vertical):
 
     DEFAULT_CSS = """
     ProgramEditor { width: 60%; max-width: 100; padding: 0 0 0 1; }
-    ProgramEditor TextArea { height: 1fr; border: none; padding: 0; background: transparent; scrollbar-size: 0 0; }
+    ProgramEditor TextArea { height: 1fr; border: none; padding: 0; background: transparent; scrollbar-size: 0 0;
+        overflow: scroll scroll; }  /* a bar that goes as an undo shortens the text ends Textual */
     ProgramEditor TextArea:focus { border: none; }
     ProgramEditor TextRows { height: 1; }
     """
