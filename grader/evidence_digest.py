@@ -12,8 +12,9 @@ from typing import Final
 import yaml
 
 from kit.extensions import installed_extensions
-from kit.school.lessons.reading import ASSIGNMENT_FILE
 
+ASSIGNMENT_FILE: Final = "assignment.yaml"
+"""The name is the kit's too, whose reader of lessons loads numpy: a slip in YAML is told without."""
 YAML_LOADER: Final = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 """The one that the kit reads with, which takes some texts that the other does not."""
 JUDGEMENT_KEYS: Final = ("title", "id", "checks", "tests")

@@ -9,9 +9,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
+from grader.evidence_digest import ASSIGNMENT_FILE
 from grader.reading import read_assignment
 from kit.plain_text import quoted, suggestion
-from kit.school.lessons.reading import ASSIGNMENT_FILE, find_lesson, lessons_folder, solutions_folder
+from kit.school.lessons.reading import find_lesson, lessons_folder, solutions_folder
 from kit.workspace import write_atomically
 
 TEMPLATES: Final = Path(__file__).parent / "templates"

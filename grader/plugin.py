@@ -18,6 +18,7 @@ from typing import Any
 import pytest
 
 from grader.assignment import Assignment, Criterion
+from grader.evidence_digest import ASSIGNMENT_FILE
 from grader.grading import (
     Grading,
     GradingOptions,
@@ -34,7 +35,6 @@ from grader.teacher_tests.reading import MARK, MARK_HELP
 from kit.host.sandbox.confinement import Level
 from kit.results.grading_result import CriterionResult, CriterionStatus
 from kit.results.result_blocks import format_points
-from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.world.problems import WorldError
 
 

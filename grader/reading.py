@@ -22,7 +22,7 @@ from grader.assignment import (
 )
 from grader.budgets import read_budget
 from grader.check import Check
-from grader.evidence_digest import evidence_digest, folder_digest
+from grader.evidence_digest import ASSIGNMENT_FILE, evidence_digest, folder_digest
 from grader.kinds.contract import AssignmentFiles, find_kind, kind_names
 from grader.scoring import MAX_SHARE_STEPS, Anchors
 from grader.seeds import SeedSet
@@ -32,7 +32,6 @@ from kit.host.sandbox.confinement import Level
 from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.results.grading_result import Visibility
-from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.world.documents import AllowedRoot, WorldDocuments
 from kit.world.problems import ProblemCollector
 from kit.world.records import SourceLocation

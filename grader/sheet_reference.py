@@ -18,10 +18,9 @@ from typing import Final
 
 import yaml
 
-from grader.evidence_digest import YAML_LOADER
+from grader.evidence_digest import ASSIGNMENT_FILE, YAML_LOADER
 from grader.new_assignment import example_of_kind
 from grader.reading import SECRET_FILE, read_sheet
-from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.world.documents import open_document
 from kit.world.key_table import OWN_NAME, FormatKey, format_keys
 from kit.world.yaml_section import Section

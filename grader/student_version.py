@@ -20,13 +20,12 @@ from typing import Final
 import yaml
 
 from grader.assignment import TEACHERS_STEMS, Assignment
-from grader.evidence_digest import YAML_LOADER
+from grader.evidence_digest import ASSIGNMENT_FILE, YAML_LOADER
 from grader.reading import SECRET_FILE
 from grader.submitted_files import IGNORED_NAMES
 from grader.teacher_tests.reading import read_teacher_tests
 from kit.plain_text import join_names
 from kit.results.grading_result import Visibility
-from kit.school.lessons.reading import ASSIGNMENT_FILE
 
 REFERENCE: Final = "reference"
 MAX_FILE: Final = 32 << 20

@@ -21,6 +21,7 @@ from grader.ci.ci_service import CiRunner, GitSource, GradedWork
 from grader.ci.warnings import warnings
 from grader.cli import options
 from grader.cli.progress import shown_progress
+from grader.evidence_digest import ASSIGNMENT_FILE
 from grader.grading import GradingOptions, LevelTooLow
 from grader.kinds.contract import KINDS_PACKAGE, find_kind, kind_names
 from grader.new_assignment import example_of_exercise, example_of_kind, make_assignment
@@ -31,7 +32,6 @@ from kit.cli.options import ExistingPath, describe_os_error
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.plain_text import counted, quoted, suggestion
-from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.workspace import write_atomically
 
 

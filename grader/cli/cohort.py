@@ -139,7 +139,7 @@ def publish(queue: Queue, *, is_graded: bool) -> int:
     default="0/1",
     show_default=True,
     metavar="I/N",
-    help="Grade only share I of N, counting from 0: for a CI matrix or an array job.",
+    help="Grade the I-th of N equal parts of the works, from 0: for a CI matrix or an array job.",
 )
 @click.option(
     "--jobs", type=click.IntRange(1), default=os.cpu_count() or 1, show_default=True, help="Processes."

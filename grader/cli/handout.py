@@ -17,6 +17,7 @@ from grader.budgets import budget_lines
 from grader.ci import REPOSITORY_SERVICES, SERVICES
 from grader.ci.ci_service import CiRunner, GitSource, GradedWork
 from grader.cli import options
+from grader.evidence_digest import ASSIGNMENT_FILE
 from grader.kinds.contract import kind_names
 from grader.new_assignment import CARD
 from grader.sheet_reference import SheetKey, documented_attributes, sheet_keys
@@ -26,7 +27,6 @@ from kit.cli.options import ExistingPath
 from kit.document.blocks import Block, Code, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.plain_text import counted, join_names
-from kit.school.lessons.reading import ASSIGNMENT_FILE
 from kit.workspace import write_atomically
 from kit.world.problems import WorldError
 

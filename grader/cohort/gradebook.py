@@ -383,7 +383,7 @@ def equal_works(table: Sequence[GradebookRow]) -> tuple[tuple[GradebookRow, ...]
 
 
 def class_blocks(table: Sequence[GradebookRow]) -> list[Block]:
-    """Who needs a look besides those without a grade: equal works, works that fit nobody, and who has handed in nothing."""
+    """Returns what a teacher should look at besides missing grades: equal works, works that fit nobody, students without one."""
     strangers = [row.name for row in table if row.student is None]
     has_roster = len(strangers) < len(table)
     missing = [row.name for row in table if row.verdict == MISSING]

@@ -110,7 +110,7 @@ class Roster:
     """The students of a class, and the file in which they stand."""
 
     platform: str
-    """Whose form it has: moodle, canvas, gradescope, github or own."""
+    """Whose format it is: moodle, canvas, gradescope, github or own."""
     titles: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     """Its rows as they stand in the file, with those that are no student's."""
@@ -210,7 +210,7 @@ GRADESCOPE_NAME: Final = re.compile(r"submission_(?P<number>\d+)")
 
 @dataclass(frozen=True, slots=True)
 class WorkOwners:
-    """Whose each work of a class is."""
+    """The student to whom each work of a class belongs."""
 
     students: Mapping[str, tuple[RosterEntry, ...]]
     """By the work's name: one student, or those of a group; empty where it fits nobody, or several."""

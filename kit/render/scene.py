@@ -93,7 +93,7 @@ class ScenePath:
     """(k, 2)"""
     style: Literal["solid", "dashed", "dotted"] = "solid"
     robot: int | None = None
-    """Whose way it is, from 0: drawn in the colour of that robot or its trail; None: nobody's."""
+    """The robot whose way it is, from 0: drawn in the colour of that robot or its trail; None: no robot's."""
 
 
 class PenStroke(NamedTuple):

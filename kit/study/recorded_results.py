@@ -28,10 +28,10 @@ from kit.study.printed_tables import (
 from kit.workspace import Workspace
 
 StudyVariant = Literal["seed", "no-limit", "kit"]
-"""Whose settings agents are trained by: the dissertation's, the same without the limit of values, or the kit's own presets."""
+"""The settings that agents are trained by: the dissertation's, the same without the limit of values, or the kit's own presets."""
 VARIANTS: Final[tuple[StudyVariant, ...]] = ("seed", "no-limit", "kit")
 CONTROLLERS: Final[Mapping[StudyVariant, str]] = {"seed": "fields", "kit": "abreast"}
-"""Who drives where the dissertation has potential fields: its own controller, or the kit's planner."""
+"""The controller that stands for the dissertation's potential fields: its own, or the kit's planner."""
 VARIANT_NAMES: Final[Mapping[StudyVariant, str]] = {
     "seed": "ours",
     "no-limit": "no limit",

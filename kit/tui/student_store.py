@@ -83,7 +83,7 @@ class StudentStore:
             any(event.subject == f"{DAILY_PREFIX}{day.isoformat()}" for event in events),
         )
 
-    def visit(self, lesson: Lesson) -> LessonSession:
+    def open_lesson(self, lesson: Lesson) -> LessonSession:
         """Opens a lesson for the student. Raises ProgressError."""
         from kit.school.lessons.lesson_session import LessonSession
 

@@ -1,4 +1,4 @@
-"""Who is in which layer, and who watches it, as a grid of marks."""
+"""A grid of marks: the bodies in each layer, and the lasers that look at it."""
 
 from __future__ import annotations
 

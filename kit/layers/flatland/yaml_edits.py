@@ -191,7 +191,9 @@ class _YamlDocument:
                 self._text[item.end_mark.index : line.end],
             )
             if not re.fullmatch(r"[ ]*-[ ]+", before) or not re.fullmatch(r"[ \t\r]*(#[^\n]*)?", after):
-                raise UnsafeEdit(f"line {item.start_mark.line + 1} holds more than one name")
+                raise UnsafeEdit(
+                    f"line {item.start_mark.line + 1} holds more than {item.value}: write each name of the list in a line of its own"
+                )
             if item.value not in names:
                 comment = after.strip()
                 indent = before[: before.index("-")]

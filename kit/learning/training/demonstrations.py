@@ -24,7 +24,7 @@ from kit.run.recording import ACCEPT, Recording
 Targets = NDArray[np.generic]
 """Actions of the task's space, one row each."""
 STILL_M, STILL_RAD = 1e-3, 1e-3
-"""Who moves less in a step stands still."""
+"""A robot that moves less in a step stands still."""
 
 
 class DemonstrationError(Exception):

@@ -17,7 +17,7 @@ from kit.arrays import BoolArray, Float32Array, FloatArray
 
 VALUE_MAX, VALUE_MEAN, VALUE_PAYABLE = "value_max", "value_mean", "value_payable"
 RECENT: Final = 1000
-"""So many of the last observations are rated, at least; fewer where there have not been as many."""
+"""The least number of the last observations that are rated; fewer where there have not been as many."""
 
 
 @dataclass(frozen=True, slots=True)

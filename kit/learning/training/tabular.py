@@ -32,7 +32,7 @@ from kit.learning.training.presets import Preset, TabularParams
 MAX_STATES = 20_000
 LEARNING_RATE_FACTOR = 0.5
 FEW_WORLDS = 64
-"""So many are sooner compared with each other than counted in a table of all states."""
+"""The most worlds whose states are compared with each other; of more a table of all states is faster."""
 
 
 class TableLearner(ABC):

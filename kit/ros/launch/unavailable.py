@@ -40,7 +40,7 @@ _SOFTWARE: Final = MappingProxyType(
         r"demo_nodes_cpp|examples_rclcpp\w*|composition|intra_process_demo|lifecycle": (
             "its programs are C++; demo_nodes_py has the same talker, listener and sum"
         ),
-        r"micro_ros_agent|rosbridge_server|foxglove_bridge": "it joins other machines, which is not its place here",
+        r"micro_ros_agent|rosbridge_server|foxglove_bridge": "it connects to other machines, and launch files here start programs on this one alone; `kit bridge` connects to a robot",
     }
 )
 """What such software is, by a pattern of the names of packages and programs."""

@@ -33,7 +33,7 @@ class SharedGameError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Audience:
-    """Who may come in besides the host's own user: a group, everybody, or nobody."""
+    """The accounts that may come in besides the host's own: a group's, all, or none."""
 
     group: int | None = None
     everybody: bool = False

@@ -188,7 +188,7 @@ def caption(moment: DemonstrationView, width: int) -> Row:
 
 
 def agent(name: str, moment: DemonstrationView, width: int, height: int) -> tuple[Row, ...]:
-    """Who drives in which environment, its return so far, and what it perceives and rates how."""
+    """The policy, its environment and return so far, what it perceives and how it rates its actions."""
     about = (
         ("agent", f"{name}, {'best' if moment.kept else 'newest'} of {_short(moment.trained)}"),
         ("environment", f"{moment.environment}, {moment.case}"),

@@ -169,7 +169,7 @@ class LessonsScreen(RowsScreen[None]):
         from kit.tui.screens.lesson import LessonScreen  # of no use to the first frame
 
         try:
-            session = self._store.visit(entry.lesson)
+            session = self._store.open_lesson(entry.lesson)
         except ProgressError as error:
             self.app.push_screen(MessageDialog("Progress cannot be saved", wrapped(str(error))))
             return

@@ -342,7 +342,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         from kit.tui.screens.lesson import LessonScreen  # of no use to the first frame, like all below
 
         try:
-            session = self._store.visit(lesson)
+            session = self._store.open_lesson(lesson)
         except ProgressError as error:
             self.app.push_screen(MessageDialog("Progress cannot be saved", wrapped(str(error))))
             return

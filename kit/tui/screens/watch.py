@@ -118,7 +118,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         self.world = WorldView(lambda: theme.encoder, theme.palette)
         self.view: View | None = None
         self.driver_name = ""
-        """Who drives, where no controller does."""
+        """What the title says drives, where no controller does."""
         self.host: SessionHost
         self._history = SpeedHistory()
         self._notice: Row | None = None

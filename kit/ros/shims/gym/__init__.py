@@ -25,7 +25,7 @@ adapt_checker()
 def make(name: str, **options: Any) -> NoReturn:
     """gym's registry of ready-made environments is not a part of this."""
     raise ImportError(
-        f"gym is not installed, so there is no {name!r} to make; gymnasium has a successor of most"
+        f"gym is not installed, so there is no {name!r} to make; gymnasium, its successor, has most of its environments"
     )
 
 

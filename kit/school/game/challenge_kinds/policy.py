@@ -36,9 +36,9 @@ SIDES: Final = {"l": "ud", "r": "ud", "u": "lr", "d": "lr"}
 """Where a move may slip to."""
 GOAL_PAY, PIT_PAY = 1.0, -1.0
 CHUNK: Final = 2048
-"""So many policies are evaluated together."""
+"""The number of policies that are evaluated together."""
 MAX_POLICIES: Final = 100_000
-"""So many policies of a floor with cells that look alike are compared at most."""
+"""The most policies of a floor with cells that look alike that are compared."""
 
 
 @dataclass(frozen=True, slots=True)
