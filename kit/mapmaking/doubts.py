@@ -85,7 +85,7 @@ def judge_strokes(everything: BoolArray, deep: BoolArray) -> JudgedStrokes:
     rooms = _closed_rooms(kept)
     if rooms:
         remarks.append("a room without a door" if rooms == 1 else f"{rooms} rooms without a door")
-    return JudgedStrokes(kept, everything & ~grown(kept, 5), tuple(remarks))
+    return JudgedStrokes(kept, everything & ~grown(kept, 5), tuple(dict.fromkeys(remarks)))
 
 
 @dataclass(frozen=True, slots=True)
