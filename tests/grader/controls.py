@@ -135,8 +135,8 @@ CONTROLS: Final = (
     Control(
         "a program that stands still in a race",
         "kit/school/game/race.py",
-        "install_driver, on_second, confinement, wall_limit_s, seed)\n",
-        "install_driver, on_second, confinement, seed=seed)\n",
+        "install_driver, on_second, confinement, wall_limit_s, seed, limits)\n",
+        "install_driver, on_second, confinement, seed=seed, limits=limits)\n",
         "grader/cohort/test_program_ladder.py::test_a_race_has_a_wall_clock",
     ),
     Control(

@@ -104,7 +104,11 @@ def test_a_policy_that_fails_or_is_missing_costs_its_own_criteria(folder: Path) 
     ("words", "others", "told"),
     [
         ("maps: [hall_straight]", "maps: [nowhere]", "nowhere"),
-        ("start: [0.625, 0.5, 1.5708]", "start: [0, 0, 0]", "no path from (0, 0)"),
+        (
+            "start: [0.625, 0.5, 1.5708]",
+            "start: [0, 0, 0]",
+            "the start (0, 0) is inside a wall, or off the floor",
+        ),
         ("terms: {progress: 1.0, collided: -1.0, reached: 1.0}", "file: reward.py", "reward.py"),
         ("target: {radius: 0.3}", "target: {radius: 0.51}", "almost anywhere"),
         (
