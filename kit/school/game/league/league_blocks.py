@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText
+from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText, labelled_table
+from kit.plain_text import join_names
+from kit.school.game.league.league import Programme
 from kit.school.game.league.standings import DRAW, Match, Place, Standings
 
 TEXT = CellStyle.TEXT
@@ -16,7 +18,8 @@ def summary_blocks(standings: Standings) -> list[Block]:
     champion = standings.champion
     if len(standings.places) < 2:
         alone = "Nobody is" if not standings.places else f"{standings.places[0].entry.name} alone is"
-        blocks.append(Text(f"{alone} entered: a league needs two. Enter with `kit league submit`."))
+        blocks.append(Text(f"{alone} entered: a league needs two."))
+        blocks += rules_blocks(standings.programme)
     elif champion is None:
         blocks.append(Text("No match has been won yet. `kit league run` runs what is missing."))
     elif standings.is_certain:
@@ -30,6 +33,35 @@ def summary_blocks(standings: Standings) -> list[Block]:
         blocks.append(Text(text, Tone.DIM, is_tight=True))
     blocks += [Text(f"{each.name} takes no part: {each.problem}.", Tone.WARN) for each in standings.refused]
     return blocks
+
+
+def rules_blocks(programme: Programme) -> list[Block]:
+    """What the entrants of a league do, and how one enters."""
+    races, tag = (tuple(level.title for level in levels) for levels in (programme.races, programme.tag))
+    rules = [
+        (
+            "Races",
+            f"{join_names(races)}: each entrant drives alone, from five starts; the middle drives are compared.",
+        )
+        if races
+        else None,
+        (
+            "Tag",
+            f"{join_names(tag)}: two robots in one world; the one that was the catcher for less time wins.",
+        )
+        if tag
+        else None,
+        (
+            "Enter",
+            "`kit league submit --controller FILE` a program of yours, `--agent RUN` an agent that you trained.",
+        ),
+        ("An opponent", "a copy of your program with a change will do, entered with `--name OTHER`."),
+        (
+            "Then",
+            "`kit league run` drives the matches; ratings follow from who beat whom, and each match can be watched.",
+        ),
+    ]
+    return [labelled_table(rule for rule in rules if rule is not None)]
 
 
 def standings_table(standings: Standings) -> Table:

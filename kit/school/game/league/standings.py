@@ -11,7 +11,7 @@ import numpy as np
 
 from kit.run.recording import Recording
 from kit.school.game.league.entries import Entry
-from kit.school.game.league.league import JudgedJob, League, LeagueJob, drive_job, tag_job
+from kit.school.game.league.league import JudgedJob, League, LeagueJob, Programme, drive_job, tag_job
 from kit.school.game.league.ratings import Rating, rate
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import finish_order, middle_drive
@@ -71,6 +71,8 @@ class Standings:
     """Those that are still to be run."""
     refused: tuple[Entry, ...]
     """Entries that take no part."""
+    programme: Programme
+    """What all of them do."""
 
     @property
     def champion(self) -> Place | None:
@@ -109,7 +111,8 @@ def read_standings(league: League) -> Standings:
                 if game is not None:
                     matches.append(tag_match(job, game))
     refused = tuple(each for each in entries if each.problem)
-    return Standings(programme.title, _places(entrants, matches), tuple(matches), len(jobs), waiting, refused)
+    places = _places(entrants, matches)
+    return Standings(programme.title, places, tuple(matches), len(jobs), waiting, refused, programme)
 
 
 def match_recordings(league: League, match: Match) -> tuple[Recording, ...]:

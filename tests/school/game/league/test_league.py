@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from kit.controllers import kit_controllers
+from kit.document.layout import lines_of
 from kit.host.sandbox.confinement import Level
 from kit.school.game.league import league as league_module
 from kit.school.game.league.entries import MAX_BYTES, LeagueError, read_entries, submit, withdraw
@@ -168,7 +169,10 @@ def test_a_lone_entrant_drives_nothing_and_nobody_is_champion(tmp_path: Path) ->
     for count in range(2):
         standings = read_standings(league)
         assert (league.waiting(), len(standings.places), standings.champion) == ((), count, None)
-        assert summary_blocks(standings)
+        told = " ".join(lines_of(summary_blocks(standings)))
+        levels = (*standings.programme.races, *standings.programme.tag)
+        assert all(level.title in told for level in levels)
+        assert "kit league submit" in told
         submit(league.folder, "laser", CONTROLLER, LASER)
 
 
