@@ -84,7 +84,8 @@ def _check_share(plan: BoolArray) -> None:
         )
     if share > 0.3:
         raise NoStrokes(
-            f"{100 * share:.0f} % of the sheet is dark: this does not look like lines on paper. Photograph a drawing of lines."
+            f"{100 * share:.0f} % of the sheet is dark, far more than walls drawn as lines: a picture with grey areas, or paper "
+            "whose printed squares are nearly as dark as the pen. Draw the lines with a thick dark pen on plain paper."
         )
 
 
