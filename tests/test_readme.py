@@ -40,6 +40,10 @@ def test_the_table_of_lessons_is_true() -> None:
     assert text[text.index(FIRST) + len(FIRST) : text.index(LAST)] == table()
 
 
+def test_the_number_of_lessons_is_true() -> None:
+    assert re.findall(r"(\d+) lessons\b", README.read_text()) == [str(len(lesson_names()))]
+
+
 def test_the_teachers_guide_is_what_the_lessons_say() -> None:
     assert GUIDE.read_text() == teachers_guide(), "run python tests/test_readme.py"
 
