@@ -64,7 +64,7 @@ def test_from_a_drawing_to_a_race(kit: Open, tmp_path: Path, monkeypatch: pytest
     sheet.until(lambda: "S" in sheet.text.splitlines()[2], "the start")
     sheet.send(b"4\x1b[F\x1b[D ")
     sheet.until(lambda: "T" in sheet.text.splitlines()[2], "the target")
-    sheet.send(b"f")
+    sheet.send(b"\x13")
     assert "The path from start to target" in said(sheet)
     world = workspace() / "worlds" / "corridor"
 

@@ -135,7 +135,7 @@ _OF_SEVERAL: Final = (
            tuple((key, f"speed('{key}')") for key in "123"), "123"),
     ScreenAction("pan", "h j k l", "pan", "move the picture left, down, up, right", tuple((key, f"pan('{key}')") for key in "hjkl")),
     letter("beams", "b", "beams", "show the laser's beams"),
-    letter("laser_map", "x", "robot's map", "show the map that the robot draws with its laser"),
+    letter("laser_map", "u", "robot's map", "show the map that the robot draws with its laser"),
     letter("controllers", "c", "code", "choose another program; it reloads when saved"),
     letter("nodes", "n", "nodes", "show nodes, topics and their messages"),
     letter("trainings", "t", "trainings", "show trainings, with curves and newest policies"),

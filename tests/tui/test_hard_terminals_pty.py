@@ -21,7 +21,7 @@ COLOURED = re.compile(rb"\x1b\[(?:\d+;)*(?:3[0-7]|4[0-7]|9[0-7]|10[0-7]|38|48)[;
 SCREENS = {
     "start": (("start",), b"", "Lessons"),
     "drive": (("play", "simple"), b"", "forward"),
-    "robot's map": (("play", "simple"), b"x", "forward"),
+    "robot's map": (("play", "simple"), b"u", "forward"),
     "editor": (("play", "simple"), b"\x05", "rclpy"),
     "levels": (("game",), b"", "First drive"),
     "level": (("game", "play", "first-drive"), b"", "The clock starts"),

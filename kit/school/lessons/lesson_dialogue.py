@@ -796,7 +796,7 @@ class LessonDialogue(Dialogue):
         DialogueAction(ACTIONS["next"], go_on, can_go_on, word=next_word, while_busy=True),
         DialogueAction(ACTIONS["defend"], defend, can_defend),
         DialogueAction(letter("run_command", "o", "run", "run a command of this step here"), run_command, has_commands),
-        DialogueAction(letter("film", "f", "film", "let your own lines learn the floor, and drive"), film, can_film),
+        DialogueAction(letter("film", "d", "film", "let your own lines learn the floor, and drive"), film, can_film),
         DialogueAction(ACTIONS["second_terminal"], explain_second_terminal, has_beside),
         DialogueAction(ACTIONS["output"], show_output, can_show_output),
         DialogueAction(

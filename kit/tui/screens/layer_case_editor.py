@@ -49,7 +49,7 @@ class CaseEditor(RowsScreen[LayerCase]):
             ScreenAction("add_body", "2", "body", "add a body, or a part of a model as MODEL.PART", (("2", "add('body')"),), has_priority=True),
             ScreenAction("add_laser", "3", "laser", "add a laser, then type its name", (("3", "add('laser')"),), has_priority=True),
             ScreenAction("delete", "d Del", "delete", "delete the row under the cursor", (("d,delete", "delete"),)),
-            letter("one_model", "f", "one model", "assume that bodies of one model never collide"),
+            letter("one_model", "o", "one model", "assume that bodies of one model never collide"),
         ),
     )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)

@@ -74,7 +74,7 @@ class LayersScreen(RowsScreen[None]):
             ScreenAction("part", "1 2 3 4", "part", "show the case, slides' method, fewest layers, proof", digits("part", 1, 4), "1-4"),
             letter("other_edge", "o", "edge", "change the edge that this step starts with"),
             letter("edit", "e", "edit", "change the case by hand"),
-            letter("save", "f", "save", "save the requirements as a file for kit layers plan", has_priority=True),
+            ScreenAction("save", "Ctrl-S", "save", "save the requirements as a file for kit layers plan", (("ctrl+s", "save"),), "^S", has_priority=True),
         ),
     )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)

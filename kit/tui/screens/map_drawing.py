@@ -141,7 +141,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
             ScreenAction("square_size", "[ ]", "scale", "make the squares smaller or larger (map scale)",
                    (("left_square_bracket", "scale(-1)"), ("right_square_bracket", "scale(1)")), "[ ]"),
             ScreenAction("undo_drawing", "u", "undo", "undo the last change of the drawing", (("u", "undo"),)),
-            ScreenAction("save_map", "f", "save", "save the map, if the target can be reached", (("f", "save"),), "f"),
+            ScreenAction("save_map", "Ctrl-S", "save", "save the map, if the target can be reached", (("ctrl+s", "save"),), "^S"),
         ),
     )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)

@@ -60,7 +60,7 @@ class TrainingsScreen(RowsScreen[None]):
             letter("evaluate", "e", "evaluate", "test the selected run on new episodes"),
             ScreenAction("mark_run", "Space", "mark", "mark a run, to compare the marked ones", (("space", "mark"),)),
             letter("compare", "o", "compare", "compare the marked runs on the same episodes"),
-            letter("sweeps", "f", "sweeps", "show the tables of kit sweep: many seeds compared"),
+            letter("sweeps", "l", "sweeps", "show the tables of kit sweep: many seeds compared"),
             letter("robustness", "k", "robustness", "show the selected run's success under disturbances"),
             letter("rename", "a", "rename", "rename the selected run"),
             ScreenAction("delete_run", "d Del", "delete", "delete the selected run; asks first", (("d,delete", "delete"),)),

@@ -28,7 +28,7 @@ def test_a_key_shows_the_robots_map_and_another_saves_it(tmp_path: Path) -> None
         await until(pilot, lambda: screen.view is not None, "the world")
         await pilot.press("y")
         await seen(pilot, "There is no map yet")
-        await pilot.press("escape", "x")
+        await pilot.press("escape", "u")
         await until(pilot, lambda: screen.laser_cells is not None, "a first scan")
         shown = screen._newest_scene()
         assert shown.cells is not None
@@ -37,7 +37,7 @@ def test_a_key_shows_the_robots_map_and_another_saves_it(tmp_path: Path) -> None
         await pilot.press("y")
         await seen(pilot, "simple.map.png")
         assert (folder.parent / "cards/simple.map.yaml").exists()
-        await pilot.press("escape", "x")
+        await pilot.press("escape", "u")
         assert screen._newest_scene().cells is None
         assert len(screen._newest_scene().walls)
 

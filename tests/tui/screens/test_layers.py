@@ -203,9 +203,9 @@ def test_what_cannot_be_is_said_and_the_field_stays() -> None:
 def test_a_case_is_saved_and_no_file_is_overwritten(tmp_path: Path) -> None:
     async def scene(screen: LayersScreen, pilot: Pilot[None]) -> None:
         for expected in ("written:", "already exists"):
-            await pilot.press("f", *"test", "enter")
+            await pilot.press("ctrl+s", *"test", "enter")
             assert expected in text(screen)
-        await pilot.press("f", *"../up", "enter")
+        await pilot.press("ctrl+s", *"../up", "enter")
 
     play(scene, folder=tmp_path / "worlds")
     saved = tmp_path / "worlds" / "test.layers.yaml"

@@ -53,12 +53,12 @@ def test_a_map_is_drawn_with_the_keys_and_written(desk: Desk) -> None:
         await pilot.press("space", "shift+down", "shift+down", "shift+down")
         await pilot.press("up", "3", "space")
         await seen(pilot, "there is a wall here")
-        await pilot.press("4", "end", "left", "space", "f")  # the target is behind the wall
+        await pilot.press("4", "end", "left", "space", "ctrl+s")  # the target is behind the wall
         await seen(pilot, "Not saved")
         await seen(pilot, "There is no path")
         await pilot.press("escape", "u", "1", "home", "right", "right", "right", "right", "2", "space")
         assert drawing(pilot).sketch.rows[3][4] == " "
-        await pilot.press("4", "end", "left", "space", "right_square_bracket", "f")
+        await pilot.press("4", "end", "left", "space", "right_square_bracket", "ctrl+s")
         await until(pilot, lambda: desk.made, "the map")
 
     stage(desk.open, scene)

@@ -83,12 +83,12 @@ def test_runs_are_tested_compared_renamed_and_deleted(folder: Path) -> None:
 def test_the_tables_of_sweeps_are_shown(folder: Path) -> None:
     async def without(pilot: Pilot[None]) -> None:
         await seen(pilot, ">  two")
-        await pilot.press("f")
+        await pilot.press("l")
         await seen(pilot, "No sweeps yet")
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, ">  two")
-        await pilot.press("f")
+        await pilot.press("l")
         await seen(pilot, "0 of 2 trained")
         await pilot.press("enter")
         await seen(pilot, "go on")
@@ -190,7 +190,7 @@ def test_several_trainings_are_a_sweep_that_goes_on_and_can_be_stopped(
         sweeps.extend(TrainingSweep(each.parent) for each in folder.parent.glob("sweeps/*/manifest.json"))
         assert [entry.config.seed for entry in sweeps[0].entries()] == [0, 1, 2]
         assert sweeps[0].is_active
-        await pilot.press("f")
+        await pilot.press("l")
         await seen(pilot, "0 of 3 trained, training")
         await pilot.press("enter")
         await seen(pilot, "stop")
