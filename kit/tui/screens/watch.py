@@ -261,17 +261,20 @@ class WatchScreen(RowsScreen[None], DriveScreen):
             self.app.push_screen(MessageDialog("The robot's map", wrapped(text)))
             return
         scene = self.as_the_robot_knows_it(Scene(walls=view.scene.walls, trails=view.scene.trails), cells)
-        picture = scene_rows(scene, MAP_COLUMNS, MAP_ROWS, self.world.encoder)
         try:
             saved = save_laser_map(cells, folder, name)
             text = (
-                f"Saved in {folder}:\n{saved.image.name}, and {saved.layer.name} for ROS's map_server and for a "
-                "layer of a world."
+                f"Saved as {saved.image.name}, and {saved.layer.name} for ROS's map_server and for a layer of a world, "
+                f"in {folder}"
             )
         except OSError as error:
             text = f"It could not be saved: {error.strerror}."
-        rows = [*(row(each) for each in picture), row(), *wrapped(text)]
-        self.app.push_screen(MessageDialog("The robot's map", rows))
+        told = wrapped(text)
+        rows_left = self.size.height - len(told) - 3  # the dialog's frame and a blank row
+        picture = scene_rows(scene, MAP_COLUMNS, max(1, min(MAP_ROWS, rows_left)), self.world.encoder)
+        self.app.push_screen(
+            MessageDialog("The robot's map", [*(row(each) for each in picture), row(), *told])
+        )
 
     # What arrives from the world's threads
 
