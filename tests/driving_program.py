@@ -12,7 +12,7 @@ from rclpy.node import Node
 
 class Driver(Node):
     def __init__(self):
-        super().__init__("driver")
+        super().__init__("{name}")
         self.drive = self.create_publisher(Twist, "cmd_vel", 10)
         self.count = 0
         self.create_timer({period_s}, self.go)
@@ -37,9 +37,14 @@ if __name__ == "__main__":
 
 
 def driving_program(
-    speed: object = 0.0, turning: object = 0.0, *, then: str = "", period_s: float = 0.1
+    speed: object = 0.0,
+    turning: object = 0.0,
+    *,
+    then: str = "",
+    period_s: float = 0.1,
+    name: str = "driver",
 ) -> str:
     """Returns its source. ``speed`` [m/s] and ``turning`` [rad/s] are numbers or the source of an expression; ``then`` is what
-    it does after it has published, and may ask ``self.count``, the number of this turn."""
+    it does after it has published, and may ask ``self.count``, the number of this turn. ``name`` is the node's."""
     lines = indent(then or "pass", 8 * " ")
-    return _PROGRAM.format(speed=speed, turning=turning, period_s=period_s, then=lines)
+    return _PROGRAM.format(speed=speed, turning=turning, period_s=period_s, then=lines, name=name)

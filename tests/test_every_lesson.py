@@ -264,7 +264,7 @@ def test_standing_still_driving_straight_and_turning_earn_at_most_a_fifth(
 ) -> None:
     _, task = exercise_of(name, exercise)
     assignment = read_assignment(task.folder)
-    source = driving_program(speed, rate)
+    source = driving_program(speed, rate, name="probe")
     submission = Submission("probe", assignment.submit, {assignment.submit: source.encode()})
     result = grade(assignment, submission, GradingOptions(Level.LIMITED, secret=True))
     assert result.points is not None

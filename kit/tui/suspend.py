@@ -54,8 +54,10 @@ def edit_aside(app: App[Any], file: Path, line: int, terminal: TerminalDecision)
     try:
         with app.suspend():
             if keys := keys_of_vi(os.environ, arguments):
-                print(f"\n{keys}\nEnter opens it. ", end="", file=sys.__stderr__, flush=True)
                 assert sys.__stdin__ is not None  # a terminal has been lent
+                assert sys.__stderr__ is not None
+                sys.__stderr__.write(f"\n{keys}\nEnter opens it. ")
+                sys.__stderr__.flush()
                 sys.__stdin__.readline()
             run_here(
                 shlex.join(arguments), arguments, {**os.environ, **terminal.environment()}, file.parent, False

@@ -141,7 +141,7 @@ def _chapters() -> tuple[Chapter, ...]:
         *_device_chapters(),
         chapter(
             "Charge file of a field",
-            "`charges.yaml` beside a world says how its walls act in `kit fields`; without it they are derived from the walls. "
+            "`charges.yaml` beside a world says how its walls act in `kit fields show`; without it they are derived from the walls. "
             "`maps/pair_turn/charges.yaml` is an example.",
             *key_tables("charges", charge_keys(), read_charges.__doc__ or ""),
         ),
