@@ -55,8 +55,8 @@ def format_policy_node(policy: Policy) -> str:
     head, _, tail = template.partition(LEARNED_MARK)
     _, _, tail = tail.partition(LEARNED_MARK)
     between, _, tail = tail.partition(COUNT_MARK)
-    usual, _, rest = tail.partition(COUNT_MARK)
-    count = _goal_program(task.goal) if task.observation.achieved else usual
+    _, _, rest = tail.partition(COUNT_MARK)
+    count = _count_text(task.goal if task.observation.achieved else None)
     marked = f"{LEARNED_MARK}{_format_constants(policy, task)}{LEARNED_MARK}{between}{COUNT_MARK}{count}{COUNT_MARK}"
     return f"{head}{marked}{rest}"
 
@@ -89,7 +89,7 @@ def _refusals(task: LearningTask) -> Iterator[str]:
 
 def _refusals_to_count(task: LearningTask) -> Iterator[str]:
     goal, known = task.goal, CaseArrays(task).goal_cases
-    if _goal_program(goal) is None:
+    if not _can_count(goal):
         yield f"agents see how much is achieved, which a node cannot count for the goal {goal.kind}"
     elif not goal.is_route and any(goal.node_facts(each) != goal.node_facts(known[0]) for each in known):
         yield "agents see how much is achieved, which a node can count for one case only, and there are several"
@@ -99,12 +99,21 @@ def _all(topics: Sequence[RobotTopics]) -> list[str]:
     return [name for robot in topics for name in robot]
 
 
-def _goal_program(goal: Goal) -> str | None:
-    """The class by which a node counts a goal, as its file has it; None where a node cannot."""
-    file = files(GOAL_PROGRAMS).joinpath(f"{goal.kind}.py")
-    if not file.is_file():
-        return None
-    return "class GoalCount" + file.read_text().partition("class GoalCount")[2].rstrip() + "\n\n\n"
+def _count_text(goal: Goal | None) -> str:
+    """The classes by which a node counts a goal, as their files have them; None: those of a node that is not told."""
+    common = _class_text(files(GOAL_PROGRAMS).joinpath("goal_count.py").read_text())
+    own = "" if goal is None else _class_text(files(GOAL_PROGRAMS).joinpath(f"{goal.kind}.py").read_text())
+    name = own.removeprefix("class ").partition("(")[0] or "GoalCount"
+    return f"{common}{own}COUNT = {name}\n\n\n"
+
+
+def _class_text(program: str) -> str:
+    """What a file holds from its first class on."""
+    return "class " + program.partition("\nclass ")[2].rstrip() + "\n\n\n"
+
+
+def _can_count(goal: Goal) -> bool:
+    return files(GOAL_PROGRAMS).joinpath(f"{goal.kind}.py").is_file()
 
 
 def _first_card(task: LearningTask) -> MapCard:

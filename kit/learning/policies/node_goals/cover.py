@@ -1,7 +1,4 @@
-"""How a node counts the goal to drive over a share of the floor: as ``kit.learning.tasks.goals.cover`` does.
-
-Written into the program of a policy that is told how much of its goal is achieved; needs numpy alone.
-"""
+"""How a node counts the goal to drive over a share of the floor: as ``kit.learning.tasks.goals.cover`` does."""
 
 from __future__ import annotations
 
@@ -11,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from kit.learning.policies.node_goals.goal_count import GoalCount, GoalStep
 
-class GoalCount:
+
+class CoverCount(GoalCount):
     """The number of cells of the floor that have been covered."""
 
     def __init__(self, facts: dict[str, Any]) -> None:
-        self.needed: float = facts["needed"]
-        self.is_told_later: bool = facts["is_told_later"]
+        super().__init__(facts)
         self.radius, cell, (x, y) = facts["radius"], facts["cell"], facts["origin"]
         packed = np.frombuffer(zlib.decompress(base64.b64decode(facts["floor"])), dtype=np.uint8)
         rows, columns = facts["shape"]
@@ -30,16 +28,8 @@ class GoalCount:
         self.covered[:] = False
         return self.cover(poses)
 
-    def count(
-        self,
-        count: float,
-        poses: np.ndarray,
-        before: np.ndarray,
-        arrived: bool,
-        place: Any,
-        beside: np.ndarray,
-    ) -> float:
-        return self.cover(poses)
+    def count(self, count: float, step: GoalStep) -> float:
+        return self.cover(step.poses)
 
     def cover(self, poses: np.ndarray) -> float:
         """Marks what robots at these poses cover, and returns how many cells have been covered."""

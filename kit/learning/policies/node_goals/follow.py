@@ -1,35 +1,15 @@
-"""How a node counts the goal to stay near a target that moves: as ``kit.learning.tasks.goals.follow`` does.
-
-Written into the program of a policy that is told how much of its goal is achieved; needs numpy alone.
-"""
+"""How a node counts the goal to stay near a target that moves: as ``kit.learning.tasks.goals.follow`` does."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from kit.learning.policies.node_goals.goal_count import GoalCount, GoalStep
 
-class GoalCount:
+
+class FollowCount(GoalCount):
     """Seconds in which every robot was near its leader."""
 
-    def __init__(self, facts: dict[str, Any]) -> None:
-        self.needed: float = facts["needed"]
-        self.is_told_later: bool = facts["is_told_later"]
-        self.nearest, self.farthest, self.step_time = facts["nearest"], facts["farthest"], facts["step_time"]
-
-    def begin(self, poses: np.ndarray) -> float:
-        return 0.0
-
-    def count(
-        self,
-        count: float,
-        poses: np.ndarray,
-        before: np.ndarray,
-        arrived: bool,
-        place: Any,
-        beside: np.ndarray,
-    ) -> float:
-        distance = np.hypot(*(poses[:, :2] - place).T)
-        is_near = bool(((distance >= self.nearest) & (distance <= self.farthest)).all())
-        return count + is_near * float(self.step_time)
+    def count(self, count: float, step: GoalStep) -> float:
+        distance = np.hypot(*(step.poses[:, :2] - step.place).T)
+        return count + self.is_within(distance) * float(self.facts["step_time"])

@@ -9,7 +9,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from kit.arrays import FloatArray
-from kit.learning.tasks.goals.goal import CaseTargets, Goal, GoalCase, GoalCount
+from kit.learning.tasks.goals.goal import CaseTargets, Goal, GoalCase, GoalCount, read_distances
 from kit.learning.tasks.transition import Transition
 from kit.world.yaml_section import Section
 
@@ -30,14 +30,8 @@ class FollowGoal(Goal):
     @classmethod
     def read(cls, section: Section) -> Self:
         usual = cls()
-        goal = cls(
-            section.number("nearest", usual.nearest, minimum=0),
-            section.number("farthest", usual.farthest, above=0),
-            section.number("time", usual.time, above=0),
-        )
-        if goal.nearest >= goal.farthest:
-            section.error(f"farthest must be greater than nearest, {goal.nearest:g}", "farthest")
-        return goal
+        distances = read_distances(section, usual.nearest, usual.farthest)
+        return cls(*distances, section.number("time", usual.time, above=0))
 
     @property
     def description(self) -> str:

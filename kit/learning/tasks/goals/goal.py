@@ -154,6 +154,16 @@ class Goal(ABC):
         return ", ".join(f"{name} {_plain(usual)}".rstrip() for name, usual in told)
 
 
+def read_distances(section: Section, nearest: float, farthest: float) -> tuple[float, float]:
+    """Reads the distances [m] between which something counts; ``nearest`` and ``farthest`` are the usual ones. Notes a mistake
+    in the section."""
+    low = section.number("nearest", nearest, minimum=0)
+    high = section.number("farthest", farthest, above=0)
+    if low >= high:
+        section.error(f"farthest must be greater than nearest, {low:g}", "farthest")
+    return low, high
+
+
 def _plain(value: object) -> str:
     if value is None:
         return ""

@@ -18,6 +18,7 @@ from kit.learning.authoring.new_task import new_task_file
 from kit.learning.authoring.task_check import check_task
 from kit.learning.authoring.task_text import build_case_scene, key_tables, task_blocks
 from kit.learning.environment.batch import BatchEnv
+from kit.learning.policies.node_goals.goal_count import GoalStep
 from kit.learning.policies.policy_node import node_refusals
 from kit.learning.tasks.goals.goal import CaseTargets
 from kit.learning.tasks.goals.registry import goal_kinds
@@ -181,7 +182,8 @@ def test_a_node_counts_it_as_training_does_or_is_refused(kind: str, tmp_path: Pa
         assert any(f"goal {kind}" in each for each in node_refusals(read.task))
         return
     assert node_refusals(read.task) == ()
-    count = import_module(f"kit.learning.policies.node_goals.{kind}").GoalCount(
+    module = import_module(f"kit.learning.policies.node_goals.{kind}")
+    count = getattr(module, f"{kind.title()}Count")(
         json.loads(json.dumps({**goal.node_facts(cases[0]), "step_time": read.task.step_time}))
     )
     assert count.is_told_later == goal.is_told_later
@@ -191,11 +193,13 @@ def test_a_node_counts_it_as_training_does_or_is_refused(kind: str, tmp_path: Pa
     for step in steps:
         told = count.count(
             told,
-            step.pose[0],
-            step.previous_pose[0],
-            bool(step.in_target.all()),
-            step.target[0],
-            np.stack([step.beside_left[0], step.beside_right[0]], axis=1),
+            GoalStep(
+                step.pose[0],
+                step.previous_pose[0],
+                bool(step.in_target.all()),
+                step.target[0],
+                np.stack([step.beside_left[0], step.beside_right[0]], axis=1),
+            ),
         )
         if step.collided[0] or step.ended[0]:
             break
