@@ -139,7 +139,7 @@ def _tell_shared_game(client: SharedGameClient) -> None:
     """Prints how a shared game stands, whenever that has changed and every few seconds, until it ends."""
     from kit.school.game.levels import find_level
     from kit.school.game.two_players import SharedGameState, SharedMode, SharedPhase
-    from kit.tui.rows.level_rows import shared_message
+    from kit.tui.rows.shared_game_rows import shared_message
 
     told: SimpleQueue[SharedGameState | str] = SimpleQueue()
     client.follow(told.put, told.put)

@@ -14,10 +14,7 @@ from kit.study.printed_tables import (
     PrintedTable,
     study_chapters,
 )
-from kit.study.recorded_results import (
-    VARIANT_NAMES,
-    find_recorded_results,
-)
+from kit.study.recorded_results import VARIANT_NAMES, find_recorded_results
 from kit.study.study_document import DOCUMENT, recorded_study_document
 from kit.study.study_report import (
     Results,

@@ -42,10 +42,10 @@ from kit.study.recorded_results import (
     VARIANTS,
     RecordedResult,
     StudyVariant,
-    cells_below,
     find_recorded_result,
     find_recorded_results,
 )
+from kit.study.seed_spread import cells_below
 from kit.study.study_report import (
     Durations,
     Results,
@@ -65,6 +65,25 @@ AUTHOR: Final = "author"
 TITLE: Final = "The dissertation's tables and figures"
 DOCUMENT: Final = SHIPPED_FOLDER / "STUDY.md"
 """The document that comes with the kit."""
+
+
+FAILURES_NOTE: Final = (
+    "Every recorded cell whose 95 % interval lies below the printed number. Seeds were fixed before and are 0, 1, ...; no "
+    "agent was trained again, and no setting changed, for any of these."
+)
+_VARIANT_WORDS: Final[Mapping[StudyVariant, str]] = {
+    "seed": "by the dissertation's settings",
+    "no-limit": "by the same without their limit of values",
+    "kit": "by the kit's own preset",
+}
+PATHS_LEGEND: Final = (
+    "Solid: the left or only robot, dashed: the right one, with a mark for every second; dotted: the target was not "
+    "reached. S: starts; T or a circle: targets."
+)
+CHOSEN_EPISODES: Final = "Of 20 episodes, the first that reached the target and the first that did not are shown, then the next ones."
+FIRST_RUN: Final = (
+    "The first of the table's runs, from the case's exact start; one that gets stuck counts as timed out."
+)
 
 
 class UnknownStudyNumber(LookupError):
@@ -149,12 +168,6 @@ def _failures(chosen: list[StudyChapter], workspace: Workspace | None) -> Iterat
         yield Chapter("failures", "Below the printed number", (Text(FAILURES_NOTE), table))
 
 
-FAILURES_NOTE: Final = (
-    "Every recorded cell whose 95 % interval lies below the printed number. Seeds were fixed before and are 0, 1, ...; no "
-    "agent was trained again, and no setting changed, for any of these."
-)
-
-
 def recorded_study_document() -> str:
     """The document as it follows from the printed cells and the logs that come with the kit."""
     _, whole = chapters("", "", None, to_files=True, with_plots=False)
@@ -217,13 +230,6 @@ def _is_recorded(figure: PrintedFigure, workspace: Workspace | None) -> bool:
     return recorded is not None and any(recorded.paths_of(figure.group, case) for _, case in figure.paths)
 
 
-_VARIANT_WORDS: Final[Mapping[StudyVariant, str]] = {
-    "seed": "by the dissertation's settings",
-    "no-limit": "by the same without their limit of values",
-    "kit": "by the kit's own preset",
-}
-
-
 def _table(number: str, workspace: Workspace | None) -> Chapter:
     for chapter in study_chapters():
         for table in chapter.tables:
@@ -272,16 +278,6 @@ def _figure_paths(figure: PrintedFigure, recorded: RecordedResult | None, *, wit
 
     choice = FIRST_RUN if figure.group == POTENTIAL_FIELDS else CHOSEN_EPISODES
     return [*path_plots(figure, recorded), Text(f"{PATHS_LEGEND} {choice}")]
-
-
-PATHS_LEGEND: Final = (
-    "Solid: the left or only robot, dashed: the right one, with a mark for every second; dotted: the target was not "
-    "reached. S: starts; T or a circle: targets."
-)
-CHOSEN_EPISODES: Final = "Of 20 episodes, the first that reached the target and the first that did not are shown, then the next ones."
-FIRST_RUN: Final = (
-    "The first of the table's runs, from the case's exact start; one that gets stuck counts as timed out."
-)
 
 
 def _figure_plots(

@@ -42,11 +42,10 @@ from kit.study.recorded_results import (
     StudyVariant,
     TrainedSeeds,
     TrainingSession,
-    cells_below,
     log_name,
     pooled_cell,
-    spread_table,
 )
+from kit.study.seed_spread import cells_below, spread_table
 
 RecordedCells = Mapping[tuple[str, str], RecordedCell]
 """Cells by row and column of a printed table."""

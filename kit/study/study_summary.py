@@ -24,12 +24,8 @@ from kit.study.printed_tables import (
     PrintedTable,
     printed_table,
 )
-from kit.study.recorded_results import (
-    RecordedResult,
-    TrainedSeeds,
-    find_recorded_results,
-    seed_means,
-)
+from kit.study.recorded_results import RecordedResult, TrainedSeeds, find_recorded_results
+from kit.study.seed_spread import seed_means
 from kit.study.study_report import (
     RecordedCells,
 )

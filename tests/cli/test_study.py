@@ -20,12 +20,7 @@ from kit.cli import study as study_command
 from kit.learning.training.runs import TrainingRun
 from kit.study import printed_tables, recorded_results, study_document
 from kit.study.printed_tables import printed_table, study_chapters
-from kit.study.recorded_results import (
-    RecordedTest,
-    append_event,
-    read_recorded_result,
-    recorded_result_file,
-)
+from kit.study.recorded_results import RecordedTest, append_event, read_recorded_result, recorded_result_file
 from kit.study.study_runs import StudyRun
 from kit.workspace import Workspace
 from tests.waiting import wait_until

@@ -31,7 +31,7 @@ from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GIB, GRADER_LIMITS
 from kit.host.wire import OVER_DISK_LIMIT
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.maps.batch_map import FLOOR_CELL
+from kit.learning.maps.batch_floor import FLOOR_CELL
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.render import raster
 from kit.results.grading_result import GradingVerdict

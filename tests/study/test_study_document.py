@@ -25,10 +25,10 @@ from kit.study.recorded_results import (
     RecordedTest,
     TrainingSession,
     append_event,
-    cells_below,
     find_recorded_result,
     read_recorded_result,
 )
+from kit.study.seed_spread import cells_below
 from kit.study.study_check import check_document, incomparable_rows
 from kit.study.study_document import recorded_study_document
 from kit.study.study_runs import StudyRun

@@ -25,7 +25,8 @@ from grader.evidence.training_results import PosedTaskPlan
 from grader.task_files import problem_of_task
 from kit.learning.authoring.task_check import touching
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.maps.batch_map import load_batch_map, measure_floor
+from kit.learning.maps.batch_floor import measure_floor
+from kit.learning.maps.batch_map import load_batch_map
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.world.catalogue import maps_folder
 

@@ -7,7 +7,8 @@ import re
 from pathlib import Path
 
 from kit.geometry import Pose
-from kit.learning.maps.batch_map import BatchMap, hull_radius, hull_width, load_batch_map, measure_floor
+from kit.learning.maps.batch_floor import hull_radius, hull_width, measure_floor
+from kit.learning.maps.batch_map import BatchMap, load_batch_map
 from kit.learning.tasks.catalogue import task_names, tasks_folder
 from kit.learning.tasks.goals.registry import goal_kinds
 from kit.learning.tasks.goals.target import REACH_TARGET

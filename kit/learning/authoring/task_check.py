@@ -8,15 +8,8 @@ from kit.arrays import BoolArray, FloatArray
 from kit.geometry import Pose
 from kit.kernels import world_kernels
 from kit.learning.environment.case_arrays import CaseArrays
-from kit.learning.maps.batch_map import (
-    BatchMap,
-    are_on_floor,
-    batch_geometry,
-    hull_radius,
-    hull_width,
-    load_batch_map,
-    measure_floor,
-)
+from kit.learning.maps.batch_floor import are_on_floor, hull_radius, hull_width, measure_floor
+from kit.learning.maps.batch_map import BatchMap, batch_geometry, load_batch_map
 from kit.learning.tasks.case_reader import START_KEYS, TARGET_KEYS, PlacedCase
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.student_reward import reward_parameters

@@ -13,7 +13,8 @@ import numpy as np
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, Tone, ToneText, labelled_table
 from kit.geometry import Pose
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.maps.batch_map import hull_radius, load_batch_map, measure_floor
+from kit.learning.maps.batch_floor import hull_radius, measure_floor
+from kit.learning.maps.batch_map import load_batch_map
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.catalogue import tasks_folder
 from kit.learning.tasks.curriculum import practices

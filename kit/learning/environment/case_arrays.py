@@ -11,16 +11,8 @@ import numpy as np
 from kit.arrays import BoolArray, FloatArray, IntArray
 from kit.kernels import compilation, grids, kernels, world_kernels
 from kit.learning.environment.distance_field import CELL, DistanceField, compute_distance_field
-from kit.learning.maps.batch_map import (
-    FLOOR_CELL,
-    BatchMap,
-    UnsupportedWorld,
-    batch_geometry,
-    hull_radius,
-    hull_width,
-    load_batch_map,
-    measure_floor,
-)
+from kit.learning.maps.batch_floor import FLOOR_CELL, hull_radius, hull_width, measure_floor
+from kit.learning.maps.batch_map import BatchMap, UnsupportedWorld, batch_geometry, load_batch_map
 from kit.learning.maps.obstacles import ObstacleMotions, make_obstacle_parts
 from kit.learning.maps.ray_directions import RAY_COUNT
 from kit.learning.tasks.goals.goal import GoalCase

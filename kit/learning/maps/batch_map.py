@@ -10,13 +10,13 @@ from itertools import permutations
 
 import numpy as np
 
-from kit.arrays import BoolArray, FloatArray, IndexArray, IntArray
-from kit.fields.occupancy_grid import ClearanceGrid, wall_distances
+from kit.arrays import FloatArray, IntArray
 from kit.geometry import Pose
 from kit.kernels import kernels
 from kit.kernels.lidar_index import make_beams, make_visibility_cells, make_wall_blocks
 from kit.learning.maps.obstacles import SEEN, TOUCHED, Obstacle, ObstaclePart
 from kit.learning.maps.ray_directions import RAY_COUNT, ray_direction
+from kit.learning.maps.wall_culling import cull_walls
 from kit.plain_text import quoted, suggestion
 from kit.sim.plugins.bumper import BumperParams
 from kit.sim.plugins.diff_drive import DiffDriveParams
@@ -435,104 +435,3 @@ def _check_pair(one: Model, other: Model, world: World) -> None:
 def _layer_names(world: World, bits: int) -> str:
     """``solid, seen``"""
     return ", ".join(layer.name for layer in world.layers if layer.bits & bits)
-
-
-# Walls that can be seen
-
-SAME_DECIMALS = 9
-"""Decimals to which ends of walls must agree to be the same point."""
-
-
-def cull_walls(walls: FloatArray, point: tuple[float, float]) -> FloatArray:
-    """Returns the walls (n, 4) ``x1 y1 x2 y2`` that are not wholly outside the smallest ring around ``point``; in their order.
-
-    A ring is a closed chain of walls that share ends two by two. All walls where there is none.
-    """
-    around = [ring for ring in _find_rings(walls) if _is_inside(np.array([point]), walls[ring])[0]]
-    if not around:
-        return walls
-    ring = min(around, key=lambda each: float(np.prod(np.ptp(walls[each].reshape(-1, 2), axis=0))))
-    kept = _is_inside(walls[:, :2], walls[ring]) | _is_inside(walls[:, 2:], walls[ring])
-    kept[ring] = True
-    outside = np.flatnonzero(~kept)
-    kept[outside] = _is_crossing(walls[outside], walls[ring])
-    return walls[kept]
-
-
-def _find_rings(walls: FloatArray) -> Iterator[IndexArray]:
-    """The numbers of the walls of each ring."""
-    import networkx as nx  # here: it takes longer than all else that a world in batches imports
-
-    graph = nx.MultiGraph()
-    for number, (x1, y1, x2, y2) in enumerate(walls.round(SAME_DECIMALS).tolist()):
-        graph.add_edge((x1, y1), (x2, y2), number=number)
-    for part in nx.connected_components(graph):
-        ring = graph.subgraph(part)
-        if len(part) > 2 and all(degree == 2 for _, degree in ring.degree):
-            yield np.array([number for *_, number in ring.edges(data="number")])
-
-
-def _is_inside(points: FloatArray, ring: FloatArray) -> BoolArray:
-    """(n,) which of the points (n, 2) a ring (m, 4) encloses: a ray from there to the right meets it an odd number of
-    times."""
-    x, y = points[:, :1], points[:, 1:]
-    x1, y1, x2, y2 = ring.T
-    level = (y1 > y) != (y2 > y)
-    rise = np.where(y2 == y1, 1.0, y2 - y1)
-    odd: BoolArray = (level & (x < x1 + (y - y1) / rise * (x2 - x1))).sum(axis=1) % 2 == 1
-    return odd
-
-
-def _is_crossing(walls: FloatArray, ring: FloatArray) -> BoolArray:
-    """(n,) which of the walls meet one of the ring's."""
-    a, b = walls[:, None, :2], walls[:, None, 2:]
-    c, d = ring[None, :, :2], ring[None, :, 2:]
-    apart = (_side(a, b, c) * _side(a, b, d) > 0) | (_side(c, d, a) * _side(c, d, b) > 0)
-    meets: BoolArray = np.logical_not(apart.all(axis=1))
-    return meets
-
-
-def _side(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
-    """Positive where the points c lie to the left of the line from a to b, negative to the right."""
-    cross: FloatArray = (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (
-        c[..., 0] - a[..., 0]
-    )
-    return cross
-
-
-FLOOR_CELL = 0.05
-"""Side of the floor's square cells [m]."""
-MARGIN = 0.6
-"""Distances to walls are known up to here [m]."""
-
-
-@cache
-def measure_floor(batch_map: BatchMap) -> ClearanceGrid:
-    """The floor within a map's walls."""
-    points = np.concatenate([batch_map.walls.reshape(-1, 2), [[each.x, each.y] for each in batch_map.starts]])
-    low, high = points.min(axis=0), points.max(axis=0)
-    origin = low + 0.5 * FLOOR_CELL
-    columns, rows = np.maximum(1, np.ceil((high - low) / FLOOR_CELL)).astype(int)
-    x, y = origin[0] + FLOOR_CELL * np.arange(columns), origin[1] + FLOOR_CELL * np.arange(rows)
-    room = np.minimum(wall_distances(x, y, batch_map.walls, MARGIN), MARGIN)
-    return ClearanceGrid((float(origin[0]), float(origin[1])), FLOOR_CELL, room)
-
-
-def are_on_floor(batch_map: BatchMap, points: FloatArray) -> BoolArray:
-    """(n,) which of the points (n, 2) [m] lie on the floor that closed walls surround, and not within a pillar; all of them
-    where the robot's place in the world is not surrounded."""
-    rings, place = list(_find_rings(batch_map.walls)), np.array([batch_map.starts[0][:2]])
-    if not any(_is_inside(place, batch_map.walls[ring])[0] for ring in rings):
-        return np.ones(len(points), dtype=np.bool_)
-    return _is_inside(points, batch_map.walls[np.concatenate(rings)])
-
-
-def hull_radius(batch_map: BatchMap) -> float:
-    """How far the farthest point of a robot lies from its origin [m]."""
-    return max(math.hypot(x, y) for part in batch_map.robot.hull for x, y in part)
-
-
-def hull_width(batch_map: BatchMap) -> float:
-    """The width of the narrowest passage for a robot [m]: the shorter side of the rectangle around its hull."""
-    corners = np.array([corner for part in batch_map.robot.hull for corner in part])
-    return float(np.ptp(corners, axis=0).min())

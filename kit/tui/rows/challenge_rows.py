@@ -14,7 +14,8 @@ from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.school.lessons.reading import lesson_number
 from kit.school.lessons.shell_lines import shell_path
-from kit.tui.rows.level_rows import MEDAL_SIGNS, MEDAL_STYLES, TITLE_WIDTH, medal_row, share_bar
+from kit.tui.rows.drive_end_rows import medal_row, share_bar
+from kit.tui.rows.level_rows import MEDAL_SIGNS, MEDAL_STYLES, TITLE_WIDTH
 
 TITLE_COLUMNS: Final = TITLE_WIDTH + 8
 HEADER: Final = f"  {'challenge':<{TITLE_COLUMNS}} medal  lesson"

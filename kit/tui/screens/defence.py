@@ -10,7 +10,7 @@ from kit.school.lessons.defence_dialogue import DefenceDialogue
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.lesson_page import LessonSceneView
+from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace

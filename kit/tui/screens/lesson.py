@@ -38,14 +38,9 @@ from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.tui.suspend import edit_aside, run_aside
 from kit.tui.theme import Theme
-from kit.tui.widgets.lesson_page import (
-    BESIDE,
-    LessonContent,
-    LessonPage,
-    LessonSceneView,
-    PageLayout,
-    PlaybackSceneView,
-)
+from kit.tui.widgets.lesson_page import BESIDE, LessonContent, LessonPage, PageLayout
+from kit.tui.widgets.lesson_scene_view import LessonSceneView
+from kit.tui.widgets.playback_scene_view import PlaybackSceneView
 from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import ErrorEvent
 from kit.workspace import Workspace

@@ -22,7 +22,7 @@ from kit.school.lessons.catalogue import LessonEntry
 from kit.school.lessons.records import Lesson
 from kit.school.progress import EventKind, ProgressError
 from kit.school.quiz.items import read_bank
-from kit.tui.rows import lesson_rows
+from kit.tui.rows import lesson_list_rows, progress_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, TextScreen, wrapped
 from kit.tui.student_store import StudentOverview, StudentStore
@@ -104,7 +104,7 @@ class LessonsScreen(RowsScreen[None]):
         told = f"  {self._overview.done} of {len(shelf)} done" if shelf else "  none were installed"
         is_wide = self.has_class("-wide")
         room = max(1, self.size.height - 3 - (0 if is_wide else SUMMARY_ROWS))
-        lines = lesson_rows.lines(shelf, chosen)
+        lines = lesson_list_rows.lines(shelf, chosen)
         at = next((number for number, (entry, _) in enumerate(lines) if entry is chosen), 0)
         top = max(0, min(at - room // 2, len(lines) - room))
         self._listed = [entry for entry, _ in lines[top : top + room]]
@@ -116,7 +116,7 @@ class LessonsScreen(RowsScreen[None]):
             self._show_beside()
         else:
             self._rows("about").show(
-                [row(), *(lesson_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
+                [row(), *(lesson_list_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
             )
         self._rows("keys").show([footer(self.screen_actions, self.size.width, keys={"choose": "↑↓"})])
 
@@ -128,7 +128,7 @@ class LessonsScreen(RowsScreen[None]):
             return
         scene, levels = self._beside.get(chosen.name, (None, ()))
         width = self.size.width - LIST_WIDTH - 2
-        details = lesson_rows.details(chosen, levels, width)
+        details = lesson_list_rows.details(chosen, levels, width)
         room = self.size.height - 3
         self._rows("details").show_all(details[:room])
         self._picture.display = scene is not None and room - len(details) >= LEAST_PICTURE
@@ -212,8 +212,8 @@ def _rows(store: StudentStore) -> tuple[list[Row], list[Row]] | str:
     overview = store.read_overview()
     if overview.problem:
         return overview.problem
-    further = lesson_rows.game_and_quiz_progress(_game(store), _quiz(store), str(store.workspace.folder))
-    return lesson_rows.progress(overview.shelf), further
+    further = progress_rows.game_and_quiz_progress(_game(store), _quiz(store), str(store.workspace.folder))
+    return progress_rows.progress(overview.shelf), further
 
 
 def _game(store: StudentStore) -> list[Row]:

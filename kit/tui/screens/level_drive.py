@@ -49,7 +49,7 @@ from kit.school.lessons.shell_lines import shell_path
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import drive_key, named
-from kit.tui.rows import level_rows
+from kit.tui.rows import drive_end_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.lesson_drive import RecordingScreen
@@ -131,18 +131,18 @@ class DriveResultScreen(ModalScreen[Wish]):
         finish, record = result.finish, result.record
         self._fixed = [
             row((f" {result.level.title}, {result.driver.phrase}", "bold")),
-            *wrapped(f" {level_rows.finish_sentence(finish)}"),
+            *wrapped(f" {drive_end_rows.finish_sentence(finish)}"),
             row(),
         ]
         self._before_finish = [
-            *level_rows.earned(result.level, finish, record),
+            *drive_end_rows.earned(result.level, finish, record),
             *level_rows.ladder_of_drive(finish, record, result.driver, result.reference),
             *level_rows.starts_rows(result.finishes, record.counts),
-            *level_rows.compared(finish, record, result.reference, result.ghosts),
-            *level_rows.sector_rows(result.splits),
+            *drive_end_rows.compared(finish, record, result.reference, result.ghosts),
+            *drive_end_rows.sector_rows(result.splits),
         ]
         self._photo_finish = photo_finish(result)
-        self._after_finish = level_rows.won_besides(result.level, record)
+        self._after_finish = drive_end_rows.won_besides(result.level, record)
         self._needed: list[Row] = []
         """What all players needed, once that is known."""
         self._shown = 0
@@ -178,7 +178,7 @@ class DriveResultScreen(ModalScreen[Wish]):
             return
         seconds = await to_thread(seconds_needed, result.level, result.driver)
         was_all_shown = self._shown >= len(self._revealed)
-        self._needed = level_rows.needed_rows(histogram(seconds, result.finish.seconds))
+        self._needed = drive_end_rows.needed_rows(histogram(seconds, result.finish.seconds))
         if was_all_shown:
             self._shown = len(self._revealed)
         self._show()
@@ -205,7 +205,7 @@ class DriveResultScreen(ModalScreen[Wish]):
     def _medal(self) -> list[Row]:
         """The medal as a drawing, where there is room for it."""
         has_room = self.app.size.height >= HIGH and self._result.record.medal is not Medal.NONE
-        return level_rows.medal_drawing(self._result.record.medal, self._spark) if has_room else []
+        return drive_end_rows.medal_drawing(self._result.record.medal, self._spark) if has_room else []
 
     @property
     def _revealed(self) -> list[Row]:

@@ -40,9 +40,9 @@ from kit.school.game.race import DriverKind, agent_controller
 from kit.school.game.references import reference_recording, reference_seconds
 from kit.school.game.starts import film_scenario
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
-from kit.tui.rows import challenge_rows, level_rows
+from kit.tui.rows import challenge_rows, drive_end_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.level_rows import LevelPlace, level_at, map_places, map_rows
+from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_pictures import ghost_paths, picture_of, scene_of
@@ -249,7 +249,7 @@ class LevelsScreen(RowsScreen[None]):
 
     def _doing_row(self) -> Row:
         share = self._prepared.get(self._doing_level, 0.0)
-        return row((f"{self._doing}  ", "bold"), level_rows.share_bar(share), f" {share:4.0%}")
+        return row((f"{self._doing}  ", "bold"), drive_end_rows.share_bar(share), f" {share:4.0%}")
 
     def _map_places(self) -> tuple[LevelPlace, ...]:
         """Where the levels of the chosen world stand below the list; none where the screen is too small."""

@@ -33,7 +33,7 @@ from kit.school.game.two_players import (
 from kit.sim.simulation import Simulation
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.level_rows import shared_heading, shared_message
+from kit.tui.rows.shared_game_rows import shared_heading, shared_message
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.level_drive import LETTER_NOTES, ghost_marks
 from kit.tui.screens.level_pictures import ghost_paths

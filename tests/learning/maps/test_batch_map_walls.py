@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kit.arrays import FloatArray
-from kit.learning.maps.batch_map import cull_walls
+from kit.learning.maps.wall_culling import cull_walls
 
 
 def ring(*corners: tuple[float, float]) -> FloatArray:

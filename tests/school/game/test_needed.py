@@ -11,7 +11,7 @@ from kit.school.game import leaderboard
 from kit.school.game.leaderboard import publish_drives
 from kit.school.game.needed import BINS, LEAST_PLAYERS, histogram, seconds_needed
 from kit.school.game.race import DriverKind
-from kit.tui.rows.level_rows import needed_rows
+from kit.tui.rows.drive_end_rows import needed_rows
 from tests.kit_content import kit_levels
 from tests.school.game.measured_drivers import keys_drive
 

@@ -10,14 +10,8 @@ from kit.school.game.levels import all_worlds
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import GameSummary, LevelProgress, level_progress
 from kit.school.game.race import DriverKind
-from kit.tui.rows.level_rows import (
-    about,
-    before_the_start,
-    game_progress,
-    map_places,
-    map_rows,
-    world_heading,
-)
+from kit.tui.rows.level_map_rows import map_places, map_rows
+from kit.tui.rows.level_rows import about, before_the_start, game_progress, world_heading
 from kit.tui.widgets.text_rows import _ASCII
 from tests.kit_content import kit_levels
 from tests.tui.lesson_stage import row_text

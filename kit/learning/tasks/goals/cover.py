@@ -46,7 +46,7 @@ class CoverGoal(Goal):
         return f"{self.share * count / needed:.0%} of {self.share:.0%} covered"
 
     def node_facts(self, case: GoalCase) -> dict[str, Any]:
-        from kit.learning.maps.batch_map import FLOOR_CELL  # brings pymunk along
+        from kit.learning.maps.batch_floor import FLOOR_CELL
 
         floor, (x, y) = _floor_to_cover(self, case)
         packed = base64.b64encode(zlib.compress(np.packbits(floor).tobytes(), 9)).decode()
@@ -63,7 +63,7 @@ class _CoverCount(GoalCount):
     """The number of cells of the floor that have been covered."""
 
     def __init__(self, goal: CoverGoal, cases: Sequence[GoalCase], n: int) -> None:
-        from kit.learning.maps.batch_map import FLOOR_CELL  # brings pymunk along
+        from kit.learning.maps.batch_floor import FLOOR_CELL
 
         self._goal, self._cell = goal, FLOOR_CELL
         floors, origins = zip(*(_floor_to_cover(goal, case) for case in cases), strict=True)
@@ -96,7 +96,7 @@ class _CoverCount(GoalCount):
 
 def _floor_to_cover(goal: CoverGoal, case: GoalCase) -> tuple[BoolArray, tuple[float, float]]:
     """(rows, columns) the cells that a robot's radius of covering can reach, and the middle of the first one [m]."""
-    from kit.learning.maps.batch_map import hull_radius, hull_width, measure_floor  # likewise
+    from kit.learning.maps.batch_floor import hull_radius, hull_width, measure_floor
 
     batch_map = case.batch_map
     floor = measure_floor(batch_map)

@@ -49,7 +49,7 @@ class GoalCase:
     @property
     def batch_map(self) -> BatchMap:
         """Its map as arrays. Raises UnsupportedWorld and WorldError."""
-        from kit.learning.maps.batch_map import load_batch_map  # brings pymunk along
+        from kit.learning.maps.batch_map import load_batch_map
 
         return load_batch_map(self.card, self.robots)
 

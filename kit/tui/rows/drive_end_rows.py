@@ -1,0 +1,154 @@
+"""What a drive of a level earned, as rows of text: time, medal, sectors, what was won besides. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from kit.document.rows import Row, row
+from kit.plain_text import counted
+from kit.school.game.drive_records import DriveRecord
+from kit.school.game.ghosts import Ghost, Split
+from kit.school.game.levels import GameLevel, all_worlds
+from kit.school.game.medal import Medal
+from kit.school.game.needed import Bin
+from kit.school.game.race import DriverKind, RaceFinish
+from kit.tui.rows.level_rows import BAR, MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, STAR
+
+
+def finish_sentence(finish: RaceFinish) -> str:
+    """How a drive ended."""
+    if finish.foul:
+        return f"It does not count: {finish.foul}."
+    if finish.failure is not None:
+        return f"The program stopped: {finish.failure}"
+    if finish.reached:
+        return (
+            f"The goal was reached after {finish.seconds:.2f} s, with {counted(finish.collisions, 'bump')}."
+        )
+    return f"The goal was not reached in {finish.seconds:.0f} s."
+
+
+def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord) -> list[Row]:
+    """The medal and the stars of a drive, one row each, in the order in which they appear."""
+    if record.is_shipped:
+        return [
+            row(
+                (f"   {NO_STAR} ", "dim"), "a controller of the kit drove: it shows the way and earns nothing"
+            )
+        ]
+    if record.is_practice:
+        return [row((f"   {NO_STAR} ", "dim"), "practice: the first run of the day has counted")]
+    if not level.has_medals:
+        return [row(("   your best time so far", "good"))] if record.is_best else []
+    if not finish.reached:
+        return [row((f"   {NO_STAR} ", "dim"), ("no medal yet", "dim"))]
+    rows = [medal_row(record.medal, is_new=record.medal > record.previous_medal)]
+    for rule in record.rules:
+        new = " (new)" if rule in record.new_rules else ""
+        rows.append(row((f"   {STAR} ", "warn"), rule.description(level) + new))
+    return rows
+
+
+def medal_row(medal: Medal, *, is_new: bool) -> Row:
+    """A medal that was earned. ``is_new``: whether it is better than those before."""
+    better = " (new)" if is_new else ""
+    return row((f"   {MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]), (f"{medal.title}{better}", "bold"))
+
+
+MEDAL_PICTURE: Final = (
+    r"  \ \   / /",
+    r"   \ \ / /",
+    r"   .-'-'-.",
+    r"  /       \ ",
+    r" |    {}    |",
+    r"  \       /",
+    r"   '-----'",
+)
+SPARK_SIGNS: Final = "*.+'"
+
+
+def medal_drawing(medal: Medal, spark: int) -> list[Row]:
+    """A medal with its letter. ``spark``: the number of a picture of joy around it, 0 for none."""
+    rows = []
+    for number, line in enumerate(MEDAL_PICTURE):
+        sparks = "".join(
+            SPARK_SIGNS[(number + column) % len(SPARK_SIGNS)]
+            if (7 * column + 5 * number + 3 * spark) % 11 < 2
+            else " "
+            for column in range(30 if spark else 0)
+        )
+        drawn = f"   {line.format(MEDAL_SIGNS[medal]):<14}"
+        rows.append(row((drawn, MEDAL_STYLES[medal]), (sparks, "warn")))
+    return [*rows, row()]
+
+
+def compared(
+    finish: RaceFinish, record: DriveRecord, reference: float | None, ghosts: Sequence[Ghost]
+) -> list[Row]:
+    """A drive's time beside the medals, the reference, the driver's best so far and the quickest classmate's."""
+    rows: list[Row] = []
+    if not finish.reached:
+        return rows
+    times = [("reference", reference), ("your best before", record.previous_best)]
+    classmates = [each for each in ghosts if each.name not in (*DriverKind, "reference")]
+    times += [(each.name, each.seconds) for each in classmates[:1]]
+    for name, seconds in times:
+        if seconds is not None:
+            rows.append(row(f"   {name:<18.18} {seconds:7.2f} s  ", _difference(finish.seconds - seconds)))
+    return rows
+
+
+def sector_rows(splits: Sequence[Split]) -> list[Row]:
+    """The sectors of a drive, each with a bar as long as its time and the difference to the reference's."""
+    longest = max((each.sector for each in splits), default=0.0)
+    return [
+        row(
+            f"   sector {number}  {each.sector:6.2f} s ",
+            ("=" * max(1, round(BAR * each.sector / longest)), "good" if each.difference <= 0 else ""),
+            "  ",
+            _difference(each.difference),
+        )
+        for number, each in enumerate(splits, 1)
+    ]
+
+
+def needed_rows(bins: Sequence[Bin]) -> list[Row]:
+    """A histogram of what all players of this machine needed; empty for one without bins."""
+    most = max((each.count for each in bins), default=0)
+    if not most:
+        return []
+    players = sum(each.count for each in bins)
+    rows = [row((f"   what {players} players here needed", "dim"))]
+    for each in bins:
+        bar = "=" * round(BAR * each.count / most) if each.count else ""
+        own = " < you" if each.holds_own else ""
+        rows.append(row(f"   to {each.high:7.2f} s  {each.count:3} ", bar, (own, "bold")))
+    return rows
+
+
+def won_besides(level: GameLevel, record: DriveRecord) -> list[Row]:
+    """What a drive has won besides its medal and stars: levels that it opens, a belt, a day of the streak."""
+    rows = []
+    if record.unlocked:
+        titles = ", ".join(each.title for each in record.unlocked)
+        rows.append(row(("   opened: ", "dim"), (titles, "good")))
+    if record.belt:
+        title = next(each.title for each in all_worlds() if each.id == level.world)
+        rows.append(row(("   belt:   ", "dim"), (f"{record.belt} belt of {title}", "good")))
+    if record.streak:
+        rows.append(row(("   streak: ", "dim"), (f"{counted(record.streak, 'day')} in a row", "good")))
+    return rows
+
+
+def _difference(seconds: float) -> tuple[str, str]:
+    return f"{seconds:+.2f}", "good" if seconds <= 0.0 else "warn"
+
+
+BAR_WIDTH: Final = 20
+
+
+def share_bar(share: float) -> str:
+    """How far something is: ``share`` from 0 to 1, one character for a twentieth."""
+    full = round(min(max(share, 0.0), 1.0) * BAR_WIDTH)
+    return "█" * full + "░" * (BAR_WIDTH - full)

@@ -1,0 +1,79 @@
+"""A shared game as rows of text: who plays, what the score is, how it ended. Pure."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from kit.document.rows import Row, row, spread
+from kit.plain_text import counted
+from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedGameState, SharedMode, SharedPhase
+
+NOBODY: Final = "nobody yet"
+PLAYER_STYLES: Final = ("code", "bold")
+
+
+def shared_heading(level: str, mode: SharedMode, state: SharedGameState, watching: int, width: int) -> Row:
+    """The level and both players on the left, spectators and the clock on the right."""
+    left = row(
+        (level, "bold"),
+        f"  {mode.value}  ",
+        (state.names[0], PLAYER_STYLES[0]),
+        " against ",
+        state.names[1] or NOBODY,
+    )
+    seconds = state.seconds
+    if mode is SharedMode.TAG and state.phase is SharedPhase.RUNNING:
+        seconds = max(0.0, TAG_SECONDS - seconds)
+    clock = f"{seconds:.1f} s" if state.phase is SharedPhase.RUNNING else state.phase.value
+    watched = f"{counted(watching, 'spectator')}  " if watching else ""
+    return spread(left, row((watched, "dim"), (clock, "bold")), width)
+
+
+def shared_message(
+    mode: SharedMode, state: SharedGameState, me: int | None, join: str = ""
+) -> tuple[Row, ...]:
+    """Says what to do now, and the score. ``me``: this player; None watches. ``join``: how another comes in."""
+    if state.phase is SharedPhase.WAITING:
+        return (
+            row((" Waiting for the second player.", "bold")),
+            row((f" In another terminal of this machine: {join}" if join else "", "dim")),
+        )
+    if state.phase is SharedPhase.COUNTDOWN:
+        return (
+            row(
+                (f" {max(1, round(COUNTDOWN - state.seconds + 0.5))}", "warn"),
+                f"   {_task(mode, state, me)}",
+            ),
+        )
+    scores = row(
+        " ",
+        *(
+            f"{'you' if number == me else name or NOBODY}: {_score(mode, state, number)}   "
+            for number, name in enumerate(state.names)
+        ),
+    )
+    if state.phase is SharedPhase.OVER:
+        return row((f" {_end(state, me)}", "good" if state.winner == me is not None else "bold")), scores
+    return row((f" {_task(mode, state, me)}", "bold")), scores
+
+
+def _task(mode: SharedMode, state: SharedGameState, me: int | None) -> str:
+    if mode is SharedMode.RACE:
+        return "First at the target wins."
+    assert state.catcher is not None
+    if me is None:
+        return f"{state.names[state.catcher]} catches."
+    return "You catch: touch the other robot." if state.catcher == me else "Do not get caught."
+
+
+def _score(mode: SharedMode, state: SharedGameState, number: int) -> str:
+    score = state.scores[number]
+    return counted(round(score), "target") if mode is SharedMode.RACE else f"catcher for {score:.1f} s"
+
+
+def _end(state: SharedGameState, me: int | None) -> str:
+    if state.winner is None:
+        return "Nobody has won."
+    if me is not None:
+        return "You have won." if state.winner == me else "The other player has won."
+    return f"{state.names[state.winner] or NOBODY} has won."
