@@ -9,18 +9,10 @@ from kit.document.rows import TEXT_WIDTH, Row, row
 from kit.plain_text import wrap
 from kit.school.game.levels import GameLevel
 from kit.school.lessons.catalogue import LessonEntry
-from kit.tui.rows.lesson_rows import KINDS, progress_bar
-from kit.tui.rows.progress_rows import stars
+from kit.tui.rows.lesson_rows import KINDS
+from kit.tui.rows.progress_marks import mark, progress_bar, stars
 
 TITLE: Final = 46
-STARS: Final = 3
-
-
-def mark(entry: LessonEntry) -> str:
-    """Done, begun, or neither; also where there is no colour."""
-    if entry.progress is None:
-        return "[!]"
-    return "[x]" if entry.is_completed else "[~]" if entry.has_started else "[ ]"
 
 
 def lines(shelf: Sequence[LessonEntry], chosen: LessonEntry | None) -> list[tuple[LessonEntry | None, Row]]:

@@ -6,10 +6,8 @@ from typing import Final
 
 from kit.document.rows import Row, row, spread
 from kit.school.lessons.catalogue import LessonProgress
-from kit.school.lessons.records import (
-    LessonStep,
-    StepKind,
-)
+from kit.school.lessons.records import LessonStep, StepKind
+from kit.tui.rows.progress_marks import progress_bar
 
 LONGEST_BAR: Final = 12
 LEAST_GOAL: Final = 8
@@ -37,18 +35,6 @@ def heading(progress: LessonProgress, step: LessonStep, width: int) -> Row:
         goal = f"{goal[: room - 3].rstrip()}..." if room >= LEAST_GOAL else ""
     left = row((title, "bold"), "  ", (goal, "dim")) if goal else row((title, "bold"))
     return spread(left, row(where, (bar, "bold")), width)
-
-
-def progress_bar(progress: LessonProgress, here: LessonStep | None = None) -> str:
-    """One character a step: full where it is done, half where one stands."""
-    return "".join(
-        "█"
-        if progress.is_step_completed(step)
-        else "▒"
-        if here is not None and step.number == here.number
-        else "░"
-        for step in progress.lesson.steps
-    )
 
 
 def title(step: LessonStep, caption: Row, width: int) -> Row:

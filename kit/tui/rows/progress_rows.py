@@ -6,20 +6,12 @@ from collections.abc import Iterable, Sequence
 from typing import Final
 
 from kit.document.rows import Row, row
-from kit.school.lessons.catalogue import LessonEntry, LessonProgress
-from kit.tui.rows.lesson_list_rows import STARS, TITLE, mark
-from kit.tui.rows.lesson_rows import progress_bar
+from kit.school.lessons.catalogue import LessonEntry
+from kit.tui.rows.lesson_list_rows import TITLE
+from kit.tui.rows.progress_marks import mark, progress_bar, stars
 
 STARS_LEGEND: Final = "an exercise: *** all points, **. half or more, *.. some, ... none yet"
 """What ``stars`` means, on the page of progress."""
-
-
-def stars(progress: LessonProgress, exercise: str) -> str:
-    """``***`` for everything, ``**.`` from half of the points on, ``*..`` for some, ``...`` for none yet; one more for a
-    program that was defended."""
-    share = progress.best_shares.get(exercise, 0.0)
-    count = STARS if exercise in progress.passed_exercises else 2 if share >= 0.5 else 1 if share > 0 else 0
-    return "*" * count + "." * (STARS - count) + "*" * (exercise in progress.defended_exercises)
 
 
 def progress(shelf: Sequence[LessonEntry]) -> list[Row]:

@@ -16,7 +16,7 @@ from kit.school.lessons.defence_dialogue import DefenceDialogue
 from kit.school.lessons.reading import find_lesson
 from kit.school.progress import EventKind, ProgressJournal
 from kit.school.report.class_data import student_work
-from kit.tui.rows.progress_rows import stars
+from kit.tui.rows.progress_marks import stars
 from tests.driving_program import driving_program
 
 

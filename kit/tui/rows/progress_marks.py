@@ -1,0 +1,38 @@
+"""How far a lesson and an exercise are, as marks that are also read where there is no colour. Pure."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from kit.school.lessons.catalogue import LessonEntry, LessonProgress
+from kit.school.lessons.records import LessonStep
+
+STARS: Final = 3
+"""Stars of an exercise that has all points."""
+
+
+def mark(entry: LessonEntry) -> str:
+    """Done, begun, or neither; also where there is no colour."""
+    if entry.progress is None:
+        return "[!]"
+    return "[x]" if entry.is_completed else "[~]" if entry.has_started else "[ ]"
+
+
+def progress_bar(progress: LessonProgress, here: LessonStep | None = None) -> str:
+    """One character a step: full where it is done, half where one stands."""
+    return "".join(
+        "█"
+        if progress.is_step_completed(step)
+        else "▒"
+        if here is not None and step.number == here.number
+        else "░"
+        for step in progress.lesson.steps
+    )
+
+
+def stars(progress: LessonProgress, exercise: str) -> str:
+    """``***`` for everything, ``**.`` from half of the points on, ``*..`` for some, ``...`` for none yet; one more for a
+    program that was defended."""
+    share = progress.best_shares.get(exercise, 0.0)
+    count = STARS if exercise in progress.passed_exercises else 2 if share >= 0.5 else 1 if share > 0 else 0
+    return "*" * count + "." * (STARS - count) + "*" * (exercise in progress.defended_exercises)
