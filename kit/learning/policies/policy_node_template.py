@@ -68,11 +68,11 @@ POLICY = ""
 
 # --- how its goal is counted ---
 from kit.learning.policies.node_goals.goal_count import (  # noqa: E402 - its text stands here when a node is written
-    GoalCount,
     GoalStep,
+    NodeCount,
 )
 
-COUNT: type[GoalCount] = GoalCount
+COUNT: type[NodeCount] = NodeCount
 # --- how its goal is counted ---
 
 
