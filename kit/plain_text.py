@@ -19,6 +19,9 @@ _WORD = re.compile(r"(?:[^\s`]|`[^`\s](?:[^`\n]*[^`\s])?`)+(?!\S)|\S+")
 """A word, or words between backticks with what touches them."""
 _HELD = "\x1f"
 """In the place of a blank at which a line is not broken."""
+_PARTS_END = "/,_"
+"""Signs behind which a long word is broken."""
+_PART = re.compile(rf"[^{_PARTS_END}]*[{_PARTS_END}]?")
 MAX_KNOWN_NAMES = 12
 """Names that ``suggestion`` lists when none of them is close."""
 
@@ -119,7 +122,7 @@ def wrap(text: str, width: int, first: str = "", rest: str = "", *, most: int | 
     """Wraps a text to lines of at most ``width`` characters, which begin with ``first`` and ``rest``; at least one line.
 
     It breaks at blanks alone, so that an option or a file name is never parted, and between backticks only what is longer than
-    a line; a word that is longer than a line is broken behind a slash or a comma where it has one. A first word that fits on a later line alone begins there.
+    a line; a word that is longer than a line is broken behind a slash, a comma or a low line where it has one. A first word that fits on a later line alone begins there.
     Where there are more than ``most`` lines, the last one ends with dots.
 
     >>> wrap("see runs/turn-1/log.csv --set gamma", 12)
@@ -151,9 +154,14 @@ def wrap(text: str, width: int, first: str = "", rest: str = "", *, most: int | 
     return [line.replace(_HELD, " ") for line in lines] or [first.rstrip()]
 
 
+def longest_part(text: str) -> int:
+    """Returns how many columns a text needs at least, so that no word of it is broken but behind a sign that ends a part."""
+    return max((len(part) for word in text.split() for part in _PART.findall(word)), default=0)
+
+
 def _parts_of(word: str, longest: int) -> Iterator[str]:
     while len(word) > longest:
-        cut = max(word.rfind(sign, 1, longest) for sign in "/,") + 1 or longest
+        cut = max(word.rfind(sign, 1, longest) for sign in _PARTS_END) + 1 or longest
         yield word[:cut]
         word = word[cut:]
     yield word
@@ -190,18 +198,16 @@ def _row_lines(rows: Sequence[Sequence[str]], width: int) -> Iterator[list[str]]
         yield [COLUMN_GAP.join(map(str.ljust, line, widths)).rstrip() for line in lines]
 
 
-def fit_widths(
-    widths: Sequence[int], width: int, flexible: Collection[int] | None = None, least: int = MIN_COLUMN_WIDTH
-) -> list[int]:
+def fit_widths(widths: Sequence[int], width: int, least: Sequence[int] | None = None) -> list[int]:
     """Returns the widths of a table's columns, the largest reduced until all fit into ``width`` side by side.
 
-    ``flexible``: the numbers of the columns that may be reduced, by default all; none becomes narrower than ``least``.
+    ``least``: below which each is not reduced; by default ``MIN_COLUMN_WIDTH`` for all.
     """
     fitted = list(widths)
-    reducible = range(len(fitted)) if flexible is None else flexible
+    bounds = [MIN_COLUMN_WIDTH] * len(fitted) if least is None else least
     over = sum(fitted) + len(COLUMN_GAP) * (len(fitted) - 1) - width
     while over > 0:
-        candidates = [number for number in reducible if fitted[number] > least]
+        candidates = [number for number, bound in enumerate(bounds) if fitted[number] > bound]
         if not candidates:
             break
         fitted[max(candidates, key=lambda number: fitted[number])] -= 1

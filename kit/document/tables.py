@@ -8,10 +8,12 @@ from typing import Final, NamedTuple
 
 from kit.document.blocks import Cell, CellStyle, Column, Table, Tone, ToneText, format_cell
 from kit.document.rows import Row, row, row_text
-from kit.plain_text import COLUMN_GAP, fit_widths, printable_text, wrap
+from kit.plain_text import COLUMN_GAP, fit_widths, longest_part, printable_text, wrap
 
 MIN_TEXT_WIDTH: Final = 8
 """Columns that a column of words keeps when room is short."""
+SENTENCE_WIDTH: Final = 24
+"""Columns in which sentences are still easy to read."""
 MAX_CELL_LENGTH: Final = 600
 LIST_MARGIN: Final = 3
 """Columns before the entries of a list: which one is chosen, and which are marked."""
@@ -33,8 +35,7 @@ def table_rows(table: Table, width: int) -> TableRows:
         for each in table.rows
     ]
     heads = [column.title for column in table.columns]
-    texts = [number for number, column in enumerate(table.columns) if column.style is CellStyle.TEXT]
-    widths = fit_widths(_natural_widths([heads, *cells]), width, texts, MIN_TEXT_WIDTH)
+    widths = _fitted_widths(table.columns, heads, cells, width)
     head = list(_placed_rows(heads, widths, table.columns, (Tone.PLAIN,) * len(heads))) if any(heads) else []
     if head and table.is_ruled:
         head.append(row(COLUMN_GAP.join("-" * each for each in widths)))
@@ -91,6 +92,34 @@ def without_spare_columns(table: Table, width: int) -> Table:
             columns=tuple(table.columns[number] for number in kept),
             rows=tuple(tuple(each[number] for number in kept) for each in table.rows),
         )
+
+
+def _fitted_widths(
+    columns: Sequence[Column], heads: Sequence[str], cells: Sequence[Sequence[str]], width: int
+) -> list[int]:
+    """Widths with which the table fits, as far as its numbers allow: first sentences go on below, then heads of numbers, then
+    the words of any text; a word is parted only where nothing else helps."""
+    natural = _natural_widths([heads, *cells])
+    parts = [max(map(longest_part, column)) for column in zip(heads, *cells, strict=True)]
+    numbers = [
+        max([longest_part(head), *map(len, column)]) for head, *column in zip(heads, *cells, strict=True)
+    ]
+    sentences = [max(SENTENCE_WIDTH, part) for part in parts]
+    words = [max(MIN_TEXT_WIDTH, part) for part in parts]
+    is_text = [column.style is CellStyle.TEXT for column in columns]
+    widths = natural
+    for of_texts, of_numbers in (
+        (sentences, natural),
+        (sentences, numbers),
+        (words, numbers),
+        ([MIN_TEXT_WIDTH] * len(columns), numbers),
+    ):
+        least = [
+            text if texts else number
+            for texts, text, number in zip(is_text, of_texts, of_numbers, strict=True)
+        ]
+        widths = fit_widths(widths, width, least)
+    return widths
 
 
 def _natural_widths(rows: Sequence[Sequence[str]]) -> list[int]:

@@ -150,7 +150,7 @@ class EvaluationResult:
             Column("steps", decimals=0),
         ]
         if self.is_pair:
-            columns += [Column("adj rays"), Column("adj poses")]
+            columns += [Column("by rays"), Column("by pose")]
         count = len(columns)
         own = self.metrics
         columns += [Column(name, decimals=2) for name in own]
@@ -161,7 +161,7 @@ class EvaluationResult:
             f"worst: {worst.share:.3f} in {worst.case}; {worst.episodes} episodes each, {self.action_choice}"
         )
         if self.is_pair:
-            note += "; adj: share of steps side by side, of episodes that reached the target"
+            note += "; by rays, by pose: share of steps side by side, of episodes that reached the target"
         return Table("test", "", tuple(columns), tuple(rows), note, is_ruled=False)
 
     @property
