@@ -7,7 +7,7 @@ import pytest
 from kit.document.blocks import CellStyle, Column, Table, Tone, labelled_table
 from kit.document.layout import lines_of
 from kit.document.rows import Row, row_text
-from kit.document.tables import list_rows
+from kit.document.tables import list_rows, table_rows
 
 NAMES = tuple(f"run-{number}/{'long-name/' * (number % 4)}end" for number in range(30))
 
@@ -51,3 +51,25 @@ def test_no_entry_is_chosen_where_there_is_none() -> None:
 def test_a_column_in_which_nothing_stands_takes_no_room() -> None:
     labelled = labelled_table([("Perception", "", "0 of 3"), ("Action", "", "1 of 2")])
     assert lines_of([labelled]) == ["Perception    0 of 3", "Action        1 of 2"]
+
+
+@pytest.mark.parametrize(
+    ("width", "lines"),
+    [
+        (39, ["case            timed out  side by side", "turn_right_180       0.50          0.25"]),
+        (27, ["case            timed  side", "                  out    by", "                       side"]),
+        (
+            24,
+            [
+                "case         timed  side",
+                "               out    by",
+                "                    side",
+                "turn_right_   0.50  0.25",
+            ],
+        ),
+    ],
+)
+def test_heads_of_numbers_go_on_below_before_a_name_is_broken(width: int, lines: list[str]) -> None:
+    columns = (Column("case", CellStyle.TEXT), Column("timed out"), Column("side by side"))
+    placed = table_rows(Table("test", "", columns, (("turn_right_180", 0.5, 0.25),), is_ruled=False), width)
+    assert [row_text(each) for each in (*placed.heads, *placed.entries[0])][: len(lines)] == lines
