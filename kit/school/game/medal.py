@@ -55,3 +55,11 @@ def medal_time(medal: Medal, reference_s: float, driver: DriverKind = DriverKind
     """The longest time that earns a medal [s], in whole hundredths as it is shown: a tick takes one."""
     hundredths = math.floor(round(100.0 * SHARES[driver][medal] * reference_s, 6))
     return (hundredths - (medal is Medal.RECORD)) / 100.0
+
+
+def next_rung(driver: DriverKind, reference_s: float, seconds: float | None) -> Medal | None:
+    """The lowest medal that a time does not earn; None above the record. ``seconds``: None: nothing was driven."""
+    missing = [
+        medal for medal in RUNGS if seconds is None or seconds > medal_time(medal, reference_s, driver)
+    ]
+    return min(missing, default=None)

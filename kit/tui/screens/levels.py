@@ -16,7 +16,7 @@ from textual.containers import Horizontal
 
 from kit.controllers import ControllerFile, kit_controllers, user_controllers
 from kit.dialogue.actions import ScreenActions, letter
-from kit.document.rows import Row, row, spread
+from kit.document.rows import Row, row, side_by_side, spread
 from kit.plain_text import counted
 from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
@@ -29,6 +29,7 @@ from kit.school.game.medal import Medal
 from kit.school.game.player_progress import (
     BY_HAND,
     DriverFacts,
+    ExtraRule,
     GameSummary,
     LevelProgress,
     belt_of,
@@ -42,6 +43,7 @@ from kit.school.game.starts import film_scenario
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import challenge_rows, drive_end_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.level_card_rows import COLUMN, best_splits, stars_and_sectors
 from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.screens.leaderboard import LeaderboardScreen
@@ -56,6 +58,8 @@ if TYPE_CHECKING:
     from kit.learning.training.runs import TrainingRun
 
 ABOUT_ROWS: Final = 6
+ABOUT_COLUMN: Final = 92
+"""The column from which on a level's card stands beside what is said of it, where there is room."""
 MAP_WIDTH: Final = 84
 """Columns of the list where the chosen level is shown beside it."""
 NOTES: Final = (
@@ -224,10 +228,36 @@ class LevelsScreen(RowsScreen[None]):
             *self._world_heading([each.best_medal for each in levels]),
             *level_rows.world_levels(levels, level.id, self._references),
             row(),
+            *self._card_below(),
             *map_rows(levels, self._map_places(), self._pictures, level.id),
         ]
         ghosts = self._known.get(level.id, ())
-        return listed, level_rows.about(self.chosen, ghosts, self._references[level.id])
+        about = level_rows.about(self.chosen, ghosts, self._references[level.id])
+        if self.size.width >= ABOUT_COLUMN + COLUMN:
+            about = side_by_side(about, self._card_rows(self.size.width - ABOUT_COLUMN - 1), ABOUT_COLUMN)
+        return listed, about
+
+    def _card_rows(self, width: int) -> list[Row]:
+        """The chosen level's stars, and the sectors of one's best drive; none of a level without medals."""
+        level = self.chosen.level
+        if not self.chosen.is_open or self._references[level.id] is None or width <= COLUMN:
+            return []
+        best = best_splits(self._known.get(level.id, ()))
+        return stars_and_sectors(level, self.chosen.rules, best, width)
+
+    def _card_below(self) -> list[Row]:
+        """The card below the list, where it does not stand beside what is said of the level; none where there is no room."""
+        width = self._rows("map").size.width
+        if self.size.width >= ABOUT_COLUMN + COLUMN or self._rows_below_levels <= len(ExtraRule):
+            return []
+        rows = [*self._card_rows(width - 1), row()]
+        return rows if 1 < len(rows) <= self._rows_below_levels else []
+
+    @property
+    def _rows_below_levels(self) -> int:
+        """Rows of the list below the levels of the chosen world."""
+        levels = self._in_world(self.chosen.level.world)
+        return self._rows("map").size.height - ROWS_ABOVE_LEVELS - len(levels) - 1
 
     def _challenge_rows(self, chosen: Challenge) -> tuple[list[Row], list[Row]]:
         """The list of challenges, below it the chosen one's drawing where there is room, and what is said of it."""
@@ -256,7 +286,7 @@ class LevelsScreen(RowsScreen[None]):
         if self.chosen_challenge is not None:
             return ()
         levels, size = self._in_world(self.chosen.level.world), self._rows("map").size
-        return map_places(levels, size.width, size.height - ROWS_ABOVE_LEVELS - len(levels) - 1)
+        return map_places(levels, size.width, self._rows_below_levels - len(self._card_below()))
 
     @work(exclusive=True, group="pictures")
     async def _draw_pictures(self) -> None:
@@ -328,7 +358,9 @@ class LevelsScreen(RowsScreen[None]):
         if number < len(levels):
             clicked = levels[number]
         else:
-            name = level_at(self._map_places(), event.column, number - len(levels) - 1)
+            name = level_at(
+                self._map_places(), event.column, number - len(levels) - 1 - len(self._card_below())
+            )
             found = [each for each in levels if each.level.id == name]
             if not found:
                 return
