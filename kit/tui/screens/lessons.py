@@ -203,17 +203,17 @@ async def show_progress(screen: Screen[Any], store: StudentStore) -> None:
     if isinstance(found, str):
         screen.app.push_screen(MessageDialog("Progress cannot be read", wrapped(found)))
     else:
-        lessons, further = found
-        await screen.app.push_screen_wait(TextScreen("Progress", lessons, further))
+        game_and_quiz, lessons = found
+        await screen.app.push_screen_wait(TextScreen("Progress", game_and_quiz, lessons))
 
 
 def _rows(store: StudentStore) -> tuple[list[Row], list[Row]] | str:
-    """Reads the lessons and all else, or the problem; runs in another thread, since there are many files."""
+    """Reads the game with all else, and the lessons, or the problem; runs in another thread, since there are many files."""
     overview = store.read_overview()
     if overview.problem:
         return overview.problem
-    further = progress_rows.game_and_quiz_progress(_game(store), _quiz(store), str(store.workspace.folder))
-    return progress_rows.progress(overview.shelf), further
+    first = progress_rows.game_and_quiz_progress(_game(store), _quiz(store), str(store.workspace.folder))
+    return first, progress_rows.progress(overview.shelf)
 
 
 def _game(store: StudentStore) -> list[Row]:
