@@ -125,7 +125,7 @@ class StudentStore:
         return medal_in_reach(summary.levels), won
 
     def _running(self) -> tuple[str, ...]:
-        from kit.learning.training.runs import list_runs
+        from kit.learning.training.run_folders import list_runs
 
         return tuple(each.name for each in list_runs(self.workspace.runs) if each.is_active)
 

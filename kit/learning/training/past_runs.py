@@ -7,7 +7,8 @@ from pathlib import Path
 from statistics import median
 from typing import Final
 
-from kit.learning.training.runs import RunConfig, RunError, list_runs
+from kit.learning.training.run_config import RunConfig, RunError
+from kit.learning.training.run_folders import list_runs
 from kit.learning.training.training import resolve_preset
 
 MOST_READ: Final = 50

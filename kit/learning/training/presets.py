@@ -15,7 +15,7 @@ from typing import Any, Final, TypeAlias, get_args, get_origin, get_type_hints
 from kit.learning.policies.policy_network import Activation
 from kit.learning.tasks.learning_task import PRESET_NAMES
 from kit.learning.training.algorithms import Algorithm
-from kit.learning.training.runs import PresetName, RunError
+from kit.learning.training.run_config import PresetName, RunError
 from kit.learning.training.stopping_rules import StoppingRule, TrainUntilGoal, TrainUntilSure
 from kit.plain_text import quoted, suggestion
 

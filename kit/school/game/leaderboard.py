@@ -142,11 +142,12 @@ def publish_drives(
 
 
 def remove_own_entry(folder: Path) -> None:
-    """Deletes this user's name and drives. Raises LeaderboardError."""
+    """Deletes this user's name, drives and answers of puzzles. Raises LeaderboardError."""
     try:
         _name_file(folder, os.getuid()).unlink(missing_ok=True)
-        for file in folder.glob(f"{os.getuid()}.*.npz"):
-            file.unlink(missing_ok=True)
+        for pattern in ("npz", "txt"):
+            for file in folder.glob(f"{os.getuid()}.*.{pattern}"):
+                file.unlink(missing_ok=True)
     except OSError as error:
         raise LeaderboardError(f"{folder}: {error.strerror}.") from None
 
@@ -160,7 +161,7 @@ def read_entries(folder: Path, levels: Sequence[GameLevel] | None = None) -> lis
     """Judges the drives of all who have joined, by default on all levels and that of the day; sorted by level and time.
     Passes over what may not stand there. Takes about a second for twenty drives that were not judged before."""
     entries = []
-    for user in _users(folder):
+    for user in users_of(folder):
         name = _read_name(folder, user)
         for level in levels if levels is not None else (*all_levels(), daily_level(today())):
             for driver in DriverKind:
@@ -188,7 +189,7 @@ def _entry(
     )
 
 
-def _users(folder: Path) -> Iterator[int]:
+def users_of(folder: Path) -> Iterator[int]:
     """The numbers of the users who have joined."""
     with suppress(OSError):
         for file in sorted(folder.glob("*.json")):
@@ -199,7 +200,7 @@ def _users(folder: Path) -> Iterator[int]:
 def _read_name(folder: Path, user: int) -> str | None:
     """The name in a user's own file; None if there is none."""
     with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
-        content = json.loads(_read_own(_name_file(folder, user), user, MAX_NAME_BYTES))
+        content = json.loads(read_own(_name_file(folder, user), user, MAX_NAME_BYTES))
         name = "".join(sign for sign in str(content["name"]) if sign.isprintable())
         return " ".join(name.split())[:MAX_NAME_LENGTH] or f"user {user}"
     return None
@@ -209,7 +210,7 @@ def _judged(folder: Path, user: int, level: GameLevel, driver: DriverKind) -> Ju
     """A user's shared drive of a level, run again; None if there is none that may stand here."""
     file = _drive_file(folder, user, level.id, driver)
     try:
-        content = _read_own(file, user, MAX_FILE_BYTES)
+        content = read_own(file, user, MAX_FILE_BYTES)
         return _judge(content, level, driver)
     except (OSError, DriveRefused):
         return None
@@ -223,7 +224,7 @@ def _judge(content: bytes, level: GameLevel, driver: DriverKind) -> JudgedDrive 
     return None
 
 
-def _read_own(file: Path, user: int, limit: int) -> bytes:
+def read_own(file: Path, user: int, limit: int) -> bytes:
     """The content of a plain file that belongs to the user it is named after. Raises OSError for any other."""
     with open_plain_file(file, follows_links=False) as opened:
         status = os.fstat(opened.fileno())

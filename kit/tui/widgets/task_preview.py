@@ -22,7 +22,7 @@ from kit.tui.widgets.world_view import WorldView
 
 if TYPE_CHECKING:
     from kit.learning.training.past_runs import ExpectedTime
-    from kit.learning.training.runs import RunConfig
+    from kit.learning.training.run_config import RunConfig
     from kit.render.scene import Scene
 
 MARGIN: Final = 2

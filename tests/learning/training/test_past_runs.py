@@ -8,7 +8,8 @@ from pathlib import Path
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.events import EventWriter, TrainingEnded, TrainingProgress, TrainingStarted
 from kit.learning.training.past_runs import expected_time
-from kit.learning.training.runs import RunConfig, create_run
+from kit.learning.training.run_config import RunConfig
+from kit.learning.training.run_folders import create_run
 from kit.learning.training.training import resolve_preset
 
 CONFIG = RunConfig(TaskSpec("turn"), "q-learning", seed=3)
