@@ -30,7 +30,9 @@ class Medal(IntEnum):
 RUNGS: Final = tuple(medal for medal in Medal if medal is not Medal.NONE)
 """Every medal that can be earned, the lowest first."""
 _TOP: Final = {Medal.MASTER: 1.02, Medal.RECORD: 1.0}
-_PROGRAM: Final = {Medal.BRONZE: 1.25, Medal.SILVER: 1.10, Medal.GOLD: 1.04, **_TOP}
+# A tidy laser program that arrives takes 1.04 to 1.48 times the reference's time on all levels but one: with 1.25 two of
+# five of its drives earned nothing.
+_PROGRAM: Final = {Medal.BRONZE: 1.5, Medal.SILVER: 1.10, Medal.GOLD: 1.04, **_TOP}
 SHARES: Final[Mapping[DriverKind, Mapping[Medal, float]]] = MappingProxyType(
     {
         DriverKind.KEYS: {Medal.BRONZE: 2.0, Medal.SILVER: 1.3, Medal.GOLD: 1.1, **_TOP},
