@@ -12,7 +12,6 @@ from textual.binding import BindingType
 from textual.message import Message
 
 from kit.dialogue.actions import ScreenActions
-from kit.dialogue.screen_action import letter
 from kit.dialogue.shared_actions import VIEW_IDS
 from kit.document.rows import row
 from kit.geometry import Pose
@@ -126,14 +125,13 @@ class SharedScreen(WatchScreen):
         self._rows("messages").show(shared_message(self._mode, state, self.player, self.join_command))
 
 
-class SharedHostScreen(SharedScreen):
+class SharedHostScreen(SharedScreen, inherit_bindings=False):
     """Runs the world, drives the first robot and lets guests in."""
 
     screen_actions = ScreenActions(
-        "shared game",
-        ("drive_keys", "stop_robot", "rematch", "help", "back", "quit"),
+        "hosted game",
+        ("drive_keys", "stop_robot", "restart", "help", "back", "quit"),
         ("ghosts", "drive_mode", "zoom", *VIEW_IDS),
-        own=(letter("rematch", "r", "rematch", "play again after a game that is over"),),
         drives=True,
     )
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
@@ -203,7 +201,8 @@ class SharedHostScreen(SharedScreen):
             self._recorder = Recorder.for_scenario(session.scenario, session.runner.simulation)
             observers.insert(0, self._recorder)  # before the game, which hands on pushes at the end of a tick
 
-    def action_rematch(self) -> None:
+    def action_restart(self) -> None:
+        """Another game, after one that is over."""
         game = self._game
         if game is not None:
             self.host.post(lambda session: game.rematch())
