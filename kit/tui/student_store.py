@@ -35,6 +35,8 @@ class StudentOverview:
     """Of each world of the game its title, how many of its levels have a medal, and how many it has."""
     running: tuple[str, ...] = ()
     """Names of the trainings that run."""
+    news: str = ""
+    """What is new on the start screen, at the first visit."""
     problem: str = ""
     """Why progress, or lessons, cannot be read."""
 
@@ -51,6 +53,7 @@ class StudentStore:
         self._lessons = lessons
         self._progress: ProgressJournal | None = None
         self._opening = threading.Lock()
+        self._news = ""
 
     def progress(self) -> ProgressJournal:
         """The journal, opened when it is first asked for. Raises ProgressError."""
@@ -91,6 +94,7 @@ class StudentStore:
             next_medal,
             won,
             self._running(),
+            self._take_news(),
         )
 
     def open_lesson(self, lesson: Lesson) -> LessonSession:
@@ -123,6 +127,13 @@ class StudentStore:
             for title, best in summary.best_by_world.items()
         )
         return medal_in_reach(summary.levels), won
+
+    def _take_news(self) -> str:
+        """Taken once; what was taken stands for as long as the store is open."""
+        from kit.school.news import take_news
+
+        self._news = take_news(self.progress(), "start") or self._news
+        return self._news
 
     def _running(self) -> tuple[str, ...]:
         from kit.learning.training.run_folders import list_runs

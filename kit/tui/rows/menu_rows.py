@@ -89,7 +89,7 @@ def today_rows(overview: StudentOverview) -> list[Row]:
         lines.append(("", f"and {len(overview.running) - MOST_TRAININGS} more"))
     rows = [row(" ", *ruled("today", TEXT))]
     for word, text in lines:
-        first, *rest = wrap(text, TEXT - WORD)
+        first, *rest = wrap(text, TEXT - WORD - 1)
         rows.append(row("  ", (f"{word:<{WORD}}", "dim"), first))
         rows += [row("  ", " " * WORD, each) for each in rest]
     return rows

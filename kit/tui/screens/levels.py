@@ -41,6 +41,7 @@ from kit.school.game.player_progress import (
 from kit.school.game.race import DriverKind, agent_controller
 from kit.school.game.references import reference_recording, reference_seconds
 from kit.school.game.starts import film_scenario
+from kit.school.news import take_news
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import challenge_rows, drive_end_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
@@ -131,6 +132,8 @@ class LevelsScreen(RowsScreen[None]):
         self._prepared: dict[str, float] = {}
         """Share of each level's ghosts that is ready, 0 to 1."""
         self._doing = self._doing_level = ""
+        self._news = ""
+        """What is new here, at the first visit."""
         self._at = self._levels.index(level) if level in self._levels else 0
 
     def compose(self) -> ComposeResult:
@@ -142,6 +145,7 @@ class LevelsScreen(RowsScreen[None]):
         yield TextRows(id="keys")
 
     def on_mount(self) -> None:
+        self._news = take_news(self._progress, self.screen_actions.name)
         self._read()
         if self._first is None:
             self._at = next(
@@ -220,7 +224,7 @@ class LevelsScreen(RowsScreen[None]):
         """The rows above a world's list, ROWS_ABOVE_LEVELS with the columns' names. ``best``: the best medal of each entry."""
         number = self._worlds.index(self._world) + 1
         heading = level_rows.world_heading(self._world, number, len(self._worlds), belt_of(best))
-        return [row(), *heading, row()]
+        return [row((f" {self._news}", "good")), *heading, row()]
 
     def _level_rows(self) -> tuple[list[Row], list[Row]]:
         """The list of the chosen world with its map, and what is said of the chosen level."""

@@ -116,7 +116,12 @@ class StartScreen(PlayScreen, inherit_bindings=False):
             return
         self.world.offer(self._newest_scene)
         self._rows("heading").show([self._heading(view)])
-        self._rows("messages").show(self.message_rows(view))
+        self._rows("messages").show(self.message_rows(view) or self._news_rows())
+
+    def _news_rows(self) -> list[Row]:
+        """What is new, until something is opened."""
+        news = "" if self._overview is None else self._overview.news
+        return [row((f" {news}", "good"))] if news else []
 
     def _heading(self, view: View) -> tuple[tuple[str, str], ...]:
         driver = "you drive" if view.controller == TELEOP else "a program drives: random walk"
