@@ -76,7 +76,7 @@ def today_rows(overview: StudentOverview) -> list[Row]:
     """What is open today: the day's maze, the next medal in reach, questions that are due, trainings that run."""
     if overview.problem:
         return []
-    maze = "today's run is over" if overview.has_run_today else "today's run is open"
+    maze = "driven today" if overview.has_run_today else "not driven yet"
     if overview.streak:
         maze += f", {counted(overview.streak, 'day')} in a row"
     lines = [("4  maze", maze)]

@@ -23,15 +23,15 @@ def test_what_stands_below_the_menu_is_there_whole_or_not_at_all(room: int) -> N
     rows = menu(FULL, 0, room)
     assert len(rows) <= room or rows == menu(FULL, 0, 0)
     assert all(row_width(each) <= PANEL_WIDTH for each in rows)
-    text = "\n".join(row_text(each) for each in rows)
+    text = " ".join(" ".join(row_text(each).split()) for each in rows)
     assert all(item.title in text for item in MENU)
-    assert ("── today" in text) == ("silver at 7.20 s" in text)
+    assert ("── today" in text) == ("silver" in text)
 
 
 def test_today_names_the_maze_the_medal_the_questions_and_the_trainings() -> None:
     text = " ".join(" ".join(row_text(each).split()) for each in today_rows(FULL))
     for told in (
-        "run is open",
+        "not driven yet",
         "4 days in a row",
         "silver at 7.20 s",
         "3 questions due",
@@ -41,7 +41,7 @@ def test_today_names_the_maze_the_medal_the_questions_and_the_trainings() -> Non
         assert told in text
     assert "turn-ppo-4" not in text
     over = " ".join(row_text(each) for each in today_rows(StudentOverview(has_run_today=True)))
-    assert "run is over" in over
+    assert "driven today" in over
     assert "medal" not in over
     assert "due" not in over
 
