@@ -85,7 +85,7 @@ class KitApp(App[None]):
         terms, page = read_glossary(), Page(TEXT_WIDTH, MARGIN)
         half = (len(terms) + 1) // 2
         left, right = (rows_of(glossary_blocks(part), page) for part in (terms[:half], terms[half:]))
-        self.push_screen(TextScreen("Glossary", left, [row(), *right]))
+        self.push_screen(TextScreen("Glossary", [row(), *left], [row(), *right]))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leaves Ctrl-C to a screen that has an action for it, and Ctrl-Z to a text that takes a change back."""
