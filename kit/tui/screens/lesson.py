@@ -514,7 +514,9 @@ class LessonScreen(DialogueScreen, DriveScreen):
             driver.report_releases(wanted)
 
     def _show_keys(self) -> None:
-        keys = key_row(("^S", "save and check"), ("Esc", "task"), ("^Z", "undo"), ("^E", "close"))
+        keys = key_row(
+            ("^S", "save and check"), ("Esc", "task"), ("^Z", "undo"), ("^E", "close"), ("^P", "find")
+        )
         self._rows("keys").show([keys if self._is_writing else self._keys()])
 
     def on_unmount(self) -> None:
