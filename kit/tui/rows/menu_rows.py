@@ -13,7 +13,10 @@ if TYPE_CHECKING:
     from kit.tui.student_store import StudentOverview
 
 PANEL_WIDTH: Final = 31
-TEXT: Final = PANEL_WIDTH - 2
+INSIDE: Final = PANEL_WIDTH - 2
+"""Columns of the panel that are drawn."""
+TEXT: Final = INSIDE - 2
+"""Columns of a text, behind its margin."""
 TITLE: Final = 11
 """Columns of a line's title."""
 WORD: Final = 10
@@ -59,11 +62,11 @@ def menu(overview: StudentOverview | None, chosen: int, room: int) -> list[Row]:
                 (">" if is_chosen else " ", "bold"),
                 (f" {MENU_KEYS[number]}  ", "chosen" if is_chosen else "press"),
                 (f"{item.title:<{TITLE}}", "chosen" if is_chosen else ""),
-                (f" {status:<{TEXT - TITLE - 4}}", "chosen" if is_chosen else "dim"),
+                (f" {status:<{INSIDE - TITLE - 6}}", "chosen" if is_chosen else "dim"),
             )
         )
         if item.name == "next_lesson":
-            rows += [row("     ", each) for each in _padded(_next_step_text(overview), 3, TEXT - 5)]
+            rows += [row("     ", each) for each in _padded(_next_step_text(overview), 3, INSIDE - 5)]
     about = _padded(MENU[chosen].about, 3, TEXT)
     rows += [row(), *(row("  ", (each, "dim")) for each in about)]
     for part in () if overview is None else (today_rows(overview), won_rows(overview)):
@@ -87,9 +90,9 @@ def today_rows(overview: StudentOverview) -> list[Row]:
     lines += [("5  train", f"{name} is running") for name in overview.running[:MOST_TRAININGS]]
     if len(overview.running) > MOST_TRAININGS:
         lines.append(("", f"and {len(overview.running) - MOST_TRAININGS} more"))
-    rows = [row(" ", *ruled("today", TEXT))]
+    rows = [row(" ", *ruled("today", INSIDE - 1))]
     for word, text in lines:
-        first, *rest = wrap(text, TEXT - WORD - 1)
+        first, *rest = wrap(text, TEXT - WORD)
         rows.append(row("  ", (f"{word:<{WORD}}", "dim"), first))
         rows += [row("  ", " " * WORD, each) for each in rest]
     return rows
@@ -99,7 +102,7 @@ def won_rows(overview: StudentOverview) -> list[Row]:
     """How many levels of each world of the game have a medal, as a bar and in figures."""
     if not overview.won:
         return []
-    rows = [row(), row(" ", *ruled("medals", TEXT))]
+    rows = [row(), row(" ", *ruled("medals", INSIDE - 1))]
     for title, won, count in overview.won:
         figures = f"{won:>3} of {count}"
         rows.append(
@@ -132,7 +135,7 @@ def _status(name: str, overview: StudentOverview | None) -> str:
     if name == "levels":
         if not overview.has_run_today:
             return f"maze: day {overview.streak + 1}" if overview.streak else "today's maze"
-        return f"streak {counted(overview.streak, 'day')}" if overview.streak else ""
+        return f"streak {overview.streak}" if overview.streak else ""
     if name == "quiz" and overview.due:
         return f"{overview.due} due today"
     if name == "train" and overview.running:

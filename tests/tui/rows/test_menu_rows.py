@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from kit.document.rows import row_width
-from kit.tui.rows.menu_rows import MENU, PANEL_WIDTH, menu, today_rows
+from kit.tui.rows.menu_rows import INSIDE, MENU, menu, today_rows
 from kit.tui.student_store import StudentOverview
 from tests.tui.lesson_stage import row_text
 
@@ -22,7 +22,7 @@ FULL = StudentOverview(
 def test_what_stands_below_the_menu_is_there_whole_or_not_at_all(room: int) -> None:
     rows = menu(FULL, 0, room)
     assert len(rows) <= room or rows == menu(FULL, 0, 0)
-    assert all(row_width(each) <= PANEL_WIDTH for each in rows)
+    assert all(row_width(each) <= INSIDE for each in rows)
     text = " ".join(" ".join(row_text(each).split()) for each in rows)
     assert all(item.title in text for item in MENU)
     assert ("── today" in text) == ("silver" in text)
