@@ -22,7 +22,8 @@ from kit.tui.rows import lesson_rows
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
-from kit.tui.widgets.program_editor import MAX_BYTES, MOST_COLOURED, ProgramEditor
+from kit.tui.widgets.program_colours import MOST_COLOURED
+from kit.tui.widgets.program_editor import MAX_BYTES, ProgramEditor
 from kit.workspace import Workspace, open_workspace
 from tests.kit_content import kit_lesson
 from tests.tui.lesson_folder import write_lessons, write_solutions

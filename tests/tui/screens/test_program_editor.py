@@ -15,15 +15,14 @@ from kit.controllers import find_controller
 from kit.host.failure import Failure, FailureKind
 from kit.tui.screens.play import PlayScreen
 from kit.tui.widgets.program_editor import (
-    ERROR,
     MAX_BYTES,
-    SYNTAX_STYLES,
     ProgramEditor,
     ProgramFile,
     ProgramFileError,
     ProgramTextArea,
     editable_controller,
 )
+from kit.tui.widgets.text_rows import ERROR, SYNTAX_STYLES
 from tests.cases import every_case
 from tests.tui.lesson_stage import rows, seen, stage, text, until
 
