@@ -443,12 +443,18 @@ def test_a_large_terminal_shows_the_file_beside_the_words(student: Student, size
             "# mine" in line and "Write the colour into" in "".join(rows(pilot)) for line in rows(pilot)
         )
 
+    async def below(pilot: Pilot[None]) -> None:
+        await seen(pilot, "1 # mine")
+        shown = text(pilot)
+        assert shown.index("Write the colour into") < shown.index("# mine")
+
     async def small(pilot: Pilot[None]) -> None:
         await seen(pilot, "Write the colour into")
         assert "# mine" not in text(pilot)
 
     stage(student.screen, scene, size=size)
-    stage(student.screen, small)
+    stage(student.screen, below)
+    stage(student.screen, small, size=(80, 14))
 
 
 @pytest.mark.long
