@@ -17,7 +17,6 @@ NEWS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
         "start": ("0.2.0", "l opens the league: your programs and agents against everybody's."),
         "levels": ("0.2.0", "each driver has a ladder; d is today's maze, the same for all."),
         "lessons": ("0.2.0", "^E edits your program."),
-        "quiz": ("0.2.0", "on a wide screen what you know stands beside the question."),
     }
 )
 """Of each screen, by the name of its actions, the version that brought something and a line about it."""

@@ -67,7 +67,6 @@ class QuizDialogue(Dialogue):
         self.session = session
         self.item: QuizItem | None = session.current_item
         self.number = session.question_number
-        self._news = session.take_news()
         self.choice: AnswerChoice | None = None
         self.stage = QuizStage.ASKED if self.item is not None else QuizStage.OVER
 
@@ -91,10 +90,6 @@ class QuizDialogue(Dialogue):
     @property
     def is_over(self) -> bool:
         return self.stage is QuizStage.OVER
-
-    @property
-    def note(self) -> Text | None:
-        return Text(self._news, Tone.GOOD) if self._news and self.stage is QuizStage.ASKED else None
 
     @property
     def look(self) -> Block | None:
@@ -185,7 +180,7 @@ class QuizDialogue(Dialogue):
 
     def go_on(self) -> Effect:
         self.item, self.number = self.session.current_item, self.session.question_number
-        self.choice, self._news = None, ""
+        self.choice = None
         self.stage = QuizStage.OVER if self.item is None else QuizStage.ASKED
         return None
 

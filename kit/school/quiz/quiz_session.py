@@ -9,7 +9,6 @@ from datetime import datetime
 from typing import Final, Protocol
 
 from kit.school.lessons.reading import lesson_number
-from kit.school.news import take_news
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.school.quiz.answers import (
     AnswerChoice,
@@ -161,10 +160,6 @@ class QuizSession:
         self._restart = False
         self._update_remaining()
         return choice.outcome_for(item)
-
-    def take_news(self) -> str:
-        """What is new on the quiz's screen, the first time; else empty."""
-        return take_news(self._journal, "quiz")
 
     def all_answers(self) -> list[QuizAnswer]:
         """All answers in the journal, of every occasion."""
