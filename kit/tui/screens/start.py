@@ -150,7 +150,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self._overview = overview
         if notice := self._store.take_notice():
             self.app.push_screen(MessageDialog("Your progress", wrapped(notice)))
-        self._show_menu()
+        self._show()
         return overview
 
     # Keys
