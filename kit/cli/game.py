@@ -215,6 +215,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
         record_judgement,
     )
     from kit.school.game.medal import Medal
+    from kit.school.game.shared_answers import share_answer
     from kit.school.lessons.reading import lesson_number
 
     with _open_journal(workspace) as (journal, opened_workspace):
@@ -247,6 +248,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
         except (LookupError, ChallengeError, OSError) as error:
             messages.fail(messages.describe_error(error))
         record_judgement(journal, chosen, judgement)
+        share_answer(chosen, answer, judgement)
         click.echo(f"{judgement.text}\n  {judgement.medal.title}")
 
 

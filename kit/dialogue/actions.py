@@ -44,5 +44,5 @@ class ScreenActions:
 
     @property
     def off_footer(self) -> tuple[str, ...]:
-        """``more``, and on every screen that has a help page the glossary and the list of commands."""
-        return (*self.more, "glossary", "palette") if "help" in self.footer else self.more
+        """``more``, on every screen that has a help page the glossary, and everywhere the list of commands."""
+        return (*self.more, *(("glossary",) if "help" in self.footer else ()), "palette")

@@ -96,6 +96,10 @@ class Dialogue:
         """What is shown now. A screen shows all of it, line by line only what is new is said."""
         raise NotImplementedError
 
+    def beside(self) -> Sequence[Block]:
+        """What a screen shows to the right of the others where it is wide enough; line by line it is not said."""
+        return ()
+
     def heard(self) -> Sequence[Block]:
         """What is said line by line when one comes to a place, and stands elsewhere on a screen."""
         return ()

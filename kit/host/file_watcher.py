@@ -61,6 +61,10 @@ class FileWatcher:
         self._reported = state
         return True
 
+    def take_as_known(self) -> None:
+        """What stands there now was written by whoever watches: it is no change."""
+        self._reported = self._last = self._read_state()
+
     def _read_state(self) -> _FileState | None:
         try:
             if self._file.is_dir():

@@ -64,6 +64,7 @@ class EventKind(StrEnum):
     FINISH = "finish"
     ABOUT = "about"
     DEFENCE = "defence"
+    NEWS = "news"
 
 
 YEARS: Final = range(2000, 2100)

@@ -78,12 +78,14 @@ class KitApp(App[None]):
     def action_glossary(self) -> None:
         """Opens the glossary over any screen."""
         from kit.document.layout import Page, rows_of
-        from kit.document.rows import MARGIN, TEXT_WIDTH
+        from kit.document.rows import MARGIN, TEXT_WIDTH, row
         from kit.school.lessons.glossary import glossary_blocks, read_glossary  # of no use to the first frame
         from kit.tui.screens.dialogs import TextScreen
 
-        rows = rows_of(glossary_blocks(read_glossary()), Page(TEXT_WIDTH, MARGIN))
-        self.push_screen(TextScreen("Glossary", rows))
+        terms, page = read_glossary(), Page(TEXT_WIDTH, MARGIN)
+        half = (len(terms) + 1) // 2
+        left, right = (rows_of(glossary_blocks(part), page) for part in (terms[:half], terms[half:]))
+        self.push_screen(TextScreen("Glossary", [row(), *left], [row(), *right]))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leaves Ctrl-C to a screen that has an action for it, and Ctrl-Z to a text that takes a change back."""

@@ -13,7 +13,7 @@ if TYPE_CHECKING:  # reading lessons takes a moment to import: the frame is draw
     from kit.school.lessons.catalogue import LessonEntry
     from kit.school.lessons.lesson_session import LessonSession
     from kit.school.lessons.records import Lesson
-    from kit.school.progress import ProgressJournal
+    from kit.school.progress import ProgressEvent, ProgressJournal
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +29,14 @@ class StudentOverview:
     """Days in a row on which the level of the day was finished."""
     has_run_today: bool = False
     """Whether today's run of it is over."""
+    next_medal: str = ""
+    """The medal that is nearest to what was driven, and its level; empty where none is in sight."""
+    won: tuple[tuple[str, int, int], ...] = ()
+    """Of each world of the game its title, how many of its levels have a medal, and how many it has."""
+    running: tuple[str, ...] = ()
+    """Names of the trainings that run."""
+    news: str = ""
+    """What is new on the start screen, at the first visit."""
     problem: str = ""
     """Why progress, or lessons, cannot be read."""
 
@@ -45,6 +53,7 @@ class StudentStore:
         self._lessons = lessons
         self._progress: ProgressJournal | None = None
         self._opening = threading.Lock()
+        self._news = ""
 
     def progress(self) -> ProgressJournal:
         """The journal, opened when it is first asked for. Raises ProgressError."""
@@ -75,12 +84,17 @@ class StudentStore:
         from kit.school.game.daily import DAILY_PREFIX, streak, today
 
         day = today()
+        next_medal, won = self._game(events)
         return StudentOverview(
             shelf,
             next_lesson(shelf),
             self._due(),
             streak(events, day),
             any(event.subject == f"{DAILY_PREFIX}{day.isoformat()}" for event in events),
+            next_medal,
+            won,
+            self._running(),
+            self._take_news(),
         )
 
     def open_lesson(self, lesson: Lesson) -> LessonSession:
@@ -94,6 +108,37 @@ class StudentStore:
             if self._progress is not None:
                 self._progress.close()
                 self._progress = None
+
+    def _game(self, events: list[ProgressEvent]) -> tuple[str, tuple[tuple[str, int, int], ...]]:
+        """The medal in reach, and what was won of each world; nothing where the game's files cannot be read."""
+        from kit.school.game.challenges import game_summary
+        from kit.school.game.levels import all_levels
+        from kit.school.game.medal import Medal
+        from kit.school.game.medal_in_reach import medal_in_reach
+        from kit.school.game.player_progress import completed_lessons
+        from kit.world.problems import WorldError
+
+        try:
+            summary = game_summary(events, completed_lessons(all_levels(), events))
+        except (WorldError, FileNotFoundError):
+            return "", ()
+        won = tuple(
+            (title, sum(medal is not Medal.NONE for medal in best), len(best))
+            for title, best in summary.best_by_world.items()
+        )
+        return medal_in_reach(summary.levels), won
+
+    def _take_news(self) -> str:
+        """Taken once; what was taken stands for as long as the store is open."""
+        from kit.school.news import take_news
+
+        self._news = take_news(self.progress(), "start") or self._news
+        return self._news
+
+    def _running(self) -> tuple[str, ...]:
+        from kit.learning.training.run_folders import list_runs
+
+        return tuple(each.name for each in list_runs(self.workspace.runs) if each.is_active)
 
     def _due(self) -> int | None:
         from kit.school.quiz.items import read_bank

@@ -43,6 +43,14 @@ def test_a_file_as_it_is_has_not_changed(watched: WatchedFile) -> None:
     assert watched.noticed() == 0
 
 
+def test_what_the_watcher_itself_wrote_is_no_change(watched: WatchedFile) -> None:
+    watched.file.write_text("three")
+    watched.watch.take_as_known()
+    assert watched.noticed() == 0
+    watched.file.write_text("seven")
+    assert watched.noticed() == 1
+
+
 def test_a_file_written_in_place(watched: WatchedFile) -> None:
     watched.file.write_text("three")
     assert watched.noticed() == 1

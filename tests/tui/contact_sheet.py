@@ -83,7 +83,7 @@ LONGEST_WAIT: Final = 60.0
 VISITS: Final = {
     "start": ScreenVisit(),
     "drive": ScreenVisit(("play", "maze", "--controller", "random_walk"), (), 9.0),
-    "robots-map": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("x", "2"), 6.0),
+    "robots-map": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("u", "2"), 6.0),
     "editor": ScreenVisit(("play", "maze", "--controller", "random_walk"), ("\x05",), 4.0),
     "drive-hallway": ScreenVisit(("play", "pair_turn", "--controller", "fields"), (), 5.0),
     "fields": ScreenVisit(("fields", "show", "pair_turn"), (), 4.0),

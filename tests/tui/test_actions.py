@@ -129,6 +129,13 @@ def test_no_key_of_a_screen_does_two_things(name: str) -> None:
     assert sorted(found) == sorted(set(found))
 
 
+@every_case("name", SCREENS)
+def test_the_line_of_keys_ends_in_the_list_of_all_commands(name: str) -> None:
+    for width in (40, 80, 200):
+        line = footer(SCREENS[name], width)
+        assert "".join(text for text, _ in line).split()[-2:] == ["^P", "find"]
+
+
 def test_a_letter_that_screens_share_means_nothing_else() -> None:
     owners: dict[str, set[str]] = defaultdict(set)
     for screen in SCREENS.values():

@@ -64,7 +64,7 @@ def test_a_training_is_watched_paused_left_found_again_stopped_and_taken_up(kit:
 
     again = kit("watch", "mine")
     again.until(lambda: steps(again) >= before and ROBOT.search(again.text), "all of it again")
-    again.send(b"x")
+    again.send(b"k")
     again.until(lambda: "stopped" in again.text.splitlines()[0], "the stop")
     assert not the_run().is_active
     assert "p continues" in again.text

@@ -66,6 +66,22 @@ def task_blocks(task: LearningTask) -> list[Block]:
     ]
 
 
+def reward_blocks(task: LearningTask) -> list[Block]:
+    """What a step earns in few words: each term with its weight, and what it says of itself."""
+    if task.reward_file is not None:
+        return [Text(f"what reward() in {task.reward_file} returns", lead="earns")]
+    reward = task.reward
+    scale = "" if reward.scale == 1.0 else f", times {reward.scale:g}"
+    rows = [
+        (f"{weight.value:g}", f"{weight.term}{_settings(weight)}", term_summary(weight.term))
+        for weight in reward.weights
+    ]
+    return [
+        Text(f"the sum of these terms{scale}:", lead="earns"),
+        labelled_table(rows, indent=2, is_tight=True),
+    ]
+
+
 def key_tables() -> list[Table]:
     """What ``kit task keys`` prints: what a task file, the terms of its reward and a reward of one's own may name."""
     written = (tasks_folder() / "README.md").read_text(encoding="utf-8").replace("`", "")
@@ -75,7 +91,7 @@ def key_tables() -> list[Table]:
         if key != "Key"
     ]
     cases = " ".join(written[written.index("A case has") :].split())
-    terms = [(f"{term}{_usual_settings(term)}", term_summary(term).replace("``", "")) for term in TERMS]
+    terms = [(f"{term}{_usual_settings(term)}", term_summary(term)) for term in TERMS]
     goals = [
         (f"{kind} {goal.usual_settings()}".rstrip(), (inspect.getdoc(goal) or "").partition("\n")[0])
         for kind, goal in goal_kinds().items()
@@ -206,7 +222,7 @@ def _settings(weight: TermWeight) -> str:
 
 def term_summary(term: str) -> str:
     """The first sentence of what a reward term says of itself."""
-    text = inspect.getdoc(TERMS[term]) or ""
+    text = (inspect.getdoc(TERMS[term]) or "").replace("``", "")
     return text.partition(".")[0].partition("\n")[0]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -17,6 +18,8 @@ from kit.world.yaml_section import Section
 if TYPE_CHECKING:
     from kit.school.game.board import Board
 
+NO_RUNS: Final = Path(os.devnull) / "runs"
+"""A folder without trainings."""
 COMMENT: Final = "#"
 """Begins a line of an answer's file that is not part of the answer."""
 GOLD_GAIN, SILVER_GAIN = 0.98, 0.75
@@ -76,6 +79,15 @@ class ChallengeTask(ABC):
         """The board on which the puzzle is played by keys, with an answer as ``read_answer`` read it, or the naive one where
         that cannot be read; None for a kind that has none."""
         return None
+
+    def shared_text(self, answer: str) -> str:
+        """What everybody else's kit needs to judge an answer that ``judge`` took. Raises OSError and ValueError."""
+        return answer
+
+    def judge_shared(self, text: str) -> Judgement:
+        """Judges what ``shared_text`` gave. Reads nothing of this machine that the text names, and carries nothing out. Raises as
+        ``judge``."""
+        return self.judge(HandedIn(text, NO_RUNS))
 
     def prepare(self, folder: Path, about: Sequence[str]) -> Path | None:
         """Makes the answer's file in ``folder`` unless it is there, and returns it; None where the answer is no file.

@@ -16,6 +16,7 @@ from kit.render.world_text import scene_rows
 from kit.run.animation import AnimationSettings, export_recording
 from kit.run.recording import Recording
 from kit.school.game import leaderboard
+from kit.school.game.challenges import all_challenges
 from kit.school.game.daily import DAILY_PREFIX, daily_level, has_run, streak, today
 from kit.school.game.ghosts import best_recordings, save_ghost
 from kit.school.game.levels import GameLevel, all_levels
@@ -32,6 +33,7 @@ from kit.school.game.player_progress import (
 )
 from kit.school.game.race import DriverKind, RaceFinish, middle_drive
 from kit.school.game.references import reference_seconds
+from kit.school.game.shared_answers import publish_answers
 from kit.school.game.starts import film_scenario
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace, write_atomically
@@ -136,14 +138,16 @@ def record_drive(
 
 
 def join_leaderboard(journal: ProgressJournal, workspace: Workspace, name: str) -> None:
-    """Puts the player's name and best drives on the leaderboard. Raises LeaderboardError and ProgressError."""
+    """Puts the player's name, best drives and answers of puzzles on the leaderboard. Raises LeaderboardError and ProgressError."""
     drives = {
         (level.id, driver): recordings
         for level in (*all_levels(), daily_level(today()))
         for driver in DriverKind
         if (recordings := best_recordings(workspace, level, driver))
     }
-    leaderboard.publish_drives(leaderboard.leaderboard_folder(), name, drives)
+    folder = leaderboard.leaderboard_folder()
+    leaderboard.publish_drives(folder, name, drives)
+    publish_answers(folder, workspace, all_challenges())
 
 
 def _update_leaderboard(

@@ -10,12 +10,15 @@ from __future__ import annotations
 
 import json
 import os
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Final
+
+import numpy as np
 
 from kit.arrays import FloatArray
 from kit.plain_files import open_plain_file
@@ -40,6 +43,8 @@ FOLDER_VARIABLE: Final = "KIT_HALL"
 MAX_NAME_LENGTH: Final = 40
 MAX_NAME_BYTES: Final = 4096
 """Of the file with a user's name."""
+SAME_WAY: Final = 0.005
+"""Two hands that are nowhere farther apart than this are one [m]."""
 MAX_JUDGED: Final = 4096
 """Drives whose judgement is kept in memory."""
 
@@ -65,6 +70,8 @@ class LeaderboardEntry:
     step_size: float = 0.1
     user: int = 0
     """The number of the user whose it is."""
+    since_ns: int = 0
+    """Since when its file stands there, by the folder's own clock [ns]."""
     is_same_platform: bool = True
     """Whether it was driven on a machine like this one; else the referee's judgement stands, not equality to the bit."""
 
@@ -142,11 +149,12 @@ def publish_drives(
 
 
 def remove_own_entry(folder: Path) -> None:
-    """Deletes this user's name and drives. Raises LeaderboardError."""
+    """Deletes this user's name, drives and answers of puzzles. Raises LeaderboardError."""
     try:
         _name_file(folder, os.getuid()).unlink(missing_ok=True)
-        for file in folder.glob(f"{os.getuid()}.*.npz"):
-            file.unlink(missing_ok=True)
+        for pattern in ("npz", "txt"):
+            for file in folder.glob(f"{os.getuid()}.*.{pattern}"):
+                file.unlink(missing_ok=True)
     except OSError as error:
         raise LeaderboardError(f"{folder}: {error.strerror}.") from None
 
@@ -158,20 +166,19 @@ def own_name(folder: Path) -> str:
 
 def read_entries(folder: Path, levels: Sequence[GameLevel] | None = None) -> list[LeaderboardEntry]:
     """Judges the drives of all who have joined, by default on all levels and that of the day; sorted by level and time.
-    Passes over what may not stand there. Takes about a second for twenty drives that were not judged before."""
+    Passes over what may not stand there, and what is another's drive by hand. Takes about a second for twenty drives that were not judged before."""
     entries = []
-    for user in _users(folder):
-        name = _read_name(folder, user)
+    for user, name in _names(folder).items():
         for level in levels if levels is not None else (*all_levels(), daily_level(today())):
             for driver in DriverKind:
-                judged = None if name is None else _judged(folder, user, level, driver)
-                if name is not None and judged is not None:
-                    entries.append(_entry(name, user, level, driver, judged))
-    return sorted(entries, key=lambda each: (each.level, each.seconds, each.name))
+                judged = _judged(folder, user, level, driver)
+                if judged is not None:
+                    entries.append(_entry(name, user, level, driver, *judged))
+    return sorted(_without_copies(entries), key=lambda each: (each.level, each.seconds, each.name))
 
 
 def _entry(
-    name: str, user: int, level: GameLevel, driver: DriverKind, judged: JudgedDrive
+    name: str, user: int, level: GameLevel, driver: DriverKind, judged: JudgedDrive, since_ns: int
 ) -> LeaderboardEntry:
     return LeaderboardEntry(
         name,
@@ -184,11 +191,12 @@ def _entry(
         judged.tracks,
         judged.step_size,
         user,
+        since_ns,
         judged.is_same_platform,
     )
 
 
-def _users(folder: Path) -> Iterator[int]:
+def users_of(folder: Path) -> Iterator[int]:
     """The numbers of the users who have joined."""
     with suppress(OSError):
         for file in sorted(folder.glob("*.json")):
@@ -196,23 +204,61 @@ def _users(folder: Path) -> Iterator[int]:
                 yield int(file.stem)
 
 
+def _names(folder: Path) -> dict[int, str]:
+    """The names of the users who have joined; where several have one name, it is told whose it is."""
+    names = {user: name for user in users_of(folder) if (name := _read_name(folder, user)) is not None}
+    taken = Counter(name.casefold() for name in names.values())
+    return {
+        user: f"{name} (user {user})" if taken[name.casefold()] > 1 else name for user, name in names.items()
+    }
+
+
 def _read_name(folder: Path, user: int) -> str | None:
     """The name in a user's own file; None if there is none."""
     with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
-        content = json.loads(_read_own(_name_file(folder, user), user, MAX_NAME_BYTES))
+        content = json.loads(read_own(_name_file(folder, user), user, MAX_NAME_BYTES))
         name = "".join(sign for sign in str(content["name"]) if sign.isprintable())
         return " ".join(name.split())[:MAX_NAME_LENGTH] or f"user {user}"
     return None
 
 
-def _judged(folder: Path, user: int, level: GameLevel, driver: DriverKind) -> JudgedDrive | None:
-    """A user's shared drive of a level, run again; None if there is none that may stand here."""
+def _judged(folder: Path, user: int, level: GameLevel, driver: DriverKind) -> tuple[JudgedDrive, int] | None:
+    """A user's shared drive of a level, run again, and since when it stands there [ns]; None if there is none that may."""
     file = _drive_file(folder, user, level.id, driver)
     try:
-        content = _read_own(file, user, MAX_FILE_BYTES)
-        return _judge(content, level, driver)
+        content, since_ns = read_own(file, user, MAX_FILE_BYTES), file.lstat().st_ctime_ns
+        judged = _judge(content, level, driver)
     except (OSError, DriveRefused):
         return None
+    return None if judged is None else (judged, since_ns)
+
+
+def _without_copies(entries: Sequence[LeaderboardEntry]) -> list[LeaderboardEntry]:
+    """Without drives by hand that another user had before, a tick sooner or later: no two hands drive the same. The system keeps
+    the time at which a file was last changed, so that no user can set it back. Programs may well be equal."""
+    kept: list[LeaderboardEntry] = []
+    for each in sorted(entries, key=lambda entry: (entry.since_ns, entry.user)):
+        is_copy = each.driver is DriverKind.KEYS and any(
+            other.driver is DriverKind.KEYS
+            and other.level == each.level
+            and other.user != each.user
+            and _is_same_way(each, other)
+            for other in kept
+        )
+        if not is_copy:
+            kept.append(each)
+    return kept
+
+
+def _is_same_way(one: LeaderboardEntry, other: LeaderboardEntry) -> bool:
+    """Whether two drives are at the same places at the same times, all but a hair."""
+    if len(one.tracks) != len(other.tracks):
+        return False
+    for first, second in zip(one.tracks, other.tracks, strict=True):
+        rows = min(len(first), len(second))
+        if abs(len(first) - len(second)) > 1 or np.abs(first[:rows, :2] - second[:rows, :2]).max() > SAME_WAY:
+            return False
+    return True
 
 
 @lru_cache(MAX_JUDGED)
@@ -223,7 +269,7 @@ def _judge(content: bytes, level: GameLevel, driver: DriverKind) -> JudgedDrive 
     return None
 
 
-def _read_own(file: Path, user: int, limit: int) -> bytes:
+def read_own(file: Path, user: int, limit: int) -> bytes:
     """The content of a plain file that belongs to the user it is named after. Raises OSError for any other."""
     with open_plain_file(file, follows_links=False) as opened:
         status = os.fstat(opened.fileno())

@@ -78,7 +78,10 @@ def share_drives(recordings: Sequence[Recording], file: Path, remarks: Sequence[
     }
     data = io.BytesIO()
     np.savez_compressed(data, drives=np.frombuffer(json.dumps(content).encode(), dtype=np.uint8))
-    write_atomically(file, data.getvalue())
+    if (
+        not file.is_file() or file.is_symlink() or file.read_bytes() != data.getvalue()
+    ):  # else it stays as old as it is
+        write_atomically(file, data.getvalue())
 
 
 def judge_shared_drives(data: bytes, level: GameLevel, driver: DriverKind) -> JudgedDrive:

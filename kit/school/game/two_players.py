@@ -208,6 +208,8 @@ class SharedGame(SharedReferee):
         super().__init__(scenario, mode, runner.simulation)
         self._runner = runner
         self._players = tuple(_Player(runner.simulation.command_topics(robot)) for robot in self.robots)
+        self._has_second = False
+        self._first_catcher = self._catcher
 
     def push(self, player: int, linear: float, angular: float) -> None:
         """What a player's keys ask for now, forward and left, each from -1 to 1; more is cut. From any thread."""
@@ -215,17 +217,31 @@ class SharedGame(SharedReferee):
 
     def start(self) -> None:
         """The second player has come: the countdown begins."""
+        self._has_second = True
         if self._phase is SharedPhase.WAITING:
             self._enter(SharedPhase.COUNTDOWN)
 
     def remove_player(self, player: int) -> None:
         """A player has gone: the other has won, if it had begun."""
         self.push(player, 0.0, 0.0)
+        self._has_second = False
         if self._phase is SharedPhase.RUNNING:
             self._winner = 1 - player
             self._enter(SharedPhase.OVER)
         elif self._phase is SharedPhase.COUNTDOWN:
             self._enter(SharedPhase.WAITING)
+
+    def rematch(self) -> None:
+        """After a game that is over another one begins with its countdown, or waits for a second player; in tag the other one
+        catches first. In the world's thread."""
+        if self._phase is not SharedPhase.OVER:
+            return
+        self._scores = [0.0] * PLAYERS
+        self._winner = None
+        if self._first_catcher is not None:
+            self._first_catcher = 1 - self._first_catcher
+        self._catcher = self._first_catcher
+        self._enter(SharedPhase.COUNTDOWN if self._has_second else SharedPhase.WAITING)
 
     def on_step(self, simulation: Simulation) -> None:
         super().on_step(simulation)

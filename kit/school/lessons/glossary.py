@@ -10,7 +10,7 @@ from typing import Any, Final
 from kit.dialogue.dialogue import DialogueAction, Refused
 from kit.dialogue.effects import Effect, Tell
 from kit.dialogue.shared_actions import ACTIONS
-from kit.document.blocks import Block, Text, Tone
+from kit.document.blocks import Block, Picture, Text, Tone
 from kit.plain_text import quoted, suggestion
 from kit.school.lessons.reading import lesson_number, lessons_folder
 from kit.world.documents import open_document
@@ -33,6 +33,8 @@ class GlossaryTerm:
     lesson: str
     """The folder of the lesson that introduces it."""
     meaning: str
+    picture: tuple[str, ...] = ()
+    """Rows of ASCII characters; empty: no picture."""
 
     @property
     def spellings(self) -> tuple[str, ...]:
@@ -45,10 +47,11 @@ class GlossaryTerm:
         return bool(known & {word, word.removesuffix("s"), word.removesuffix("es")})
 
     def blocks(self) -> tuple[Block, ...]:
-        """The term with its lesson, and the meaning below, indented."""
+        """The term with its lesson, and the meaning below, indented, with its picture where it has one."""
         named = " or ".join(self.spellings)
         tail = f"  (lesson {lesson_number(self.lesson)})"
-        return (Text(named, Tone.BOLD, tail=tail), Text(self.meaning, indent=4, is_tight=True))
+        picture = (Picture(self.picture, indent=6),) if self.picture else ()
+        return (Text(named, Tone.BOLD, tail=tail), Text(self.meaning, indent=4, is_tight=True), *picture)
 
 
 def read_glossary(folder: Path | None = None) -> tuple[GlossaryTerm, ...]:
@@ -98,7 +101,8 @@ def _read_terms(section: Section) -> Iterator[GlossaryTerm]:
     seen: set[str] = set()
     for each in section.sections("terms", at_least=1):
         meaning = " ".join(each.text("means").split())
-        term = GlossaryTerm(each.name("term"), each.texts("also", ()), each.name("lesson"), meaning)
+        picture = tuple(each.text("picture", "").rstrip().splitlines())
+        term = GlossaryTerm(each.name("term"), each.texts("also", ()), each.name("lesson"), meaning, picture)
         for spelling in term.spellings:
             if spelling.casefold() in seen:
                 each.error(f"{quoted(spelling)} is in the glossary already", "term")

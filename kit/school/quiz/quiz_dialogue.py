@@ -24,6 +24,7 @@ from kit.school.quiz.quiz_text import (
     feedback_text,
     follow_up_blocks,
     today_line,
+    topic_map,
     verdict_text,
 )
 
@@ -121,6 +122,11 @@ class QuizDialogue(Dialogue):
         elif self.stage is QuizStage.TOLD and self.choice is not None:
             shown += self._feedback(item, self.choice)
         return shown
+
+    def beside(self) -> Sequence[Block]:
+        if self.item is None or self.is_over:
+            return ()
+        return (topic_map(self.session.bank, self.session.all_answers(), self.item.topic),)
 
     def _options(self, item: QuizItem) -> list[Block]:
         """``>`` before the chosen one; once it is told, ``+`` before the right and ``x`` before a wrong one."""

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from datetime import date
 from typing import Final
 
-from kit.document.blocks import Block, CellStyle, Column, Table, Text, Tone
+from kit.document.blocks import Block, CellStyle, Column, Table, Text, Tone, ToneText
 from kit.school.quiz.answers import CONFIDENCE_LABELS, AnswerChoice, AnswerOutcome, QuizAnswer
 from kit.school.quiz.items import (
     QuestionBank,
@@ -129,6 +129,25 @@ def topic_table(scores: Mapping[QuizTopic, OutcomeCounts]) -> Table:
         for topic, t in scores.items()
     )
     return Table("topics", "", columns, rows, is_ruled=False)
+
+
+MAP_BAR: Final = 10
+"""Columns of a topic's bar on the map of topics."""
+
+
+def topic_map(bank: QuestionBank, answers: Iterable[QuizAnswer], current: QuizTopic) -> Table:
+    """What is known of each topic, by the latest answer to each of its questions, and which one is asked now."""
+    counts = count_by_topic(bank.items, latest_answers(answers))
+    rows = tuple(
+        (
+            ">" if topic is current else "",
+            ToneText(topic.label, Tone.BOLD if topic is current else Tone.PLAIN),
+            "#" * (filled := round(MAP_BAR * each.right / each.total)) + "." * (MAP_BAR - filled),
+            f"{each.right} of {each.total}",
+        )
+        for topic, each in counts.items()
+    )
+    return Table("topic-map", "What you know, by topic", (Column("", _WORDS),) * 3 + (Column(""),), rows)
 
 
 def calibration_blocks(calibration: Calibration) -> list[Block]:

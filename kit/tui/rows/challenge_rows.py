@@ -12,9 +12,10 @@ from kit.school.game.board import Board
 from kit.school.game.challenge import Challenge
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
+from kit.school.game.needed import Bin
 from kit.school.lessons.reading import lesson_number
 from kit.school.lessons.shell_lines import shell_path
-from kit.tui.rows.drive_end_rows import medal_row, share_bar
+from kit.tui.rows.drive_end_rows import medal_row, needed_rows, share_bar
 from kit.tui.rows.level_rows import MEDAL_SIGNS, MEDAL_STYLES, TITLE_WIDTH
 
 TITLE_COLUMNS: Final = TITLE_WIDTH + 8
@@ -162,6 +163,12 @@ def judged(judgement: Judgement, previous: Medal, following: str | None, width: 
     if following is not None and judgement.medal is not Medal.NONE:
         rows.append(row(("   next ", "dim"), following))
     return rows
+
+
+def answers_needed_rows(bins: Sequence[Bin], comparison: AnswerComparison) -> list[Row]:
+    """A histogram of what all players of this machine needed; empty for one without bins."""
+    decimals = 0 if float(comparison.answer).is_integer() else 2
+    return needed_rows(bins, comparison.unit, decimals)
 
 
 def _compared(comparison: AnswerComparison) -> list[Row]:

@@ -113,7 +113,7 @@ def sector_rows(splits: Sequence[Split]) -> list[Row]:
     ]
 
 
-def needed_rows(bins: Sequence[Bin]) -> list[Row]:
+def needed_rows(bins: Sequence[Bin], unit: str = "s", decimals: int = 2) -> list[Row]:
     """A histogram of what all players of this machine needed; empty for one without bins."""
     most = max((each.count for each in bins), default=0)
     if not most:
@@ -123,7 +123,7 @@ def needed_rows(bins: Sequence[Bin]) -> list[Row]:
     for each in bins:
         bar = "=" * round(BAR * each.count / most) if each.count else ""
         own = " < you" if each.holds_own else ""
-        rows.append(row(f"   to {each.high:7.2f} s  {each.count:3} ", bar, (own, "bold")))
+        rows.append(row(f"   to {each.high:7.{decimals}f} {unit}  {each.count:3} ", bar, (own, "bold")))
     return rows
 
 

@@ -10,17 +10,16 @@ from typing import Final
 from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText
 from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row
-from kit.plain_text import counted, wrap
+from kit.plain_text import counted
 from kit.school.game.daily import DAILY_PREFIX, daily_level, today
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost
 from kit.school.game.leaderboard import LeaderboardEntry, PlayerStanding
 from kit.school.game.levels import GameLevel, GameWorld, all_levels
-from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time
+from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time, next_rung
 from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.starts import SEEDS
-from kit.tui.rows.readout_rows import title as ruled
 
 TITLE_WIDTH: Final = 24
 STAR, NO_STAR, SHUT = "*", ".", "-"
@@ -221,37 +220,6 @@ def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, widt
     here = column(seconds / reference)
     passed = "".join("━" if sign == "─" else sign for sign in signs[:here])
     return row((passed, "good"), (HERE, "bold"), ("".join(signs[here + 1 :]), "dim"))
-
-
-def level_card(level: GameLevel, driver: DriverKind, reference: float | None, width: int) -> list[Row]:
-    """What a level is about: story, task, the rungs of its ladder, and the rules that earn stars."""
-    rows = [ruled("level", width), *(row(line) for line in wrap(level.story, width))]
-    rows += [row((line, "bold")) for line in wrap(level.hint, width)]
-    if level.skill:
-        rows += [row((line, "dim")) for line in wrap(f"skill: {level.skill}", width)]
-    if reference is None:
-        return rows
-    rows += [
-        ruled("ladder", width, driver.phrase),
-        row(*ladder_bar(driver, reference, None, min(width, RESULT_BAR))),
-    ]
-    rows += [
-        row(
-            (f"{MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]),
-            f"{medal.title:<8} {medal_time(medal, reference, driver):8.2f} s",
-        )
-        for medal in reversed(RUNGS)
-    ]
-    rows.append(ruled("stars", width))
-    for rule in ExtraRule:
-        rows += [row((line, "")) for line in wrap(f"{STAR} {rule.description(level)}", width, "", "  ")]
-    return rows
-
-
-def next_rung(driver: DriverKind, reference: float, seconds: float | None) -> Medal | None:
-    """The lowest rung that a time does not reach; None above the record."""
-    missing = [medal for medal in RUNGS if seconds is None or seconds > medal_time(medal, reference, driver)]
-    return min(missing, default=None)
 
 
 def ladder_words(driver: DriverKind, reference: float, seconds: float | None) -> str:

@@ -8,6 +8,8 @@ from kit.document.rows import Row, row, spread
 from kit.plain_text import counted
 from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedGameState, SharedMode, SharedPhase
 
+HOST: Final = 0
+"""The number of the player whose process runs the world."""
 NOBODY: Final = "nobody yet"
 PLAYER_STYLES: Final = ("code", "bold")
 
@@ -53,7 +55,12 @@ def shared_message(
         ),
     )
     if state.phase is SharedPhase.OVER:
-        return row((f" {_end(state, me)}", "good" if state.winner == me is not None else "bold")), scores
+        again = "r plays again" if me == HOST else f"{state.names[HOST]} can begin a rematch" if me else ""
+        end = row(
+            (f" {_end(state, me)}", "good" if state.winner == me is not None else "bold"),
+            (f"  {again}." if again else "", "dim"),
+        )
+        return end, scores
     return row((f" {_task(mode, state, me)}", "bold")), scores
 
 

@@ -22,7 +22,7 @@ from kit.learning.training.measures import (
     format_measure,
     is_value_too_large,
 )
-from kit.plain_text import format_size
+from kit.plain_text import format_size, wrap
 from kit.render.curve import Axes, ChartPart, Curve, StackedCounts
 from kit.render.roles import Role
 from kit.tui.rows.key_rows import footer
@@ -84,7 +84,8 @@ def settings(entries: Sequence[tuple[str, str, str]], chosen: int, width: int) -
                 (_end_of(value, max(4, width - 15)), "bold"),
             )
         )
-        rows += [row("              ", (about[: max(1, width - 15)], "dim")), row()]
+        rows += [row("              ", (line, "dim")) for line in wrap(about, max(20, width - 15))]
+        rows.append(row())
     return rows
 
 

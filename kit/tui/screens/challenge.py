@@ -19,8 +19,9 @@ from kit.school.game.challenge import Challenge, ChallengeError, HandedIn
 from kit.school.game.challenges import answers_folder, challenge_medals, prepare_answer, record_judgement
 from kit.school.game.judgement import Judgement
 from kit.school.game.medal import Medal
+from kit.school.game.shared_answers import share_answer
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
-from kit.tui.rows.challenge_rows import challenge_page, judged
+from kit.tui.rows.challenge_rows import answers_needed_rows, challenge_page, judged
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.lesson_rows import checking
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, TextScreen, wrapped
@@ -67,6 +68,8 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         self._clock_began_at = time.monotonic() - seconds
         self._watch = None if self._file is None else FileWatcher(self._file)
         self._result: list[Row] = []
+        self._needed: list[Row] = []
+        """What all players of this machine needed."""
         self._doing = ""
         self._started_at: float | None = None
         """When the running check was started; None while none is."""
@@ -150,7 +153,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         self._show()
         try:
             judgement, previous = await to_thread(self._judge, answer)
-            self._result = judged(judgement, previous, self._following, self.size.width)
+            self._result = [*judged(judgement, previous, self._following, self.size.width), *self._needed]
         except (ChallengeError, WorldError, ProgressError, OSError) as error:
             self._result = [row((" No medal", "bold")), *wrapped(f" {error}")]
         finally:
@@ -168,6 +171,8 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         judgement = self._challenge.task.judge(handed_in)
         medals = challenge_medals(self._progress.events(EventKind.FINISH))
         record_judgement(self._progress, self._challenge, judgement)
+        bins = share_answer(self._challenge, answer, judgement)
+        self._needed = [] if judgement.comparison is None else answers_needed_rows(bins, judgement.comparison)
         return judgement, medals.get(self._challenge.id, Medal.NONE)
 
     def _prepare(self) -> tuple[Path | None, float]:

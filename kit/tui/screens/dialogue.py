@@ -16,7 +16,7 @@ from kit.dialogue.dialogue import Dialogue, Turn
 from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show, StartTyping, Tell, Work
 from kit.document.blocks import Tone
 from kit.document.layout import Page, place, rows_of
-from kit.document.rows import MARGIN, Row, row, spread, text_width, window
+from kit.document.rows import MARGIN, Row, row, side_by_side, spread, text_width, window
 from kit.tui.rows.key_rows import footer
 from kit.tui.screens.dialogs import HelpDialog, Picker, PickerItem, TextScreen
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 
 WIDEST: Final = 92
 """Columns of a question, however wide the terminal."""
+BESIDE: Final = 42
+"""Columns of what stands beside it."""
+LEAST_BESIDE: Final = 76
+"""A question keeps so many columns; where there are fewer nothing stands beside it."""
 LEAST_ROWS_IN_MIDDLE: Final = 24
 """A screen with no more rows shows the question at its top."""
 ROOMY_ROWS: Final = 36
@@ -130,7 +134,9 @@ class DialogueScreen(RowsScreen[None]):
         width, room = self.room.width, max(1, self.room.height - ROWS_AROUND)
         self._show_field()
         body, self._top = window(self._body(), self._top, room)
-        body = centred(body, width, room)
+        if beside := self._beside():
+            body = side_by_side(body, beside[:room], self._widest)
+        body = centred(body, width, room, self._whole)
         height = len(body) if self._field is not None and self._field.display else "1fr"
         if height != self._body_height:  # setting a style lays out and paints the whole screen
             self._body_height = self._rows("body").styles.height = height
@@ -139,10 +145,29 @@ class DialogueScreen(RowsScreen[None]):
     def _body(self) -> list[Row]:
         return [row(), *rows_of(self.dialogue.blocks(), self._text_page)]
 
+    def _beside(self) -> list[Row]:
+        """What stands to the right of the question; nothing where there is no room."""
+        if self._whole == self._widest:
+            return []
+        return [row(), *rows_of(self.dialogue.beside(), Page(BESIDE - MARGIN))]
+
+    @property
+    def _whole(self) -> int:
+        """Columns of the question and of what stands beside it."""
+        has_room = self.room.width >= LEAST_BESIDE + BESIDE and self.dialogue.beside()
+        return self._widest + BESIDE if has_room else self._widest
+
+    @property
+    def _widest(self) -> int:
+        """Columns of the question."""
+        if self.room.width >= LEAST_BESIDE + BESIDE and self.dialogue.beside():
+            return min(WIDEST, self.room.width - BESIDE)
+        return WIDEST
+
     @property
     def _text_page(self) -> Page:
         is_roomy = self.room.height - ROWS_AROUND >= ROOMY_ROWS
-        return Page(text_width(self.room.width, WIDEST - 2 * MARGIN), MARGIN, is_roomy=is_roomy)
+        return Page(text_width(self.room.width, self._widest - 2 * MARGIN), MARGIN, is_roomy=is_roomy)
 
     def _show_field(self) -> None:
         """The field in which a text is typed, with the text of this place."""
@@ -154,8 +179,8 @@ class DialogueScreen(RowsScreen[None]):
         if entry is None:
             self._typed_place = self
             return
-        left = left_column(self.room.width) + MARGIN
-        right = max(0, self.room.width - left - text_width(self.room.width, WIDEST - 2 * MARGIN))
+        left = left_column(self.room.width, self._whole) + MARGIN
+        right = max(0, self.room.width - left - text_width(self.room.width, self._widest - 2 * MARGIN))
         field.styles.margin = (0, right, 0, left)
         if self._typed_place != self.dialogue.place:
             self._typed_place = self.dialogue.place
@@ -323,18 +348,18 @@ def _nothing() -> Effect:
     return None
 
 
-def centred(rows: Sequence[Row], width: int, room: int) -> list[Row]:
+def centred(rows: Sequence[Row], width: int, room: int, widest: int = WIDEST) -> list[Row]:
     """The rows as a column in the middle of a wide screen, lower on a high one. The place depends on the screen alone:
     nothing moves as rows are added.
 
     >>> centred([row("one")], 100, 20)
     [(('    ', ''), ('one', ''))]
     """
-    left = left_column(width)
+    left = left_column(width, widest)
     above = max(0, min((room - LEAST_ROWS_IN_MIDDLE) // 3, room - len(rows)))
     return [row()] * above + [(row(" " * left) + each if left and each else each) for each in rows]
 
 
-def left_column(width: int) -> int:
+def left_column(width: int, widest: int = WIDEST) -> int:
     """The column at which ``centred`` begins."""
-    return max(0, (width - WIDEST) // 2)
+    return max(0, (width - widest) // 2)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 from asyncio import to_thread
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -212,9 +213,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
         hides_work = dialogue.has_ended or self.stage.is_recorded
         drawn = [] if hides_work else self._work_picture(self._width - 2, is_roomy=is_roomy)
         asked = dialogue.asked()
-        has_work = work is not None and not work.by_hand and is_roomy
+        has_work = work is not None and not work.by_hand and (is_roomy or not self._is_editing)
         lines = work.edited_lines() if work is not None and has_work else ()
-        digits = len(str(len(lines)))
         content = LessonContent(
             words,
             [row(), *self._placed_rows(asked)] if asked else [],
@@ -225,13 +225,24 @@ class LessonScreen(DialogueScreen, DriveScreen):
             first_words=max(self._said_row, answer, len(words) - self._said_row),
             most_words=self._said_row + answer,
             scrolls_with="PgDn" if dialogue.is_driving else "down",
-            file=[row((f"{number:>{digits}} ", "dim"), line) for number, line in enumerate(lines, 1)],
+            file=self._numbered(lines) if lines else (),
             file_title=work.edited_file.name if work is not None and has_work else "",
             file_line=max(work.error_line, work.changed_line) - 1 if work is not None and has_work else 0,
             log=[row("  ", line) for line in work.printed_lines] if work is not None and has_work else (),
         )
         room = self.room.height - 3 - len(file) - len(status)
         self._page.show(content, room - self._editor_rows(room), layout)
+
+    def _numbered(self, lines: Sequence[str]) -> list[Row]:
+        """The student's file in colours, with the numbers of its lines."""
+        from kit.tui.widgets.program_colours import LANGUAGES, coloured_rows  # of no use to the first frame
+
+        work, digits = self.dialogue.work, len(str(len(lines)))
+        language = None if work is None else LANGUAGES.get(work.edited_file.suffix)
+        return [
+            row((f"{number:>{digits}} ", "dim"), *line)
+            for number, line in enumerate(coloured_rows(lines, language), 1)
+        ]
 
     def _word_rows(self) -> list[Row]:
         """The words of the step, and below them what is said to what the student did."""
@@ -514,7 +525,9 @@ class LessonScreen(DialogueScreen, DriveScreen):
             driver.report_releases(wanted)
 
     def _show_keys(self) -> None:
-        keys = key_row(("^S", "save and check"), ("Esc", "task"), ("^Z", "undo"), ("^E", "close"))
+        keys = key_row(
+            ("^S", "save and check"), ("Esc", "task"), ("^Z", "undo"), ("^E", "close"), ("^P", "find")
+        )
         self._rows("keys").show([keys if self._is_writing else self._keys()])
 
     def on_unmount(self) -> None:

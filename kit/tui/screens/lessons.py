@@ -6,6 +6,7 @@ What a student has done so far: lessons, exercises, the quiz by topic, and how t
 from __future__ import annotations
 
 from asyncio import to_thread
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from textual import events, work
@@ -20,6 +21,7 @@ from kit.document.rows import Row, row, spread
 from kit.school.game.levels import GameLevel, levels_of_lesson
 from kit.school.lessons.catalogue import LessonEntry
 from kit.school.lessons.records import Lesson
+from kit.school.news import take_news
 from kit.school.progress import EventKind, ProgressError
 from kit.school.quiz.items import read_bank
 from kit.tui.rows import lesson_list_rows, progress_rows
@@ -71,6 +73,8 @@ class LessonsScreen(RowsScreen[None]):
         self._theme = theme
         self._store = store
         self._overview = overview
+        self._news = ""
+        """What is new here, at the first visit."""
         self._listed: list[LessonEntry | None] = []
         first = overview.going_on
         self._at = overview.shelf.index(first) if first is not None else 0
@@ -87,6 +91,10 @@ class LessonsScreen(RowsScreen[None]):
                 yield self._picture
         yield TextRows(id="about")
         yield TextRows(id="keys")
+
+    def on_mount(self) -> None:
+        with suppress(ProgressError):
+            self._news = take_news(self._store.progress(), self.screen_actions.name)
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show)
@@ -109,7 +117,8 @@ class LessonsScreen(RowsScreen[None]):
         top = max(0, min(at - room // 2, len(lines) - room))
         self._listed = [entry for entry, _ in lines[top : top + room]]
         where = f"lines {top + 1} to {top + len(self._listed)} of {len(lines)}" if len(lines) > room else ""
-        heading = spread(row(("Lessons", "bold"), (told, "dim")), row((where, "dim")), self.size.width)
+        news = (f"   {self._news}", "good")
+        heading = spread(row(("Lessons", "bold"), (told, "dim"), news), row((where, "dim")), self.size.width)
         self._rows("heading").show([heading])
         self._rows("list").show_all([line for _, line in lines[top : top + room]])
         if is_wide:
@@ -203,17 +212,17 @@ async def show_progress(screen: Screen[Any], store: StudentStore) -> None:
     if isinstance(found, str):
         screen.app.push_screen(MessageDialog("Progress cannot be read", wrapped(found)))
     else:
-        lessons, further = found
-        await screen.app.push_screen_wait(TextScreen("Progress", lessons, further))
+        game_and_quiz, lessons = found
+        await screen.app.push_screen_wait(TextScreen("Progress", game_and_quiz, lessons))
 
 
 def _rows(store: StudentStore) -> tuple[list[Row], list[Row]] | str:
-    """Reads the lessons and all else, or the problem; runs in another thread, since there are many files."""
+    """Reads the game with all else, and the lessons, or the problem; runs in another thread, since there are many files."""
     overview = store.read_overview()
     if overview.problem:
         return overview.problem
-    further = progress_rows.game_and_quiz_progress(_game(store), _quiz(store), str(store.workspace.folder))
-    return progress_rows.progress(overview.shelf), further
+    first = progress_rows.game_and_quiz_progress(_game(store), _quiz(store), str(store.workspace.folder))
+    return first, progress_rows.progress(overview.shelf)
 
 
 def _game(store: StudentStore) -> list[Row]:

@@ -1,20 +1,14 @@
-"""One level, driven by hand, a program or an agent against its ghosts; and the end of the drive, with what it earned."""
+"""One level, driven by hand, a program or an agent against its ghosts."""
 
 from __future__ import annotations
 
 import math
-import os
-from asyncio import to_thread
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Final, Literal, TypeAlias
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar, Final
 
-import numpy as np
-from textual import events, work
-from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.message import Message
-from textual.screen import ModalScreen
 
 from kit.controllers import ControllerFile, find_controller
 from kit.dialogue.actions import ScreenActions
@@ -22,20 +16,17 @@ from kit.dialogue.shared_actions import VIEW_IDS
 from kit.document.rows import Row, row, spread
 from kit.inspection.sockets import sockets_folder
 from kit.plain_text import format_clock
-from kit.render.roles import PEN_ROLES, Role
-from kit.render.scene import PenStroke, Scene, SceneMark, ScenePath
-from kit.run.animation import ExportError
+from kit.render.scene import Scene, SceneMark
 from kit.run.laser_map import LaserMap, world_bounds
 from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.run.view import View
-from kit.school.game.drive_records import DriveRecord, card_rows, record_drive, save_card, save_film
-from kit.school.game.ghosts import Ghost, GhostComparison, Split, compare_tracks, gains_along
+from kit.school.game.drive_records import DriveRecord, record_drive
+from kit.school.game.ghosts import Ghost, GhostComparison, compare_tracks
 from kit.school.game.levels import GameLevel
-from kit.school.game.medal import Medal, medal_of
-from kit.school.game.needed import histogram, seconds_needed
-from kit.school.game.player_progress import BY_HAND, DriverFacts
+from kit.school.game.medal import medal_of
+from kit.school.game.player_progress import BY_HAND, DriverFacts, level_progress
 from kit.school.game.race import (
     DriverKind,
     RaceFinish,
@@ -45,285 +36,22 @@ from kit.school.game.race import (
     sensors_in_use,
 )
 from kit.school.game.references import reference_seconds
-from kit.school.game.starts import OWN_SEED, film_scenario
-from kit.school.lessons.shell_lines import shell_path
-from kit.school.progress import ProgressError, ProgressJournal
+from kit.school.game.starts import OWN_SEED
+from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import drive_key, named
-from kit.tui.rows import drive_end_rows, level_rows
+from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.level_card_rows import level_card
 from kit.tui.screens.dialogs import MessageDialog, wrapped
-from kit.tui.screens.lesson_drive import RecordingScreen
-from kit.tui.screens.level_pictures import ghost_paths, scene_of
+from kit.tui.screens.level_pictures import ghost_paths
+from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
-from kit.tui.widgets.text_rows import TextRows
-from kit.tui.widgets.world_view import WorldView
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:
     from kit.learning.policies.policy import Policy
-
-
-REVEAL_INTERVAL: Final = 0.3
-"""Between two rows that appear [s]."""
-BELL_VARIABLE: Final = "KIT_BELL"
-"""If set to 1, the terminal's bell rings for a new medal."""
-WIDTH: Final = 74
-FINISH_WIDTH: Final = 40
-FINISH_ROWS: Final = 3
-"""Columns of the photo finish, and how many are in it."""
-ROWS_AROUND: Final = 2
-"""Of the result: a note and the keys."""
-WIDE: Final = 110
-"""Columns from which on the map stands beside the result."""
-LEAST_MAP_ROWS: Final = 7
-"""Of the map below the result; where there are fewer it is left out."""
-HIGH: Final = 30
-"""Rows from which on the medal is drawn."""
-SPARKS: Final = 10
-"""Pictures of a first gold's second of joy."""
-SPARK_INTERVAL: Final = 0.1
-"""Between two of them [s]."""
-QUICKER, SLOWER = 0.005, 0.03
-"""A part of a drive is coloured as quicker than the ghost from this gain on, as slower from this loss on [s]."""
-
-Wish: TypeAlias = Literal["next", "restart", "back"]
-"""What the player wants after a drive."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class DriveResult:
-    """Everything that is shown of a drive that has ended."""
-
-    level: GameLevel
-    driver: DriverKind
-    finish: RaceFinish
-    record: DriveRecord
-    recording: Recording
-    ghosts: Sequence[Ghost]
-    reference: float | None
-    splits: Sequence[Split]
-    finishes: Sequence[RaceFinish] = ()
-    """Of a program's drives from all starts; the middle one counts."""
-
-
-class DriveResultScreen(ModalScreen[Wish]):
-    """What a drive earned, beside its map. A driving key that is still held does not close it."""
-
-    screen_actions = ScreenActions("level result", ("next", "restart", "replay", "share", "back"))
-    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
-    DEFAULT_CSS = f"""
-    DriveResultScreen {{ layout: vertical; }}
-    DriveResultScreen > TextRows {{ width: 1fr; height: 1fr; }}
-    DriveResultScreen > WorldView {{ display: none; }}
-    DriveResultScreen.-wide {{ layout: horizontal; }}
-    DriveResultScreen.-wide > TextRows {{ width: {WIDTH}; }}
-    DriveResultScreen.-wide > WorldView {{ display: block; width: 1fr; }}
-    DriveResultScreen.-high > TextRows {{ height: auto; }}
-    DriveResultScreen.-high > WorldView {{ display: block; height: 1fr; }}
-    """
-
-    def __init__(self, theme: Theme, result: DriveResult, workspace: Workspace) -> None:
-        super().__init__()
-        self._theme = theme
-        self._result = result
-        self._workspace = workspace
-        finish, record = result.finish, result.record
-        self._fixed = [
-            row((f" {result.level.title}, {result.driver.phrase}", "bold")),
-            *wrapped(f" {drive_end_rows.finish_sentence(finish)}"),
-            row(),
-        ]
-        self._before_finish = [
-            *drive_end_rows.earned(result.level, finish, record),
-            *level_rows.ladder_of_drive(finish, record, result.driver, result.reference),
-            *level_rows.starts_rows(result.finishes, record.counts),
-            *drive_end_rows.compared(finish, record, result.reference, result.ghosts),
-            *drive_end_rows.sector_rows(result.splits),
-        ]
-        self._photo_finish = photo_finish(result)
-        self._after_finish = drive_end_rows.won_besides(result.level, record)
-        self._needed: list[Row] = []
-        """What all players needed, once that is known."""
-        self._shown = 0
-        self._note: Row = ()
-        self._spark = SPARKS if self._is_joyful and not theme.terminal.reduce_motion.value else 0
-        self._world = WorldView(lambda: theme.encoder, theme.palette)
-
-    @property
-    def _is_joyful(self) -> bool:
-        """Whether this is the first gold of its driver here, or better."""
-        record = self._result.record
-        return record.medal >= Medal.GOLD > record.previous_medal
-
-    def compose(self) -> ComposeResult:
-        yield TextRows()
-        yield self._world
-
-    def on_mount(self) -> None:
-        self._show()
-        record = self._result.record
-        if os.environ.get(BELL_VARIABLE) == "1" and record.medal > max(Medal.NONE, record.previous_medal):
-            self.app.bell()
-        self._timer = self.set_interval(REVEAL_INTERVAL, self._reveal)
-        if self._spark:
-            self._sparks = self.set_interval(SPARK_INTERVAL, self._twinkle)
-        self._draw_map()
-
-    @work(exclusive=True, group="map")
-    async def _draw_map(self) -> None:
-        result = self._result
-        self._world.show(await to_thread(scene_of_drive, result))
-        if not result.finish.reached:
-            return
-        seconds = await to_thread(seconds_needed, result.level, result.driver)
-        was_all_shown = self._shown >= len(self._revealed)
-        self._needed = drive_end_rows.needed_rows(histogram(seconds, result.finish.seconds))
-        if was_all_shown:
-            self._shown = len(self._revealed)
-        self._show()
-
-    def _twinkle(self) -> None:
-        self._spark -= 1
-        if self._spark <= 0:
-            self._sparks.stop()
-        self._show()
-
-    def _reveal(self) -> None:
-        self._shown += 1
-        if self._shown >= len(self._revealed):
-            self._timer.stop()
-        self._show()
-
-    def on_resize(self, event: events.Resize) -> None:
-        rows = len(self._fixed) + len(self._revealed) + len(self._medal) + ROWS_AROUND
-        self.set_class(event.size.width >= WIDE, "-wide")
-        self.set_class(event.size.width < WIDE and event.size.height >= rows + LEAST_MAP_ROWS, "-high")
-        self._show()
-
-    @property
-    def _medal(self) -> list[Row]:
-        """The medal as a drawing, where there is room for it."""
-        has_room = self.app.size.height >= HIGH and self._result.record.medal is not Medal.NONE
-        return drive_end_rows.medal_drawing(self._result.record.medal, self._spark) if has_room else []
-
-    @property
-    def _revealed(self) -> list[Row]:
-        """The rows that appear one after the other; without the photo finish, and then what others needed, where they would
-        push others off the screen."""
-        room = self.app.size.height - len(self._fixed) - len(self._medal) - ROWS_AROUND
-        for photo_finish, needed in ((self._photo_finish, self._needed), ([], self._needed)):
-            rows = [*self._before_finish, *photo_finish, *self._after_finish, *needed]
-            if len(rows) <= room:
-                return rows
-        return [*self._before_finish, *self._after_finish]
-
-    def _show(self) -> None:
-        without = () if self._result.finish.reached else ("next",)
-        keys = footer(self.screen_actions, WIDTH - 4, without=without, keys={"next": "Enter"})
-        revealed = self._revealed
-        hidden = [row()] * max(0, len(revealed) - self._shown)  # what is below keeps its place
-        rows = [*self._fixed, *self._medal, *revealed[: self._shown], *hidden, self._note or row(), keys]
-        for text in self.query(TextRows):  # none where the kit is left meanwhile
-            text.show(rows)
-
-    # Keys
-
-    def action_next(self) -> None:
-        """First everything is shown, then the next level comes."""
-        if self._shown < len(self._revealed):
-            self._shown = len(self._revealed)
-            self._timer.stop()
-            self._show()
-        elif self._result.finish.reached:
-            self.dismiss("next")
-
-    def action_restart(self) -> None:
-        self.dismiss("restart")
-
-    def action_back(self) -> None:
-        self.dismiss("back")
-
-    def action_replay(self) -> None:
-        """The film of this drive."""
-        result = self._result
-        scenario = film_scenario(result.level, result.recording.seed)
-        self.app.push_screen(RecordingScreen(self._theme, scenario, result.recording, result.driver.phrase))
-
-    @work(exclusive=True, group="share")
-    async def action_share(self) -> None:
-        """Copies the card of this drive, and writes it and a moving picture as files."""
-        result = self._result
-        rows = card_rows(result.level, result.driver, result.finish, result.record.medal, result.recording)
-        self.app.copy_to_clipboard("\n".join(rows))
-        self._note = row((" Writing the moving picture ...", "dim"))
-        self._show()
-        try:
-            card = await to_thread(save_card, self._workspace, result.level, result.driver, rows)
-            film = await to_thread(save_film, card, result.level, result.recording)
-            said = f"Copied to the terminal's clipboard.\nThe card: {shell_path(card)}\nThe moving picture: {shell_path(film)}"
-        except (OSError, ExportError) as error:
-            said = f"It could not be saved: {error}"
-        self._note = ()
-        self._show()
-        shown = [*(row(each) for each in rows), row(), *wrapped(said)]
-        self.app.push_screen(MessageDialog("A card to share", shown))
-
-
-def scene_of_drive(result: DriveResult) -> Scene:
-    """The level with the way of a drive, each part of it coloured by what it gained on the reference; without one plain."""
-    scene = scene_of(result.level)
-    reference = next((each for each in result.ghosts if each.name == "reference"), None)
-    track = result.recording.track(result.level.find_scenario().partners[0])
-    if reference is None or len(track) < 2:
-        return replace(scene, paths=(ScenePath(track[::5, :2]),) if len(track) > 1 else ())
-    strokes = tuple(
-        PenStroke(np.array([[x, y], [to_x, to_y]]), gain_color(gain))
-        for x, y, to_x, to_y, gain in gains_along(track, result.recording.step_size, reference)
-    )
-    return replace(scene, paths=tuple(ghost_paths(reference)), strokes=strokes)
-
-
-def gain_color(gain: float) -> tuple[int, int, int]:
-    """Green where a part of a drive was quicker than the ghost [s], yellow where about as quick, red where slower, white away
-    from its way."""
-    if math.isnan(gain):
-        return PEN_ROLES[Role.PEN_WHITE]
-    if gain > QUICKER:
-        return PEN_ROLES[Role.PEN_GREEN]
-    return PEN_ROLES[Role.PEN_YELLOW if gain > -SLOWER else Role.PEN_RED]
-
-
-def photo_finish(result: DriveResult) -> list[Row]:
-    """Where everybody was when the first one was at the goal: a line each, the goal at its right end."""
-    mine = result.level.find_scenario().partners
-    tracks = [
-        ("you", result.finish.seconds, result.recording.track(mine[0])[:, :2], result.recording.step_size)
-    ]
-    own = {each.value: f"best {each.phrase}" for each in DriverKind}
-    tracks += [
-        (own.get(ghost.name, ghost.name), ghost.seconds, ghost.tracks[0][:, :2], ghost.step_size)
-        for ghost in result.ghosts
-        if ghost.tracks
-    ]
-    if not result.finish.reached or len(tracks) < 2:
-        return []
-    first = min(seconds for _, seconds, _, _ in tracks)
-    rows: list[Row] = [row(("   where each was when the first one arrived", "dim"))]
-    in_order = sorted(tracks, key=lambda each: each[1])
-    shown = in_order[:FINISH_ROWS]
-    for name, seconds, track, step in shown if tracks[0] in shown else [*shown[:-1], tracks[0]]:
-        missing = 0.0
-        if seconds > first:
-            rest = track[min(round(first / step), len(track) - 1) :]
-            missing = float(sum(((rest[1:] - rest[:-1]) ** 2).sum(axis=1) ** 0.5))
-        column = FINISH_WIDTH - 1 - min(FINISH_WIDTH - 1, round(missing * 10.0))
-        line = "." * column + ">" + " " * (FINISH_WIDTH - 1 - column) + "|"
-        rows.append(
-            row(f"   {name:<15.15} ", (line, "good" if name == "you" else "dim"), f" {missing:.2f} m")
-        )
-    return rows
 
 
 ONE, TWO = "teleop", "teleop_pair"
@@ -418,6 +146,8 @@ class LevelDrive(WatchScreen):
         self._result_row: Row = ()
         self._finishes: list[RaceFinish] = []
         """The ends of a program's drives from all starts."""
+        self._kept = level_progress([level], journal.events(EventKind.FINISH, level.id))[0].rules
+        """The rules that a drive has kept before."""
         self.wish: Wish = "back"
 
     @property
@@ -465,15 +195,13 @@ class LevelDrive(WatchScreen):
     # What is shown
 
     def _panel_rows(self, view: View) -> tuple[Row, ...]:
-        """On a large screen the level's card fills the rest of the panel."""
-        rows = super()._panel_rows(view)
-        if not self._is_large:
-            return rows
-        panel = self._rows("panel").size
-        card = level_rows.level_card(
-            self._level, self._driver, reference_seconds(self._level), panel.width - 2
+        """The level's card fills the rest of the panel."""
+        rows, panel = super()._panel_rows(view), self._rows("panel").content_size
+        reference = reference_seconds(self._level)
+        card = level_card(
+            self._level, self._driver, reference, self._kept, panel.width - 1, panel.height - len(rows)
         )
-        return (*rows, *card[: max(0, panel.height - len(rows))])
+        return (*rows, *card)
 
     def _view_arrived(self, view: View) -> None:
         """In the world's thread: the level's targets and bumps take the place of those of the map's case."""

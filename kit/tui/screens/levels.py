@@ -17,7 +17,7 @@ from textual.containers import Horizontal
 from kit.controllers import ControllerFile, kit_controllers, user_controllers
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
-from kit.document.rows import Row, row, spread
+from kit.document.rows import Row, row, side_by_side, spread
 from kit.plain_text import counted
 from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
@@ -30,6 +30,7 @@ from kit.school.game.medal import Medal
 from kit.school.game.player_progress import (
     BY_HAND,
     DriverFacts,
+    ExtraRule,
     GameSummary,
     LevelProgress,
     belt_of,
@@ -40,9 +41,11 @@ from kit.school.game.player_progress import (
 from kit.school.game.race import DriverKind, agent_controller
 from kit.school.game.references import reference_recording, reference_seconds
 from kit.school.game.starts import film_scenario
+from kit.school.news import take_news
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows import challenge_rows, drive_end_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.level_card_rows import COLUMN, best_splits, stars_and_sectors
 from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.screens.leaderboard import LeaderboardScreen
@@ -57,6 +60,8 @@ if TYPE_CHECKING:
     from kit.learning.training.runs import TrainingRun
 
 ABOUT_ROWS: Final = 6
+ABOUT_COLUMN: Final = 92
+"""The column from which on a level's card stands beside what is said of it, where there is room."""
 MAP_WIDTH: Final = 84
 """Columns of the list where the chosen level is shown beside it."""
 NOTES: Final = (
@@ -127,6 +132,8 @@ class LevelsScreen(RowsScreen[None]):
         self._prepared: dict[str, float] = {}
         """Share of each level's ghosts that is ready, 0 to 1."""
         self._doing = self._doing_level = ""
+        self._news = ""
+        """What is new here, at the first visit."""
         self._at = self._levels.index(level) if level in self._levels else 0
 
     def compose(self) -> ComposeResult:
@@ -138,6 +145,7 @@ class LevelsScreen(RowsScreen[None]):
         yield TextRows(id="keys")
 
     def on_mount(self) -> None:
+        self._news = take_news(self._progress, self.screen_actions.name)
         self._read()
         if self._first is None:
             self._at = next(
@@ -216,7 +224,7 @@ class LevelsScreen(RowsScreen[None]):
         """The rows above a world's list, ROWS_ABOVE_LEVELS with the columns' names. ``best``: the best medal of each entry."""
         number = self._worlds.index(self._world) + 1
         heading = level_rows.world_heading(self._world, number, len(self._worlds), belt_of(best))
-        return [row(), *heading, row()]
+        return [row((f" {self._news}", "good")), *heading, row()]
 
     def _level_rows(self) -> tuple[list[Row], list[Row]]:
         """The list of the chosen world with its map, and what is said of the chosen level."""
@@ -225,10 +233,36 @@ class LevelsScreen(RowsScreen[None]):
             *self._world_heading([each.best_medal for each in levels]),
             *level_rows.world_levels(levels, level.id, self._references),
             row(),
+            *self._card_below(),
             *map_rows(levels, self._map_places(), self._pictures, level.id),
         ]
         ghosts = self._known.get(level.id, ())
-        return listed, level_rows.about(self.chosen, ghosts, self._references[level.id])
+        about = level_rows.about(self.chosen, ghosts, self._references[level.id])
+        if self.size.width >= ABOUT_COLUMN + COLUMN:
+            about = side_by_side(about, self._card_rows(self.size.width - ABOUT_COLUMN - 1), ABOUT_COLUMN)
+        return listed, about
+
+    def _card_rows(self, width: int) -> list[Row]:
+        """The chosen level's stars, and the sectors of one's best drive; none of a level without medals."""
+        level = self.chosen.level
+        if not self.chosen.is_open or self._references[level.id] is None or width <= COLUMN:
+            return []
+        best = best_splits(self._known.get(level.id, ()))
+        return stars_and_sectors(level, self.chosen.rules, best, width)
+
+    def _card_below(self) -> list[Row]:
+        """The card below the list, where it does not stand beside what is said of the level; none where there is no room."""
+        width = self._rows("map").size.width
+        if self.size.width >= ABOUT_COLUMN + COLUMN or self._rows_below_levels <= len(ExtraRule):
+            return []
+        rows = [*self._card_rows(width - 1), row()]
+        return rows if 1 < len(rows) <= self._rows_below_levels else []
+
+    @property
+    def _rows_below_levels(self) -> int:
+        """Rows of the list below the levels of the chosen world."""
+        levels = self._in_world(self.chosen.level.world)
+        return self._rows("map").size.height - ROWS_ABOVE_LEVELS - len(levels) - 1
 
     def _challenge_rows(self, chosen: Challenge) -> tuple[list[Row], list[Row]]:
         """The list of challenges, below it the chosen one's drawing where there is room, and what is said of it."""
@@ -257,7 +291,7 @@ class LevelsScreen(RowsScreen[None]):
         if self.chosen_challenge is not None:
             return ()
         levels, size = self._in_world(self.chosen.level.world), self._rows("map").size
-        return map_places(levels, size.width, size.height - ROWS_ABOVE_LEVELS - len(levels) - 1)
+        return map_places(levels, size.width, self._rows_below_levels - len(self._card_below()))
 
     @work(exclusive=True, group="pictures")
     async def _draw_pictures(self) -> None:
@@ -329,7 +363,9 @@ class LevelsScreen(RowsScreen[None]):
         if number < len(levels):
             clicked = levels[number]
         else:
-            name = level_at(self._map_places(), event.column, number - len(levels) - 1)
+            name = level_at(
+                self._map_places(), event.column, number - len(levels) - 1 - len(self._card_below())
+            )
             found = [each for each in levels if each.level.id == name]
             if not found:
                 return

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.containers import Horizontal
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction
@@ -21,6 +22,7 @@ from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.training_rows import settings
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.textual_patches import ActivePaintScreen
+from kit.tui.widgets.task_preview import TaskPreview
 from kit.tui.widgets.text_rows import TextRows
 
 if TYPE_CHECKING:
@@ -29,6 +31,10 @@ if TYPE_CHECKING:
     from kit.learning.training.training_sweep import TrainingSweep
     from kit.tui.theme import Theme
 
+WIDE: Final = 110
+"""Columns from which on the task stands beside the settings."""
+LIST_WIDTH: Final = 60
+"""Columns of the settings, then."""
 ALL: Final = "all"
 OWN_REWARD: Final = "the task's own"
 PRESETS: Final[Mapping[PresetName, str]] = {
@@ -118,10 +124,14 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
         ),
     )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
-    DEFAULT_CSS = """
-    NewTrainingScreen { layout: vertical; }
-    NewTrainingScreen #heading, NewTrainingScreen #note, NewTrainingScreen #keys { height: 1; }
-    NewTrainingScreen #body { height: 1fr; }
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (WIDE, "-wide")]  # noqa: RUF012 - Textual's own attribute
+    DEFAULT_CSS = f"""
+    NewTrainingScreen {{ layout: vertical; }}
+    NewTrainingScreen #heading, NewTrainingScreen #note, NewTrainingScreen #keys {{ height: 1; }}
+    NewTrainingScreen #middle {{ height: 1fr; }}
+    NewTrainingScreen TaskPreview {{ display: none; }}
+    NewTrainingScreen.-wide #body {{ width: {LIST_WIDTH}; }}
+    NewTrainingScreen.-wide TaskPreview {{ display: block; width: 1fr; }}
     """
 
     def __init__(self, theme: Theme, runs: Path) -> None:
@@ -133,8 +143,12 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
         self._note = ""
 
     def compose(self) -> ComposeResult:
-        for name in ("heading", "body", "note", "keys"):
-            yield TextRows(id=name)
+        yield TextRows(id="heading")
+        with Horizontal(id="middle"):
+            yield TextRows(id="body")
+            yield TaskPreview(self._theme, self._runs)
+        yield TextRows(id="note")
+        yield TextRows(id="keys")
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show)
@@ -142,9 +156,14 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
     def _show(self) -> None:
         width = self.size.width
         self.query_one("#heading", TextRows).show([row(("A new training", "bold"))])
-        rows = settings(self.settings.entries(), self._chosen, width)
+        preview = self.query_one(TaskPreview)
+        beside = LIST_WIDTH if preview.display else width
+        rows = settings(self.settings.entries(), self._chosen, beside)
+        if preview.display:
+            preview.tell(self.settings)
         room = max(1, self.size.height - 3)
-        first = max(0, min(3 * self._chosen - room // 2, len(rows) - room))
+        chosen = next(number for number, each in enumerate(rows) if each and each[0][0] == ">")
+        first = max(0, min(chosen - room // 2, len(rows) - room))
         self.query_one("#body", TextRows).show(rows[first : first + room])
         self.query_one("#note", TextRows).show([row((self._note[:width], "dim"))])
         self.query_one("#keys", TextRows).show([footer(self.screen_actions, width)])

@@ -210,7 +210,9 @@ class PlayScreen(WatchScreen):
 
     def _show_keys(self) -> None:
         if self._editor is not None and self._editor.area.has_focus:
-            self._rows("keys").show([key_row(("^S", "save"), ("Esc", "drive"), ("^E", "close"))])
+            self._rows("keys").show(
+                [key_row(("^S", "save"), ("Esc", "drive"), ("^E", "close"), ("^P", "find"))]
+            )
         else:
             super()._show_keys()
 

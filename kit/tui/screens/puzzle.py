@@ -98,7 +98,7 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         about = as_comments([self._challenge.task_text, *self._challenge.task.lines()])
         write_atomically(self._file, (about + self._written).encode())
         if self._watch is not None:
-            self._watch.has_changed()  # by this screen itself
+            self._watch.take_as_known()
 
     def _file_was_saved(self) -> None:
         """In an editor: the board shows what it says now, and it is checked."""

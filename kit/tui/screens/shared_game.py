@@ -34,7 +34,7 @@ from kit.school.game.two_players import (
 from kit.sim.simulation import Simulation
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.shared_game_rows import shared_heading, shared_message
+from kit.tui.rows.shared_game_rows import HOST, shared_heading, shared_message
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.level_drive import LETTER_NOTES, ghost_marks
 from kit.tui.screens.level_pictures import ghost_paths
@@ -42,7 +42,6 @@ from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 from kit.workspace import Workspace
 
-HOST_PLAYER: Final = 0
 GUEST_PLAYER: Final = 1
 
 
@@ -126,8 +125,16 @@ class SharedScreen(WatchScreen):
         self._rows("messages").show(shared_message(self._mode, state, self.player, self.join_command))
 
 
-class SharedHostScreen(SharedScreen):
+class SharedHostScreen(SharedScreen, inherit_bindings=False):
     """Runs the world, drives the first robot and lets guests in."""
+
+    screen_actions = ScreenActions(
+        "hosted game",
+        ("drive_keys", "stop_robot", "restart", "help", "back", "quit"),
+        ("ghosts", "drive_mode", "zoom", *VIEW_IDS),
+        drives=True,
+    )
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
 
     def __init__(
         self,
@@ -148,7 +155,7 @@ class SharedHostScreen(SharedScreen):
         self._phase = SharedPhase.WAITING
         self._recorder: Recorder | None = None
         self._film: Recording | None = None
-        self.player = HOST_PLAYER
+        self.player = HOST
 
     @property
     def watching(self) -> int:
@@ -194,13 +201,19 @@ class SharedHostScreen(SharedScreen):
             self._recorder = Recorder.for_scenario(session.scenario, session.runner.simulation)
             observers.insert(0, self._recorder)  # before the game, which hands on pushes at the end of a tick
 
+    def action_restart(self) -> None:
+        """Another game, after one that is over."""
+        game = self._game
+        if game is not None:
+            self.host.post(lambda session: game.rematch())
+
     def recording(self) -> Recording | None:
         """The film of the game, once the screen has been left; None where it was not over."""
         return self._film
 
     def drive_keys_changed(self, messages: tuple[str, ...], state: DriveState) -> None:
         if self._game is not None:
-            self._game.push(HOST_PLAYER, state.linear, state.angular)
+            self._game.push(HOST, state.linear, state.angular)
 
     def _show(self) -> None:
         super()._show()

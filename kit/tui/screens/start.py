@@ -5,9 +5,8 @@ from __future__ import annotations
 from asyncio import Event, get_running_loop, to_thread
 from collections.abc import Awaitable, Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import work
 from textual.binding import BindingType
@@ -17,10 +16,10 @@ from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction
 from kit.document.rows import Row, row, spread
 from kit.inspection.sockets import sockets_folder
-from kit.plain_text import counted, wrap
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import base_key
 from kit.tui.rows.key_rows import bindings
+from kit.tui.rows.menu_rows import MENU, MENU_KEYS, PANEL_WIDTH, menu
 from kit.tui.screens.dialogs import MessageDialog, PaletteCommand, wrapped
 from kit.tui.screens.play import TELEOP, PlayScreen
 from kit.tui.student_store import StudentOverview, StudentStore
@@ -31,91 +30,6 @@ if TYPE_CHECKING:
     from kit.school.game.levels import GameLevel
     from kit.school.lessons.records import Lesson
     from kit.school.progress import ProgressJournal
-
-
-PANEL_WIDTH: Final = 31
-TEXT: Final = PANEL_WIDTH - 2
-TITLE: Final = 11
-"""Columns of a line's title."""
-
-
-@dataclass(frozen=True, slots=True)
-class MenuItem:
-    """One line of the menu."""
-
-    name: str
-    """Name of the screen's method that opens it."""
-    title: str
-    about: str
-
-
-MENU: Final = (
-    MenuItem("next_lesson", "Next lesson", ""),
-    MenuItem("lessons", "Lessons", "All of them, in order: predict, run, explain, change, make."),
-    MenuItem("drive", "Drive", "Any map and any program, your own too."),
-    MenuItem("levels", "Levels", "The game: stars, ghosts, races against what you wrote and trained."),
-    MenuItem("train", "Train", "Train an agent to drive, and watch it learn."),
-    MenuItem("layers", "Layers", "The fewest layers for what must collide and be seen."),
-    MenuItem("quiz", "Quiz", "What do you know, and how sure are you?"),
-    MenuItem("form", "Form", "What you knew before, what you learned, how useful the kit was."),
-    MenuItem("progress", "Progress", "What you have done, and how to export it."),
-    MenuItem("league", "League", "Your programs and agents against everybody's: races, tag, ratings."),
-)
-MENU_KEYS: Final = "123456789l"
-"""The keys of its lines."""
-
-
-def menu(overview: StudentOverview | None, chosen: int) -> list[Row]:
-    """The menu, always as many rows. ``overview``: None while it is being read."""
-    rows = [row()]
-    for number, item in enumerate(MENU):
-        is_chosen = number == chosen
-        status = _status(item.name, overview)
-        rows.append(
-            row(
-                (">" if is_chosen else " ", "bold"),
-                (f" {MENU_KEYS[number]}  ", "chosen" if is_chosen else "press"),
-                (f"{item.title:<{TITLE}}", "chosen" if is_chosen else ""),
-                (f" {status:<{TEXT - TITLE - 4}}", "chosen" if is_chosen else "dim"),
-            )
-        )
-        if item.name == "next_lesson":
-            rows += [row("     ", each) for each in _padded(_next_step_text(overview), 3, TEXT - 5)]
-    about = _padded(MENU[chosen].about, 3, TEXT)
-    return [*rows, row(), *(row("  ", (each, "dim")) for each in about)]
-
-
-def _next_step_text(overview: StudentOverview | None) -> str:
-    """Names the step at which the student goes on."""
-    if overview is None:
-        return "Reading your progress ..."
-    entry = overview.going_on
-    if overview.problem:
-        return "Progress cannot be read."
-    if entry is None or entry.progress is None:
-        return "Every lesson is done." if overview.shelf else "No lessons were installed."
-    step = entry.progress.next_step
-    where = f", step {step.number} of {len(entry.progress.lesson.steps)}" if entry.has_started else ""
-    return f"Lesson {entry.number}, {entry.title}{where}"
-
-
-def _status(name: str, overview: StudentOverview | None) -> str:
-    if overview is None or overview.problem:
-        return ""
-    if name == "lessons":
-        return f"{overview.done} of {len(overview.shelf)} done"
-    if name == "levels":
-        if not overview.has_run_today:
-            return f"maze: day {overview.streak + 1}" if overview.streak else "today's maze"
-        return f"streak {counted(overview.streak, 'day')}" if overview.streak else ""
-    if name == "quiz" and overview.due:
-        return f"{overview.due} due today"
-    return ""
-
-
-def _padded(text: str, rows: int, width: int) -> list[str]:
-    lines = wrap(text, width, most=rows)
-    return lines + [""] * (rows - len(lines))
 
 
 DRIVING_LETTERS = ("w", "a", "s", "d")
@@ -202,7 +116,12 @@ class StartScreen(PlayScreen, inherit_bindings=False):
             return
         self.world.offer(self._newest_scene)
         self._rows("heading").show([self._heading(view)])
-        self._rows("messages").show(self.message_rows(view))
+        self._rows("messages").show(self.message_rows(view) or self._news_rows())
+
+    def _news_rows(self) -> list[Row]:
+        """What is new, until something is opened."""
+        news = "" if self._overview is None else self._overview.news
+        return [row((f" {news}", "good"))] if news else []
 
     def _heading(self, view: View) -> tuple[tuple[str, str], ...]:
         driver = "you drive" if view.controller == TELEOP else "a program drives: random walk"
@@ -211,7 +130,8 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         return spread(row(("The terminal robot-learning kit", "bold")), row((driver, "dim")), self.size.width)
 
     def _show_menu(self) -> None:
-        self._rows("panel").show(menu(self._overview, self._chosen))
+        panel = self._rows("panel")
+        panel.show(menu(self._overview, self._chosen, panel.size.height))
 
     # Where the student stands
 
@@ -230,7 +150,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self._overview = overview
         if notice := self._store.take_notice():
             self.app.push_screen(MessageDialog("Your progress", wrapped(notice)))
-        self._show_menu()
+        self._show()
         return overview
 
     # Keys

@@ -224,7 +224,7 @@ class TrainingScreen(RowsScreen[None]):
         ("pause", "stop", "agent_view", "figures", "curve", "choose_map", "help", "back"),
         ("zoom", "next", "fit", "follow", "quit"),
         own=(
-            letter("stop", "x", "stop", "stop the training; what it has learned is kept"),
+            letter("stop", "k", "stop", "stop the training; what it has learned is kept"),
             letter("figures", "Tab", "figures", "show the other figures: cases, reward by term", name="tab"),
             letter("curve", "y", "curve", "change the curve: success, reward, reward terms"),
         ),

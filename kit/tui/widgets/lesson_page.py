@@ -21,6 +21,8 @@ MOST_PICTURE: Final = 14
 """Rows of a scene above the words."""
 LEAST_WORDS: Final = 3
 """Rows of the words below it, on the smallest screen."""
+LEAST_FILE: Final = 8
+"""Rows of the student's file below the words; where fewer are left it is not shown."""
 LINES_SEEN: Final = 2
 """Rows of a verdict or a hint that are brought into sight."""
 BESIDE: Final = 82
@@ -100,10 +102,11 @@ class LessonPage(Container):
     LessonPage.-roomy.-work #work {{ display: block; width: 1fr; height: 1fr; }}
     LessonPage.-roomy.-work #log {{ display: block; }}
     LessonPage #work, LessonPage #log {{ padding: 0 1 0 0; }}
+    LessonPage.-below #left {{ dock: bottom; }}
+    LessonPage.-below #work {{ display: block; height: 1fr; padding: 0 2; }}
     LessonPage.-roomy.-still #stage {{ height: auto; }}
     LessonPage.-roomy.-columns #left {{ layout: horizontal; }}
     LessonPage.-roomy.-columns #stage {{ width: 1fr; }}
-    LessonPage.-roomy.-columns.-still #stage {{ height: 1fr; }}
     """
 
     def __init__(self, *scenes: LessonSceneView | PlaybackSceneView) -> None:
@@ -144,7 +147,8 @@ class LessonPage(Container):
         self.set_class(is_beside and is_roomy, "-roomy")
         self.set_class(has_work, "-work")
         self.set_class(content.moves is None, "-still")
-        self.set_class(self.size.width >= COLUMNS_WIDTH, "-columns")
+        # Where nothing moves the file has all columns beside the words.
+        self.set_class(self.size.width >= COLUMNS_WIDTH and content.moves is not None, "-columns")
         self._rows("picture").show_all(picture)
         self._rows("picture").display = bool(picture)
         for scene in self._scenes:
@@ -157,6 +161,11 @@ class LessonPage(Container):
             self._set_height(content.moves, "1fr" if is_beside else rows)
         used = 0 if is_beside else rows if content.moves is not None else len(picture)
         self._room = max(1, room - used - asked)
+        below = self._room - max(content.most_words, len(content.words)) - 1
+        is_below = bool(content.file_title) and not is_beside and not used and below >= LEAST_FILE
+        self.set_class(is_below, "-below")
+        self._set_height(self.query_one("#left"), below if is_below else "1fr" if is_beside else "auto")
+        has_work = has_work or is_below
         kept = max(content.most_words, len(content.words))
         self._set_height(self._rows("words"), min(kept, self._room) if content.asked else "1fr")
         self._show_words()

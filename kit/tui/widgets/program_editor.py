@@ -3,20 +3,14 @@
 from __future__ import annotations
 
 import stat
-from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from types import MappingProxyType
 from typing import ClassVar, Final
 
-from pygments.token import Token  # type: ignore[import-untyped]  # no stubs; only its names are used
-from rich.style import Style
 from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
-from textual.content import Span
-from textual.highlight import HighlightTheme, TokenType, highlight
 from textual.message import Message
 from textual.timer import Timer
 from textual.widgets import TextArea
@@ -25,20 +19,15 @@ from kit.controllers import ControllerFile, find_controller, kit_controllers
 from kit.document.rows import Row, row
 from kit.host.failure import Failure
 from kit.tui.rows.key_rows import key_row
+from kit.tui.widgets.program_colours import LANGUAGES, coloured_spans
 from kit.tui.widgets.text_field import KitTextArea
-from kit.tui.widgets.text_rows import TextRows
+from kit.tui.widgets.text_rows import ERROR, SYNTAX_STYLES, TextRows
 from kit.workspace import write_atomically
 
 DRAFT_SUFFIX: Final = ".unsaved"
 """Ending of the file beside the program that keeps what was typed and not saved when the screen was left."""
 MAX_BYTES: Final = 1_000_000
 """A file larger than this is no program that anybody types."""
-MOST_COLOURED: Final = 20_000
-"""Characters of a text that is shown in colours: a longer one is read anew at each key, which would be felt."""
-LANGUAGES: Final[Mapping[str, str]] = MappingProxyType({".py": "python", ".yaml": "yaml", ".yml": "yaml"})
-"""The language of a file by its ending, as pygments calls it; others are shown without colours."""
-
-
 DRAFT_INTERVAL_S: Final = 1.0
 """What has been typed is on the disk after so long, saved or not [s]."""
 
@@ -150,40 +139,6 @@ def editable_controller(controller: ControllerFile, folder: Path, generated: Pat
     return find_controller(str(copy))
 
 
-ERROR: Final = "error"
-SYNTAX_STYLES: Final[Mapping[str, Style]] = MappingProxyType(
-    {
-        "comment": Style(dim=True, italic=True),
-        "keyword": Style(color="magenta", bold=True),
-        "constant": Style(color="cyan"),
-        "string": Style(color="green"),
-        "number": Style(color="cyan"),
-        "definition": Style(color="blue", bold=True),
-        "decorator": Style(color="yellow"),
-        ERROR: Style(color="red", underline=True, bold=True),
-    }
-)
-"""In the names of the 16 colours, which a theme replaces by its own as it does in all texts."""
-
-
-class TokenStyleNames(HighlightTheme):
-    """Names of ``SYNTAX_STYLES`` by kind of token."""
-
-    STYLES: dict[TokenType, str] = {  # noqa: RUF012 - as Textual declares it
-        Token.Comment: "comment",
-        Token.Keyword: "keyword",
-        Token.Keyword.Constant: "constant",
-        Token.Operator.Word: "keyword",
-        Token.Literal.String: "string",
-        Token.Literal.Number: "number",
-        Token.Name.Function: "definition",
-        Token.Name.Class: "definition",
-        Token.Name.Decorator: "decorator",
-        Token.Name.Builtin: "constant",
-        Token.Name.Tag: "definition",
-    }
-
-
 class ProgramSaved(Message):
     """The program has been saved."""
 
@@ -243,7 +198,7 @@ class ProgramTextArea(KitTextArea):
             offset += len(line) + 1
         text = "\n".join(lines)
         number = 0
-        for first, last, style in self._spans(text):
+        for first, last, style in coloured_spans(text, self._coloured_as):
             if style not in SYNTAX_STYLES:
                 continue
             while number + 1 < len(starts) and starts[number + 1] <= first:
@@ -257,11 +212,6 @@ class ProgramTextArea(KitTextArea):
             row_number = self._failed_line - 1
             indent = len(lines[row_number]) - len(lines[row_number].lstrip())
             self._highlight(row_number, indent, len(lines[row_number]), ERROR)
-
-    def _spans(self, text: str) -> Sequence[Span]:
-        if self._coloured_as is None or len(text) > MOST_COLOURED:
-            return ()
-        return highlight(text, language=self._coloured_as, theme=TokenStyleNames, tab_size=0).spans
 
     def _highlight(self, number: int, first: int, last: int, style: str) -> None:
         line = self.document.lines[number]

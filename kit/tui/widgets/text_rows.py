@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Final
 
 from rich.cells import cell_len
@@ -30,6 +31,24 @@ STYLES: Final = {
     "bad": Style(color="red", bold=True),
 }
 """The few ways a text can look. Each bold or reversed, so that none means anything by its colour alone."""
+
+ERROR: Final = "error"
+SYNTAX_STYLES: Final[Mapping[str, Style]] = MappingProxyType(
+    {
+        "comment": Style(dim=True, italic=True),
+        "keyword": Style(color="magenta", bold=True),
+        "constant": Style(color="cyan"),
+        "string": Style(color="green"),
+        "number": Style(color="cyan"),
+        "definition": Style(color="blue", bold=True),
+        "decorator": Style(color="yellow"),
+        ERROR: Style(color="red", underline=True, bold=True),
+    }
+)
+"""In the names of the 16 colours, which a theme replaces by its own as it does in all texts."""
+
+LOOKS: Final = MappingProxyType({**STYLES, **SYNTAX_STYLES})
+"""Both, by their names."""
 
 ASCII_ONLY: Final = "-ascii"
 """The class of an app whose terminal has no other characters than ASCII's."""
@@ -189,7 +208,7 @@ class TextRows(Widget):
             parts = tuple((".." if text == CUT else text.translate(_ASCII), style) for text, style in parts)
         # In the terminal's own colours a style says nothing of the background, which costs no bytes.
         paper = STYLES[PLAIN] if self.app.native_ansi_color else self.rich_style
-        strip = Strip([Segment(text, paper + STYLES[style]) for text, style in parts if text])
+        strip = Strip([Segment(text, paper + LOOKS[style]) for text, style in parts if text])
         return strip.adjust_cell_length(self.size.width, paper)
 
 

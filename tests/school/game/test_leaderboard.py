@@ -225,6 +225,45 @@ def test_what_was_not_driven_stands_nowhere(
     assert read_entries(board, [FIRST, BEDROOM]) == []
 
 
+@pytest.fixture
+def of_many_users(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if each file belonged to the user it is named after."""
+    monkeypatch.setattr(leaderboard, "read_own", lambda file, user, limit: file.read_bytes())
+
+
+@pytest.mark.usefixtures("of_many_users")
+def test_a_replay_of_anothers_drive_by_hand_stands_nowhere(tmp_path: Path) -> None:
+    board = join(tmp_path / "board", by_hand())
+    (board / "7.json").write_text('{"name": "Bob"}')
+    copy = board / f"7.{FIRST.id}.keys.npz"
+    shutil.copy(own_file(board), copy)
+    assert [each.user for each in read_entries(board, [FIRST])] == [OWN]
+    os.utime(copy, (0, 0))  # a clock that is set back in the file says nothing
+    assert [each.user for each in read_entries(board, [FIRST])] == [OWN]
+    publish_drives(
+        board, "Ada", {(FIRST.id, KEYS): [by_hand()]}
+    )  # joining again does not make the first one younger
+    assert [each.user for each in read_entries(board, [FIRST])] == [OWN]
+
+    def a_tick_later(content: dict[str, Any]) -> None:
+        inputs = content["drives"][0]["inputs"]
+        content["drives"][0]["inputs"] = [[tick + 1, kind, what] for tick, kind, what in inputs]
+        content["drives"][0]["ticks"] += 1
+        content["platform"] = "another"
+
+    change(copy, a_tick_later)
+    assert [each.user for each in read_entries(board, [FIRST])] == [OWN]
+
+
+@pytest.mark.usefixtures("of_many_users")
+def test_two_of_one_name_are_told_apart(tmp_path: Path) -> None:
+    board = join(tmp_path / "board", by_hand())
+    (board / "7.json").write_text('{"name": "ADA"}')
+    share_drives([keys_drive(BEDROOM)[1]], board / f"7.{BEDROOM.id}.keys.npz")
+    names = [each.name for each in read_entries(board, [FIRST, BEDROOM])]
+    assert sorted(names) == sorted([f"Ada (user {OWN})", "ADA (user 7)"])
+
+
 def test_a_drive_from_another_platform_is_judged_and_marked(tmp_path: Path) -> None:
     board = join(tmp_path / "board", by_hand())
 

@@ -223,6 +223,33 @@ def test_in_tag_who_is_caught_catches_and_less_time_wins(
     assert sum(game.state.scores) == pytest.approx(6.0, abs=0.1)
 
 
+def test_a_rematch_begins_anew_with_the_other_catching_first_or_waits(
+    tag: tuple[Session, SharedGame], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session, game = tag
+    monkeypatch.setattr(two_players, "TAG_SECONDS", 1.0)
+    game.start()
+    until(session, COUNTDOWN + 0.5)
+    game.rematch()
+    assert game.state.phase is SharedPhase.RUNNING  # not before it is over
+    until(session, 1.0)
+    assert (game.state.phase, game.state.catcher, game.state.winner) == (SharedPhase.OVER, 0, 1)
+    game.rematch()
+    session.reset()
+    assert (game.state.phase, game.state.winner, game.state.scores) == (
+        SharedPhase.COUNTDOWN,
+        None,
+        (0.0, 0.0),
+    )
+    until(session, COUNTDOWN + 1.5)
+    assert (game.state.phase, game.state.catcher, game.state.winner) == (SharedPhase.OVER, 1, 0)
+    game.remove_player(1)
+    game.rematch()
+    assert game.state.phase is SharedPhase.WAITING  # nobody is there to play against
+    game.start()
+    assert game.state.phase is SharedPhase.COUNTDOWN
+
+
 # What the wire lets through
 
 

@@ -22,7 +22,8 @@ from kit.tui.rows import lesson_rows
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
-from kit.tui.widgets.program_editor import MAX_BYTES, MOST_COLOURED, ProgramEditor
+from kit.tui.widgets.program_colours import MOST_COLOURED
+from kit.tui.widgets.program_editor import MAX_BYTES, ProgramEditor
 from kit.workspace import Workspace, open_workspace
 from tests.kit_content import kit_lesson
 from tests.tui.lesson_folder import write_lessons, write_solutions
@@ -442,12 +443,18 @@ def test_a_large_terminal_shows_the_file_beside_the_words(student: Student, size
             "# mine" in line and "Write the colour into" in "".join(rows(pilot)) for line in rows(pilot)
         )
 
+    async def below(pilot: Pilot[None]) -> None:
+        await seen(pilot, "1 # mine")
+        shown = text(pilot)
+        assert shown.index("Write the colour into") < shown.index("# mine")
+
     async def small(pilot: Pilot[None]) -> None:
         await seen(pilot, "Write the colour into")
         assert "# mine" not in text(pilot)
 
     stage(student.screen, scene, size=size)
-    stage(student.screen, small)
+    stage(student.screen, below)
+    stage(student.screen, small, size=(80, 14))
 
 
 @pytest.mark.long

@@ -31,12 +31,12 @@ from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.leaderboard import LeaderboardScreen
-from kit.tui.screens.level_drive import (
+from kit.tui.screens.level_drive import LevelDrive
+from kit.tui.screens.level_result import (
     ROWS_AROUND,
     WIDE,
     DriveResult,
     DriveResultScreen,
-    LevelDrive,
     gain_color,
     scene_of_drive,
 )

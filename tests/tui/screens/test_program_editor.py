@@ -15,15 +15,14 @@ from kit.controllers import find_controller
 from kit.host.failure import Failure, FailureKind
 from kit.tui.screens.play import PlayScreen
 from kit.tui.widgets.program_editor import (
-    ERROR,
     MAX_BYTES,
-    SYNTAX_STYLES,
     ProgramEditor,
     ProgramFile,
     ProgramFileError,
     ProgramTextArea,
     editable_controller,
 )
+from kit.tui.widgets.text_rows import ERROR, SYNTAX_STYLES
 from tests.cases import every_case
 from tests.tui.lesson_stage import rows, seen, stage, text, until
 
@@ -228,7 +227,7 @@ def test_letters_are_typed_in_the_editor_and_drive_beside_it(tmp_path: Path) -> 
         assert screen.view is not None
         assert not screen.view.paused
         assert not screen.drive.state.held
-        assert rows(pilot)[-1].split() == ["^S", "save", "Esc", "drive", "^E", "close"]
+        assert rows(pilot)[-1].split() == ["^S", "save", "Esc", "drive", "^E", "close", "^P", "find"]
         for _ in range(4):  # typed slowly, each letter is undone by itself
             await pilot.press(*(["ctrl+z"] if editor.area.text != before else []))
         assert editor.area.text == before

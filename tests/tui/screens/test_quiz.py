@@ -211,3 +211,20 @@ def test_question_and_options_stay_where_they_are(size: tuple[int, int], progres
         )
 
     play(scene, progress, size=size)
+
+
+@pytest.mark.parametrize(("width", "is_beside"), [(80, False), (120, True), (200, True)])
+def test_the_map_of_topics_stands_beside_a_question_where_there_is_room(
+    progress: ProgressJournal, width: int, is_beside: bool
+) -> None:
+    async def scene(screen: DialogueScreen, pilot: Pilot[None]) -> None:
+        item = quiz(screen).item
+        assert item is not None
+        count = sum(each.topic is item.topic for each in BANK.items)
+        assert (f"0 of {count}" in flat(screen)) is is_beside
+        assert item.question.split()[0] in flat(screen)
+        await pilot.press(str(item.right_option + 1), "4")
+        await pilot.pause()
+        assert (f"1 of {count}" in flat(screen)) is is_beside
+
+    play(scene, progress, size=(width, 35))

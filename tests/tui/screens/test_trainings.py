@@ -14,6 +14,7 @@ from kit.learning.authoring.new_task import new_task_file
 from kit.learning.policies.policy import ActionSampling, Policy, task_interface
 from kit.learning.policies.policy_file import save_policy
 from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
+from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.run_config import RunConfig
 from kit.learning.training.run_folders import create_run, find_run, list_runs
@@ -21,7 +22,7 @@ from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training_sweep import TrainingSweep
 from kit.tui.screens.new_training import NewTrainingScreen, TrainingChoices
 from kit.tui.screens.trainings import TrainingsScreen
-from tests.tui.lesson_stage import ROBOT, seen, stage, text, until
+from tests.tui.lesson_stage import ROBOT, rows, seen, stage, text, until
 
 
 @pytest.fixture
@@ -233,3 +234,26 @@ def test_where_there_is_room_the_chosen_run_drives_beside_the_list(folder: Path)
         await until(pilot, lambda: "no policy yet" not in text(pilot), "the list alone")
 
     stage(lambda theme: TrainingsScreen(theme, folder), scene, size=(120, 36))
+
+
+@pytest.mark.parametrize("size", [(120, 35), (200, 50)])
+def test_the_task_stands_beside_the_form_where_there_is_room(tmp_path: Path, size: tuple[int, int]) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "at most")
+        shown = text(pilot)
+        for term in find_task("turn").reward.weights:
+            assert term.term in shown
+        assert "ended" in " ".join(shown.split())
+        (start,) = {each.index(" S ") for each in rows(pilot) if " S " in each and "is a start" not in each}
+        assert start > 60
+
+    stage(lambda theme: NewTrainingScreen(theme, tmp_path), scene, size=size)
+
+
+def test_a_narrow_form_has_the_form_alone(tmp_path: Path) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "A new training")
+        await pilot.pause()
+        assert "is a start" not in text(pilot)
+
+    stage(lambda theme: NewTrainingScreen(theme, tmp_path), scene)

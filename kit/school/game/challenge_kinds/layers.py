@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Final, Self
 
 import yaml
@@ -56,6 +57,15 @@ class LayersTask(ChallengeTask):
 
     def judge(self, handed_in: HandedIn) -> Judgement:
         return judge_assignment(self, read_plan(Path(handed_in.answer)))
+
+    def shared_text(self, answer: str) -> str:
+        return Path(answer).read_text(encoding="utf-8")
+
+    def judge_shared(self, text: str) -> Judgement:
+        with TemporaryDirectory() as folder:
+            file = Path(folder) / self.answer_file
+            file.write_text(text, encoding="utf-8")
+            return judge_assignment(self, read_plan(file))
 
 
 class LayersBoard(Board):

@@ -82,7 +82,7 @@ def read_entries(folder: Path) -> tuple[Entry, ...]:
                 problem = f"its file is larger than {MAX_BYTES >> 20} MiB"
             elif digest in shipped:
                 problem = "this program comes with the kit"
-            elif name in [each.name for each in found]:
+            elif name.casefold() in [each.name.casefold() for each in found]:
                 problem = "its name is taken"
             elif same:
                 problem = f"it is the same program as {same[0]}"
@@ -97,8 +97,9 @@ def submit(folder: Path, name: str, driver: DriverKind, program: bytes) -> Path:
     if len(program) > MAX_BYTES:
         raise LeagueError(f"The program is larger than {MAX_BYTES >> 20} MiB.")
     for each in read_entries(folder):
-        if each.name == name and not each.is_mine:
-            raise LeagueError(f"Another user has entered {name}: choose another name with --name.")
+        if each.name.casefold() == name.casefold() and (each.name != name or not each.is_mine):
+            whose = "You have" if each.is_mine else "Another user has"
+            raise LeagueError(f"{whose} entered {each.name}: choose another name with --name.")
         if each.digest == _digest(program) and each.name != name:
             raise LeagueError(f"{each.name} is the same program.")
     if _digest(program) in {_digest(each.file.read_bytes()) for each in kit_controllers()}:

@@ -275,6 +275,10 @@ def one_name_twice(league: League) -> None:
     (league.folder / "entries" / "laser.agent.py").write_bytes(LASER + b"#\n")
 
 
+def name_in_capitals(league: League) -> None:
+    (league.folder / "entries" / "LASER.controller.py").write_bytes(LASER + b"#\n")
+
+
 def program_that_fills_the_disk(league: League) -> None:
     (league.folder / "entries" / "mine.controller.py").write_bytes(b"#" * (MAX_BYTES + 1))
 
@@ -286,6 +290,7 @@ def program_that_fills_the_disk(league: League) -> None:
         anothers_program_again,
         link_to_anothers_program,
         one_name_twice,
+        name_in_capitals,
         program_that_fills_the_disk,
     ],
     ids=lambda each: each.__name__,

@@ -1,0 +1,118 @@
+"""A level's card as rows of text: its story and task, the rungs of its ladder, its stars, and the sectors of one's best drive.
+Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from typing import Final
+
+from kit.document.rows import Row, row, row_width, side_by_side
+from kit.plain_text import wrap
+from kit.school.game.ghosts import Ghost, Split, compare_tracks
+from kit.school.game.levels import GameLevel
+from kit.school.game.medal import RUNGS, medal_time
+from kit.school.game.player_progress import ExtraRule
+from kit.school.game.race import DriverKind
+from kit.tui.rows.drive_end_rows import sector_rows
+from kit.tui.rows.level_rows import (
+    MEDAL_SIGNS,
+    MEDAL_STYLES,
+    NO_STAR,
+    RESULT_BAR,
+    STAR,
+    ladder_bar,
+)
+from kit.tui.rows.readout_rows import title as ruled
+
+COLUMN: Final = 54
+"""Columns of the stars where the sectors stand beside them."""
+GAP: Final = 2
+BY_WORTH: Final = (0, 3, 1, 4, 2)
+"""Parts of a card, the one that is left out last before the others: story, ladder, task, stars, skill."""
+LEAST_WIDTH: Final = 16
+"""Columns of a card."""
+
+
+def level_card(
+    level: GameLevel,
+    driver: DriverKind,
+    reference: float | None,
+    kept: Collection[ExtraRule],
+    width: int,
+    room: int,
+) -> list[Row]:
+    """What a level is about: story, task, the rungs of its ladder, and the rules that earn stars. Parts for which there is no
+    room are left out whole. ``kept``: the rules that a drive has kept already."""
+    if width < LEAST_WIDTH:  # the screen has no size yet
+        return []
+    skill = f"skill: {level.skill}" if level.skill else ""
+    ladder = [] if reference is None else _ladder(driver, reference, width)
+    stars = [] if reference is None else star_rows(level, kept, width)
+    parts = [
+        [ruled("level", width), *(row(line) for line in wrap(level.story, width))],
+        [row((line, "bold")) for line in wrap(level.hint, width)],
+        [row((line, "dim")) for line in wrap(skill, width)],
+        ladder,
+        stars,
+    ]
+    shown: set[int] = set()
+    for number in BY_WORTH:
+        if sum(len(parts[each]) for each in (*shown, number)) <= room:
+            shown.add(number)
+    return [each for number, part in enumerate(parts) if number in shown for each in part]
+
+
+def _ladder(driver: DriverKind, reference: float, width: int) -> list[Row]:
+    """The ladder with the time of each of its rungs."""
+    rows = [
+        ruled("ladder", width, driver.phrase),
+        row(*ladder_bar(driver, reference, None, min(width, RESULT_BAR))),
+    ]
+    return rows + [
+        row(
+            (f"{MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]),
+            f"{medal.title:<8} {medal_time(medal, reference, driver):8.2f} s",
+        )
+        for medal in reversed(RUNGS)
+    ]
+
+
+def star_rows(level: GameLevel, kept: Collection[ExtraRule], width: int) -> list[Row]:
+    """The rules that earn stars, those that a drive has kept with theirs."""
+    rows = [ruled("stars", width)]
+    for rule in ExtraRule:
+        sign, style = (STAR, "warn") if rule in kept else (NO_STAR, "")
+        first, *rest = wrap(rule.description(level), width - 2)
+        rows += [row((f"{sign} ", style), first), *(row("  ", each) for each in rest)]
+    return rows
+
+
+def best_splits(ghosts: Sequence[Ghost]) -> tuple[DriverKind, tuple[Split, ...]] | None:
+    """The sectors of one's quickest drive of a level, and who drove it; None without one, or without a reference."""
+    reference = next((each for each in ghosts if each.name == "reference"), None)
+    own = [
+        (each, driver)
+        for each in ghosts
+        for driver in DriverKind
+        if each.name == driver.value and each.tracks
+    ]
+    if reference is None or not own:
+        return None
+    ghost, driver = min(own, key=lambda each: each[0].seconds)
+    return driver, compare_tracks(ghost.tracks[0], ghost.step_size, reference, ghost.seconds)
+
+
+def stars_and_sectors(
+    level: GameLevel, kept: Collection[ExtraRule], best: tuple[DriverKind, Sequence[Split]] | None, width: int
+) -> list[Row]:
+    """The stars of a level, and where there is room beside them, the sectors of one's best drive. ``width``: of all, more
+    than ``COLUMN``."""
+    stars = star_rows(level, kept, COLUMN - GAP)
+    sectors = (
+        []
+        if best is None
+        else [ruled("sectors", width - COLUMN, f"best {best[0].phrase}"), *sector_rows(best[1])]
+    )
+    if not sectors or COLUMN + max(map(row_width, sectors)) > width:
+        return [row(" ", *each) for each in stars]
+    return [row(" ", *each) for each in side_by_side(stars, sectors, COLUMN)]

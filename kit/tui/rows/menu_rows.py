@@ -1,0 +1,148 @@
+"""The menu of the start screen as rows of text: its lines, and below them what there is to do today. Pure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from kit.document.rows import Row, row
+from kit.plain_text import counted, wrap
+from kit.tui.rows.readout_rows import title as ruled
+
+if TYPE_CHECKING:
+    from kit.tui.student_store import StudentOverview
+
+PANEL_WIDTH: Final = 31
+INSIDE: Final = PANEL_WIDTH - 2
+"""Columns of the panel that are drawn."""
+TEXT: Final = INSIDE - 2
+"""Columns of a text, behind its margin."""
+TITLE: Final = 11
+"""Columns of a line's title."""
+WORD: Final = 10
+"""Columns of the first word of a line below the menu."""
+MOST_TRAININGS: Final = 3
+"""Running trainings that are named."""
+
+
+@dataclass(frozen=True, slots=True)
+class MenuItem:
+    """One line of the menu."""
+
+    name: str
+    """Name of the screen's method that opens it."""
+    title: str
+    about: str
+
+
+MENU: Final = (
+    MenuItem("next_lesson", "Next lesson", ""),
+    MenuItem("lessons", "Lessons", "All of them, in order: predict, run, explain, change, make."),
+    MenuItem("drive", "Drive", "Any map and any program, your own too."),
+    MenuItem("levels", "Levels", "The game: stars, ghosts, races against what you wrote and trained."),
+    MenuItem("train", "Train", "Train an agent to drive, and watch it learn."),
+    MenuItem("layers", "Layers", "The fewest layers for what must collide and be seen."),
+    MenuItem("quiz", "Quiz", "What do you know, and how sure are you?"),
+    MenuItem("form", "Form", "What you knew before, what you learned, how useful the kit was."),
+    MenuItem("progress", "Progress", "What you have done, and how to export it."),
+    MenuItem("league", "League", "Your programs and agents against everybody's: races, tag, ratings."),
+)
+MENU_KEYS: Final = "123456789l"
+"""The keys of its lines."""
+
+
+def menu(overview: StudentOverview | None, chosen: int, room: int) -> list[Row]:
+    """The menu, and as much below it as there are rows for. ``overview``: None while it is being read."""
+    rows = [row()]
+    for number, item in enumerate(MENU):
+        is_chosen = number == chosen
+        status = _status(item.name, overview)
+        rows.append(
+            row(
+                (">" if is_chosen else " ", "bold"),
+                (f" {MENU_KEYS[number]}  ", "chosen" if is_chosen else "press"),
+                (f"{item.title:<{TITLE}}", "chosen" if is_chosen else ""),
+                (f" {status:<{INSIDE - TITLE - 6}}", "chosen" if is_chosen else "dim"),
+            )
+        )
+        if item.name == "next_lesson":
+            rows += [row("     ", each) for each in _padded(_next_step_text(overview), 3, INSIDE - 5)]
+    about = _padded(MENU[chosen].about, 3, TEXT)
+    rows += [row(), *(row("  ", (each, "dim")) for each in about)]
+    for part in () if overview is None else (today_rows(overview), won_rows(overview)):
+        if part and len(rows) + len(part) <= room:
+            rows += part
+    return rows
+
+
+def today_rows(overview: StudentOverview) -> list[Row]:
+    """What is open today: the day's maze, the next medal in reach, questions that are due, trainings that run."""
+    if overview.problem:
+        return []
+    maze = "driven today" if overview.has_run_today else "not driven yet"
+    if overview.streak:
+        maze += f", {counted(overview.streak, 'day')} in a row"
+    lines = [("4  maze", maze)]
+    if overview.next_medal:
+        lines.append(("4  medal", overview.next_medal))
+    if overview.due:
+        lines.append(("7  quiz", f"{counted(overview.due, 'question')} due"))
+    lines += [("5  train", f"{name} is running") for name in overview.running[:MOST_TRAININGS]]
+    if len(overview.running) > MOST_TRAININGS:
+        lines.append(("", f"and {len(overview.running) - MOST_TRAININGS} more"))
+    rows = [row(" ", *ruled("today", INSIDE - 1))]
+    for word, text in lines:
+        first, *rest = wrap(text, TEXT - WORD)
+        rows.append(row("  ", (f"{word:<{WORD}}", "dim"), first))
+        rows += [row("  ", " " * WORD, each) for each in rest]
+    return rows
+
+
+def won_rows(overview: StudentOverview) -> list[Row]:
+    """How many levels of each world of the game have a medal, as a bar and in figures."""
+    if not overview.won:
+        return []
+    rows = [row(), row(" ", *ruled("medals", INSIDE - 1))]
+    for title, won, count in overview.won:
+        figures = f"{won:>3} of {count}"
+        rows.append(
+            row(
+                "  ", f"{title:<{TEXT - len(figures)}.{TEXT - len(figures)}}", (figures, "" if won else "dim")
+            )
+        )
+    return rows
+
+
+def _next_step_text(overview: StudentOverview | None) -> str:
+    """Names the step at which the student goes on."""
+    if overview is None:
+        return "Reading your progress ..."
+    entry = overview.going_on
+    if overview.problem:
+        return "Progress cannot be read."
+    if entry is None or entry.progress is None:
+        return "Every lesson is done." if overview.shelf else "No lessons were installed."
+    step = entry.progress.next_step
+    where = f", step {step.number} of {len(entry.progress.lesson.steps)}" if entry.has_started else ""
+    return f"Lesson {entry.number}, {entry.title}{where}"
+
+
+def _status(name: str, overview: StudentOverview | None) -> str:
+    if overview is None or overview.problem:
+        return ""
+    if name == "lessons":
+        return f"{overview.done} of {len(overview.shelf)} done"
+    if name == "levels":
+        if not overview.has_run_today:
+            return f"maze: day {overview.streak + 1}" if overview.streak else "today's maze"
+        return f"streak {overview.streak}" if overview.streak else ""
+    if name == "quiz" and overview.due:
+        return f"{overview.due} due today"
+    if name == "train" and overview.running:
+        return f"{len(overview.running)} running"
+    return ""
+
+
+def _padded(text: str, rows: int, width: int) -> list[str]:
+    lines = wrap(text, width, most=rows)
+    return lines + [""] * (rows - len(lines))

@@ -1,0 +1,60 @@
+"""A level's card: whole parts, the most worthy first, within the room there is."""
+
+from __future__ import annotations
+
+import pytest
+
+from kit.document.rows import row_width
+from kit.school.game.ghosts import Ghost
+from kit.school.game.levels import GameLevel
+from kit.school.game.medal import RUNGS
+from kit.school.game.player_progress import ExtraRule
+from kit.school.game.race import DriverKind
+from kit.school.game.references import find_drive, reference_recording, reference_seconds
+from kit.tui.rows.level_card_rows import BY_WORTH, COLUMN, best_splits, level_card, stars_and_sectors
+from tests.kit_content import kit_levels
+from tests.tui.lesson_stage import row_text
+
+LEVELS = [each for each in kit_levels() if find_drive(each) is not None]
+
+
+@pytest.mark.parametrize("level", LEVELS, ids=lambda each: each.id)
+@pytest.mark.parametrize("width", [21, 40, 58])
+def test_a_card_keeps_to_its_width_and_its_room(level: GameLevel, width: int) -> None:
+    reference = reference_seconds(level)
+    whole = level_card(level, DriverKind.KEYS, reference, (), width, 1000)
+    assert all(row_width(each) <= width for each in whole)
+    text = " ".join(row_text(each) for each in whole)
+    assert all(medal.title in text for medal in RUNGS)
+    for room in range(len(whole)):
+        card = level_card(level, DriverKind.KEYS, reference, (), width, room)
+        assert len(card) <= room
+        assert all(each in whole for each in card)
+    assert len(set(BY_WORTH)) == len(BY_WORTH)
+
+
+def test_rules_that_were_kept_have_their_star() -> None:
+    level = LEVELS[0]
+    kept = {ExtraRule.CLEAN}
+    rows = [row_text(each) for each in stars_and_sectors(level, kept, None, COLUMN + 1)]
+    assert [ExtraRule.CLEAN.description(level) in each for each in rows if each.startswith(" *")] == [True]
+    assert sum(each.startswith(" .") for each in rows) == len(ExtraRule) - 1
+
+
+def test_the_sectors_of_the_quickest_own_drive_stand_beside_the_stars() -> None:
+    level = LEVELS[0]
+    recording = reference_recording(level)
+    assert recording is not None
+    seconds = reference_seconds(level) or 0.0
+    track = recording.track(level.find_scenario().partners[0])
+    ghosts = [
+        Ghost(name, took, (track,), recording.step_size)
+        for name, took in (("reference", seconds), ("keys", seconds + 2.0), ("agent", seconds + 1.0))
+    ]
+    best = best_splits(ghosts)
+    assert best is not None
+    assert best[0] is DriverKind.AGENT
+    assert best_splits(ghosts[:1]) is best_splits(ghosts[1:]) is None
+    wide = [row_text(each) for each in stars_and_sectors(level, (), best, 2 * COLUMN)]
+    assert sum("sector " in each for each in wide) == len(best[1])
+    assert not any("sector " in row_text(each) for each in stars_and_sectors(level, (), best, COLUMN + 5))

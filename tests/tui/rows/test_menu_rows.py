@@ -1,0 +1,51 @@
+"""The menu says what is open today, where there is room for it, and is never higher than its panel."""
+
+from __future__ import annotations
+
+import pytest
+
+from kit.document.rows import row_width
+from kit.tui.rows.menu_rows import INSIDE, MENU, menu, today_rows
+from kit.tui.student_store import StudentOverview
+from tests.tui.lesson_stage import row_text
+
+FULL = StudentOverview(
+    due=3,
+    streak=4,
+    next_medal="Left turn, by hand: silver at 7.20 s",
+    won=(("The training hall", 2, 8), ("A world with a title that is longer than a line has room", 0, 6)),
+    running=("turn-ppo-1", "turn-ppo-2", "turn-ppo-3", "turn-ppo-4", "turn-ppo-5"),
+)
+
+
+@pytest.mark.parametrize("room", [18, 19, 24, 32, 46])
+def test_what_stands_below_the_menu_is_there_whole_or_not_at_all(room: int) -> None:
+    rows = menu(FULL, 0, room)
+    assert len(rows) <= room or rows == menu(FULL, 0, 0)
+    assert all(row_width(each) <= INSIDE for each in rows)
+    text = " ".join(" ".join(row_text(each).split()) for each in rows)
+    assert all(item.title in text for item in MENU)
+    assert ("── today" in text) == ("silver" in text)
+
+
+def test_today_names_the_maze_the_medal_the_questions_and_the_trainings() -> None:
+    text = " ".join(" ".join(row_text(each).split()) for each in today_rows(FULL))
+    for told in (
+        "not driven yet",
+        "4 days in a row",
+        "silver at 7.20 s",
+        "3 questions due",
+        "turn-ppo-3",
+        "2 more",
+    ):
+        assert told in text
+    assert "turn-ppo-4" not in text
+    over = " ".join(row_text(each) for each in today_rows(StudentOverview(has_run_today=True)))
+    assert "driven today" in over
+    assert "medal" not in over
+    assert "due" not in over
+
+
+def test_a_journal_that_cannot_be_read_tells_of_no_day() -> None:
+    assert today_rows(StudentOverview(problem="damaged")) == []
+    assert menu(None, 0, 100) == menu(None, 0, 18)
