@@ -14,7 +14,7 @@ from kit.arrays import BoolArray, FloatArray, Uint8Array
 from kit.render import raster
 from kit.render.camera import Camera
 from kit.render.raster import Grid
-from kit.render.roles import Role
+from kit.render.roles import LIT_ROLES, Role
 from kit.render.scene import CellState, Scene, SceneBounds, SceneCells
 from kit.world.connected_parts import connected_parts
 
@@ -27,6 +27,10 @@ SAME_SURFACE: Final = 0.3
 MAX_SOLID: Final = 0.1
 """An enclosed part that no robot can reach is solid, as the inside of a wall or a table is, if it takes no more than this
 share of the picture; a larger one is a room without a door."""
+
+LIT_SHARES: Final = (0.16, 0.4)
+"""Up to these distances from its laser, as shares of the picture's height, the floor is lit as near, and as not far."""
+_LIT_BY_STEP: Final = np.array(LIT_ROLES, dtype=np.uint8)
 
 _OUTSIDE, _WALL, _FLOOR, _SOLID = 0, 1, 2, 3
 
@@ -131,13 +135,14 @@ def sampled_cells(cells: SceneCells, camera: Camera, across: int, down: int) -> 
     return states
 
 
-def lit_cells(beams: FloatArray, camera: Camera) -> BoolArray:
-    """(rows, columns): whether a laser sees the middle of a character.
+def lit_cells(beams: FloatArray, camera: Camera) -> Uint8Array:
+    """(rows, columns): the role of the floor at the middle of a character where a laser sees it, by how far away the
+    nearest such laser is; EMPTY where none does.
 
     ``beams`` (n, 4): rays from their laser to where they end, those of one laser one after another in the order of
     their angles.
     """
-    lit = np.zeros((camera.rows, camera.columns), dtype=bool)
+    lit = np.zeros((camera.rows, camera.columns), dtype=np.uint8)
     beams = beams[np.isfinite(beams).all(axis=1)]
     if not len(beams):
         return lit
@@ -148,7 +153,7 @@ def lit_cells(beams: FloatArray, camera: Camera) -> BoolArray:
     return lit
 
 
-def _light(lit: BoolArray, rays: FloatArray, camera: Camera) -> None:
+def _light(lit: Uint8Array, rays: FloatArray, camera: Camera) -> None:
     origin = rays[0, :2]
     ends = rays[:, 2:] - origin
     lengths = np.hypot(ends[:, 0], ends[:, 1])
@@ -193,7 +198,12 @@ def _light(lit: BoolArray, rays: FloatArray, camera: Camera) -> None:
     share = np.divide(angle - angles[after - 1], gap, out=np.zeros_like(angle), where=gap > 0)
     between = one + share * (other - one)
     limit = np.where(np.abs(other - one) < SAME_SURFACE * shorter, between, shorter)
-    lit[top:bottom, left:right] |= seen & (gap <= widest) & (distance <= limit)
+    seen &= (gap <= widest) & (distance <= limit)
+    height = camera.rows * camera.cell_height
+    steps = np.searchsorted([share * height for share in LIT_SHARES], distance)
+    roles = np.where(seen, _LIT_BY_STEP[steps], np.uint8(Role.EMPTY))
+    there = lit[top:bottom, left:right]
+    np.maximum(there, roles, out=there)
 
 
 def seen_surfaces(beams: FloatArray) -> FloatArray:
@@ -209,9 +219,7 @@ def seen_surfaces(beams: FloatArray) -> FloatArray:
     return surfaces
 
 
-def shade_roles(floor: BoolArray, lit: BoolArray) -> Uint8Array:
-    """(rows, columns) background roles."""
-    roles: Uint8Array = np.where(
-        lit & floor, np.uint8(Role.LIT), np.where(floor, np.uint8(Role.FLOOR), np.uint8(Role.EMPTY))
-    )
+def shade_roles(floor: BoolArray, lit: Uint8Array) -> Uint8Array:
+    """(rows, columns) background roles. ``lit``: as of ``lit_cells``."""
+    roles: Uint8Array = np.where(floor, np.maximum(lit, np.uint8(Role.FLOOR)), np.uint8(Role.EMPTY))
     return roles

@@ -100,7 +100,7 @@ def test_the_picture_keeps_up_over_a_slow_link(connect: Connect) -> None:
 @pytest.mark.long
 def test_a_link_that_does_not_carry_the_themes_colours_gets_16(connect: Connect) -> None:
     user = connect(3_000, 0.020, "play", "maze", "--controller", "random_walk", "--color", "true")
-    lit = COLOR_SCHEMES["dark"].palette(reduced=False)[Role.LIT].color
+    lit = COLOR_SCHEMES["dark"].palette(reduced=False)[Role.LIT_NEAR].color
     assert isinstance(lit, tuple)
     code = f"48;2;{';'.join(map(str, lit))}".encode()
     user.until(lambda: code in user.output, "floor that the laser sees")
