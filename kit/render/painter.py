@@ -197,9 +197,7 @@ class Painter:
         frame = self.encoder.encode(canvas.grid, coarse=self._is_coarse(scene, camera))
         SpriteLayer(frame, camera, self.encoder.symbols).draw_scene(scene)
         if self.shaded:
-            lit = lit_cells(scene.beams, camera)
-            if len(scene.beams):  # the floor before a wall is lit as far as the wall is
-                lit[(frame.fg == Role.WALL_HIT) & (lit == Role.EMPTY)] = Role.LIT_FAR
+            lit = lit_cells(scene.beams, camera, frame.fg == Role.WALL_HIT)
             shades = shade_roles(floor, lit)
             shades[self._solid & (frame.fg == Role.TEXT)] = Role.FLOOR  # letters are to be read on a wall too
             np.copyto(frame.bg, shades, where=frame.bg == Role.EMPTY)

@@ -19,48 +19,47 @@ class Role(IntEnum):
     FLOOR = 1
     """Where a robot can be: behind what stands there."""
     LIT_FAR = 2
-    """Floor that a laser sees, far away from it."""
-    LIT_MIDDLE = 3
-    LIT_NEAR = 4
-    BEAM = 5
-    FIELD = 6
-    PATH = 7
-    GHOST_OTHER = 8
+    """Floor that a laser sees, away from it and near it."""
+    LIT_NEAR = 3
+    BEAM = 4
+    FIELD = 5
+    PATH = 6
+    GHOST_OTHER = 7
     """A former drive: a classmate's, then the agent's, the program's, the one by hand, the reference's."""
-    GHOST_AGENT = 9
-    GHOST_PROGRAM = 10
-    GHOST_KEYS = 11
-    GHOST_REFERENCE = 12
-    TRAIL = 13
-    TRAIL_2 = 14
-    PEN_WHITE = 15
-    PEN_RED = 16
-    PEN_YELLOW = 17
-    PEN_GREEN = 18
-    PEN_CYAN = 19
-    PEN_BLUE = 20
-    PEN_MAGENTA = 21
-    WALL = 22
-    WALL_HIT = 23
+    GHOST_AGENT = 8
+    GHOST_PROGRAM = 9
+    GHOST_KEYS = 10
+    GHOST_REFERENCE = 11
+    TRAIL = 12
+    TRAIL_2 = 13
+    PEN_WHITE = 14
+    PEN_RED = 15
+    PEN_YELLOW = 16
+    PEN_GREEN = 17
+    PEN_CYAN = 18
+    PEN_BLUE = 19
+    PEN_MAGENTA = 20
+    WALL = 21
+    WALL_HIT = 22
     """A wall where a laser's ray ends on it."""
-    BODY = 24
+    BODY = 23
     """What stands or moves in the world and is no robot: a cart, a table."""
-    CURVE_4 = 25
-    CURVE_3 = 26
-    CURVE_2 = 27
-    CURVE_1 = 28
-    HIT = 29
-    TARGET = 30
-    ROBOT_2 = 31
-    ROBOT = 32
-    CONTACT = 33
-    TEXT = 34
+    CURVE_4 = 24
+    CURVE_3 = 25
+    CURVE_2 = 26
+    CURVE_1 = 27
+    HIT = 28
+    TARGET = 29
+    ROBOT_2 = 30
+    ROBOT = 31
+    CONTACT = 32
+    TEXT = 33
 
 
 ROBOT_ROLES = (Role.ROBOT, Role.ROBOT_2)
 """The first robot's role, the second's, the third's as the first's again; their glyphs tell them apart too."""
 
-LIT_ROLES = (Role.LIT_NEAR, Role.LIT_MIDDLE, Role.LIT_FAR)
+LIT_ROLES = (Role.LIT_NEAR, Role.LIT_FAR)
 """Floor that a laser sees, from the laser outwards."""
 
 SHADES = (Role.FLOOR, *LIT_ROLES)
@@ -158,8 +157,7 @@ _YELLOW, _BLUE, _GREEN = RoleStyle("yellow"), RoleStyle("blue"), RoleStyle("gree
 ROLE_LOOKS: Mapping[Role, RoleLook] = MappingProxyType(
     {
         Role.FLOOR: _look(" ", DEFAULT_STYLE, 0x1C222D, 0xFDFCF9, 0x000000, 0x1C222D),
-        Role.LIT_FAR: _look(" ", DEFAULT_STYLE, 0x2C2E2E, 0xFEF8E4, 0x1C1C08, 0x2A2C2E),
-        Role.LIT_MIDDLE: _look(" ", DEFAULT_STYLE, 0x3C392E, 0xFFF3CD, 0x28280E, 0x383830),
+        Role.LIT_FAR: _look(" ", DEFAULT_STYLE, 0x36352E, 0xFFF5D7, 0x20200C, 0x323330),
         Role.LIT_NEAR: _look(" ", DEFAULT_STYLE, 0x4E4832, 0xFFECB0, 0x343414, 0x484636),
         Role.BEAM: _look("`", RoleStyle("yellow", dim=True), 0x967A3C, 0xD6B060, 0xC8C800, 0x968C3C),
         Role.FIELD: _look("'", _BLUE, 0x6A92CD, 0x426CB2, 0x96BEFF, 0x0072B2),

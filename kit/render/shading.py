@@ -14,7 +14,7 @@ from kit.arrays import BoolArray, FloatArray, Uint8Array
 from kit.render import raster
 from kit.render.camera import Camera
 from kit.render.raster import Grid
-from kit.render.roles import LIT_ROLES, Role
+from kit.render.roles import Role
 from kit.render.scene import CellState, Scene, SceneBounds, SceneCells
 from kit.world.connected_parts import connected_parts
 
@@ -28,9 +28,11 @@ MAX_SOLID: Final = 0.1
 """An enclosed part that no robot can reach is solid, as the inside of a wall or a table is, if it takes no more than this
 share of the picture; a larger one is a room without a door."""
 
-LIT_SHARES: Final = (0.16, 0.4)
-"""Up to these distances from its laser, as shares of the picture's height, the floor is lit as near, and as not far."""
-_LIT_BY_STEP: Final = np.array(LIT_ROLES, dtype=np.uint8)
+LIT_NEAR_SHARE: Final = 0.1
+"""Up to this distance from its laser, as a share of the picture's height, the floor is lit as near."""
+LIT_STEP: Final = 1 / 8
+"""The middle of the light follows the laser in steps of this share of the picture's height: so small that the laser never
+leaves what is lit as near, and so large that the rim of the light seldom has to be sent anew."""
 
 _OUTSIDE, _WALL, _FLOOR, _SOLID = 0, 1, 2, 3
 
@@ -135,12 +137,12 @@ def sampled_cells(cells: SceneCells, camera: Camera, across: int, down: int) -> 
     return states
 
 
-def lit_cells(beams: FloatArray, camera: Camera) -> Uint8Array:
+def lit_cells(beams: FloatArray, camera: Camera, hit: BoolArray | None = None) -> Uint8Array:
     """(rows, columns): the role of the floor at the middle of a character where a laser sees it, by how far away the
     nearest such laser is; EMPTY where none does.
 
     ``beams`` (n, 4): rays from their laser to where they end, those of one laser one after another in the order of
-    their angles.
+    their angles. ``hit`` (rows, columns): characters in which rays end, which are lit as what is before them.
     """
     lit = np.zeros((camera.rows, camera.columns), dtype=np.uint8)
     beams = beams[np.isfinite(beams).all(axis=1)]
@@ -149,11 +151,11 @@ def lit_cells(beams: FloatArray, camera: Camera) -> Uint8Array:
     cuts = np.flatnonzero((beams[1:, :2] != beams[:-1, :2]).any(axis=1)) + 1
     for rays in np.split(beams, cuts):
         if len(rays) > 2:
-            _light(lit, rays, camera)
+            _light(lit, rays, camera, hit)
     return lit
 
 
-def _light(lit: Uint8Array, rays: FloatArray, camera: Camera) -> None:
+def _light(lit: Uint8Array, rays: FloatArray, camera: Camera, hit: BoolArray | None) -> None:
     origin = rays[0, :2]
     ends = rays[:, 2:] - origin
     lengths = np.hypot(ends[:, 0], ends[:, 1])
@@ -199,9 +201,13 @@ def _light(lit: Uint8Array, rays: FloatArray, camera: Camera) -> None:
     between = one + share * (other - one)
     limit = np.where(np.abs(other - one) < SAME_SURFACE * shorter, between, shorter)
     seen &= (gap <= widest) & (distance <= limit)
+    if hit is not None:
+        seen |= hit[top:bottom, left:right]
     height = camera.rows * camera.cell_height
-    steps = np.searchsorted([share * height for share in LIT_SHARES], distance)
-    roles = np.where(seen, _LIT_BY_STEP[steps], np.uint8(Role.EMPTY))
+    away = ((np.floor(origin / (LIT_STEP * height)) + 0.5) * LIT_STEP * height - origin).tolist()
+    near = np.hypot(x - away[0], (y - away[1])[:, None]) <= LIT_NEAR_SHARE * height
+    roles = np.where(near, np.uint8(Role.LIT_NEAR), np.uint8(Role.LIT_FAR))
+    roles[~seen] = Role.EMPTY
     there = lit[top:bottom, left:right]
     np.maximum(there, roles, out=there)
 

@@ -75,8 +75,9 @@ def test_a_laser_lights_its_fan_and_nothing_behind_it_or_beyond() -> None:
 def test_the_lit_floor_fades_with_the_distance_from_the_nearest_laser() -> None:
     one = rays(0.0, 2.0, np.full(61, 5.0), -0.5, 0.5)
     lit = lit_cells(one, CAMERA)
-    row = cell(0.0, 2.0)[0]
+    row, _ = cell(0.0, 2.0)
     along = [Role(each) for each in lit[row] if each]
+    assert along[0] == Role.LIT_NEAR, "the laser stands in the light"
     assert along == sorted(along, reverse=True)
     assert set(along) == set(LIT_ROLES)
     other = rays(5.0, 2.0, np.full(61, 5.0), math.pi - 0.5, math.pi + 0.5)
