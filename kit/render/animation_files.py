@@ -11,7 +11,7 @@ import numpy as np
 from kit.arrays import FloatArray
 from kit.render.encode import Frame, changed_spans
 from kit.render.image import IMAGE_THEMES, Color, path_role
-from kit.render.roles import ROBOT_ROLES, Palette, Role, RoleStyle
+from kit.render.roles import ROBOT_ROLES, ROLE_LOOKS, LineStyle, Palette, Role, RoleStyle
 from kit.render.scene import Disc, Scene, SceneBody, SceneBounds, SceneMark, ScenePath
 
 _ANSI_NAMES = ("black", "red", "green", "yellow", "blue", "magenta", "cyan", "white")
@@ -66,7 +66,8 @@ def _graphic_codes(foreground: RoleStyle, background: RoleStyle) -> str:
     for style, first in ((foreground, 30), (background, 40)):
         color = style.color
         if isinstance(color, str):
-            codes.append(str(first + _ANSI_NAMES.index(color)))
+            name = color.removeprefix("bright_")
+            codes.append(str(first + (60 if name != color else 0) + _ANSI_NAMES.index(name)))
         elif isinstance(color, int):
             codes.append(f"{first + 8};5;{color}")
         elif color is not None:
@@ -75,7 +76,14 @@ def _graphic_codes(foreground: RoleStyle, background: RoleStyle) -> str:
 
 
 _NOWHERE = "M0 0"
-_DASHES = {"solid": "", "dashed": "6 3", "dotted": "2 3"}
+_DASHES: Mapping[LineStyle, str] = {
+    "solid": "",
+    "dashed": "6 3",
+    "long-dashed": "12 3",
+    "dotted": "2 3",
+    "sparse": "2 8",
+    "paired": "2 2 2 6",
+}
 
 
 def svg_picture(
@@ -178,13 +186,14 @@ class _Drawing:
         return f'<path d="{self.line(points)}" stroke="{self.color(role)}" stroke-dasharray="1 4"/>'
 
     def path(self, path: ScenePath) -> str:
-        dash = f' stroke-dasharray="{_DASHES[path.style]}"' if _DASHES[path.style] else ""
+        pattern = _DASHES[path.style or ROLE_LOOKS[path_role(path)].line]
+        dash = f' stroke-dasharray="{pattern}"' if pattern else ""
         return f'<path d="{self.line(path.points)}" stroke="{self.color(path_role(path))}" stroke-width="1.5"{dash}/>'
 
     def mark(self, mark: SceneMark) -> str:
         x, y = self._point(mark.x, mark.y).split()
         return (
-            f'<text x="{x}" y="{y}" fill="{self.color(Role.TEXT)}" font-family="sans-serif" font-size="11" '
+            f'<text x="{x}" y="{y}" fill="{self.color(mark.role)}" font-family="sans-serif" font-size="11" '
             f'text-anchor="middle" dominant-baseline="central">{escape(mark.label)}</text>'
         )
 

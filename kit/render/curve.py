@@ -10,7 +10,7 @@ The horizontal scale is that of curves (``kit.render.curve``), so that one stand
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -19,25 +19,28 @@ import numpy as np
 from kit.arrays import FloatArray, IntArray
 from kit.render import raster
 from kit.render.encode import BLANK, UNICODE_GLYPHS, Encoder, Frame, GlyphSet
-from kit.render.roles import ROBOT_ROLES, Role
-
-CURVE_ROLES = ROBOT_ROLES
-"""The first curve's, the second's, the third's as the first's again; numbers and line styles tell them apart too."""
+from kit.render.roles import CURVE_ROLES, LINE_DASHES, LineStyle, Role
 
 
-class LineStyle(NamedTuple):
+class CurveStyle(NamedTuple):
     """How a curve is drawn where there are several."""
 
-    period: int
-    """Dots, of which the first ``drawn`` are drawn."""
-    drawn: int
+    line: LineStyle
     mark: str
     """Mark in the legend."""
     ascii_mark: str
 
 
-LINE_STYLES = (LineStyle(1, 1, "━", "="), LineStyle(10, 6, "╍", "-"), LineStyle(3, 1, "┈", "."))
-"""The first curve's, the second's, the third's, the fourth's as the first's again."""
+CURVE_STYLES = (
+    CurveStyle("solid", "━", "="),
+    CurveStyle("long-dashed", "╍", "-"),
+    CurveStyle("dotted", "┈", "."),
+    CurveStyle("paired", "┉", ":"),
+)
+"""The first curve's, the second's, ..., the fifth's as the first's again."""
+
+NUMBER_COLUMNS = 24
+"""Columns between two numbers of one curve on its line."""
 
 ROWS_PER_TICK = 4
 """Rows of a plot for each value between the ends of its scale."""
@@ -142,23 +145,36 @@ def _draw_plot(
         raster.draw_dots(grid, (line[kept], across[kept]), Role.PATH)
     for number, curve in enumerate(curves):
         role = CURVE_ROLES[number % len(CURVE_ROLES)]
-        style = LINE_STYLES[number % len(LINE_STYLES)]
+        period, drawn = LINE_DASHES[CURVE_STYLES[number % len(CURVE_STYLES)].line]
         for part in _line_parts(curve):
             x, y_mean = _bin_means(part, right, width)
             dots = np.stack((x, level(y_mean)), axis=1)
             raster.draw_dots(grid, raster.point_dots(dots, width, height), role)
             rows_drawn, columns_drawn = raster.line_dots(raster.polyline(dots), width, height)
-            kept = np.arange(len(rows_drawn)) % style.period < style.drawn
+            kept = np.arange(len(rows_drawn)) % period < drawn
             raster.draw_dots(grid, (rows_drawn[kept], columns_drawn[kept]), role)
     frame = encoder.encode(grid)
     if len(curves) > 1:
         for number, curve in enumerate(map(_without_gaps, curves)):
-            if len(curve.x):
-                column = int(curve.x[-1] / right * (columns - 1))
-                row = _row_of(float(curve.y[-1]), low, high, rows)
+            for column, value in _number_places(curve, number, right, columns):
+                row = math.floor(level(np.array(value)) / encoder.down)
                 if 0 <= row < rows:
                     write_text(frame, row, column, str(number + 1), CURVE_ROLES[number % len(CURVE_ROLES)])
     return frame
+
+
+def _number_places(curve: Curve, number: int, right: float, columns: int) -> Iterator[tuple[int, float]]:
+    """Where the number of a curve stands on its line, columns and values: now and then, each curve's in other columns so
+    that one that hides another does not hide its number, and at its end."""
+    if not len(curve.x):
+        return
+    end = int(curve.x[-1] / right * (columns - 1))
+    middles, means = _bin_means(curve, right, columns)
+    first = NUMBER_COLUMNS * (2 * number + 1) // (2 * len(CURVE_ROLES))
+    for middle, mean in zip(middles.tolist(), means.tolist(), strict=True):
+        if int(middle) % NUMBER_COLUMNS == first % NUMBER_COLUMNS and middle < end - 2:
+            yield int(middle), mean
+    yield end, float(curve.y[-1])
 
 
 def _ticks_between(low: float, high: float, most: int) -> list[float]:
@@ -244,7 +260,7 @@ def _draw_value_axis(
 def _write_names(frame: Frame, curves: Sequence[Curve], column: int, *, is_ascii: bool) -> None:
     for number, curve in enumerate(curves):
         newest = f" {curve.y[-1]:.3g}" if len(curve.y) else ""
-        style = LINE_STYLES[number % len(LINE_STYLES)]
+        style = CURVE_STYLES[number % len(CURVE_STYLES)]
         key = f"{style.ascii_mark if is_ascii else style.mark}{number + 1} " if len(curves) > 1 else ""
         text = f"{key}{curve.name}{newest}"
         write_text(frame, 0, column, text, CURVE_ROLES[number % len(CURVE_ROLES)])

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from kit.arrays import Uint8Array
 from kit.render.raster import Grid
-from kit.render.roles import PEN_ROLES, Role
+from kit.render.roles import ROLE_LOOKS, SHADES, Role
 
 BLANK = ord(" ")
 
@@ -210,9 +210,16 @@ class BrailleEncoder:
         if coarse:  # quarter blocks would close narrow ways
             solid[:] = False
         glyphs[solid] = self._blocks[quarters[solid]]
-        fg[solid & (fg == Role.TARGET)] = Role.WALL
+        ring = solid & (fg == Role.TARGET)
+        fg[ring] = Role.WALL
         if self._mono:
             glyphs[(fg == Role.HIT) | (fg == Role.WALL_HIT)] = self._bullet
+        else:
+            # A target's ring goes on beside a wall, in the quarters that the wall leaves free.
+            targets = np.bitwise_or.reduce(
+                ((dots == Role.TARGET)[0::2] | (dots == Role.TARGET)[1::2]) * self._quarter_bits, axis=(0, 1)
+            )
+            bg[ring & ((targets & ~quarters) > 0)] = Role.TARGET
         return Frame(glyphs, fg, bg)
 
 
@@ -227,7 +234,7 @@ class HalfBlockEncoder:
     _upper, _lower, _full = ord("▀"), ord("▄"), ord("█")
     _thin = MappingProxyType(
         {
-            **dict.fromkeys((Role.BEAM, Role.PATH, Role.TRAIL, Role.TRAIL_2, *PEN_ROLES), "·"),
+            **{role: "·" for role in Role if role is Role.BEAM or Role.PATH <= role < Role.WALL},
             Role.HIT: "▒",
         }
     )
@@ -262,29 +269,7 @@ class AsciiEncoder:
     across, down, symbols = 1, 1, ASCII_GLYPHS
 
     shapes: Mapping[Role, str] = MappingProxyType(
-        {
-            Role.BEAM: "`",
-            Role.FIELD: "'",
-            Role.PATH: "-",
-            Role.TRAIL: ",",
-            Role.TRAIL_2: ";",
-            Role.PEN_WHITE: "w",
-            Role.PEN_RED: "r",
-            Role.PEN_YELLOW: "y",
-            Role.PEN_GREEN: "g",
-            Role.PEN_CYAN: "c",
-            Role.PEN_BLUE: "b",
-            Role.PEN_MAGENTA: "m",
-            Role.WALL: "#",
-            Role.WALL_HIT: ":",
-            Role.BODY: "%",
-            Role.HIT: ".",
-            Role.TARGET: "o",
-            Role.ROBOT_2: "&",
-            Role.ROBOT: "@",
-            Role.CONTACT: "X",
-            Role.TEXT: "?",
-        }
+        {role: look.shape for role, look in ROLE_LOOKS.items() if role not in SHADES}
     )
 
     def __init__(self, mono: bool = False) -> None:

@@ -13,7 +13,7 @@ from PIL import Image, ImageDraw
 from kit.arrays import FloatArray, Uint8Array
 from kit.render.camera import Camera
 from kit.render.raster import circle_corners, polyline
-from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role
+from kit.render.roles import COLOR_SCHEMES, ROBOT_ROLES, TRAIL_ROLES, Role
 from kit.render.scene import Scene, SceneBody, SceneBounds, ScenePath
 
 Pixels = Uint8Array
@@ -23,49 +23,14 @@ Color = tuple[int, int, int]
 
 BACKGROUND: Color = (250, 249, 246)
 
-ROLE_COLORS: Mapping[Role, Color] = MappingProxyType(
-    {
-        Role.EMPTY: BACKGROUND,
-        Role.BEAM: (240, 222, 190),
-        Role.FIELD: (120, 150, 190),
-        Role.PATH: (90, 125, 180),
-        Role.TRAIL: (120, 185, 200),
-        Role.TRAIL_2: (205, 150, 190),
-        Role.WALL: (52, 58, 70),
-        Role.BODY: (110, 120, 140),
-        Role.HIT: (222, 120, 20),
-        Role.TARGET: (40, 150, 70),
-        Role.ROBOT_2: (170, 50, 130),
-        Role.ROBOT: (0, 120, 145),
-        Role.CONTACT: (205, 40, 40),
-        Role.TEXT: (30, 32, 38),
-    }
-)
-"""On white paper; each differs from its neighbours in lightness too, so that print and colour-blind eyes do."""
-
-DARK_COLORS: Mapping[Role, Color] = MappingProxyType(
-    {
-        **ROLE_COLORS,
-        Role.EMPTY: (24, 26, 31),
-        Role.BEAM: (78, 66, 44),
-        Role.FIELD: (94, 129, 172),
-        Role.PATH: (94, 129, 172),
-        Role.TRAIL: (52, 152, 170),
-        Role.TRAIL_2: (176, 96, 156),
-        Role.WALL: (214, 216, 222),
-        Role.BODY: (138, 150, 172),
-        Role.HIT: (240, 170, 60),
-        Role.TARGET: (96, 200, 110),
-        Role.ROBOT_2: (240, 110, 190),
-        Role.ROBOT: (64, 214, 232),
-        Role.CONTACT: (240, 70, 70),
-        Role.TEXT: (236, 237, 240),
-    }
-)
-
 IMAGE_THEMES: Mapping[str, Mapping[Role, Color]] = MappingProxyType(
-    {"light": ROLE_COLORS, "dark": DARK_COLORS}
+    {
+        "light": {**COLOR_SCHEMES["light"].roles, Role.EMPTY: BACKGROUND},
+        "dark": {**COLOR_SCHEMES["dark"].roles, Role.EMPTY: COLOR_SCHEMES["dark"].background},
+    }
 )
+"""On white paper and on black; each role differs from its neighbours in lightness too, so that print and colour-blind
+eyes tell it apart."""
 
 SUPERSAMPLING = 2
 """Pixels are averaged over so many by so many."""
@@ -76,10 +41,10 @@ def image_camera(bounds: SceneBounds, width: int, height: int) -> Camera:
     return Camera.fit(bounds, width, height, aspect=1.0, margin=min(width, height) / 40)
 
 
-def draw_image(scene: Scene, camera: Camera, colors: Mapping[Role, Color] = ROLE_COLORS) -> Pixels:
+def draw_image(scene: Scene, camera: Camera, colors: Mapping[Role, Color] = IMAGE_THEMES["light"]) -> Pixels:
     """The scene, by default on white paper; ``camera.columns`` x ``camera.rows`` pixels."""
     canvas = _ImageCanvas(camera, colors)
-    canvas.lines(scene.beams, Role.BEAM)
+    canvas.lines(scene.beams, Role.LIT_NEAR)
     for path in scene.paths:
         canvas.lines(polyline(path.points), path_role(path))
     for number, trail in enumerate(scene.trails):
@@ -90,7 +55,7 @@ def draw_image(scene: Scene, camera: Camera, colors: Mapping[Role, Color] = ROLE
     canvas.lines(scene.walls, Role.WALL, width=1.5)
     for body in scene.bodies:
         if not body.is_robot:
-            canvas.body(body, Role.BODY)
+            canvas.body(body, Role.TARGET if body.is_target else Role.BODY, filled=not body.is_target)
     canvas.points(scene.hits, Role.HIT, 1.5)
     canvas.arrows(scene.arrows)
     robots = scene.robots
@@ -101,13 +66,13 @@ def draw_image(scene: Scene, camera: Camera, colors: Mapping[Role, Color] = ROLE
     for x, y in scene.contacts:
         canvas.cross(x, y)
     for mark in scene.marks:
-        canvas.text(mark.x, mark.y, mark.label)
+        canvas.text(mark.x, mark.y, mark.label, mark.role)
     return canvas.pixels()
 
 
 def path_role(path: ScenePath) -> Role:
     """What a path is drawn as on paper: as the robot whose way it is."""
-    return Role.PATH if path.robot is None else ROBOT_ROLES[path.robot % len(ROBOT_ROLES)]
+    return path.role if path.robot is None else ROBOT_ROLES[path.robot % len(ROBOT_ROLES)]
 
 
 def save_image(path: Path, pixels: Pixels) -> None:
@@ -195,11 +160,9 @@ class _ImageCanvas:
         strokes = ((x - size, y - size, x + size, y + size), (x - size, y + size, x + size, y - size))
         self.lines(np.array(strokes), Role.CONTACT, width=1.5)
 
-    def text(self, x: float, y: float, text: str) -> None:
+    def text(self, x: float, y: float, text: str, role: Role = Role.TEXT) -> None:
         ((column, row),) = self._project(np.array([(x, y)])).tolist()
-        self._draw.text(
-            (column, row), text, self._colors[Role.TEXT], anchor="mm", font_size=11 * SUPERSAMPLING
-        )
+        self._draw.text((column, row), text, self._colors[role], anchor="mm", font_size=11 * SUPERSAMPLING)
 
     def _shape(self, corners: FloatArray, color: Color, filled: bool) -> None:
         dots = [(x, y) for x, y in self._project(corners).tolist()]

@@ -15,7 +15,7 @@ from kit.render import raster
 from kit.render.camera import Camera
 from kit.render.encode import Encoder, Frame, GlyphSet
 from kit.render.raster import Grid
-from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role, nearest_pen_role
+from kit.render.roles import LINE_DASHES, ROBOT_ROLES, ROLE_LOOKS, TRAIL_ROLES, Role, nearest_pen_role
 from kit.render.scene import CellState, Scene, SceneBody, SceneCells, ScenePath
 from kit.render.shading import FloorMap, lit_cells, sampled_cells, seen_surfaces, shade_roles
 
@@ -52,7 +52,7 @@ class SpriteLayer:
         for target in scene.targets:
             self._put(self._cell(target.x, target.y), self._symbols.target, Role.TARGET)
         for mark in scene.marks:
-            self._put(self._cell(mark.x, mark.y), mark.label, Role.TEXT)
+            self._put(self._cell(mark.x, mark.y), mark.label, mark.role)
         robots = scene.robots
         middles = [robot.pose.transform_point(*robot.extent.middle) for robot in robots]
         for x, y in scene.contacts.tolist():
@@ -149,9 +149,6 @@ MIN_HOLLOW_ROWS = 4.0
 
 NO_LINES: FloatArray = np.empty((0, 4))
 
-_DASH_PATTERNS = {"solid": (1, 1), "dashed": (7, 4), "dotted": (3, 1)}
-"""Dots in a period of a path, and how many of them are drawn."""
-
 
 class Painter:
     """Draws scenes with one encoder. Keeps the walls as drawn last, and draws them again only when the
@@ -190,16 +187,17 @@ class Painter:
         for target in scene.targets:
             canvas.draw_circle(target.x, target.y, target.radius, Role.TARGET)
         for body in scene.bodies:
-            if not body.is_robot:
+            if body.is_target:
+                canvas.draw_outline(body, Role.TARGET)
+            elif not body.is_robot:
                 canvas.draw_outline(body, Role.BODY)
+                canvas.fill(body, Role.BODY)
         for number, robot in enumerate(scene.robots):
             canvas.draw_robot(robot, ROBOT_ROLES[number % len(ROBOT_ROLES)])
         frame = self.encoder.encode(canvas.grid, coarse=self._is_coarse(scene, camera))
         SpriteLayer(frame, camera, self.encoder.symbols).draw_scene(scene)
         if self.shaded:
-            lit = lit_cells(scene.beams, camera)
-            if len(scene.beams):
-                lit |= frame.fg == Role.WALL_HIT
+            lit = lit_cells(scene.beams, camera, frame.fg == Role.WALL_HIT)
             shades = shade_roles(floor, lit)
             shades[self._solid & (frame.fg == Role.TEXT)] = Role.FLOOR  # letters are to be read on a wall too
             np.copyto(frame.bg, shades, where=frame.bg == Role.EMPTY)
@@ -321,8 +319,9 @@ class _Canvas:
         self._put_lines(self.project(segments.reshape(-1, 2)).reshape(-1, 4), role, period, drawn)
 
     def draw_path(self, path: ScenePath) -> None:
-        role = Role.PATH if path.robot is None else TRAIL_ROLES[path.robot % len(TRAIL_ROLES)]
-        self.draw_lines(raster.polyline(path.points), role, *_DASH_PATTERNS[path.style])
+        role = path.role if path.robot is None else TRAIL_ROLES[path.robot % len(TRAIL_ROLES)]
+        dashes = LINE_DASHES[path.style or ROLE_LOOKS[role].line]
+        self.draw_lines(raster.polyline(path.points), role, *dashes)
 
     def draw_circle(self, x: float, y: float, radius: float, role: Role) -> None:
         """The circle's line; nothing where it would be a dot or two: a symbol marks the place."""

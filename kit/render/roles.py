@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import IntEnum
 from types import MappingProxyType
+from typing import Literal
 
 
 class Role(IntEnum):
@@ -17,64 +18,71 @@ class Role(IntEnum):
     EMPTY = 0
     FLOOR = 1
     """Where a robot can be: behind what stands there."""
-    LIT = 2
-    """Floor that a laser sees."""
-    BEAM = 3
-    FIELD = 4
-    PATH = 5
-    TRAIL = 6
-    TRAIL_2 = 7
-    PEN_WHITE = 8
-    PEN_RED = 9
-    PEN_YELLOW = 10
-    PEN_GREEN = 11
-    PEN_CYAN = 12
-    PEN_BLUE = 13
-    PEN_MAGENTA = 14
-    WALL = 15
-    WALL_HIT = 16
+    LIT_FAR = 2
+    """Floor that a laser sees, away from it and near it."""
+    LIT_NEAR = 3
+    BEAM = 4
+    FIELD = 5
+    PATH = 6
+    GHOST_OTHER = 7
+    """A former drive: a classmate's, then the agent's, the program's, the one by hand, the reference's."""
+    GHOST_AGENT = 8
+    GHOST_PROGRAM = 9
+    GHOST_KEYS = 10
+    GHOST_REFERENCE = 11
+    TRAIL = 12
+    TRAIL_2 = 13
+    PEN_WHITE = 14
+    PEN_RED = 15
+    PEN_YELLOW = 16
+    PEN_GREEN = 17
+    PEN_CYAN = 18
+    PEN_BLUE = 19
+    PEN_MAGENTA = 20
+    WALL = 21
+    WALL_HIT = 22
     """A wall where a laser's ray ends on it."""
-    BODY = 17
-    HIT = 18
-    TARGET = 19
-    ROBOT_2 = 20
-    ROBOT = 21
-    CONTACT = 22
-    TEXT = 23
+    BODY = 23
+    """What stands or moves in the world and is no robot: a cart, a table."""
+    CURVE_4 = 24
+    CURVE_3 = 25
+    CURVE_2 = 26
+    CURVE_1 = 27
+    HIT = 28
+    TARGET = 29
+    ROBOT_2 = 30
+    ROBOT = 31
+    CONTACT = 32
+    TEXT = 33
 
 
 ROBOT_ROLES = (Role.ROBOT, Role.ROBOT_2)
 """The first robot's role, the second's, the third's as the first's again; their glyphs tell them apart too."""
 
-SHADES = (Role.FLOOR, Role.LIT)
+LIT_ROLES = (Role.LIT_NEAR, Role.LIT_FAR)
+"""Floor that a laser sees, from the laser outwards."""
+
+SHADES = (Role.FLOOR, *LIT_ROLES)
 """Roles that are only ever seen behind others."""
 
 TRAIL_ROLES = (Role.TRAIL, Role.TRAIL_2)
 
-PEN_ROLES: Mapping[Role, tuple[int, int, int]] = MappingProxyType(
-    {
-        Role.PEN_WHITE: (200, 200, 200),
-        Role.PEN_RED: (220, 60, 60),
-        Role.PEN_YELLOW: (220, 200, 60),
-        Role.PEN_GREEN: (70, 190, 90),
-        Role.PEN_CYAN: (60, 190, 210),
-        Role.PEN_BLUE: (90, 110, 230),
-        Role.PEN_MAGENTA: (200, 90, 200),
-    }
+GHOST_ROLES = (
+    Role.GHOST_REFERENCE,
+    Role.GHOST_KEYS,
+    Role.GHOST_PROGRAM,
+    Role.GHOST_AGENT,
+    Role.GHOST_OTHER,
 )
-"""The colours that a pen's line can have in the view; any other is shown in the nearest."""
 
-
-def nearest_pen_role(color: tuple[int, int, int]) -> Role:
-    """The role in whose colour a pen's line is shown."""
-    return min(
-        PEN_ROLES,
-        key=lambda role: sum((a - b) ** 2 for a, b in zip(PEN_ROLES[role], color, strict=True)),
-    )
-
+CURVE_ROLES = (Role.CURVE_1, Role.CURVE_2, Role.CURVE_3, Role.CURVE_4)
+"""The first curve's of a plot, the second's, ..., the fifth's as the first's again; numbers and dashes tell them apart
+too."""
 
 Color = str | int | tuple[int, int, int] | None
 """A name of the 16 ANSI colours, a number of the 256, red-green-blue, or None: what the terminal writes in."""
+
+Rgb = tuple[int, int, int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,34 +96,127 @@ Palette = Mapping[Role, RoleStyle]
 
 DEFAULT_STYLE = RoleStyle()
 
-# Walls are in the terminal's own foreground colour: readable on dark and on light, and without a byte of escape code.
-ANSI_PALETTE: Palette = MappingProxyType(
+LineStyle = Literal["solid", "dashed", "long-dashed", "dotted", "sparse", "paired"]
+
+LINE_DASHES: Mapping[LineStyle, tuple[int, int]] = MappingProxyType(
     {
-        Role.EMPTY: DEFAULT_STYLE,
-        Role.FLOOR: DEFAULT_STYLE,
-        Role.LIT: DEFAULT_STYLE,
-        Role.BEAM: RoleStyle("yellow", dim=True),
-        Role.FIELD: RoleStyle("blue"),
-        Role.PATH: RoleStyle("blue"),
-        Role.TRAIL: RoleStyle("cyan"),
-        Role.TRAIL_2: RoleStyle("magenta"),
-        Role.PEN_WHITE: RoleStyle("white"),
-        Role.PEN_RED: RoleStyle("red"),
-        Role.PEN_YELLOW: RoleStyle("yellow"),
-        Role.PEN_GREEN: RoleStyle("green"),
-        Role.PEN_CYAN: RoleStyle("cyan"),
-        Role.PEN_BLUE: RoleStyle("blue"),
-        Role.PEN_MAGENTA: RoleStyle("magenta"),
-        Role.WALL: DEFAULT_STYLE,
-        Role.WALL_HIT: RoleStyle("yellow"),
-        Role.BODY: RoleStyle("blue"),
-        Role.HIT: RoleStyle("yellow"),
-        Role.TARGET: RoleStyle("green", bold=True),
-        Role.ROBOT_2: RoleStyle("magenta", bold=True),
-        Role.ROBOT: RoleStyle("cyan", bold=True),
-        Role.CONTACT: RoleStyle("red", bold=True),
-        Role.TEXT: RoleStyle(bold=True),
+        "solid": (1, 1),
+        "dashed": (7, 4),
+        "long-dashed": (12, 9),
+        "dotted": (3, 1),
+        "sparse": (6, 1),
+        "paired": (6, 2),
     }
+)
+"""Dots in a period of a line, and how many of them are drawn."""
+
+
+@dataclass(frozen=True, slots=True)
+class RoleLook:
+    """How one role looks: its shape, which tells it apart without colours, and its colour in each palette."""
+
+    shape: str
+    """The character where one is all there is."""
+    ansi: RoleStyle
+    """Among the terminal's own 16 colours."""
+    dark: Rgb
+    light: Rgb
+    contrast: Rgb
+    colorblind: Rgb
+    line: LineStyle = "solid"
+    """How a way of this role is drawn."""
+
+
+def _look(
+    shape: str,
+    ansi: RoleStyle,
+    dark: int,
+    light: int,
+    contrast: int,
+    colorblind: int,
+    line: LineStyle = "solid",
+) -> RoleLook:
+    return RoleLook(shape, ansi, _rgb(dark), _rgb(light), _rgb(contrast), _rgb(colorblind), line)
+
+
+def _pen(shape: str, ansi: str, color: int) -> RoleLook:
+    """A colour that a pen's line can have: the same on every dark floor, darker on a light one."""
+    red, green, blue = on_dark = _rgb(color)
+    on_light = red * 7 // 10, green * 7 // 10, blue * 7 // 10
+    return RoleLook(shape, RoleStyle(ansi), on_dark, on_light, on_dark, on_dark)
+
+
+def _rgb(number: int) -> Rgb:
+    return number >> 16, number >> 8 & 0xFF, number & 0xFF
+
+
+_YELLOW, _BLUE, _GREEN = RoleStyle("yellow"), RoleStyle("blue"), RoleStyle("green")
+
+# Walls are in the terminal's own foreground colour: readable on dark and on light, and without a byte of escape code.
+# The last colours of each row are those of Okabe and Ito (2008) and near them, which eyes without red or green tell apart.
+ROLE_LOOKS: Mapping[Role, RoleLook] = MappingProxyType(
+    {
+        Role.FLOOR: _look(" ", DEFAULT_STYLE, 0x1C222D, 0xFDFCF9, 0x000000, 0x1C222D),
+        Role.LIT_FAR: _look(" ", DEFAULT_STYLE, 0x36352E, 0xFFF5D7, 0x20200C, 0x323330),
+        Role.LIT_NEAR: _look(" ", DEFAULT_STYLE, 0x4E4832, 0xFFECB0, 0x343414, 0x484636),
+        Role.BEAM: _look("`", RoleStyle("yellow", dim=True), 0x967A3C, 0xD6B060, 0xC8C800, 0x968C3C),
+        Role.FIELD: _look("'", _BLUE, 0x6A92CD, 0x426CB2, 0x96BEFF, 0x0072B2),
+        Role.PATH: _look("-", _BLUE, 0x6E96D2, 0x426CB2, 0x96BEFF, 0x3C8CC8),
+        Role.GHOST_OTHER: _look(
+            '"', RoleStyle("cyan", dim=True), 0xC8B478, 0x82681E, 0xE6D282, 0xC8BEA0, "paired"
+        ),
+        Role.GHOST_AGENT: _look(
+            "!", RoleStyle("bright_magenta"), 0xFFA8B8, 0xCE3E68, 0xFFB4C8, 0xFFBED2, "sparse"
+        ),
+        Role.GHOST_PROGRAM: _look(
+            "_", RoleStyle("red"), 0x60A5FA, 0x145AC8, 0x78BEFF, 0x78C8C8, "long-dashed"
+        ),
+        Role.GHOST_KEYS: _look("~", RoleStyle(dim=True), 0xC4C4C4, 0x686868, 0xD2D2D2, 0xE1E1EB, "dashed"),
+        Role.GHOST_REFERENCE: _look(
+            "=", RoleStyle("magenta", dim=True), 0xB090FF, 0x7040C8, 0xBEA0FF, 0x968CFF, "dotted"
+        ),
+        Role.TRAIL: _look(",", RoleStyle("cyan"), 0x4296AA, 0x549CAE, 0x00C8C8, 0x4682AA),
+        Role.TRAIL_2: _look(";", RoleStyle("magenta"), 0xB0609C, 0xBE6EA8, 0xFF78FF, 0xA06E8C),
+        Role.PEN_WHITE: _pen("w", "white", 0xC8C8C8),
+        Role.PEN_RED: _pen("r", "red", 0xDC3C3C),
+        Role.PEN_YELLOW: _pen("y", "yellow", 0xDCC83C),
+        Role.PEN_GREEN: _pen("g", "green", 0x46BE5A),
+        Role.PEN_CYAN: _pen("c", "cyan", 0x3CBED2),
+        Role.PEN_BLUE: _pen("b", "blue", 0x5A6EE6),
+        Role.PEN_MAGENTA: _pen("m", "magenta", 0xC85AC8),
+        Role.WALL: _look("#", DEFAULT_STYLE, 0x8E99AC, 0x464D5C, 0xFFFFFF, 0x969EAA),
+        Role.WALL_HIT: _look(":", _YELLOW, 0xDEB264, 0xD68C34, 0xFFFF00, 0xF0E442),
+        Role.BODY: _look("%", _BLUE, 0xE48C60, 0xA45424, 0xFFAA6E, 0xE69F00),
+        Role.CURVE_4: _look("$", _GREEN, 0x96D66E, 0x1E7432, 0x00FF00, 0x00BC8C),
+        Role.CURVE_3: _look("x", _YELLOW, 0xF4C85C, 0x965400, 0xFFFF00, 0xF0E442),
+        Role.CURVE_2: _look("+", RoleStyle("magenta", bold=True), 0xFA82CD, 0xAC227C, 0xFF8CFF, 0xCC79A7),
+        Role.CURVE_1: _look("*", RoleStyle("cyan", bold=True), 0x54E2F4, 0x00708C, 0x00FFFF, 0x56B4E9),
+        Role.HIT: _look(".", _YELLOW, 0xFFC45C, 0xCE6800, 0xFFFF00, 0xF0E442),
+        Role.TARGET: _look("o", RoleStyle("green", bold=True), 0x78DC82, 0x148038, 0x00FF00, 0x00BC8C),
+        Role.ROBOT_2: _look("&", RoleStyle("magenta", bold=True), 0xFA82CD, 0xAC227C, 0xFF8CFF, 0xCC79A7),
+        Role.ROBOT: _look("@", RoleStyle("cyan", bold=True), 0x54E2F4, 0x00708C, 0x00FFFF, 0x56B4E9),
+        Role.CONTACT: _look("X", RoleStyle("red", bold=True), 0xFF605E, 0xC81C28, 0xFF5050, 0xE6781E),
+        Role.TEXT: _look("?", RoleStyle(bold=True), 0xF0F3FA, 0x14161C, 0xFFFFFF, 0xF0F3FA),
+    }
+)
+"""The shape and the colours of every role that is drawn."""
+
+PEN_ROLES: Mapping[Role, Rgb] = MappingProxyType(
+    {role: look.dark for role, look in ROLE_LOOKS.items() if role.name.startswith("PEN_")}
+)
+"""The colours that a pen's line can have in the view; any other is shown in the nearest."""
+
+
+def nearest_pen_role(color: Rgb) -> Role:
+    """The role in whose colour a pen's line is shown."""
+    return min(
+        PEN_ROLES,
+        key=lambda role: sum((a - b) ** 2 for a, b in zip(PEN_ROLES[role], color, strict=True)),
+    )
+
+
+ANSI_PALETTE: Palette = MappingProxyType(
+    {Role.EMPTY: DEFAULT_STYLE, **{role: look.ansi for role, look in ROLE_LOOKS.items()}}
 )
 
 MONOCHROME_PALETTE: Palette = MappingProxyType(
@@ -128,8 +229,6 @@ MONOCHROME_PALETTE: Palette = MappingProxyType(
 
 PALETTES: Mapping[str, Palette] = MappingProxyType({"none": MONOCHROME_PALETTE, "16": ANSI_PALETTE})
 """The palettes of terminals whose own colours are used, or none."""
-
-Rgb = tuple[int, int, int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,10 +303,6 @@ def xterm_rgb(number: int) -> Rgb:
     return _XTERM_LEVELS[red], _XTERM_LEVELS[green], _XTERM_LEVELS[blue]
 
 
-_PENS_ON_LIGHT = {
-    role: (red * 7 // 10, green * 7 // 10, blue * 7 // 10) for role, (red, green, blue) in PEN_ROLES.items()
-}
-
 COLOR_SCHEMES: Mapping[str, ColorScheme] = MappingProxyType(
     {
         "dark": ColorScheme(
@@ -218,27 +313,7 @@ COLOR_SCHEMES: Mapping[str, ColorScheme] = MappingProxyType(
             good=(120, 214, 130),
             warn=(245, 190, 90),
             bad=(255, 105, 105),
-            roles=MappingProxyType(
-                {
-                    **PEN_ROLES,
-                    Role.FLOOR: (28, 34, 45),
-                    Role.LIT: (66, 62, 46),
-                    Role.BEAM: (150, 122, 60),
-                    Role.FIELD: (106, 146, 205),
-                    Role.PATH: (110, 150, 210),
-                    Role.TRAIL: (66, 150, 170),
-                    Role.TRAIL_2: (176, 96, 156),
-                    Role.WALL: (142, 153, 172),
-                    Role.WALL_HIT: (222, 178, 100),
-                    Role.BODY: (132, 160, 214),
-                    Role.HIT: (255, 196, 92),
-                    Role.TARGET: (120, 220, 130),
-                    Role.ROBOT_2: (250, 130, 205),
-                    Role.ROBOT: (84, 226, 244),
-                    Role.CONTACT: (255, 90, 90),
-                    Role.TEXT: (240, 243, 250),
-                }
-            ),
+            roles=MappingProxyType({role: look.dark for role, look in ROLE_LOOKS.items()}),
         ),
         "light": ColorScheme(
             dark=False,
@@ -248,27 +323,7 @@ COLOR_SCHEMES: Mapping[str, ColorScheme] = MappingProxyType(
             good=(10, 100, 40),
             warn=(138, 72, 0),
             bad=(186, 26, 40),
-            roles=MappingProxyType(
-                {
-                    **_PENS_ON_LIGHT,
-                    Role.FLOOR: (253, 252, 249),
-                    Role.LIT: (255, 240, 196),
-                    Role.BEAM: (214, 176, 96),
-                    Role.FIELD: (66, 108, 178),
-                    Role.PATH: (66, 108, 178),
-                    Role.TRAIL: (84, 156, 174),
-                    Role.TRAIL_2: (190, 110, 168),
-                    Role.WALL: (70, 77, 92),
-                    Role.WALL_HIT: (214, 140, 52),
-                    Role.BODY: (92, 108, 150),
-                    Role.HIT: (206, 104, 0),
-                    Role.TARGET: (20, 128, 56),
-                    Role.ROBOT_2: (172, 34, 124),
-                    Role.ROBOT: (0, 112, 140),
-                    Role.CONTACT: (200, 28, 40),
-                    Role.TEXT: (20, 22, 28),
-                }
-            ),
+            roles=MappingProxyType({role: look.light for role, look in ROLE_LOOKS.items()}),
         ),
         "contrast": ColorScheme(
             dark=True,
@@ -278,29 +333,8 @@ COLOR_SCHEMES: Mapping[str, ColorScheme] = MappingProxyType(
             good=(0, 255, 0),
             warn=(255, 255, 0),
             bad=(255, 120, 120),
-            roles=MappingProxyType(
-                {
-                    **PEN_ROLES,
-                    Role.FLOOR: (0, 0, 0),
-                    Role.LIT: (52, 52, 20),
-                    Role.BEAM: (200, 200, 0),
-                    Role.FIELD: (150, 190, 255),
-                    Role.PATH: (150, 190, 255),
-                    Role.TRAIL: (0, 200, 200),
-                    Role.TRAIL_2: (255, 120, 255),
-                    Role.WALL: (255, 255, 255),
-                    Role.WALL_HIT: (255, 255, 0),
-                    Role.BODY: (170, 200, 255),
-                    Role.HIT: (255, 255, 0),
-                    Role.TARGET: (0, 255, 0),
-                    Role.ROBOT_2: (255, 140, 255),
-                    Role.ROBOT: (0, 255, 255),
-                    Role.CONTACT: (255, 80, 80),
-                    Role.TEXT: (255, 255, 255),
-                }
-            ),
+            roles=MappingProxyType({role: look.contrast for role, look in ROLE_LOOKS.items()}),
         ),
-        # The colours of Okabe and Ito (2008), which eyes without red or green tell apart.
         "colorblind": ColorScheme(
             dark=True,
             background=(13, 16, 22),
@@ -309,27 +343,7 @@ COLOR_SCHEMES: Mapping[str, ColorScheme] = MappingProxyType(
             good=(86, 180, 233),
             warn=(240, 228, 66),
             bad=(230, 120, 30),
-            roles=MappingProxyType(
-                {
-                    **PEN_ROLES,
-                    Role.FLOOR: (28, 34, 45),
-                    Role.LIT: (56, 56, 48),
-                    Role.BEAM: (150, 140, 60),
-                    Role.FIELD: (0, 114, 178),
-                    Role.PATH: (60, 140, 200),
-                    Role.TRAIL: (70, 130, 170),
-                    Role.TRAIL_2: (160, 110, 140),
-                    Role.WALL: (150, 158, 170),
-                    Role.WALL_HIT: (240, 228, 66),
-                    Role.BODY: (190, 196, 206),
-                    Role.HIT: (240, 228, 66),
-                    Role.TARGET: (0, 188, 140),
-                    Role.ROBOT_2: (204, 121, 167),
-                    Role.ROBOT: (86, 180, 233),
-                    Role.CONTACT: (230, 120, 30),
-                    Role.TEXT: (240, 243, 250),
-                }
-            ),
+            roles=MappingProxyType({role: look.colorblind for role, look in ROLE_LOOKS.items()}),
         ),
     }
 )

@@ -7,12 +7,13 @@ from collections import deque
 from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cache, cached_property, partial
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from kit.arrays import FloatArray, Uint8Array
 from kit.geometry import Pose
+from kit.render.roles import LineStyle, Role
 
 
 @cache
@@ -58,6 +59,8 @@ class SceneMark(NamedTuple):
     x: float
     y: float
     label: str
+    role: Role = Role.TEXT
+    """Whose colour the name has."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +73,9 @@ class SceneBody:
     """Each (k, 2): the corners of one convex footprint; the last joins the first."""
     discs: tuple[Disc, ...] = ()
     is_robot: bool = False
-    """A robot is drawn with its heading and in its own colour; other bodies as outlines."""
+    """A robot is drawn with its heading and in its own colour; other bodies are filled."""
+    is_target: bool = False
+    """It stands where the target is, and is drawn as a part of it."""
 
     @cached_property
     def extent(self) -> SceneBounds:
@@ -91,9 +96,11 @@ class ScenePath:
 
     points: FloatArray
     """(k, 2)"""
-    style: Literal["solid", "dashed", "dotted"] = "solid"
+    style: LineStyle | None = None
+    """None: as ways of its role are drawn."""
+    role: Role = Role.PATH
     robot: int | None = None
-    """The robot whose way it is, from 0: drawn in the colour of that robot or its trail; None: no robot's."""
+    """The robot whose way it is, from 0: drawn in the colour of that robot or its trail; None: in that of its role."""
 
 
 class PenStroke(NamedTuple):

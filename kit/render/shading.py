@@ -28,6 +28,12 @@ MAX_SOLID: Final = 0.1
 """An enclosed part that no robot can reach is solid, as the inside of a wall or a table is, if it takes no more than this
 share of the picture; a larger one is a room without a door."""
 
+LIT_NEAR_SHARE: Final = 0.1
+"""Up to this distance from its laser, as a share of the picture's height, the floor is lit as near."""
+LIT_STEP: Final = 1 / 8
+"""The middle of the light follows the laser in steps of this share of the picture's height: so small that the laser never
+leaves what is lit as near, and so large that the rim of the light seldom has to be sent anew."""
+
 _OUTSIDE, _WALL, _FLOOR, _SOLID = 0, 1, 2, 3
 
 
@@ -131,24 +137,25 @@ def sampled_cells(cells: SceneCells, camera: Camera, across: int, down: int) -> 
     return states
 
 
-def lit_cells(beams: FloatArray, camera: Camera) -> BoolArray:
-    """(rows, columns): whether a laser sees the middle of a character.
+def lit_cells(beams: FloatArray, camera: Camera, hit: BoolArray | None = None) -> Uint8Array:
+    """(rows, columns): the role of the floor at the middle of a character where a laser sees it, by how far away the
+    nearest such laser is; EMPTY where none does.
 
     ``beams`` (n, 4): rays from their laser to where they end, those of one laser one after another in the order of
-    their angles.
+    their angles. ``hit`` (rows, columns): characters in which rays end, which are lit as what is before them.
     """
-    lit = np.zeros((camera.rows, camera.columns), dtype=bool)
+    lit = np.zeros((camera.rows, camera.columns), dtype=np.uint8)
     beams = beams[np.isfinite(beams).all(axis=1)]
     if not len(beams):
         return lit
     cuts = np.flatnonzero((beams[1:, :2] != beams[:-1, :2]).any(axis=1)) + 1
     for rays in np.split(beams, cuts):
         if len(rays) > 2:
-            _light(lit, rays, camera)
+            _light(lit, rays, camera, hit)
     return lit
 
 
-def _light(lit: BoolArray, rays: FloatArray, camera: Camera) -> None:
+def _light(lit: Uint8Array, rays: FloatArray, camera: Camera, hit: BoolArray | None) -> None:
     origin = rays[0, :2]
     ends = rays[:, 2:] - origin
     lengths = np.hypot(ends[:, 0], ends[:, 1])
@@ -193,7 +200,16 @@ def _light(lit: BoolArray, rays: FloatArray, camera: Camera) -> None:
     share = np.divide(angle - angles[after - 1], gap, out=np.zeros_like(angle), where=gap > 0)
     between = one + share * (other - one)
     limit = np.where(np.abs(other - one) < SAME_SURFACE * shorter, between, shorter)
-    lit[top:bottom, left:right] |= seen & (gap <= widest) & (distance <= limit)
+    seen &= (gap <= widest) & (distance <= limit)
+    if hit is not None:
+        seen |= hit[top:bottom, left:right]
+    height = camera.rows * camera.cell_height
+    away = ((np.floor(origin / (LIT_STEP * height)) + 0.5) * LIT_STEP * height - origin).tolist()
+    near = np.hypot(x - away[0], (y - away[1])[:, None]) <= LIT_NEAR_SHARE * height
+    roles = np.where(near, np.uint8(Role.LIT_NEAR), np.uint8(Role.LIT_FAR))
+    roles[~seen] = Role.EMPTY
+    there = lit[top:bottom, left:right]
+    np.maximum(there, roles, out=there)
 
 
 def seen_surfaces(beams: FloatArray) -> FloatArray:
@@ -209,9 +225,7 @@ def seen_surfaces(beams: FloatArray) -> FloatArray:
     return surfaces
 
 
-def shade_roles(floor: BoolArray, lit: BoolArray) -> Uint8Array:
-    """(rows, columns) background roles."""
-    roles: Uint8Array = np.where(
-        lit & floor, np.uint8(Role.LIT), np.where(floor, np.uint8(Role.FLOOR), np.uint8(Role.EMPTY))
-    )
+def shade_roles(floor: BoolArray, lit: Uint8Array) -> Uint8Array:
+    """(rows, columns) background roles. ``lit``: as of ``lit_cells``."""
+    roles: Uint8Array = np.where(floor, np.maximum(lit, np.uint8(Role.FLOOR)), np.uint8(Role.EMPTY))
     return roles

@@ -8,6 +8,7 @@ import numpy as np
 
 from kit.geometry import Pose
 from kit.render.scene import Disc, SceneBody
+from kit.run.scenario import BEACON
 from kit.sim.state import FootprintOutline
 
 
@@ -16,7 +17,7 @@ def scene_bodies(
 ) -> tuple[SceneBody, ...]:
     """One body for each model that has footprints, in the order of ``poses``: its outlines, and its pose in the world.
 
-    ``robots``: the names of those that are driven.
+    ``robots``: the names of those that are driven. The beacon is the target's own body.
     """
     shapes: dict[str, list[FootprintOutline]] = {}
     for outline in outlines:
@@ -28,6 +29,7 @@ def scene_bodies(
             tuple(np.array(outline.points) for outline in shapes[model] if not outline.radius),
             tuple(Disc(*outline.points[0], outline.radius) for outline in shapes[model] if outline.radius),
             is_robot=model in robots,
+            is_target=model == BEACON,
         )
         for model, pose in poses.items()
         if model in shapes

@@ -35,6 +35,8 @@ class KitApp(App[None]):
     CSS = """
     Screen { background: transparent; }
     KitApp.-themed Screen { background: $background; color: $foreground; }
+    KitApp.-themed Dialog { background: $background 55%; }
+    KitApp.-themed Dialog > Vertical { background: $background; }
     KitApp.-ascii MessageDialog > Vertical, KitApp.-ascii Picker > Vertical { border: ascii $foreground; }
     """
 

@@ -26,13 +26,13 @@ from kit.arrays import FloatArray
 from kit.render.camera import Camera
 from kit.render.encode import ENCODERS, BrailleEncoder
 from kit.render.painter import Painter
-from kit.render.roles import ANSI_PALETTE, COLOR_SCHEMES, Palette, Role
+from kit.render.roles import ANSI_PALETTE, COLOR_SCHEMES, SHADES, Palette
 from kit.render.scene import Scene
 from tests.render.scenes import drive
 from tests.tui.tape import ViewApp, painted, run_in
 
 THEMED: Palette = COLOR_SCHEMES["dark"].palette(reduced=False)
-NAIVE: Palette = {**THEMED, Role.FLOOR: ANSI_PALETTE[Role.FLOOR], Role.LIT: ANSI_PALETTE[Role.LIT]}
+NAIVE: Palette = {**THEMED, **{role: ANSI_PALETTE[role] for role in SHADES}}
 """True colours on the terminal's own background."""
 FPS = 20
 FRAMES = 300

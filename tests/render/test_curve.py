@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 
 from kit.render.curve import Axes, ChartPart, Curve, StackedCounts, draw_curves, draw_stacked_chart
 from kit.render.encode import ENCODERS, AsciiEncoder, BrailleEncoder, Frame
-from kit.render.roles import Role
+from kit.render.roles import CURVE_ROLES, Role
 
 
 def curve(values: list[float], name: str = "return", step: float = 100.0) -> Curve:
     return Curve(name, step * np.arange(1, len(values) + 1), np.array(values, dtype=float))
 
 
-def heights(frame: Frame, role: Role = Role.ROBOT) -> list[float]:
+def heights(frame: Frame, role: Role = Role.CURVE_1) -> list[float]:
     """The mean row of the curve in each column of the plot that has it, left to right."""
     rows, columns = np.nonzero((frame.fg == role) & (np.arange(frame.shape[0]) > 0)[:, None])
     return [float(rows[columns == column].mean()) for column in np.unique(columns)]
@@ -26,11 +26,11 @@ def test_a_rising_curve_looks_like_this() -> None:
     frame = draw_curves([curve([0, 1, 2, 3, 4])], Axes("episodes"), 30, 7, AsciiEncoder())
     assert frame.rows() == [
         "  return 4",
-        "4+                         @@@",
-        " |                    @@@@@",
-        "2+              @@@@@@",
-        " |         @@@@@",
-        "0+     @@@@",
+        "4+                         ***",
+        " |                    *****",
+        "2+              ******",
+        " |         *****",
+        "0+     ****",
         " +0 ------------- 500 episodes",
     ]
 
@@ -85,6 +85,29 @@ def test_curves_are_told_apart_without_colours(name: str) -> None:
     assert len(lines) == 3
 
 
+def test_each_of_four_curves_has_a_colour_a_dash_and_a_mark_of_its_own() -> None:
+    curves = [curve([level] * 40, f"c{level}") for level in (1, 2, 3, 4)]
+    frame = draw_curves(curves, Axes(low=0, high=5), 90, 16, BrailleEncoder())
+    dots = {}
+    for number, role in enumerate(CURVE_ROLES, 1):
+        rows, columns = np.nonzero((frame.fg == role) & (frame.glyphs >= 0x2800))
+        assert len(set(rows.tolist())) == 1, "a level curve"
+        dots[number] = "".join(chr(glyph) for glyph in frame.glyphs[rows[0], columns])
+    assert len({text[:12] for text in dots.values()}) == 4
+    marks = [frame.rows()[0][frame.rows()[0].index(f"{number} c{number}") - 1] for number in dots]
+    assert len(set(marks)) == 4
+
+
+def test_a_curve_that_is_hidden_by_another_still_shows_its_number() -> None:
+    frame = draw_curves(
+        [curve([1] * 60, "a"), curve([1] * 60, "b")], Axes(low=0, high=2), 80, 9, BrailleEncoder()
+    )
+    shown = "".join(frame.text(row)[4:] for row in range(1, 8))
+    assert min(shown.count("1"), shown.count("2")) >= 2
+    rows, _ = np.nonzero((frame.fg == Role.CURVE_2)[1:])
+    assert len(set(rows.tolist())) == 1, "the number stands on the line"
+
+
 def test_values_that_are_not_finite_are_left_out() -> None:
     frame = draw_curves([curve([0, np.nan, 2, np.inf, 4])], Axes(), 40, 8, AsciiEncoder())
     assert (
@@ -123,7 +146,7 @@ def test_the_scale_may_begin_and_end_elsewhere() -> None:
     frame = draw_curves([data], Axes("rad", low=0, high=1, start=-1.0, end=1.0), 30, 7, AsciiEncoder())
     assert "+-1 ---" in frame.rows()[-1]
     assert frame.rows()[-1].endswith("1 rad")
-    columns = np.flatnonzero((frame.fg[1:] == Role.ROBOT).any(axis=0))
+    columns = np.flatnonzero((frame.fg[1:] == Role.CURVE_1).any(axis=0))
     assert (columns[0], columns[-1]) == (4, 29)
 
 

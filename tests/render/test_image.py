@@ -11,7 +11,7 @@ from PIL import Image
 
 from kit.geometry import Pose
 from kit.render.camera import Camera
-from kit.render.image import BACKGROUND, ROLE_COLORS, draw_image, image_camera, save_animation, save_image
+from kit.render.image import BACKGROUND, IMAGE_THEMES, draw_image, image_camera, save_animation, save_image
 from kit.render.roles import Role
 from kit.render.scene import Disc, Scene, SceneBody, SceneBounds
 from tests.render.scenes import robot
@@ -22,7 +22,7 @@ def near(pixels: np.ndarray, camera: Camera, x: float, y: float, role: Role) -> 
     """Whether the colour of a role is seen within three pixels of a place."""
     column, row = camera.project(np.array((x, y))).astype(int)
     patch = pixels[max(0, row - 3) : row + 4, max(0, column - 3) : column + 4].astype(int)
-    return bool((np.abs(patch - ROLE_COLORS[role]).max(axis=2) < 40).any())
+    return bool((np.abs(patch - IMAGE_THEMES["light"][role]).max(axis=2) < 40).any())
 
 
 def test_things_are_where_they_are() -> None:

@@ -14,7 +14,7 @@ from kit.render import painter as painter_module
 from kit.render.camera import Camera
 from kit.render.encode import BLANK, ENCODERS, AsciiEncoder, BrailleEncoder, Encoder, Frame, HalfBlockEncoder
 from kit.render.painter import Painter
-from kit.render.roles import Role
+from kit.render.roles import GHOST_ROLES, Role
 from kit.render.scene import (
     CellState,
     Disc,
@@ -293,6 +293,35 @@ def test_paths_are_solid_dashed_or_dotted() -> None:
         )
     assert drawn == sorted(drawn, reverse=True)
     assert len(set(drawn)) == 3
+
+
+def test_ghosts_ways_differ_in_their_dashes_and_their_letters_have_their_colours() -> None:
+    line = np.array([(-1.4, 0.0), (1.4, 0.0)])
+    camera = Camera(0, 0, 0.1, 30, 3)
+    drawn = set()
+    for role in GHOST_ROLES:
+        scene = Scene(paths=(ScenePath(line, role=role),), marks=(SceneMark(0.0, 0.1, "K", role),))
+        frame = Painter(BrailleEncoder()).paint(scene, camera)
+        assert set(frame.fg.ravel().tolist()) == {Role.EMPTY, role}
+        assert "K" in "".join(frame.rows())
+        drawn.add(next(row for row in frame.rows() if row.strip()[:1] > "⠀"))
+    assert len(drawn) == len(GHOST_ROLES)
+
+
+@pytest.mark.parametrize("name", ENCODERS)
+@pytest.mark.parametrize("mono", [False, True])
+def test_a_cart_is_filled_and_the_targets_own_body_is_a_part_of_it(name: str, mono: bool) -> None:
+    camera = Camera(0, 0, 0.1, 30, 15)
+    bodies = (
+        SceneBody("cart", Pose(-0.8, 0.0), discs=(Disc(-0.8, 0.0, 0.4),)),
+        SceneBody("beacon", Pose(0.8, 0.0), discs=(Disc(0.8, 0.0, 0.4),), is_target=True),
+    )
+    frame = Painter(ENCODERS[name](mono)).paint(Scene(bodies=bodies), camera)
+    left, right = frame.fg[:, :15], frame.fg[:, 15:]
+    assert set(left.ravel().tolist()) == {Role.EMPTY, Role.BODY}
+    assert set(right.ravel().tolist()) == {Role.EMPTY, Role.TARGET}
+    assert frame.glyphs[7, 7] != BLANK
+    assert frame.glyphs[7, 22] == BLANK, "a ring is hollow"
 
 
 def full_scene() -> Scene:

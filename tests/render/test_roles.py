@@ -6,8 +6,12 @@ import pytest
 
 from kit.render.roles import (
     COLOR_SCHEMES,
+    GHOST_ROLES,
+    LINE_DASHES,
+    LIT_ROLES,
     PALETTES,
     ROBOT_ROLES,
+    ROLE_LOOKS,
     SHADES,
     Palette,
     Rgb,
@@ -36,13 +40,35 @@ def test_no_colour_has_none_but_tells_hits_and_robots_from_walls_by_weight() -> 
     assert not palette[Role.WALL].bold
 
 
+MOVING = (Role.BODY, Role.TARGET, *GHOST_ROLES, *ROBOT_ROLES)
+"""What is told apart at a glance while a level is driven."""
+
+
 @every_case("name", [name for name in EVERY_PALETTE if name != "none"])
 def test_what_matters_differs_in_colour_too(name: str) -> None:
-    colors = [
-        EVERY_PALETTE[name][role].color
-        for role in (Role.WALL, Role.HIT, Role.TARGET, Role.CONTACT, *ROBOT_ROLES)
-    ]
+    palette = EVERY_PALETTE[name]
+    colors = [palette[role].color for role in (Role.WALL, Role.HIT, Role.TARGET, Role.CONTACT, *ROBOT_ROLES)]
     assert len(set(colors)) == len(colors)
+    looks = {palette[role] for role in MOVING}
+    assert len(looks) == len(MOVING)
+
+
+def test_every_role_has_a_shape_of_its_own_and_every_ghost_a_line() -> None:
+    drawn = [look.shape for role, look in ROLE_LOOKS.items() if role not in SHADES]
+    assert len(set(drawn)) == len(drawn)
+    assert {ROLE_LOOKS[role].shape for role in SHADES} == {" "}
+    lines = {ROLE_LOOKS[role].line for role in GHOST_ROLES}
+    assert len(lines) == len(GHOST_ROLES)
+    dashes = [LINE_DASHES[line] for line in lines]
+    assert len(set(dashes)) == len(dashes)
+
+
+@every_case("name", [name for name, scheme in COLOR_SCHEMES.items() if scheme.dark])
+def test_the_floor_that_a_laser_sees_is_the_darker_the_farther_it_is(name: str) -> None:
+    for scheme in (COLOR_SCHEMES[name], COLOR_SCHEMES[name].reduced()):
+        lights = [luminance(scheme.roles[role]) for role in (*LIT_ROLES, Role.FLOOR)]
+        assert lights == sorted(lights, reverse=True)
+        assert len(set(lights)) == 3
 
 
 def test_walls_are_in_the_terminals_own_colour_and_the_floor_in_none() -> None:
@@ -70,7 +96,7 @@ def test_what_must_be_read_stands_out_from_what_lies_behind(name: str, reduced: 
     text = 7.0 if name == "contrast" else 4.5
     for color in (scheme.foreground, scheme.accent, scheme.good, scheme.warn, scheme.bad):
         assert contrast(color, scheme.background) >= text, color
-    for role in (Role.WALL, Role.HIT, Role.TARGET, Role.CONTACT, *ROBOT_ROLES):
+    for role in (Role.WALL, Role.HIT, Role.TARGET, Role.CONTACT, Role.BODY, *GHOST_ROLES, *ROBOT_ROLES):
         for shade in SHADES:
             assert contrast(scheme.roles[role], scheme.roles[shade]) >= 3.0, (role, shade)
 

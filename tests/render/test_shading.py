@@ -12,7 +12,7 @@ from kit.geometry import Pose
 from kit.render.camera import Camera
 from kit.render.encode import BrailleEncoder
 from kit.render.painter import Painter
-from kit.render.roles import Role
+from kit.render.roles import LIT_ROLES, Role
 from kit.render.scene import Scene, SceneBody, SceneBounds
 from kit.render.shading import lit_cells, seen_surfaces
 from tests.render.scenes import box_walls
@@ -70,6 +70,20 @@ def test_a_laser_lights_its_fan_and_nothing_behind_it_or_beyond() -> None:
     assert lit[cell(2.5, 2.6)]
     assert not lit[cell(1.5, 2.0)]
     assert not lit[cell(3.3, 2.0)]
+
+
+def test_the_lit_floor_fades_with_the_distance_from_the_nearest_laser() -> None:
+    one = rays(0.0, 2.0, np.full(61, 5.0), -0.5, 0.5)
+    lit = lit_cells(one, CAMERA)
+    row, _ = cell(0.0, 2.0)
+    along = [Role(each) for each in lit[row] if each]
+    assert along[0] == Role.LIT_NEAR, "the laser stands in the light"
+    assert along == sorted(along, reverse=True)
+    assert set(along) == set(LIT_ROLES)
+    other = rays(5.0, 2.0, np.full(61, 5.0), math.pi - 0.5, math.pi + 0.5)
+    assert np.array_equal(
+        lit_cells(np.concatenate((one, other)), CAMERA), np.maximum(lit, lit_cells(other, CAMERA))
+    )
 
 
 def test_a_laser_all_around_has_no_seam() -> None:

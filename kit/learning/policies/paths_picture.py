@@ -67,7 +67,7 @@ def _rectangle(area: Area) -> FloatArray:
 def _robot_path(way: EpisodePath, robot: int) -> ScenePath:
     line = ROBOT_LINES[robot % len(ROBOT_LINES)]
     style = line if way.outcome is EpisodeOutcome.REACHED else "dotted"
-    return ScenePath(way.poses[:, robot, :2], style, robot if way.poses.shape[1] > 1 else None)
+    return ScenePath(way.poses[:, robot, :2], style, robot=robot if way.poses.shape[1] > 1 else None)
 
 
 def _second_marks(way: EpisodePath) -> list[SceneMark]:

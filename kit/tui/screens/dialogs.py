@@ -13,7 +13,6 @@ from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
-from textual.screen import ModalScreen
 from textual.widgets import Input, OptionList
 from textual.widgets.option_list import Option
 
@@ -25,6 +24,7 @@ from kit.render.roles import COLOR_SCHEMES
 from kit.tui.input.drive_keys import base_key
 from kit.tui.input.driver import key_driver
 from kit.tui.rows.key_rows import bindings, footer, help_page
+from kit.tui.screens.dialog import Dialog
 from kit.tui.terminal import MOUSE_VARIABLE
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import TextRows
@@ -57,11 +57,10 @@ def wrapped(text: str, style: str = "") -> list[Row]:
     ]
 
 
-class MessageDialog(ModalScreen[None]):
+class MessageDialog(Dialog[None]):
     """Shows rows; where they are more than the terminal holds, the arrow keys scroll them."""
 
     DEFAULT_CSS = f"""
-    MessageDialog {{ align: center middle; }}
     MessageDialog > Vertical {{ width: {WIDTH}; max-width: 100%; height: auto; max-height: 100%; border: solid $foreground; padding: 0 1; }}
     MessageDialog TextRows {{ height: auto; }}
     """
@@ -136,12 +135,11 @@ class HelpDialog(MessageDialog):
         super().__init__(title, help_page(screen, *notes, MOUSE_NOTE, without=without))
 
 
-class NameDialog(ModalScreen[str | None]):
+class NameDialog(Dialog[str | None]):
     """Returns what was typed, or None if nothing was."""
 
     BINDINGS: ClassVar[list[BindingType]] = [("escape", "back", "")]
     DEFAULT_CSS = f"""
-    NameDialog {{ align: center middle; }}
     NameDialog > Vertical {{ width: {WIDTH}; max-width: 100%; height: auto; border: solid $foreground; padding: 0 1; }}
     NameDialog Input, NameDialog Input:focus {{ border: none; padding: 0; height: 1; background: transparent; }}
     """
@@ -265,7 +263,7 @@ class FilterInput(Input):
     ]
 
 
-class Picker(ModalScreen[str | None]):
+class Picker(Dialog[str | None]):
     """Returns the key of the choice, or None."""
 
     screen_actions = ScreenActions(
@@ -278,7 +276,6 @@ class Picker(ModalScreen[str | None]):
     )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = f"""
-    Picker {{ align: center middle; }}
     Picker > Vertical {{
         width: {LIST_WIDTH}; max-width: 100%; height: auto; max-height: {HIGHEST}; border: solid $foreground; padding: 0 1;
     }}

@@ -34,8 +34,7 @@ from kit.school.game.starts import film_scenario
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.screens.lesson_drive import ReplayScreen
-from kit.tui.screens.level_drive import ghost_marks
-from kit.tui.screens.level_pictures import ghost_paths
+from kit.tui.screens.level_pictures import ghost_marks, ghost_paths
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.workspace import Workspace

@@ -44,7 +44,7 @@ from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_card_rows import level_card
 from kit.tui.screens.dialogs import MessageDialog, wrapped
-from kit.tui.screens.level_pictures import ghost_paths
+from kit.tui.screens.level_pictures import GHOST_LOOKS, ghost_marks, ghost_paths
 from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
@@ -55,7 +55,6 @@ if TYPE_CHECKING:
 
 
 ONE, TWO = "teleop", "teleop_pair"
-LETTERS: Final = {"reference": "R", "keys": "K", "controller": "C", "agent": "A"}
 LETTER_NOTES: Final = (
     ("R", "the reference"),
     ("K  C  A", "your best so far by hand, by program, by agent"),
@@ -254,7 +253,8 @@ class LevelDrive(WatchScreen):
             self._behind = self._comparison.add(view.time_s, view.pose.x, view.pose.y)
         self._rows("heading").show([self._heading(view.time_s)])
         if referee is None:
-            ghosts = [f"{LETTERS.get(each.name, each.name)} {each.seconds:.1f} s" for each in self._ghosts]
+            names = {name: letter for name, (letter, _) in GHOST_LOOKS.items()}
+            ghosts = [f"{names.get(each.name, each.name)} {each.seconds:.1f} s" for each in self._ghosts]
             self._rows("messages").show(level_rows.before_the_start(self._level, ghosts, self.size.width))
         elif self._is_over:
             self._rows("messages").show([self._result_row])
@@ -393,12 +393,3 @@ class LevelDrive(WatchScreen):
 
     def action_back(self) -> None:
         self.dismiss()
-
-
-def ghost_marks(ghosts: Sequence[Ghost], time_s: float) -> tuple[SceneMark, ...]:
-    """The letters of ghosts, each where it was at this time of its drive [s]."""
-    return tuple(
-        SceneMark(x, y, LETTERS.get(ghost.name, ghost.name[:1].lower()))
-        for ghost in ghosts
-        for x, y, _ in ghost.poses_at(time_s)
-    )

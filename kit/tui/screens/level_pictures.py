@@ -6,23 +6,45 @@ The scene beside the list of lessons.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from kit.render.encode import ENCODERS
+from kit.render.roles import Role
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
 from kit.render.world_text import scene_rows
 from kit.run.scenario import Scenario, find_scenario
 from kit.run.session import Session
 from kit.run.view import ViewBuilder
-from kit.school.game.ghosts import Ghost
+from kit.school.game.ghosts import REFERENCE, Ghost
 from kit.school.game.levels import GameLevel
+from kit.school.game.race import DriverKind
 from kit.school.lessons.records import Lesson
 
 WAY: Final = 0.15
 """m between two points of a ghost's way, as it is drawn."""
+GHOST_LOOKS: Final = {
+    REFERENCE: ("R", Role.GHOST_REFERENCE),
+    DriverKind.KEYS.value: ("K", Role.GHOST_KEYS),
+    DriverKind.CONTROLLER.value: ("C", Role.GHOST_PROGRAM),
+    DriverKind.AGENT.value: ("A", Role.GHOST_AGENT),
+}
+"""The letter and the role of each ghost; a classmate has the first letter of the name."""
+
+
+def ghost_look(ghost: Ghost) -> tuple[str, Role]:
+    """The letter that stands where a ghost is, and the role that it and its way are drawn as."""
+    return GHOST_LOOKS.get(ghost.name, (ghost.name[:1].lower(), Role.GHOST_OTHER))
+
+
+def ghost_marks(ghosts: Sequence[Ghost], time_s: float) -> tuple[SceneMark, ...]:
+    """The letters of ghosts, each where it was at this time of its drive [s]."""
+    return tuple(
+        SceneMark(x, y, *ghost_look(ghost)) for ghost in ghosts for x, y, _ in ghost.poses_at(time_s)
+    )
 
 
 def picture_of(level: GameLevel, columns: int, rows: int, glyphs: str) -> list[str]:
@@ -72,5 +94,5 @@ def ghost_paths(ghost: Ghost) -> list[ScenePath]:
         steps = np.arange(0.0, float(along[-1]) + WAY, WAY)
         at = np.searchsorted(along, steps).clip(0, len(points) - 1)
         if math.isfinite(float(along[-1])):
-            made.append(ScenePath(points[np.unique(at)], "dotted"))
+            made.append(ScenePath(points[np.unique(at)], role=ghost_look(ghost)[1]))
     return made

@@ -36,8 +36,8 @@ from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.shared_game_rows import HOST, shared_heading, shared_message
 from kit.tui.screens.dialogs import MessageDialog, wrapped
-from kit.tui.screens.level_drive import LETTER_NOTES, ghost_marks
-from kit.tui.screens.level_pictures import ghost_paths
+from kit.tui.screens.level_drive import LETTER_NOTES
+from kit.tui.screens.level_pictures import ghost_marks, ghost_paths
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 from kit.workspace import Workspace

@@ -59,7 +59,6 @@ LOADING_S: Final = 1.5
 LOADING_EVERY_S: Final = 0.5
 """Seconds between two looks at how far that is."""
 LOADING: Final = "Getting ready. The first time takes longer: code is compiled for this machine."
-NOTICE_S: Final = 8.0
 """Seconds for which a notice stands in place of the messages."""
 MAP_COLUMNS: Final = 70
 MAP_ROWS: Final = 18
@@ -312,17 +311,6 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         """The rows below the picture."""
         messages = failure_or_messages(view, MESSAGE_ROWS, self.size.width)
         return messages if self._notice is None else (self._notice,)
-
-    def on_link_is_slow(self) -> None:
-        self._notice = row(
-            ("The link is slow: the picture has 16 colours from here on, as with --color 16.", "warn")
-        )
-        self.set_timer(NOTICE_S, self._clear_notice)
-        self._show()
-
-    def _clear_notice(self) -> None:
-        self._notice = None
-        self._show()
 
     def on_error_event(self, event: ErrorEvent) -> None:
         self.app.push_screen(MessageDialog("That did not work", wrapped(event.text)))

@@ -8,7 +8,6 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from statistics import median
 from typing import TYPE_CHECKING, Final
 
 from textual import events
@@ -39,13 +38,14 @@ LAG_FOR_FAST, LAG_FOR_SLOW = 0.100, 0.130
 """Below the first lag [s] the fast rate is used, above the second the slow one, between them the same as before."""
 
 CONGESTED: Final = 0.25
-"""Seconds that a picture waits in the link's buffers, beyond the link's own delay, from which on it is too much for it."""
-_ENOUGH_ANSWERS: Final = 10
+"""Seconds that pictures wait for each other, beyond the link's own delay, from which on fewer are under way at once."""
+SETTLING, RECOVERY = 1.0, 10.0
+"""Seconds after which still fewer are, and without such waits one more."""
 
-BEAT_S: Final = 0.05
-"""How often this process says, while it waits for answers, that it is free to hear them [s]."""
-_LATEST_BEAT_S: Final = 1.5 * BEAT_S
-"""What comes later than this shows that it was not: it computed, or did not get the processor."""
+DRAWING_SHARE: Final = 1 / 3
+"""Most of this process's time that goes into drawing: where that takes long, the frames are fewer."""
+LEAST: Final = 2
+"""Frames per second that are drawn all the same."""
 
 _SOON: Final = 1e-3
 """Seconds that make no difference: timers ring a little early or late."""
@@ -56,21 +56,25 @@ _WINDOW: Final = 32
 
 @dataclass
 class FrameThrottle:
-    """Says when the next frame may be drawn. Times are seconds on any one steady clock."""
+    """Says when the next frame may be drawn. Times are seconds on any one steady clock.
+
+    A slow machine and a slow link get fewer frames, never plainer ones, and as many as before once they are fast again.
+    """
 
     fastest: int = FAST
     """Frames per second that are never exceeded."""
 
     def __post_init__(self) -> None:
-        self._asked: deque[tuple[float, float]] = deque()
-        """When each open question was put, and the time that this process had missed by then."""
+        self._asked: deque[float] = deque()
+        """When each open question was put."""
         self._lags: deque[float] = deque(maxlen=_WINDOW)
-        self._waits: deque[float] = deque(maxlen=_WINDOW)
-        """The lags without what this process missed of them."""
-        self._beat_at = 0.0
-        self._missed = 0.0
-        """Seconds in which it was not free to hear an answer."""
+        self._most = MOST_UNDER_WAY
+        """Frames under way at once that the link carries without waits."""
+        self._changed_at = -math.inf
+        """When that number was last changed."""
         self._lag = math.nan
+        self._drawing = 0.0
+        """Seconds that drawing takes, smoothed."""
         self._fps = min(SLOW, self.fastest)
         self._due = -math.inf
         self._deaf = False
@@ -82,28 +86,21 @@ class FrameThrottle:
         return None if math.isnan(self._lag) else self._lag
 
     @property
-    def is_congested(self) -> bool:
-        """Whether pictures wait in the link's buffers: they hold more than it carries. Time in which this process itself was
-        busy or did not get the processor is no wait, and one pause of the terminal delays no more answers than are under
-        way: it does not count."""
-        newest = [*self._waits][-_ENOUGH_ANSWERS:]
-        return len(newest) == _ENOUGH_ANSWERS and median(newest) - min(self._waits) > CONGESTED
-
-    @property
-    def awaits_answer(self) -> bool:
-        """Whether a question is open: ``beat`` is to be called as long as that is so."""
-        return bool(self._asked)
-
-    @property
     def fps(self) -> int:
+        """Frames per second that the link has room for."""
         return self._fps
+
+    @property
+    def period(self) -> float:
+        """Seconds between two frames, as link and machine allow."""
+        return max(1 / self._fps, min(self._drawing / DRAWING_SHARE, 1 / LEAST))
 
     @property
     def allowed(self) -> int:
         """Frames that may be under way at once: as many as are shown during a round trip, and one."""
         if not self._lags:
             return 1
-        return min(1 + math.ceil(min(self._lags) * self._fps), MOST_UNDER_WAY)
+        return min(1 + math.ceil(min(self._lags) * self._fps), self._most)
 
     def may_draw(self, now: float) -> bool:
         return self.wait(now) <= 0
@@ -113,33 +110,24 @@ class FrameThrottle:
         self._give_up(now)
         wait = self._due - now
         if len(self._asked) >= self.allowed and not self._deaf:
-            wait = max(wait, self._asked[0][0] + TIMEOUT - now)
+            wait = max(wait, self._asked[0] + TIMEOUT - now)
         return wait if wait > _SOON else 0.0
 
     def _give_up(self, now: float) -> None:
         """Forgets all open questions when the oldest was put too long ago. Should they be answered after all,
         the answers are taken for later questions' until none is open: for so long the lag is underrated."""
-        if self._asked and now - self._asked[0][0] >= TIMEOUT - _SOON:
+        if self._asked and now - self._asked[0] >= TIMEOUT - _SOON:
             self._asked.clear()
             self._deaf = not self._lags
 
-    def drawn(self, now: float) -> None:
-        """A frame was drawn. One that came late does not make the next one late."""
-        period = 1 / self._fps
-        self._due = max(self._due + period, now + period / 2)
+    def drawn(self, now: float, took: float = 0.0) -> None:
+        """A frame was drawn, begun at ``now``. One that came late does not make the next one late."""
+        self._drawing += _SMOOTHING * (took - self._drawing)
+        self._due = max(self._due + self.period, now + self.period / 2)
 
     def sent(self, now: float) -> None:
         """It was written, and the question after it."""
-        self.beat(now)
-        self._asked.append((now, self._missed))
-
-    def beat(self, now: float) -> None:
-        """This process is free to hear an answer. To be called every BEAT_S while one is awaited: what is missing between two
-        calls is a delay of its own, not the link's."""
-        gap = now - self._beat_at
-        if gap > _LATEST_BEAT_S:
-            self._missed += gap - BEAT_S
-        self._beat_at = now
+        self._asked.append(now)
 
     def answered(self, now: float) -> None:
         """The terminal gave its cursor position. Answers come in the order of the questions."""
@@ -147,16 +135,22 @@ class FrameThrottle:
         if not self._asked:
             return
         self._deaf = False
-        self.beat(now)
-        asked, missed = self._asked.popleft()
-        lag = now - asked
+        lag = now - self._asked.popleft()
         self._lags.append(lag)
-        self._waits.append(lag - (self._missed - missed))
         self._lag = lag if math.isnan(self._lag) else self._lag + _SMOOTHING * (lag - self._lag)
         if self._lag < LAG_FOR_FAST:
             self._fps = self.fastest
         elif self._lag > LAG_FOR_SLOW:
             self._fps = min(SLOW, self.fastest)
+        self._adapt_most(now)
+
+    def _adapt_most(self, now: float) -> None:
+        """One frame less under way where they wait for each other, one more after a while in which they do not."""
+        if self._lag - min(self._lags) > CONGESTED:
+            if self._most > 1 and now - self._changed_at > SETTLING:
+                self._most, self._changed_at = self._most - 1, now
+        elif self._most < MOST_UNDER_WAY and now - self._changed_at > RECOVERY:
+            self._most, self._changed_at = self._most + 1, now
 
 
 class ErrorEvent(Message):
@@ -165,10 +159,6 @@ class ErrorEvent(Message):
     def __init__(self, text: str) -> None:
         super().__init__()
         self.text = text
-
-
-class LinkIsSlow(Message):
-    """The link does not carry the theme's colours; the world is drawn in 16 from now on."""
 
 
 class FloorClicked(Message):
@@ -210,7 +200,6 @@ class WorldView(FrameView):
         self._followed: int | None = None
         self._offered: Callable[[], Scene] | None = None
         self._later: Timer | None = None
-        self._beats: Timer | None = None
 
     @cached_property
     def _painter(self) -> Painter:
@@ -259,12 +248,6 @@ class WorldView(FrameView):
         self._offered = make_scene
         self._draw_offered()
 
-    def use_few_colors(self) -> None:
-        """Draws in the terminal's own 16 colours from now on, and without the floor: half the bytes."""
-        self._is_shaded = self._painter.shaded = False
-        self.use_palette(ANSI_PALETTE)
-        self._redraw()
-
     def fit(self) -> None:
         """Shows all there is, and stops following."""
         self.fit_again()
@@ -296,7 +279,6 @@ class WorldView(FrameView):
 
     def on_mount(self) -> None:
         self.app.message_signal.subscribe(self, self._on_app_message, immediate=True)
-        self._beats = self.set_interval(BEAT_S, self._beat, pause=True)
 
     def on_resize(self, event: events.Resize) -> None:
         self._redraw()
@@ -359,17 +341,15 @@ class WorldView(FrameView):
             self._later = self.set_timer(wait, self._draw_later)
             return
         make_scene, self._offered = self._offered, None
-        self.throttle.drawn(now)
-        if self.show(make_scene()):
+        is_different = self.show(make_scene())
+        self.throttle.drawn(now, self._clock() - now)
+        if is_different:
             self.call_after_refresh(self._on_frame_sent)
 
     def _on_app_message(self, message: Message) -> None:
         """Handles, of the app's messages, the terminal's answers that it has shown a frame."""
         if isinstance(message, events.CursorPosition):
             self.throttle.answered(self._clock())
-            if self.is_shaded and self.throttle.is_congested:
-                self.use_few_colors()
-                self.post_message(LinkIsSlow())
             if self._later is not None:
                 self._later.stop()
             self._draw_later()
@@ -382,10 +362,3 @@ class WorldView(FrameView):
         """The frame has gone out to the terminal."""
         if ask_cursor(self.app):
             self.throttle.sent(self._clock())
-            if self._beats is not None:
-                self._beats.resume()
-
-    def _beat(self) -> None:
-        self.throttle.beat(self._clock())
-        if self._beats is not None and not self.throttle.awaits_answer:
-            self._beats.pause()
