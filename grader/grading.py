@@ -317,7 +317,9 @@ class Grading:
             rationale=rationale,
             hints=() if full else self._hints(criterion, rationale, worst),
             expected=check.format(criterion.anchors.full),
-            actual="" if worst is None or worst.measure is None else check.format(worst.measure),
+            actual=""
+            if worst is None or worst.measure is None
+            else check.format(worst.measure, beside=criterion.anchors.full),
             metrics={"share": round(share, 6)},
             episodes=tuple(map(_summary, scored)),
             log="" if worst is None else "\n".join(worst.evidence.printed),
@@ -461,7 +463,7 @@ class Grading:
             title = self._criterion(criterion.after or criterion.id).title
             return f"{evidence.label} does not count here: “{title}” comes first."
         text = criterion.feedback.format(
-            actual=check.format(worst.measure),
+            actual=check.format(worst.measure, beside=criterion.anchors.full),
             full=check.format(criterion.anchors.full),
             where=evidence.label,
             passed=sum(each.share == 1.0 for each in shown),

@@ -11,6 +11,7 @@ from itertools import zip_longest
 
 WIDTH = 80
 """Characters in a line."""
+MAX_PERCENT_DIGITS = 2
 MIN_COLUMN_WIDTH = 12
 """Table columns are not made narrower than this, even if the table exceeds its width."""
 COLUMN_GAP = "  "
@@ -54,6 +55,24 @@ def format_size(size: float) -> str:
             return f"{size:.1f} {unit}"
         size /= 1024
     return f"{size:.1f} GiB"
+
+
+def format_percent(share: float, *, beside: float = 1.0) -> str:
+    """Formats a share in whole percents, with digits only where it would read as none, as all or as ``beside`` and is not.
+
+    >>> format_percent(1 / 3), format_percent(0.998), format_percent(0.899, beside=0.9)
+    ('33 %', '99.8 %', '89.9 %')
+    """
+    others = {each for each in (0.0, 1.0, beside) if each != share}
+    digits = next(
+        (
+            digits
+            for digits in range(MAX_PERCENT_DIGITS)
+            if not any(f"{share * 100:.{digits}f}" == f"{each * 100:.{digits}f}" for each in others)
+        ),
+        MAX_PERCENT_DIGITS,
+    )
+    return f"{share * 100:.{digits}f} %"
 
 
 def counted(count: int, noun: str) -> str:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import kit
-from kit.plain_text import format_size, suggestion, wrap
+from kit.plain_text import format_percent, format_size, suggestion, wrap
 
 
 def test_a_size_has_the_unit_that_suits_it() -> None:
@@ -21,6 +21,15 @@ def test_a_size_up_to_a_tebibyte_fits_a_column_of_ten() -> None:
     for exponent in range(40):
         for size in (2**exponent - 1, 2**exponent, 1000 * 2**exponent // 999):
             assert len(format_size(size)) <= 10, size
+
+
+def test_a_share_reads_as_all_none_or_what_it_is_compared_with_only_where_it_is() -> None:
+    assert [format_percent(each / 3) for each in range(4)] == ["0 %", "33 %", "67 %", "100 %"]
+    for many in range(1, 1000):
+        shown = format_percent(many / 1000, beside=0.9)
+        assert shown not in ("0 %", "100 %")
+        assert (shown == "90 %") is (many == 900)
+        assert len(shown) <= len("99.9 %")
 
 
 def test_a_command_is_whole_where_it_fits_a_line() -> None:
