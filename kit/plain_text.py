@@ -12,6 +12,8 @@ from itertools import zip_longest
 WIDTH = 80
 """Characters in a line."""
 MAX_PERCENT_DIGITS = 2
+MAX_SHARE = 10.0
+"""How many times of all a share is told exactly."""
 MIN_COLUMN_WIDTH = 12
 """Table columns are not made narrower than this, even if the table exceeds its width."""
 COLUMN_GAP = "  "
@@ -58,11 +60,14 @@ def format_size(size: float) -> str:
 
 
 def format_percent(share: float, *, beside: float = 1.0) -> str:
-    """Formats a share in whole percents, with digits only where it would read as none, as all or as ``beside`` and is not.
+    """Formats a share in whole percents, with digits only where it would read as none, as all or as ``beside`` and is not; of
+    one that is far above all, also without end, only that it is.
 
     >>> format_percent(1 / 3), format_percent(0.998), format_percent(0.899, beside=0.9)
     ('33 %', '99.8 %', '89.9 %')
     """
+    if share > MAX_SHARE:
+        return f"more than {MAX_SHARE * 100:.0f} %"
     others = {each for each in (0.0, 1.0, beside) if each != share}
     digits = next(
         (

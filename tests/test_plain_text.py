@@ -25,6 +25,7 @@ def test_a_size_up_to_a_tebibyte_fits_a_column_of_ten() -> None:
 
 def test_a_share_reads_as_all_none_or_what_it_is_compared_with_only_where_it_is() -> None:
     assert [format_percent(each / 3) for each in range(4)] == ["0 %", "33 %", "67 %", "100 %"]
+    assert format_percent(float("inf")) == format_percent(12.0) == "more than 1000 %"
     for many in range(1, 1000):
         shown = format_percent(many / 1000, beside=0.9)
         assert shown not in ("0 %", "100 %")
