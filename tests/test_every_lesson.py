@@ -320,7 +320,9 @@ def test_every_known_mistake_is_made_by_a_wrong_work(name: str, exercise: str, t
             break
         work = written_out(each, solutions / f"solution{ending}", tmp_path)
         result = grade(
-            assignment, read_submission(work, assignment.submit), GradingOptions(Level.LIMITED, secret=True)
+            assignment,
+            read_submission(work, assignment.submit),
+            GradingOptions(Level.LIMITED, secret=True, examples=True),
         )
         told |= {(each.id, each.hints[0]) for each in result.tests if each.hints}
     assert wanted <= told
