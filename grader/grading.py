@@ -42,6 +42,7 @@ from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.probe import highest_level_up_to
 from kit.host.sandbox.process_control import shield_this_process
 from kit.host.sandbox.sandbox_config import Level
+from kit.plain_text import holds_text
 from kit.results.grading_result import (
     PUBLIC_CASES,
     PUBLIC_SEEDS,
@@ -494,7 +495,7 @@ class Grading:
     def _is_made(self, mistake: KnownMistake, rationale: str, measure: float) -> bool:
         has_range = (mistake.low, mistake.high) != (-math.inf, math.inf)
         return (
-            mistake.when.casefold() in rationale.casefold()
+            holds_text(rationale, mistake.when)
             and (not has_range or mistake.low <= measure <= mistake.high)
             and (
                 mistake.passed is None

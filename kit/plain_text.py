@@ -104,6 +104,18 @@ def quoted(text: str, limit: int = 60) -> str:
 # Names
 
 
+def holds_text(text: str, part: str) -> bool:
+    """Whether a text holds a part, in any case; a number at its end must end there, too.
+
+    >>> holds_text("It is 0.35.", "is 0.35"), holds_text("It is 0.35.", "is 0.3"), holds_text("It is 0.35.", "is 0.")
+    (True, False, False)
+    """
+    return (
+        re.search(re.escape(part) + (r"(?!\.?\d)" if part[-1:].isdigit() else r"(?!\d)"), text, re.IGNORECASE)
+        is not None
+    )
+
+
 def nearest_name(name: str, names: Iterable[str]) -> str | None:
     """Returns the one of ``names`` closest to ``name``, ignoring case, or None if none is similar."""
     from difflib import get_close_matches  # in here: most processes never misspell anything

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import kit
-from kit.plain_text import format_percent, format_size, suggestion, wrap
+from kit.plain_text import format_percent, format_size, holds_text, suggestion, wrap
 
 
 def test_a_size_has_the_unit_that_suits_it() -> None:
@@ -69,3 +69,9 @@ def test_a_suggestion_is_the_end_of_its_message() -> None:
         if isinstance(after, ast.Constant) and str(after.value).startswith(".")
     ]
     assert not followed
+
+
+def test_a_part_that_ends_with_a_number_is_no_part_of_a_longer_one() -> None:
+    text = "should be 0.1, and is 0.3."
+    assert all(holds_text(text, each) for each in ("", "SHOULD be 0.1", "is 0.3", "is 0.3."))
+    assert not any(holds_text(text, each) for each in ("is 0", "is 0.", "should be 0."))
