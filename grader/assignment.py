@@ -75,7 +75,7 @@ class KnownMistake:
 
     hint: str
     when: str = ""
-    """A part of what the feedback says, in any case; empty for any."""
+    """A part of what the feedback says, in any case, and no part of a longer number; empty for any."""
     low: float = -math.inf
     high: float = math.inf
     """The range of the measure, both ends included."""

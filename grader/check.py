@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from grader.scoring import Anchors
+from kit.plain_text import format_percent
 
 Faults = Callable[[Any, Any], Iterator[str]]
 """(the evidence's content, params) -> each thing that is wrong, in words."""
@@ -39,14 +40,15 @@ class Check:
     faults: Faults | None = None
     """None where the feedback says all."""
 
-    def format(self, measure: float) -> str:
-        """Formats a measure in words, or as a number with its unit."""
+    def format(self, measure: float, *, beside: float = 1.0) -> str:
+        """Formats a measure in words, or as a number with its unit. A share reads unlike ``beside``, that it is compared with,
+        unless it is equal to it."""
         if self.words is not None:
             return self.words[measure >= 1.0]
         if math.isnan(measure):
             return "not measured"
         if self.unit == "%":
-            measure *= 100.0
+            return format_percent(measure, beside=beside)
         number = f"{measure:.2f}".rstrip("0").rstrip(".") if abs(measure) < 1e6 else f"{measure:g}"
         is_plural = self.unit.isalpha() and len(self.unit) > 1 and self.unit.endswith("s")
         unit = self.unit[:-1] if is_plural and number == "1" else self.unit

@@ -42,6 +42,7 @@ from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.probe import highest_level_up_to
 from kit.host.sandbox.process_control import shield_this_process
 from kit.host.sandbox.sandbox_config import Level
+from kit.plain_text import holds_text
 from kit.results.grading_result import (
     PUBLIC_CASES,
     PUBLIC_SEEDS,
@@ -319,7 +320,9 @@ class Grading:
             rationale=rationale,
             hints=() if full else self._hints(criterion, rationale, worst),
             expected=check.format(criterion.anchors.full),
-            actual="" if worst is None or worst.measure is None else check.format(worst.measure),
+            actual=""
+            if worst is None or worst.measure is None
+            else check.format(worst.measure, beside=criterion.anchors.full),
             metrics={"share": round(share, 6)},
             episodes=tuple(map(_summary, scored)),
             log="" if worst is None else "\n".join(worst.evidence.printed),
@@ -463,7 +466,7 @@ class Grading:
             title = self._criterion(criterion.after or criterion.id).title
             return f"{evidence.label} does not count here: “{title}” comes first."
         text = criterion.feedback.format(
-            actual=check.format(worst.measure),
+            actual=check.format(worst.measure, beside=criterion.anchors.full),
             full=check.format(criterion.anchors.full),
             where=evidence.label,
             passed=sum(each.share == 1.0 for each in shown),
@@ -492,7 +495,7 @@ class Grading:
     def _is_made(self, mistake: KnownMistake, rationale: str, measure: float) -> bool:
         has_range = (mistake.low, mistake.high) != (-math.inf, math.inf)
         return (
-            mistake.when.casefold() in rationale.casefold()
+            holds_text(rationale, mistake.when)
             and (not has_range or mistake.low <= measure <= mistake.high)
             and (
                 mistake.passed is None

@@ -11,6 +11,9 @@ from itertools import zip_longest
 
 WIDTH = 80
 """Characters in a line."""
+MAX_PERCENT_DIGITS = 2
+MAX_SHARE = 10.0
+"""How many times of all a share is told exactly."""
 MIN_COLUMN_WIDTH = 12
 """Table columns are not made narrower than this, even if the table exceeds its width."""
 COLUMN_GAP = "  "
@@ -59,6 +62,27 @@ def format_size(size: float) -> str:
     return f"{size:.1f} GiB"
 
 
+def format_percent(share: float, *, beside: float = 1.0) -> str:
+    """Formats a share in whole percents, with digits only where it would read as none, as all or as ``beside`` and is not; of
+    one that is far above all, also without end, only that it is.
+
+    >>> format_percent(1 / 3), format_percent(0.998), format_percent(0.899, beside=0.9)
+    ('33 %', '99.8 %', '89.9 %')
+    """
+    if share > MAX_SHARE:
+        return f"more than {MAX_SHARE * 100:.0f} %"
+    others = {each for each in (0.0, 1.0, beside) if each != share}
+    digits = next(
+        (
+            digits
+            for digits in range(MAX_PERCENT_DIGITS)
+            if not any(f"{share * 100:.{digits}f}" == f"{each * 100:.{digits}f}" for each in others)
+        ),
+        MAX_PERCENT_DIGITS,
+    )
+    return f"{share * 100:.{digits}f} %"
+
+
 def counted(count: int, noun: str) -> str:
     """A number with its noun, in the plural where it is not one: ``1 bump``, ``2 bumps``, ``0 entries``."""
     if count == 1:
@@ -81,6 +105,18 @@ def quoted(text: str, limit: int = 60) -> str:
 
 
 # Names
+
+
+def holds_text(text: str, part: str) -> bool:
+    """Whether a text holds a part, in any case; a number at its end must end there, too.
+
+    >>> holds_text("It is 0.35.", "is 0.35"), holds_text("It is 0.35.", "is 0.3"), holds_text("It is 0.35.", "is 0.")
+    (True, False, False)
+    """
+    return (
+        re.search(re.escape(part) + (r"(?!\.?\d)" if part[-1:].isdigit() else r"(?!\d)"), text, re.IGNORECASE)
+        is not None
+    )
 
 
 def nearest_name(name: str, names: Iterable[str]) -> str | None:

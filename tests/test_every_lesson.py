@@ -8,6 +8,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+import yaml
 
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
@@ -319,7 +320,9 @@ def test_every_known_mistake_is_made_by_a_wrong_work(name: str, exercise: str, t
             break
         work = written_out(each, solutions / f"solution{ending}", tmp_path)
         result = grade(
-            assignment, read_submission(work, assignment.submit), GradingOptions(Level.LIMITED, secret=True)
+            assignment,
+            read_submission(work, assignment.submit),
+            GradingOptions(Level.LIMITED, secret=True, examples=True),
         )
         told |= {(each.id, each.hints[0]) for each in result.tests if each.hints}
     assert wanted <= told
@@ -377,14 +380,15 @@ def test_every_outcome_is_carried_and_once_described() -> None:
 @pytest.mark.daily(4)
 @pytest.mark.long
 @pytest.mark.parametrize(("name", "exercise"), EXERCISES, ids=[f"{name}-{each}" for name, each in EXERCISES])
-def test_every_misconception_receives_a_hint_for_what_it_lost_first(
-    name: str, exercise: str, tmp_path: Path
-) -> None:
-    """One that cannot be read needs none: its message names the line."""
+def test_every_misconception_is_told_what_stands_beside_it(name: str, exercise: str, tmp_path: Path) -> None:
+    """First of all, and of a criterion that it was written to lose. One that cannot be read gets no hint: its message names
+    the line."""
     _, task = exercise_of(name, exercise)
     assignment = read_assignment(task.folder)
     solutions, ending = solutions_folder() / name / exercise, Path(assignment.submit).suffix
     own = {each.id: (*each.hints, *(one.hint for one in each.mistakes)) for each in assignment.criteria}
+    wanted = told_words(name, exercise)
+    others = {}
     for each in list_wrong_works(solutions / "wrong", ending):
         work = written_out(each, solutions / f"solution{ending}", tmp_path)
         result = grade(
@@ -397,3 +401,26 @@ def test_every_misconception_receives_a_hint_for_what_it_lost_first(
         assert lost.rationale, each.name
         is_unread = lost.status == "student_error"
         assert is_unread or (lost.hints and set(lost.hints) <= set(own[lost.id])), (each.name, lost.rationale)
+        told = " ".join([lost.rationale, *lost.hints[:1]])
+        if wanted[work_name(each)] not in " ".join(told.split()):
+            others[each.name] = told
+    assert others == {}
+
+
+def told_words(name: str, exercise: str) -> dict[str, str]:
+    """By wrong work: words of what its student must be told first, a reply, a hint or a message."""
+    words: dict[str, str] = yaml.safe_load((solutions_folder() / name / exercise / "hints.yaml").read_text())
+    return words
+
+
+def work_name(work: Path) -> str:
+    return work.name if work.is_dir() else work.stem
+
+
+def test_words_stand_beside_every_misconception() -> None:
+    for name, exercise in EXERCISES:
+        wrong = solutions_folder() / name / exercise / "wrong"
+        works = {work_name(each) for each in wrong.iterdir() if each.name[0] not in "._"}
+        words = told_words(name, exercise)
+        assert set(words) == works, exercise
+        assert all(len(each.split()) >= 2 for each in words.values()), exercise

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import kit
-from kit.plain_text import format_size, suggestion, wrap
+from kit.plain_text import format_percent, format_size, holds_text, suggestion, wrap
 
 
 def test_a_size_has_the_unit_that_suits_it() -> None:
@@ -21,6 +21,16 @@ def test_a_size_up_to_a_tebibyte_fits_a_column_of_ten() -> None:
     for exponent in range(40):
         for size in (2**exponent - 1, 2**exponent, 1000 * 2**exponent // 999):
             assert len(format_size(size)) <= 10, size
+
+
+def test_a_share_reads_as_all_none_or_what_it_is_compared_with_only_where_it_is() -> None:
+    assert [format_percent(each / 3) for each in range(4)] == ["0 %", "33 %", "67 %", "100 %"]
+    assert format_percent(float("inf")) == format_percent(12.0) == "more than 1000 %"
+    for many in range(1, 1000):
+        shown = format_percent(many / 1000, beside=0.9)
+        assert shown not in ("0 %", "100 %")
+        assert (shown == "90 %") is (many == 900)
+        assert len(shown) <= len("99.9 %")
 
 
 def test_a_command_is_whole_where_it_fits_a_line() -> None:
@@ -59,3 +69,9 @@ def test_a_suggestion_is_the_end_of_its_message() -> None:
         if isinstance(after, ast.Constant) and str(after.value).startswith(".")
     ]
     assert not followed
+
+
+def test_a_part_that_ends_with_a_number_is_no_part_of_a_longer_one() -> None:
+    text = "should be 0.1, and is 0.3."
+    assert all(holds_text(text, each) for each in ("", "SHOULD be 0.1", "is 0.3", "is 0.3."))
+    assert not any(holds_text(text, each) for each in ("is 0", "is 0.", "should be 0."))

@@ -47,7 +47,7 @@ from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind
 from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist, Vector3
-from kit.plain_text import counted
+from kit.plain_text import counted, format_percent
 from kit.ros.graph.graph import Graph
 from kit.run.episode import EndReason, run_until, when_reached
 from kit.run.metrics import DriveMetrics, MetricsRecorder
@@ -98,8 +98,8 @@ class FieldDrive(GradedDrive):
         if trap is None:
             return ""
         return (
-            f"There is a trap at ({trap.x:.2f}, {trap.y:.2f}), where walls push as strongly as the target pulls; "
-            f"{trap.share:.0%} of the floor leads there."
+            f"There is a trap at ({round(trap.x, 2) + 0.0:.2f}, {round(trap.y, 2) + 0.0:.2f}), where walls push as strongly as the target pulls; "
+            f"{format_percent(trap.share)} of the floor leads there."
         )
 
 

@@ -48,7 +48,7 @@ from grader.seeds import SeedSet, counterpart_seed, read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json, printable
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import counted, quoted, suggestion
 from kit.world.yaml_section import Section
 
 REFERENCE: Final = "reference.py"
@@ -390,7 +390,7 @@ def _first_difference(expected: Json, actual: Json) -> str:
     if not isinstance(expected, list) or not isinstance(actual, list):
         return ""
     if len(expected) != len(actual):
-        return f": {len(actual)} entries instead of {len(expected)}"
+        return f": {counted(len(actual), 'entry')} instead of {len(expected)}"
     for index, (one, other) in enumerate(zip(expected, actual, strict=True)):
         if not is_close(one, other, 1e-6):
             return f": [{index}] should be {format_value(one)}, and is {format_value(other)}"

@@ -90,8 +90,8 @@ def without_clipping(words: str, step: LessonStep, folder: Path) -> str:
     assert not other.is_solved
     assert other.values[other.world.start].min() < 1e-3
     assert set(other.lengths[-2:]) == {MAX_EPISODE_STEPS}
-    if words.startswith("A chance"):
-        return "A chance of nearly 0 is never tried again"
+    if words.startswith("with a chance"):
+        return "with a chance of nearly 0 is hardly ever tried again"
     return "It is soon sure of bad moves, and stays stuck."
 
 
