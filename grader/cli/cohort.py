@@ -11,17 +11,8 @@ import click
 
 from grader.cli import options
 from grader.cli.progress import counted_progress
-from grader.cohort.gradebook import (
-    UNREADABLE,
-    WAITING,
-    as_csv,
-    as_json,
-    attention_blocks,
-    class_blocks,
-    gradebook_rows,
-    summary,
-    unjudged_line,
-)
+from grader.cohort.class_findings import attention_blocks, class_blocks, unjudged_line
+from grader.cohort.gradebook import UNREADABLE, WAITING, as_csv, as_json, gradebook_rows, summary
 from grader.cohort.program_ladder import LadderRace, find_programs, race_all, rank
 from grader.cohort.queue import (
     Queue,
@@ -31,13 +22,14 @@ from grader.cohort.queue import (
 )
 from grader.grading import GradingOptions
 from grader.reports.cleaning import clean_line, spreadsheet_cell
-from kit.cli.options import ExistingPath, describe_error, executor_options
+from kit.cli.messages import describe_error
+from kit.cli.options import ExistingPath, executor_options
 from kit.document.blocks import CellStyle, Column, Table
 from kit.document.layout import lines_of
 from kit.host.job_executors import ExecutorUnavailable, read_shard
 from kit.host.job_folder import JobExecutor, serve_keys
 from kit.host.sandbox import probe
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.school.game.levels import UnknownLevel, find_level
 from kit.workspace import write_atomically
 

@@ -103,7 +103,7 @@ def _count_text(goal: Goal | None) -> str:
     """The classes by which a node counts a goal, as their files have them; None: those of a node that is not told."""
     common = _class_text(files(GOAL_PROGRAMS).joinpath("goal_count.py").read_text())
     own = "" if goal is None else _class_text(files(GOAL_PROGRAMS).joinpath(f"{goal.kind}.py").read_text())
-    name = own.removeprefix("class ").partition("(")[0] or "GoalCount"
+    name = own.removeprefix("class ").partition("(")[0] or "NodeCount"
     return f"{common}{own}COUNT = {name}\n\n\n"
 
 

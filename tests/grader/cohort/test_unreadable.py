@@ -16,21 +16,15 @@ from click.testing import CliRunner, Result
 
 from grader import submission as submission_module
 from grader.__main__ import main
-from grader.cohort.gradebook import (
-    MAX_LISTED,
-    SAME_ERRORS,
-    UNREADABLE,
-    GradebookRow,
-    attention_blocks,
-    gradebook_rows,
-)
+from grader.cohort.class_findings import MAX_LISTED, attention_blocks
+from grader.cohort.gradebook import SAME_ERRORS, UNREADABLE, GradebookRow, gradebook_rows
 from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
 from grader.submitted_files import SubmissionUnreadable
 from kit.document.layout import Page, lines_of
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from tests.grader.conftest import FORWARD, QUICK, write_assignment
 from tests.grader.test_submission import nested_folders, zipped
 
@@ -58,7 +52,7 @@ from pathlib import Path
 from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 resource.setrlimit(resource.RLIMIT_CPU, (60, 60))
 assignment, cohort, queue = map(Path, sys.argv[1:])
 entries = prepare_queue(Queue(queue), cohort, read_assignment(assignment), GradingOptions(Level.LIMITED))

@@ -30,7 +30,7 @@ class GoalStep(NamedTuple):
         return metres
 
 
-class GoalCount:
+class NodeCount:
     """How much of the goal is achieved: nothing, where the policy is not told."""
 
     def __init__(self, facts: dict[str, Any]) -> None:
