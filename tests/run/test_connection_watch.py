@@ -36,7 +36,7 @@ if __name__ == "__main__":
     main()
 """
 """A controller that hears nothing, and that nothing hears."""
-SAID = ("/scan2", "/static_laser"), ("/cmd_velx", "/cmd_vel")
+SAID = ("/scan2", "/scan"), ("/cmd_velx", "/cmd_vel")
 """Of each mistake: what the program says, and what there is."""
 LAUNCH = """
 from launch import LaunchDescription
