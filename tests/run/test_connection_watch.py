@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -50,6 +51,11 @@ def generate_launch_description():
     ])
 """
 WORLD = Path(__file__).parents[1] / "ros" / "outside_programs" / "room" / "world.yaml"
+
+
+def tells_of_both(screen: str) -> bool:
+    """Whether a screen shows, of each mistake, what the program says and what there is."""
+    return all(re.search(f"{named}, .*; {there_is}", screen) for named, there_is in SAID)
 
 
 @pytest.fixture

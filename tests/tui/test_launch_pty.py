@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -12,7 +11,7 @@ import pytest
 
 from kit.inspection.sockets import running_worlds, sockets_folder
 from tests.launch.conftest import TWO_ROBOTS
-from tests.run.test_connection_watch import DEAF, LAUNCH, SAID, WORLD
+from tests.run.test_connection_watch import DEAF, LAUNCH, WORLD, tells_of_both
 from tests.tui.test_play_pty import Open, kit
 
 __all__ = ["kit"]
@@ -53,11 +52,7 @@ def test_a_launched_program_that_hears_nothing_is_told_of(kit: Open, tmp_path: P
     launch = tmp_path / "deaf.launch.py"
     launch.write_text(LAUNCH.format(world=str(WORLD), program=str(tmp_path / "deaf.py")))
     terminal = kit("launch", str(launch))
-    for named, there_is in SAID:
-        terminal.until(
-            lambda names=(named, there_is): re.search("{}, .*; {}".format(*names), terminal.text),
-            "what it says and what there is",
-        )
+    terminal.until(lambda: tells_of_both(terminal.text), "what it says and what there is")
     terminal.send(b"\x03")
     assert terminal.wait() == 0
 
