@@ -11,7 +11,7 @@ import click
 
 from kit.cli import messages, options
 from kit.cli.options import Storage
-from kit.controllers import find_controller, kit_controllers
+from kit.controllers import find_controller
 from kit.document.blocks import Picture, labelled_table
 from kit.document.layout import lines_of
 from kit.host.program_terminal import ProgramTerminal, has_user_terminal, piped_streams
@@ -29,7 +29,6 @@ from kit.run.view import format_log
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError
 
-STANDS_STILL_M = 0.01
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells have it."""
 
@@ -138,10 +137,6 @@ def command(
     except OSError as error:
         messages.fail(messages.describe_os_error(error))
     click.echo(json.dumps(summary.as_dict(), indent=2) if as_json else format_summary(summary))
-    is_own = driver.file not in {each.file for each in kit_controllers()}
-    if is_own or summary.metrics.distance_m < STANDS_STILL_M:  # the kit's controllers need not hear all
-        for mistake in summary.mistakes:
-            click.echo(mistake, err=True)
     if summary.interrupted:
         for kept in filter(None, (record, bag)):
             click.echo(f"What ran until then is in {kept}.", err=True)

@@ -39,6 +39,7 @@ from kit.msg.lifecycle_msgs import ChangeState, Transition, TransitionEvent
 from kit.ros.exceptions import InvalidServiceNameException, InvalidTopicNameException
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node, create_graph_node
+from kit.run.connection_watch import ConnectionWatch
 from kit.run.lockstep import Participant, exchange_until_idle
 
 if TYPE_CHECKING:
@@ -196,6 +197,9 @@ class Launch:
             add_to_scene=self.additions.append,
         )
         self._transitions = LifecycleTransitions(graph, self._log, self._report)
+        self._connection_watch = ConnectionWatch(
+            graph, self._watched_nodes, lambda text: self._log(text, "WARN")
+        )
         self._started = 0
         self._waiting: list[StartRequest] = []
         self._running: dict[int, _RunningProcess] = {}
@@ -263,6 +267,10 @@ class Launch:
             self._advance_launch_file([["interrupted", reason]])
             self._end_all_processes()
 
+    def tell_unconnected(self) -> None:
+        """Warns, at the end of a run, of what its programs still connect to that has no other end."""
+        self._connection_watch.tell_all()
+
     def close(self) -> None:
         """Ends all processes at once. May be called twice."""
         self.is_over = True
@@ -283,6 +291,7 @@ class Launch:
             if ended is not None:
                 self._record_exit(number, running, ended)
         self._transitions.poll()
+        self._connection_watch.look()
         wake = self._launch_file.wake_ns
         if self._events or (wake is not None and wake <= self._clock_ns):
             events, self._events = self._events, []
@@ -389,6 +398,12 @@ class Launch:
     def _report(self, event: list[Json]) -> None:
         """Queues an event for the launch file."""
         self._events.append(event)
+
+    def _watched_nodes(self) -> frozenset[str]:
+        """Its programs' nodes; none while others are still to be started, which may be the other ends."""
+        if self.has_timers or self._waiting:
+            return frozenset()
+        return frozenset[str]().union(*(running.process.node_names for running in self._running.values()))
 
     def _record_failure(self, text: str) -> None:
         self.failures.append(text)

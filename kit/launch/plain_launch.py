@@ -158,6 +158,7 @@ def _run_until_end(
     )
     try:
         run_until(run, ends=ends, schedule=schedule, before_tick=before_tick)
+        launch.tell_unconnected()
     except KeyboardInterrupt:
         launch.interrupt("ctrl-c")
         raise

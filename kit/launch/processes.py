@@ -116,6 +116,10 @@ class Process(Protocol):
     def wake_ns(self) -> int | None:
         """When its next timer is due [ns of the graph]; None: it waits for messages only."""
 
+    @property
+    def node_names(self) -> frozenset[str]:
+        """The full names of the nodes that it runs in lock-step."""
+
     def exchange(self) -> bool:
         """Exchanges messages, as a participant of the lock-step."""
 
@@ -173,6 +177,10 @@ class NodeProgramProcess:
     def wake_ns(self) -> int | None:
         return self._node_process.wake_ns
 
+    @property
+    def node_names(self) -> frozenset[str]:
+        return self._node_process.node_names
+
     def exchange(self) -> bool:
         return self._has_joined and self._node_process.exchange()
 
@@ -196,6 +204,10 @@ class _UnsteppedProcess:
     @property
     def wake_ns(self) -> int | None:
         return None
+
+    @property
+    def node_names(self) -> frozenset[str]:
+        return frozenset()
 
     def exchange(self) -> bool:
         return False

@@ -14,7 +14,6 @@ from kit.geometry import Pose
 from kit.host.failure import Failure
 from kit.host.program_terminal import ProgramStreams
 from kit.interruption import uninterrupted
-from kit.ros.graph.connections import ConnectionsReader
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
 from kit.run.episode import EndCondition, EndReason, run_until, when_failed, when_reached
@@ -52,8 +51,6 @@ class RunSummary:
     failure: Failure | None
     interrupted: bool = False
     """Whether Ctrl-C or a signal ended it."""
-    mistakes: tuple[str, ...] = ()
-    """Sentences about topics and services that the controller uses and that have no other end."""
 
     def as_dict(self) -> dict[str, Any]:
         """JSON-able; the same for the same run but for ``wall_s``."""
@@ -111,7 +108,7 @@ def run_headless(
         recorder = Recorder.for_scenario(scenario, runner.simulation, record)
         if record is not None:
             runner.observers.append(recorder)
-        connections = ConnectionsReader(session.graph)
+        connection_watch = session.watch_connections()
         start = time.perf_counter()
         interrupted = False
         try:
@@ -127,6 +124,7 @@ def run_headless(
                 output_interval=OUTPUT_INTERVAL if streams is None else INPUT_INTERVAL,
             )
             session.read_output()
+            connection_watch.tell_all()
         except KeyboardInterrupt:  # before the controller drives
             interrupted = True
         finally:  # also where a terminal is gone, or Ctrl-C comes twice
@@ -146,7 +144,6 @@ def run_headless(
             wall,
             session.failure,
             interrupted,
-            connections.read().mistakes,
         )
 
 

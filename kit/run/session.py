@@ -12,11 +12,12 @@ import re
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime
+from functools import cache
 from pathlib import Path
 from types import TracebackType
 from typing import Final, Protocol, Self
 
-from kit.controllers import ControllerFile
+from kit.controllers import ControllerFile, kit_controllers
 from kit.host.failure import Failure, StudentCodeError
 from kit.host.file_watcher import FileWatcher
 from kit.host.node_process import NodeProcess
@@ -38,6 +39,7 @@ from kit.ros.packages import (
     interface_packages,
     workspace_folders,
 )
+from kit.run.connection_watch import ConnectionWatch
 from kit.run.episode import controller_arguments
 from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Playback, Recording
@@ -47,6 +49,8 @@ from kit.sim.simulation import Simulation
 
 KEYS_TOPIC: Final = "/teleopkeys"
 STRENGTH_TOPIC: Final = f"{KEYS_TOPIC}/strength"
+STANDS_STILL_M: Final = 0.01
+"""A robot that has driven less than this stands still [m]."""
 
 
 class KeystrokePublisher:
@@ -135,6 +139,11 @@ class ControllerSwitcher:
         if self._failure is None and self._active is not None:
             return self._active.failure
         return self._failure
+
+    @property
+    def node_names(self) -> frozenset[str]:
+        """The full names of the active controller's nodes."""
+        return frozenset() if self._active is None else self._active.node_names
 
     def load(self, controller: ControllerFile | None) -> None:
         """Starts a controller without waiting for it; None only stops the active one."""
@@ -242,6 +251,11 @@ class ControllerSwitcher:
             self._on_print(line.text)
         if printed.omission:
             self._on_print(printed.omission)
+
+
+@cache
+def _files_of_kit() -> frozenset[Path]:
+    return frozenset(each.file for each in kit_controllers())
 
 
 def _controller_package(file: Path) -> PackageProgram | None:
@@ -355,6 +369,15 @@ class Session:
         """Starts a controller, which replaces the present one once it has started well. None: nobody drives."""
         self.switcher.load(controller)
 
+    def watch_connections(self) -> ConnectionWatch:
+        """Warns from now on of what the controller's nodes connect to that has no other end.
+
+        The kit's own controllers need not hear all that they can: of one of them that is told while the robot stands still.
+        """
+        watch = ConnectionWatch(self.graph, self._watched_nodes, self._warn)
+        self.runner.observers.append(watch)
+        return watch
+
     def play_back(self, recording: Recording) -> None:
         """Replays a recording's inputs; pauses at its end."""
         runner = self.runner
@@ -385,6 +408,15 @@ class Session:
     def command_topics(self, model: str) -> tuple[str, ...]:
         """Topics on which a model's devices subscribe to Twists."""
         return self.runner.simulation.command_topics(model)
+
+    def _watched_nodes(self) -> frozenset[str]:
+        drives = self.metrics.metrics.distance_m >= STANDS_STILL_M
+        if drives and self.controller is not None and self.controller.file in _files_of_kit():
+            return frozenset()
+        return self.switcher.node_names
+
+    def _warn(self, text: str) -> None:
+        self._log(LogRecord(self.graph.now_ns, LoggingSeverity.WARN, "kit", text, "", "", 0))
 
     def _print(self, line: str) -> None:
         self.log_line(line, self.controller.name if self.controller else "")

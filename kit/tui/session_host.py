@@ -80,6 +80,7 @@ class SessionHost:
 
             session = Session(find(), seed=self._seed, always_scan=True)
             self._record(session)
+            session.watch_connections()
             session.drive_with(controller)
             session.runner.paused = paused
             self._replace(session)

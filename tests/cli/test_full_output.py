@@ -23,6 +23,8 @@ pytestmark = [pytest.mark.long, pytest.mark.skipif(not FULL.exists(), reason="th
         ("kit", "runs"),
         ("kit", "--help"),
         ("kit", "maps", "simple"),
+        ("kit", "doctor"),
+        ("kit", "world", "check", "maps/maze/world.yaml", "--root", "maps"),
         ("grader", "checks"),
     ],
 )

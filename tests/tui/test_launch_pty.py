@@ -11,6 +11,7 @@ import pytest
 
 from kit.inspection.sockets import running_worlds, sockets_folder
 from tests.launch.conftest import TWO_ROBOTS
+from tests.run.test_connection_watch import DEAF, LAUNCH, WORLD, tells_of_both
 from tests.tui.test_play_pty import Open, kit
 
 __all__ = ["kit"]
@@ -44,6 +45,16 @@ def test_a_launch_is_watched_looked_into_and_left(kit: Open, workspace: Path) ->
     assert terminal.wait() == 0
     terminal.assert_sane()
     assert running_worlds(sockets_folder(workspace)) == []
+
+
+def test_a_launched_program_that_hears_nothing_is_told_of(kit: Open, tmp_path: Path) -> None:
+    (tmp_path / "deaf.py").write_text(DEAF)
+    launch = tmp_path / "deaf.launch.py"
+    launch.write_text(LAUNCH.format(world=str(WORLD), program=str(tmp_path / "deaf.py")))
+    terminal = kit("launch", str(launch))
+    terminal.until(lambda: tells_of_both(terminal.text), "what it says and what there is")
+    terminal.send(b"\x03")
+    assert terminal.wait() == 0
 
 
 def test_the_play_screen_has_a_door_that_moves_with_the_map(kit: Open, workspace: Path) -> None:

@@ -23,6 +23,7 @@ from kit.run.recording import load_recording, rerun
 from kit.run.recording_file import RecordingFile
 from kit.run.scenario import find_scenario
 from tests.driving_program import driving_program
+from tests.run.test_connection_watch import DEAF, WORLD, tells_of_both
 from tests.tui.input.conftest import Terminal
 from tests.tui.tape import Display
 from tests.tui.widgets.test_world_view_pty import assert_rests, run_on
@@ -201,6 +202,15 @@ def test_a_storm_of_sizes_changes_nothing_but_the_size(kit: Open) -> None:
     terminal.send(b"\x03")
     assert terminal.wait() == 0
     terminal.assert_sane()
+
+
+def test_a_controller_that_hears_nothing_is_told_of_in_80_columns(kit: Open, tmp_path: Path) -> None:
+    file = tmp_path / "deaf.py"
+    file.write_text(DEAF)
+    terminal = kit("play", str(WORLD), "--controller", str(file))
+    terminal.until(lambda: tells_of_both(terminal.text), "what it says and what there is")
+    terminal.send(b"\x03")
+    assert terminal.wait() == 0
 
 
 def test_a_small_terminal_gives_its_room_to_the_world(kit: Open) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -58,14 +58,21 @@ class ConnectionsReader:
     def read(self) -> NodeConnections:
         self.note()
         with self._graph.lock:
-            directory = self._graph.directory
-            handles = [handle for handle in directory.nodes if handle not in self._others]
-            mistakes = [mistake for handle in handles for mistake in _mistakes(directory, handle)]
-            names = sorted({handle.full_name for handle in handles})
+            names = frozenset(
+                handle.full_name for handle in self._graph.directory.nodes if handle not in self._others
+            )
+            mistakes = find_mistakes(self._graph, names)
         heard = {name: tuple(sorted(topics)) for name, topics in self._heard.items()}
         return NodeConnections(
-            tuple(names), tuple(mistakes[:MAX_MISTAKES]), heard, tuple(sorted(self._profiles))
+            tuple(sorted(names)), mistakes[:MAX_MISTAKES], heard, tuple(sorted(self._profiles))
         )
+
+
+def find_mistakes(graph: Graph, names: Set[str]) -> tuple[str, ...]:
+    """Returns the sentences of ``NodeConnections.mistakes`` about the nodes with these full names."""
+    with graph.lock:
+        handles = [handle for handle in graph.directory.nodes if handle.full_name in names]
+        return tuple(mistake for handle in handles for mistake in _mistakes(graph.directory, handle))
 
 
 def _heard_topics(handle: NodeEntry) -> set[str]:
@@ -91,7 +98,7 @@ def _mistakes(directory: Directory, handle: NodeEntry) -> Iterator[str]:
         published = _topics(directory, publishes=True)
         types = published.get(name, set())
         if not types:
-            yield f"{handle.full_name} subscribes to {name}, which has no publisher; {_offer(name, kind, published)}."
+            yield f"{name}, to which {handle.full_name} subscribes, has no publisher; {_offer(name, kind, published)}."
         elif kind not in types:
             yield f"{handle.full_name} expects {kind} on {name}, which carries {', '.join(sorted(types))}."
         for publisher in directory.publishers(name):
@@ -109,14 +116,13 @@ def _mistakes(directory: Directory, handle: NodeEntry) -> Iterator[str]:
             yield f"{handle.full_name} publishes {kind} on {name}, where {', '.join(sorted(types))} is expected."
         elif not types and (others := _same_type(kind, heard)):
             yield (
-                f"{handle.full_name} publishes to {name}, which has no subscriber; {kind} has subscribers on "
-                f"{join_names(others, MAX_NAMES)}."
+                f"{name}, to which {handle.full_name} publishes, has no subscriber; {_of_its_type(others, kind)}."
             )
     for client in handle.clients:
         if directory.find_server(client.service_name, client.srv_type) is None:
             offered = {each: set(types) for each, types in directory.service_names_and_types()}
             kind = type_name(client.srv_type)
-            yield f"{handle.full_name} calls {client.service_name}, which no node offers; {_offer(client.service_name, kind, offered)}."
+            yield f"{client.service_name}, which {handle.full_name} calls, is offered by no node; {_offer(client.service_name, kind, offered)}."
 
 
 def _topics(directory: Directory, *, publishes: bool) -> dict[str, set[str]]:
@@ -134,10 +140,14 @@ def _same_type(kind: str, offered: Mapping[str, set[str]]) -> list[str]:
     return sorted(name for name, types in offered.items() if kind in types)
 
 
+def _of_its_type(names: list[str], kind: str) -> str:
+    return f"{join_names(names, MAX_NAMES)} {'has' if len(names) == 1 else 'have'} its type, {kind}"
+
+
 def _offer(name: str, kind: str, offered: Mapping[str, set[str]]) -> str:
     """Names what there is instead: names of the same type, else the nearest name, else all."""
     if others := _same_type(kind, offered):
-        return f"of the type {kind} there is {join_names(others, MAX_NAMES)}"
+        return _of_its_type(others, kind)
     near = nearest_name(name, offered)
     if near is not None:
         return f"the nearest name is {near}"

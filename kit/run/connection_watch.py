@@ -1,0 +1,56 @@
+"""Tells which connections of some nodes have no other end while a world runs: why a program hears nothing, or nobody hears it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Set
+from typing import TYPE_CHECKING, Final
+
+from kit.ros.graph.connections import find_mistakes
+from kit.ros.graph.graph import Graph
+from kit.run.lockstep import Observer
+
+if TYPE_CHECKING:  # a launch without a world must not load the physics
+    from kit.sim.simulation import Simulation
+
+MAX_TOLD: Final = 20
+"""Sentences that a watch tells of one run."""
+STANDS_NS: Final = 2_000_000_000
+"""How long a connection is without another end before that is told [ns of simulated time]."""
+LOOK_INTERVAL_NS: Final = 500_000_000
+
+
+class ConnectionWatch(Observer):
+    """Tells about each connection without another end, once, when it has stood for a while.
+
+    Nodes start one after the other: what has found its other end by then is not told.
+    """
+
+    def __init__(self, graph: Graph, names: Callable[[], Set[str]], tell: Callable[[str], object]) -> None:
+        """``names``: the full names of the nodes that are watched now; ``tell`` receives a sentence."""
+        self._graph, self._names, self._tell = graph, names, tell
+        self._since_ns: dict[str, int] = {}
+        self._told: set[str] = set()
+        self._looked_ns = graph.now_ns
+
+    def on_step(self, simulation: Simulation) -> None:
+        self.look()
+
+    def look(self) -> None:
+        """Looks a few times per simulated second, however often it is called."""
+        now = self._graph.now_ns
+        if 0 <= now - self._looked_ns < LOOK_INTERVAL_NS:
+            return
+        self._looked_ns = now
+        mistakes = find_mistakes(self._graph, self._names())
+        self._since_ns = {each: min(now, self._since_ns.get(each, now)) for each in mistakes}
+        self._tell_each(each for each, since in self._since_ns.items() if now - since >= STANDS_NS)
+
+    def tell_all(self) -> None:
+        """Tells also what has stood for a shorter time: at the end of a run."""
+        self._tell_each(find_mistakes(self._graph, self._names()))
+
+    def _tell_each(self, mistakes: Iterable[str]) -> None:
+        for mistake in mistakes:
+            if mistake not in self._told and len(self._told) < MAX_TOLD:
+                self._told.add(mistake)
+                self._tell(mistake)
