@@ -13,16 +13,9 @@ import zlib
 from collections.abc import Iterator
 from typing import BinaryIO, Final, Protocol
 
-from grader.submitted_files import (
-    PACK_ADVICE,
-    READ_SIZE,
-    VIRTUAL_ENVIRONMENT_FILE,
-    SubmissionRefused,
-    SubmittedFiles,
-    advice,
-    file_kind,
-    shown_name,
-)
+from grader.file_formats import PACK_ADVICE, advice, file_kind
+from grader.shown_names import shown_name
+from grader.submitted_files import READ_SIZE, VIRTUAL_ENVIRONMENT_FILE, SubmissionRefused, SubmittedFiles
 
 MAX_PACKED_BYTES: Final = 64 * 1024 * 1024
 """Bytes of an archive as it is handed in."""

@@ -11,8 +11,8 @@ from grader.driving.service_calls import ServiceCall
 from grader.scoring import Anchors
 from grader.seeds import SeedSet
 from kit.geometry import Pose
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import Visibility
 from kit.run.scenario import Scenario
 

@@ -25,9 +25,10 @@ from typing import Final, NoReturn
 import grader
 import kit
 from kit.host.private_folder import private_folder
-from kit.host.sandbox.confinement import Level, confine_reader
+from kit.host.sandbox.confinement import confine_reader
 from kit.host.sandbox.grants import find_grants
 from kit.host.sandbox.limits import GIB, MIB
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.wire import Json
 from kit.world.catalogue import maps_folder
 

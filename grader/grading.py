@@ -27,19 +27,21 @@ from grader.evidence.findings import (
     state_after,
 )
 from grader.evidence.submission_clock import SubmissionClock
+from grader.file_formats import YAML_ENDINGS
 from grader.kinds.contract import find_kind
 from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
 from grader.seeds import SeedSet
 from grader.submission import Submission
-from grader.submitted_files import YAML_ENDINGS, SubmissionRefused, reading_submission
+from grader.submitted_files import SubmissionRefused, reading_submission
 from grader.teacher_tests.reading import tests_digest
 from grader.teacher_tests.result import teacher_test_result
 from grader.teacher_tests.running import TestOutcome, run_teacher_tests
 from grader.version import grader_version
 from kit.extensions import admitting
 from kit.host.failure import Failure, FailureKind, StudentCodeError
-from kit.host.sandbox.confinement import Level, shield_this_process
 from kit.host.sandbox.probe import highest_level_up_to
+from kit.host.sandbox.process_control import shield_this_process
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import (
     PUBLIC_CASES,
     PUBLIC_SEEDS,

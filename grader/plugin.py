@@ -32,7 +32,7 @@ from grader.reports.cleaning import plain
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
 from grader.teacher_tests.reading import MARK, MARK_HELP
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import CriterionResult, CriterionStatus
 from kit.results.result_blocks import format_points
 from kit.world.problems import WorldError

@@ -28,7 +28,7 @@ from grader.scoring import MAX_SHARE_STEPS, Anchors
 from grader.seeds import SeedSet
 from grader.teacher_tests.reading import read_teacher_tests
 from kit.extensions import ExtensionError, admitting, installed_extensions
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.results.grading_result import Visibility

@@ -27,7 +27,7 @@ from grader.scoring import required_passes, unfair_fail_probability
 from grader.seeds import SeedSet
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from kit.results.result_blocks import format_points
 

@@ -16,18 +16,15 @@ from pathlib import Path
 from typing import BinaryIO, Final
 
 from grader.archives import MAX_PACKED_BYTES, archive_stem, packed_limit, unpack_archive
+from grader.file_formats import YAML_ENDINGS, what_instead, wrong_format
+from grader.hidden_code import hidden_code
+from grader.shown_names import is_plain_name, shown_name
 from grader.submitted_files import (
     MAX_BYTES,
     VIRTUAL_ENVIRONMENT_FILE,
-    YAML_ENDINGS,
     SubmissionRefused,
     SubmittedFiles,
-    hidden_code,
-    is_plain_name,
     reading_submission,
-    shown_name,
-    what_instead,
-    wrong_format,
 )
 from kit.host.private_folder import private_folder
 from kit.plain_files import open_plain_file

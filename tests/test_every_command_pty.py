@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 
 from grader.reading import read_assignment
-from kit.learning.training.runs import TrainingRun, list_runs
+from kit.learning.training.run_folders import list_runs
+from kit.learning.training.runs import TrainingRun
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
 from kit.school.lessons.records import CommandKind, Lesson, LessonCommand, LessonStep
 from kit.school.lessons.shell_lines import fill_in_paths

@@ -15,8 +15,8 @@ from grader.self_test import STARTER, STARTER_SHARE, list_wrong_works, try_works
 from grader.submission import Submission, read_submission
 from kit.cli import VERBS
 from kit.document.markup import parse_markup
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import GradingResult
 from kit.school.game.challenges import all_challenges
 from kit.school.lessons.checking import check_exercise, install_exercise, read_solution, submission_path

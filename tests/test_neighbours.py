@@ -20,9 +20,10 @@ from grader.assignment import Assignment
 from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions
 from grader.reading import read_assignment
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.runs import RunConfig, create_run
+from kit.learning.training.run_config import RunConfig
+from kit.learning.training.run_folders import create_run
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import make_private_folder, open_workspace, write_atomically
 from tests.grader.conftest import FORWARD, write_assignment

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from kit.learning.training.runs import list_runs
+from kit.learning.training.run_folders import list_runs
 from kit.run.recording import load_recording
 from tests.tui.test_play_pty import ROBOT, User, terminals
 

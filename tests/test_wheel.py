@@ -206,7 +206,7 @@ from pathlib import Path
 from kit.host.node_process import NodeProcess
 from kit.host.student_functions import StudentFunctions
 from kit.ros.graph.graph import Graph
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.sandbox.probe import is_level_available
 for level in Level:
     if is_level_available(level):

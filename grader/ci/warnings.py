@@ -7,7 +7,7 @@ from typing import Final
 
 from grader.assignment import TEACHERS_STEMS, Assignment
 from grader.ci.ci_service import CiService
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.plain_text import join_names
 
 HOSTED_LEVEL: Final = Level.FILTERED

@@ -31,13 +31,14 @@ from grader.cohort.queue import (
 )
 from grader.grading import GradingOptions
 from grader.reports.cleaning import clean_line, spreadsheet_cell
-from kit.cli.options import ExistingPath, describe_error, executor_options
+from kit.cli.messages import describe_error
+from kit.cli.options import ExistingPath, executor_options
 from kit.document.blocks import CellStyle, Column, Table
 from kit.document.layout import lines_of
 from kit.host.job_executors import ExecutorUnavailable, read_shard
 from kit.host.job_folder import JobExecutor, serve_keys
 from kit.host.sandbox import probe
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.school.game.levels import UnknownLevel, find_level
 from kit.workspace import write_atomically
 

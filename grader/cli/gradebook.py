@@ -24,7 +24,8 @@ from grader.cohort.marks import read_marks
 from grader.cohort.queue import Queue, QueueError
 from grader.cohort.roster import read_roster
 from grader.cohort.statistics import class_document
-from kit.cli.options import ExistingPath, describe_error
+from kit.cli.messages import describe_error
+from kit.cli.options import ExistingPath
 from kit.document.layout import document_lines, lines_of
 from kit.plain_text import counted
 from kit.workspace import write_atomically

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import click
 
-from kit.cli.options import ExistingPath, on_terminal
+from kit.cli.messages import on_terminal
+from kit.cli.options import ExistingPath
 
 if TYPE_CHECKING:
     from grader.assignment import Assignment
-    from kit.host.sandbox.confinement import Level
+    from kit.host.sandbox.sandbox_config import Level
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -94,8 +95,8 @@ def level_for_untrusted(
     is graded, and else the assignment's; at least 1 in any case.
     """
     from grader import grading
-    from kit.host.sandbox.confinement import Level
     from kit.host.sandbox.probe import highest_level_up_to
+    from kit.host.sandbox.sandbox_config import Level
 
     level = grading.level_for_untrusted(assignment, to_level(text))
     if text is None and (secret or for_class):
@@ -107,8 +108,8 @@ def level_for_untrusted(
 
 def to_level(text: str | None) -> Level | None:
     """Returns the level that was asked for; None where none was. ``highest``: of this machine, but never below 1."""
-    from kit.host.sandbox.confinement import Level
     from kit.host.sandbox.probe import highest_level_up_to
+    from kit.host.sandbox.sandbox_config import Level
 
     if text == "highest":
         return max(Level.FILTERED, highest_level_up_to(Level.ANOTHER_USER))

@@ -27,7 +27,7 @@ from kit.field_types import check_field_types
 from kit.host.job_executors import MAX_TRIES, read_result
 from kit.host.job_folder import JobFolder
 from kit.host.python_command import python_command
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import (
     PUBLIC_SEEDS,
     SCHEMA,

@@ -2,207 +2,38 @@
 
 from __future__ import annotations
 
-import math
 import random
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
-import numpy as np
-
 from grader.assignment import Shift, Trial
-from grader.driving.drive_record import GradedDrive, TopicTraffic
+from grader.driving.drive_record import GradedDrive
+from grader.driving.restricted_runner import RestrictedRunner
 from grader.driving.service_calls import ServiceCaller
+from grader.driving.traffic import MAX_PRINTED_LINES, PrintedRecorder, TrafficRecorder
 from grader.evidence.contract import EpisodeSpec, EvidenceRecord
 from grader.evidence.submission_clock import SubmissionClock
-from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.wire import printable
-from kit.msg.message import Message, type_name
-from kit.msg.robot_kit_msgs import GetState
-from kit.msg.sensor_msgs import LaserScan
-from kit.msg.std_msgs import Bool
 from kit.ros.graph.connections import ConnectionsReader, NodeConnections
-from kit.ros.graph.directory import GraphNode
 from kit.ros.graph.graph import Graph
 from kit.run.episode import EndReason, controller_arguments, run_until, when_failed, when_reached
 from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Fingerprint, Recorder
-from kit.run.runner import GET_STATE_SERVICE, Runner
 from kit.run.scenario import Scenario
 from kit.sim.plugins.laser import LaserParams
-from kit.sim.simulation import Simulation, SimulationError
+from kit.sim.simulation import Simulation
 from kit.world.records import Model, World
 
 STEP: Final = 0.01
 """s"""
 TICKS_PER_SECOND: Final = round(1 / STEP)
-
-GET_STATE: Final = GET_STATE_SERVICE.removeprefix("/")
-"""The service that tells the true state of the world, as an assignment names it."""
-
-HOME_TOLERANCE: Final = 1e-6
-"""A robot may be moved to within this distance of its home [m, rad], and nowhere else."""
-
-MAX_PRINTED_LINES: Final = 200
-"""Lines of a program's output that are kept."""
-
-
-class RestrictedRunner(Runner):
-    """A runner whose world services are restricted by the assignment, and whose clock no program can pause.
-
-    The true state of the world is not offered, unless the assignment names its topic or its service.
-    """
-
-    def __init__(
-        self,
-        simulation: Simulation,
-        graph: Graph,
-        services: frozenset[str],
-        topics: frozenset[str] = frozenset(),
-    ) -> None:
-        self._services = services
-        self._home: tuple[str | None, Pose] = (None, Pose())
-        self.refused: list[str] = []
-        super().__init__(simulation, graph, offered_truths=topics | (services & {GET_STATE}))
-
-    def count_hidden_clients(self) -> None:
-        """Counts clients of the service for the true state of the world, which is not offered, as refused."""
-        if not self.offers_truth(GET_STATE_SERVICE):
-            self.refused += [
-                GET_STATE
-                for node in self.graph.directory.nodes
-                for client in node.clients
-                if client.service_name == GET_STATE_SERVICE and client.srv_type is GetState
-            ]
-
-    def allow_home(self, robot: str | None, home: Pose) -> None:
-        """Sets the robot and the home it may be moved to."""
-        self._home = robot, home
-
-    def call_service(self, service: str, *arguments: Any) -> None:
-        if not self._is_allowed(service, arguments):
-            self.refused.append(service)
-            raise SimulationError(f"{service} is not allowed while a program is graded")
-        super().call_service(service, *arguments)
-
-    def call_unrestricted(self, service: str, *arguments: Any) -> None:
-        """Calls a service without the restrictions, for the grader itself."""
-        super().call_service(service, *arguments)
-
-    @property
-    def paused(self) -> bool:
-        return False
-
-    @paused.setter
-    def paused(self, value: bool) -> None:
-        if value:
-            self.refused.append("pause")
-
-    def _is_allowed(self, service: str, arguments: tuple[Any, ...]) -> bool:
-        if service not in self._services:
-            return False
-        if service != "move_model":
-            return True
-        robot, home = self._home
-        name, pose = arguments
-        return name == robot and all(
-            abs(wanted - allowed) <= HOME_TOLERANCE for wanted, allowed in zip(pose, home, strict=True)
-        )
-
-
-class TrafficRecorder:
-    """Counts the messages on each topic that nodes other than the world's own publish, second by second, and notes what the
-    lasers of the world measured ahead, what the program's booleans said and how much it told was left."""
-
-    def __init__(self, graph: Graph, world_node: GraphNode | None) -> None:
-        self._world_node = world_node
-        self._counts: dict[tuple[str, str], Counter[int]] = {}
-        self._nodes: dict[tuple[str, str], set[str]] = {}
-        self._ahead: dict[str, list[tuple[float, float, float]]] = {}
-        self._flags: dict[str, dict[int, bool]] = {}
-        self._remaining: dict[str, dict[int, float]] = {}
-        self.stop = graph.add_message_listener(self._on_message)
-
-    def _on_message(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
-        if node is self._world_node:
-            if isinstance(message, LaserScan) and message.ranges:
-                self._ahead.setdefault(name, []).append((time_ns / 1e9, *_ranges_ahead(message)))
-            return
-        if isinstance(message, Bool):
-            self._flags.setdefault(name, {})[time_ns] = bool(message.data)
-        remaining = getattr(getattr(message, "feedback", None), "remaining", None)
-        if isinstance(remaining, float):
-            self._remaining.setdefault(name, {})[time_ns] = remaining
-        key = name, type_name(type(message))
-        self._counts.setdefault(key, Counter())[time_ns // 10**9] += 1
-        self._nodes.setdefault(key, set()).add(node.handle.full_name)
-
-    def traffic(self) -> Mapping[str, TopicTraffic]:
-        return {
-            name: TopicTraffic(kind, counts.total(), tuple(sorted(self._nodes[name, kind])), counts)
-            for (name, kind), counts in sorted(self._counts.items(), key=lambda each: each[0])
-        }
-
-    def ahead(self) -> Mapping[str, FloatArray]:
-        """Returns (k, 3) for each laser's topic; see ``GradedDrive``."""
-        return {name: np.array(rows, dtype=np.float64) for name, rows in self._ahead.items()}
-
-    def flags(self) -> Mapping[str, FloatArray]:
-        """Returns (k, 2) for each topic of booleans; see ``GradedDrive``."""
-        return _by_time(self._flags)
-
-    def remaining(self) -> Mapping[str, FloatArray]:
-        """Returns (k, 2) for each topic of an action's feedback; see ``GradedDrive``."""
-        return _by_time(self._remaining)
-
-
-def _by_time(values: Mapping[str, Mapping[int, float]]) -> Mapping[str, FloatArray]:
-    return {
-        name: np.array([(time_ns / 1e9, value) for time_ns, value in said.items()], dtype=np.float64)
-        for name, said in values.items()
-    }
-
-
-AHEAD: Final = math.radians(60)
-"""What a scan sees within this angle to either side of its middle may be called ahead [rad]."""
-
-
-def _ranges_ahead(scan: LaserScan) -> tuple[float, float]:
-    """Returns the range of the ray in the middle, and the nearest of those within ``AHEAD`` of it [m]; nan for none."""
-    middle, count = len(scan.ranges) // 2, round(AHEAD / abs(scan.angle_increment or math.inf))
-    near = [each for each in scan.ranges[max(0, middle - count) : middle + count + 1] if each == each]
-    return float(scan.ranges[middle]), float(min(near, default=math.nan))
-
-
-class PrintedRecorder:
-    """Takes what a program prints second by second, since its lines carry no time of their own."""
-
-    def __init__(self, program: NodeProcess) -> None:
-        self._program = program
-        self._lines: list[str] = []
-        self._seconds: list[int] = []
-
-    def take(self, second: int) -> None:
-        """Takes what was printed since the last call; of all that, the first lines are kept."""
-        for line in self._program.take_output().lines[: MAX_PRINTED_LINES - len(self._lines)]:
-            self._lines.append(printable(line.text))
-            self._seconds.append(second)
-
-    @property
-    def lines(self) -> tuple[str, ...]:
-        return tuple(self._lines)
-
-    @property
-    def seconds(self) -> tuple[int, ...]:
-        """The second of the episode in which each line was printed."""
-        return tuple(self._seconds)
 
 
 @dataclass(slots=True)

@@ -16,7 +16,7 @@ from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, Trial
 from grader.evidence.submission_clock import SubmissionClock
 from grader.seeds import SeedSet, counterpart_seed
 from kit.host.failure import Failure, FailureKind
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 
 
 @dataclass(frozen=True, slots=True)

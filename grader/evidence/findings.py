@@ -17,7 +17,7 @@ from grader.assignment import Criterion
 from grader.evidence.contract import Evidence, EvidenceCollector
 from kit.field_types import check_field_types
 from kit.host.failure import Failure, FailureKind, StudentCodeError
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 
 Answer = TypeVar("Answer")
 FailureData = dict[str, str | int | None]

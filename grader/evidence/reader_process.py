@@ -11,19 +11,15 @@ import subprocess
 import time
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import Any, Final, Self
 
 from grader.submitted_files import SubmissionUnreadable
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.private_folder import make_private_folder
 from kit.host.python_command import python_command
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import GIB
 from kit.host.sandbox.reaper import remove_folder
-
-if TYPE_CHECKING:
-    pass
-
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
 
 _CONFINED: Final = "confined"
 """The word on the process's command line that has it confine itself."""

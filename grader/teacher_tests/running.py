@@ -18,7 +18,7 @@ from grader.scoring import status_of_failure
 from grader.teacher_tests.deadline import TestDeadline, TestTimeUsedUp
 from grader.teacher_tests.reading import MARK_HELP
 from kit.host.failure import Failure
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.wire import Json
 from kit.results.grading_result import CriterionStatus
 

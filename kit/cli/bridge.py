@@ -23,7 +23,7 @@ from kit.bridge.motion_guard import SpeedLimit
 from kit.bridge.shutdown import ShutdownDeadline
 from kit.bridge.wire import BridgeError, BridgeRoute, Direction, DryRunWire, RemoteEndpoint, Wire
 from kit.bridge.zenoh_wire import DEFAULT_ENDPOINT, ZenohAddress, ZenohWire
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.ros.world_client import connect_to_world
 from kit.plain_text import escape_controls
 
@@ -156,7 +156,7 @@ def with_bridge_options(function: Callable[..., Any]) -> Callable[..., Any]:
         try:
             function(BridgeRequest(settings, dry_run, listed, every, world, workspace), **rest)
         except BridgeError as problem:
-            options.fail(str(problem))
+            messages.fail(str(problem))
 
     return verb
 

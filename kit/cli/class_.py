@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import options, report_output
+from kit.cli import messages, report_output
 from kit.plain_text import escape_controls, suggestion
 from kit.school.form_reading import read_form
 from kit.school.lessons.reading import UnknownLesson, find_lesson
@@ -66,12 +66,12 @@ def report(
     wanted = tuple(part.strip() for part in (only or "").split(",") if part.strip())
     for each in wanted:
         if each not in CHAPTER_IDS:
-            options.fail(f"There is no chapter {each!r}: {suggestion(each, CHAPTER_IDS)}")
+            messages.fail(f"There is no chapter {each!r}: {suggestion(each, CHAPTER_IDS)}")
     with report_output.explained_errors():
         roster = read_roster(files, use_names=names)
         if not roster.students:
             click.echo(escape_controls("\n".join(roster.warnings)), err=True)
-            options.say(
+            messages.say(
                 "None of the files contains a student's progress. `kit progress export FILE` creates one.",
                 err=True,
             )
@@ -94,8 +94,8 @@ def guide(lessons: tuple[str, ...]) -> None:
         try:
             names = [find_lesson(each).name for each in lessons]
         except UnknownLesson as error:
-            options.fail(str(error))
-        click.echo(options.replace_unencodable(teachers_guide(names)), nl=False)
+            messages.fail(str(error))
+        click.echo(messages.replace_unencodable(teachers_guide(names)), nl=False)
 
 
 def _items() -> Mapping[str, ReportItem]:

@@ -7,7 +7,7 @@ from typing import Final
 import click
 from click.shell_completion import get_completion_class
 
-from kit.cli import options
+from kit.cli import messages
 
 SHELLS: Final = ("bash", "zsh", "fish")
 PROGRAMS: Final = ("kit", "grader")
@@ -28,7 +28,7 @@ def command(context: click.Context, shell: str) -> None:
     """
     completion = get_completion_class(shell)
     if completion is None:
-        options.fail(f"click has no completion for {shell}.")
+        messages.fail(f"click has no completion for {shell}.")
     root = context.find_root().command
     if shell in PREPARATION:
         click.echo(PREPARATION[shell])

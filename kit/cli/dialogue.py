@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.full_screen import show_dialogue
 from kit.cli.input_lines import InputBuffer, InputLines
 from kit.dialogue.dialogue import Dialogue, DialogueAction, Turn
@@ -252,4 +252,4 @@ def _say(blocks: Sequence[Block]) -> None:
 
 def _echo(lines: Sequence[str]) -> None:
     for line in lines:
-        click.echo(options.replace_unencodable(line))
+        click.echo(messages.replace_unencodable(line))

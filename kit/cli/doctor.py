@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Final
 import click
 
 import kit
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.full_screen import show_screen
 from kit.document.blocks import labelled_table
 from kit.document.layout import lines_of
 from kit.extensions import GROUPS, checked, installed_extensions, name_conflicts
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe_levels
 from kit.host.sandbox.promises import promises_since
+from kit.host.sandbox.sandbox_config import Level
 from kit.installation import (
     DISTRIBUTION,
     foreign_distributions,
@@ -207,7 +207,7 @@ def _class_findings(students: int) -> Iterator[Finding]:
     try:
         machine, cost = this_machine(), measure_costs()
     except NotMeasured as error:
-        options.fail(f"--class: {error}.")
+        messages.fail(f"--class: {error}.")
     section = "Measured here"
     yield Finding(
         section, "machine", f"{counted(machine.cores, 'core')}, {_gigabytes(machine.memory_bytes)} free"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import learning_options, options
+from kit.cli import learning_options, messages, options
 from kit.document.layout import Page, lines_of
 from kit.learning.policies.episode_paths import record_paths
 from kit.learning.policies.evaluation import evaluate_on
@@ -22,9 +22,9 @@ from kit.learning.policies.seeds import derive_seed
 from kit.learning.policies.sweep import PolicySweep, find_kinds, sweep_blocks, sweep_csv
 from kit.learning.tasks.disturbances import UniformRange
 from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.training.run_folders import find_run
 from kit.learning.training.run_text import comparison_tables
 from kit.learning.training.run_upkeep import draw_test_curves
-from kit.learning.training.runs import find_run
 from kit.render.encode import ENCODERS
 from kit.render.image import draw_image, image_camera, save_image
 from kit.render.world_text import scene_rows
@@ -143,7 +143,7 @@ def command(
         else:
             click.echo(f"{title}: trained on {found.trained_on.title}, {found.steps:,} steps")
             if found.trained_on.has_changed and task is None:
-                options.say(
+                messages.say(
                     f"{found.trained_on.task} has changed since; this tests the task as it was. --task selects the new one."
                 )
             if place.disturbances:
@@ -177,17 +177,17 @@ def _write_node(policy: Policy, file: Path) -> None:
     write_atomically(file, format_policy_node(policy).encode())
     task = policy.trained_on.resolve()
     where = task.maps[0] if task.maps else task.map_cards[0].world_file
-    options.say(f"{file}: `kit play {where} --controller {file}` runs it here, `python3 {file}` on a robot.")
+    messages.say(f"{file}: `kit play {where} --controller {file}` runs it here, `python3 {file}` on a robot.")
 
 
 def _make_package(policy: Policy, name: str, destination: Path | None, workspace: Path | None) -> None:
     try:
         folder = create_policy_package(policy, name, destination or open_workspace(workspace).packages)
     except PackageError as problem:
-        options.fail(str(problem))
+        messages.fail(str(problem))
     where = folder if destination else name
     click.echo(f"{folder}: `kit launch {where} simulation.launch.py` runs it here.")
-    options.say(
+    messages.say(
         f"On a robot: copy it into ~/ros2_ws/src, `colcon build`, then `ros2 launch {name} {name}.launch.py "
         "scan_topic:=/scan cmd_vel_topic:=/cmd_vel`. It needs rclpy and numpy."
     )

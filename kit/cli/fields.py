@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.full_screen import show_screen
 from kit.controllers import find_controller, prepare_workspace
 from kit.run.scenario import Scenario, case_names, find_scenario
@@ -90,7 +90,7 @@ def show(
         try:
             opened_workspace = prepare_workspace(workspace)
         except WorkspaceError as error:
-            options.fail(str(error))
+            messages.fail(str(error))
         scenario = replace(_place(place, case), charges=charges)
         setup = _open_setup(scenario, derived)
         terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
@@ -311,4 +311,4 @@ def _explained_errors() -> Iterator[None]:
     try:
         yield
     except (LookupError, ValueError, WorldError, OSError) as error:
-        options.fail(options.describe_error(error))
+        messages.fail(messages.describe_error(error))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.dialogue import run_dialogue
 from kit.cli.full_screen import show_dialogue
 from kit.document.blocks import Block, Text
@@ -88,7 +88,7 @@ def _show(form: SurveyForm, answers: FormAnswers, phases: list[SurveyPhase]) -> 
                 shown_answer(answers.value(question.id, phase), question) if is_answered else "not asked yet"
             )
             blocks.append(Text(f"{question.text}: {said}", indent=4 if group else 2, hang=2, is_tight=True))
-    click.echo(options.replace_unencodable("\n".join(lines_of(blocks))))
+    click.echo(messages.replace_unencodable("\n".join(lines_of(blocks))))
 
 
 @contextmanager
@@ -96,4 +96,4 @@ def _explained_errors() -> Iterator[None]:
     try:
         yield
     except (ProgressError, WorkspaceError, WorldError, FileNotFoundError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.full_screen import show_levels, show_screen
 from kit.cli.shared_game import guest, host
 from kit.controllers import find_controller, prepare_workspace
@@ -55,7 +55,7 @@ def _open_journal(workspace: Path | None) -> Iterator[tuple[ProgressJournal, Wor
         LeaderboardError,
         FileNotFoundError,
     ) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
 
 
 def _read_summary(journal: ProgressJournal) -> GameSummary:
@@ -72,7 +72,7 @@ def _require_open(journal: ProgressJournal, level: GameLevel) -> None:
     from kit.tui.rows.level_rows import opens_after
 
     if any(each.level == level and not each.is_open for each in _read_summary(journal).levels):
-        options.fail(f"{level.title} {opens_after(level)}. `kit game --plain` lists which levels are open.")
+        messages.fail(f"{level.title} {opens_after(level)}. `kit game --plain` lists which levels are open.")
 
 
 @click.group(invoke_without_command=True)
@@ -146,13 +146,13 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
     first, and targets [x1, y1, x2, y2, ...] lists all in order, lap by lap.
     """
     from kit.learning.policies.policy import PolicyError
-    from kit.learning.training.runs import RunError
+    from kit.learning.training.run_config import RunError
     from kit.school.game.daily import find_playable_level
     from kit.school.game.player_progress import facts_of_program
     from kit.school.game.race import DriverKind, agent_controller, race_from_all_starts
 
     if (controller is None) == (agent is None):
-        options.fail("Give either --controller NAME or --agent RUN. To drive by hand, use `kit game play`.")
+        messages.fail("Give either --controller NAME or --agent RUN. To drive by hand, use `kit game play`.")
     with _open_journal(workspace) as (journal, opened_workspace):
         chosen = find_playable_level(level)
         _require_open(journal, chosen)
@@ -169,7 +169,7 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
                 with agent_controller(policy) as program:
                     drives = race_from_all_starts(chosen, program, on_second=_print_race_time)
         except (LookupError, PolicyError, RunError) as error:
-            options.fail(str(error))
+            messages.fail(str(error))
         finally:
             _print_race_time(0, None)
         _record_drive(journal, opened_workspace, chosen, driver, drives, facts)
@@ -245,7 +245,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                 return
             judgement = chosen.task.judge(HandedIn(answer, opened_workspace.runs, seconds))
         except (LookupError, ChallengeError, OSError) as error:
-            options.fail(options.describe_error(error))
+            messages.fail(messages.describe_error(error))
         record_judgement(journal, chosen, judgement)
         click.echo(f"{judgement.text}\n  {judgement.medal.title}")
 
@@ -277,11 +277,11 @@ def replay(workspace: Path | None, level: str, driver: str | None) -> None:
                 else load_recording(ghost_file(opened_workspace, chosen, DriverKind(name)))
             )
         except FileNotFoundError:
-            options.fail(f"There is no drive of {chosen.title} {DriverKind(name).phrase} yet.")
+            messages.fail(f"There is no drive of {chosen.title} {DriverKind(name).phrase} yet.")
         except (RecordingError, OSError) as error:
-            options.fail(f"This drive cannot be shown: {error}")
+            messages.fail(f"This drive cannot be shown: {error}")
         if recording is None:
-            options.fail(f"{chosen.title} has no reference drive.")
+            messages.fail(f"{chosen.title} has no reference drive.")
         drive, scenario = recording, film_scenario(chosen, recording.seed)
         who = name if name == "reference" else DriverKind(name).phrase
         terminal = options.terminal()
@@ -309,7 +309,7 @@ def leaderboard(workspace: Path | None) -> None:
         found = read_entries(leaderboard_folder())
         click.echo("\n".join(lines_of([*leaderboard_standings(standings(found)), leaderboard_times(found)])))
         if not has_joined(leaderboard_folder()):
-            options.say(
+            messages.say(
                 "You are not on it. `kit game join` adds your name and drives; `kit game leave` removes them."
             )
 
@@ -325,9 +325,9 @@ def join(workspace: Path | None, name: str | None) -> None:
     with _open_journal(workspace) as (journal, opened_workspace):
         player_name = name or journal.student_name
         if not player_name or not player_name.isprintable():
-            options.fail("Give a name: `kit game join --name Ada`.")
+            messages.fail("Give a name: `kit game join --name Ada`.")
         join_leaderboard(journal, opened_workspace, player_name)
-        options.say(
+        messages.say(
             f"{player_name} is on the leaderboard of this machine ({leaderboard_folder()}). `kit game leave` undoes it."
         )
 
@@ -386,7 +386,7 @@ def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[
             recording = load_recording(file)
             return judge_recording(level, recording), recording
         except (RecordingError, OSError, ValueError) as error:
-            options.fail(f"The drive was not saved: {error}")
+            messages.fail(f"The drive was not saved: {error}")
 
 
 def _print_levels(summary: GameSummary) -> None:
@@ -468,7 +468,7 @@ def _record_drive(
     if record.previous_best is not None and finish.reached:
         click.echo(f"Your best before: {record.previous_best:.2f} s.")
     if record.is_best:
-        options.say(
+        messages.say(
             f"Your best so far {driver.phrase}; to replay it: kit game replay {level.command_name} --driver {driver}"
         )
     reference = reference_seconds(level)
@@ -488,7 +488,7 @@ def _record_drive(
 def _find_policy(agent: str, opened_workspace: Workspace) -> tuple[Policy, DriverFacts]:
     """The policy of a training run or a file, and what is known of its training."""
     from kit.learning.policies.policy_file import load_policy
-    from kit.learning.training.runs import find_run
+    from kit.learning.training.run_folders import find_run
     from kit.school.game.player_progress import DriverFacts
 
     file = Path(agent)

@@ -9,7 +9,7 @@ from typing import Final
 
 import click
 
-from kit.cli import options
+from kit.cli import messages
 from kit.cli.lazy_group import LazyGroup
 from kit.document.blocks import Chapter, Document, Tone
 from kit.document.glyphs import WIDTH
@@ -51,11 +51,11 @@ def command(context: click.Context, topic: str | None, chapter: str | None, html
     """
     if html_folder is not None:
         if topic is not None:
-            options.fail("--html writes all pages: leave TOPIC out.")
+            messages.fail("--html writes all pages: leave TOPIC out.")
         try:
             files = write_pages(html_folder)
         except OSError as error:
-            options.fail(options.describe_os_error(error))
+            messages.fail(messages.describe_os_error(error))
         click.echo(f"{len(files)} pages: {files[0]}")
         return
     if topic is None:
@@ -73,7 +73,9 @@ def _part(name: str, chapter: str | None) -> Document:
         return document
     found = {each.id: each for each in document.chapters}
     if chapter not in found:
-        options.fail(f"There is no chapter {quoted(chapter)} in {quoted(name)}: {suggestion(chapter, found)}")
+        messages.fail(
+            f"There is no chapter {quoted(chapter)} in {quoted(name)}: {suggestion(chapter, found)}"
+        )
     return Document(document.title, (found[chapter],))
 
 
@@ -83,7 +85,7 @@ def _print_command_help(context: click.Context, name: str) -> None:
     found = main.get_command(context, name)
     if found is None:
         known = (*topic_names(), *main.list_commands(context))
-        options.fail(f"There is no topic {quoted(name)}: {suggestion(name, known)}")
+        messages.fail(f"There is no topic {quoted(name)}: {suggestion(name, known)}")
     click.echo(found.get_help(found.context_class(found, info_name=name, parent=context.find_root())))
 
 
@@ -106,4 +108,4 @@ def _print_rows(rows: Sequence[Row]) -> None:
             if is_terminal
             else row_text(each)
         )
-        click.echo(options.replace_unencodable(line.rstrip()))
+        click.echo(messages.replace_unencodable(line.rstrip()))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.full_screen import run_screen
 from kit.host.failure import StudentCodeError
 from kit.inspection.sockets import sockets_folder, world_name
@@ -99,7 +99,7 @@ def command(
         file, arguments = _parse_words(words)
         target = find_launch_file(where, file, [opened_workspace.packages])
     except (PackageError, WorkspaceError) as problem:
-        options.fail(str(problem))
+        messages.fail(str(problem))
     if show_args:
         _show_arguments(target)
         return
@@ -137,7 +137,7 @@ def run_launch(
         _run_plainly(target, arguments, opened_workspace, seed, steps, until, speed)
         return
     if screen.refusal is not None:
-        options.fail(screen.refusal)
+        messages.fail(screen.refusal)
     for line in screen.failures:
         click.echo(line, err=True)
     if code or screen.failures:
@@ -149,7 +149,7 @@ def _parse_words(words: Sequence[str]) -> tuple[str | None, dict[str, str]]:
     arguments = dict(word.split(":=", 1) for word in words if ":=" in word)
     rest = [word for word in words if ":=" not in word]
     if len(rest) > 1 or "" in arguments:
-        options.fail(
+        messages.fail(
             f"Arguments look like NAME:=VALUE, without spaces; these do not: {' '.join(rest[1:] or words)}"
         )
     return (rest[0] if rest else None), arguments
@@ -162,7 +162,7 @@ def _show_arguments(target: LaunchTarget) -> None:
     try:
         declared = declared_arguments(target.file, target.folder, target.search)
     except StudentCodeError as error:
-        options.fail(explain_failure(error.failure))
+        messages.fail(explain_failure(error.failure))
     click.echo("Arguments (pass arguments as '<name>:=<value>'):")
     for argument in declared:
         choices = "" if argument.choices is None else f" valid choices are: {list(argument.choices)}"
@@ -209,11 +209,11 @@ def _run_plainly(
             log=lambda record: click.echo(str(record), err=True),
         )
     except StudentCodeError as error:
-        options.fail(explain_failure(error.failure))
+        messages.fail(explain_failure(error.failure))
     except (ProcessStartError, WorldError) as problem:
-        options.fail(str(problem))
+        messages.fail(str(problem))
     except OSError as problem:
-        options.fail(options.describe_os_error(problem))
+        messages.fail(messages.describe_os_error(problem))
     except KeyboardInterrupt:
         raise SystemExit(INTERRUPTED) from None
     if launch.failures:
@@ -275,7 +275,7 @@ def create(
             name, destination or opened_workspace.packages, node=node_name, map_name=map_name
         )
     except (PackageError, UnknownMap) as problem:
-        options.fail(str(problem))
+        messages.fail(str(problem))
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):
         click.echo(f"creating {path}")
     click.echo(f"\nkit launch {folder if destination else name}")
@@ -366,8 +366,8 @@ def _package(found: dict[str, Path], name: str) -> Package:
     if name not in found and name in brought:
         return read_package(brought[name])
     if name not in found:
-        options.fail(f"Package '{name}' not found; available: {', '.join(sorted(found)) or 'none'}.")
+        messages.fail(f"Package '{name}' not found; available: {', '.join(sorted(found)) or 'none'}.")
     try:
         return read_package(found[name])
     except PackageError as problem:
-        options.fail(str(problem))
+        messages.fail(str(problem))

@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.full_screen import show_layers
 from kit.document.blocks import labelled_table
 from kit.document.layout import lines_of
@@ -31,7 +31,8 @@ from kit.layers.flatland.world_patch import PatchError, WorldPatch, apply_patch,
 from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.greedy import GreedyRun, run_greedy
 from kit.layers.plan_data import check_data, graphviz_text, greedy_data, mermaid_text
-from kit.layers.planning import LayerPlan, Relaxation, allow_unwanted, drop_requirements
+from kit.layers.planning import LayerPlan
+from kit.layers.relaxations import Relaxation, allow_unwanted, drop_requirements
 from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import requirements_text
 from kit.plain_text import counted, quoted, suggestion
@@ -327,7 +328,7 @@ def example(name: str | None, on_screen: bool) -> None:
     elif name in EXAMPLES:
         click.echo(requirements_text(EXAMPLES[name]), nl=False)
     else:
-        options.fail(f"There is no example {quoted(name)}: {suggestion(name, EXAMPLES)}")
+        messages.fail(f"There is no example {quoted(name)}: {suggestion(name, EXAMPLES)}")
 
 
 # What the user named
@@ -339,7 +340,7 @@ def _explained_errors() -> Iterator[None]:
     try:
         yield
     except (WorldError, UnknownPlanningTask) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
 
 
 def _apply(task: PlanningTask, world_plan: WorldPlan, patch: WorldPatch, *, quiet: bool) -> None:
@@ -347,7 +348,7 @@ def _apply(task: PlanningTask, world_plan: WorldPlan, patch: WorldPatch, *, quie
     try:
         apply_patch(patch, make_recheck(world_plan, task.source.read, requirements=task.requirements))
     except PatchError as error:
-        options.fail(f"Nothing was written: {error}.")
+        messages.fail(f"Nothing was written: {error}.")
     if patch.files and not quiet:
         count = len(patch.files)
         click.echo(
@@ -361,7 +362,7 @@ def _patch(task: PlanningTask, world_plan: WorldPlan | None, also_shared: bool) 
             "There are no files to patch: give a world, or write `world: FILE` in the requirements."
         )
     if world_plan.size > MAX_LAYERS:
-        options.fail(f"{world_plan.size} layers do not fit in a world file, so there is no patch.")
+        messages.fail(f"{world_plan.size} layers do not fit in a world file, so there is no patch.")
     return build_patch(world_plan, root=task.source.root, also_shared=also_shared)
 
 

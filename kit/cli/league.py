@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.full_screen import show_screen
 from kit.controllers import find_controller, prepare_workspace
 from kit.document.layout import lines_of
@@ -39,7 +39,7 @@ def _open_league(context: click.Context) -> Iterator[tuple[League, Workspace]]:
         opened = prepare_workspace(workspace)
         yield own_league(opened, folder), opened
     except (LeagueError, WorkspaceError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
 
 
 @click.group(invoke_without_command=True)
@@ -108,8 +108,8 @@ def new(folder: Path, title: str, races: tuple[str, ...], tag: tuple[str, ...]) 
         given = bool(races or tag)
         league = League.make(folder, title, races if given else RACES, tag if given else TAG)
     except LeagueError as error:
-        options.fail(str(error))
-    options.say(f"To enter it: kit league --folder {league.folder} submit --controller FILE")
+        messages.fail(str(error))
+    messages.say(f"To enter it: kit league --folder {league.folder} submit --controller FILE")
 
 
 @command.command("submit")
@@ -123,7 +123,7 @@ def submit(context: click.Context, controller: str | None, agent: str | None, na
     from kit.school.game.race import DriverKind
 
     if (controller is None) == (agent is None):
-        options.fail("Give either --controller NAME or --agent RUN.")
+        messages.fail("Give either --controller NAME or --agent RUN.")
     with _open_league(context) as (league, workspace):
         try:
             if controller is not None:
@@ -133,10 +133,10 @@ def submit(context: click.Context, controller: str | None, agent: str | None, na
                 driver, own_name = DriverKind.AGENT, Path(agent or "").stem
                 program = entries.program_of_agent(agent or "", workspace.runs)
         except (LookupError, OSError) as error:
-            options.fail(options.describe_error(error))
+            messages.fail(messages.describe_error(error))
         league.programme()
         entries.submit(league.folder, name or own_name, driver, program)
-        options.say(f"{name or own_name} is entered. `kit league run` drives its matches.")
+        messages.say(f"{name or own_name} is entered. `kit league run` drives its matches.")
 
 
 @command.command("withdraw")
@@ -148,7 +148,7 @@ def withdraw(context: click.Context, name: str) -> None:
 
     with _open_league(context) as (league, _):
         entries.withdraw(league.folder, name)
-        options.say(f"{name} is withdrawn.")
+        messages.say(f"{name} is withdrawn.")
 
 
 @command.command("run")
@@ -165,19 +165,19 @@ def run(context: click.Context, level: str | None, executor: JobExecutor) -> Non
     Exit code: 0 all matches are driven; 1 some are not; 2 the league cannot be run.
     """
     from kit.host.job_executors import ExecutorUnavailable
-    from kit.host.sandbox.confinement import Level
     from kit.host.sandbox.probe import is_level_available
+    from kit.host.sandbox.sandbox_config import Level
 
     with _open_league(context) as (league, _):
         if not league.is_mine:
-            options.fail(
+            messages.fail(
                 f"{league.folder} belongs to another user: only results of its owner count, so its owner runs it."
             )
         if level is not None:
             league.confine(Level(int(level)))
         confinement = league.programme().confinement
         if not is_level_available(confinement):
-            options.fail(
+            messages.fail(
                 f"This machine cannot confine programs at level {confinement:d}. If all of them are your own: kit league run --level 0"
             )
         keys = league.waiting()
@@ -192,12 +192,12 @@ def run(context: click.Context, level: str | None, executor: JobExecutor) -> Non
         try:
             executor.run(league, keys, count)
         except (ExecutorUnavailable, OSError) as error:
-            options.fail(options.describe_error(error))
+            messages.fail(messages.describe_error(error))
         if done and sys.stderr.isatty():
             click.echo("", err=True)
         _print_standings(league)
         if left := league.waiting():
-            options.say(f"{counted(len(left), 'job')} left no result: run it again.", err=True)
+            messages.say(f"{counted(len(left), 'job')} left no result: run it again.", err=True)
             raise SystemExit(INCOMPLETE)
 
 
@@ -229,7 +229,7 @@ def replay(context: click.Context, number: int) -> None:
     with _open_league(context) as (league, _):
         found = read_standings(league).matches
         if number > len(found):
-            options.fail(f"There are only matches 1 to {len(found)}; `kit league matches` lists them.")
+            messages.fail(f"There are only matches 1 to {len(found)}; `kit league matches` lists them.")
         match = found[number - 1]
         terminal = options.terminal()
         if terminal.plain.value:
@@ -284,11 +284,11 @@ def work(league_folder: Path, shard: str | None) -> None:
             return
         share = read_shard(shard)
         if share is None:
-            options.fail(f"{shard}: give the share and the number of shares, counting from 0, such as 0/4.")
+            messages.fail(f"{shard}: give the share and the number of shares, counting from 0, such as 0/4.")
         for key in league.waiting(share):
             league.run_job(key)
     except LeagueError as error:
-        options.fail(str(error))
+        messages.fail(str(error))
 
 
 def _print_standings(league: League) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 import click
 
-from kit.cli import options
+from kit.cli import messages
 from kit.controllers import find_controller
 from kit.host.failure import StudentCodeError
 from kit.learning.maps.batch_map import UnsupportedWorld
@@ -21,9 +21,11 @@ from kit.learning.policies.policy_file import load_policy
 from kit.learning.tasks.disturbances import DISTURBANCE_KINDS, DisturbanceError, DisturbanceKind, UniformRange
 from kit.learning.tasks.learning_task import LearningTask, UnknownTask
 from kit.learning.tasks.student_reward import RewardFileError
-from kit.learning.training.algorithms import LearnExtraMissing, UnknownAlgorithm, UnsuitableAlgorithm
+from kit.learning.training.algorithms import UnknownAlgorithm, UnsuitableAlgorithm
 from kit.learning.training.demonstrations import DemonstrationError
-from kit.learning.training.runs import NO_LIMIT, RunError, find_run
+from kit.learning.training.learn_extra import LearnExtraMissing
+from kit.learning.training.run_config import NO_LIMIT, RunError
+from kit.learning.training.run_folders import find_run
 from kit.plain_files import near_file
 from kit.run.recording import RecordingError
 from kit.workspace import WorkspaceError, open_workspace
@@ -138,7 +140,7 @@ def explained_errors() -> Iterator[None]:
     try:
         yield
     except UnknownAlgorithm as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     except (
         StudentCodeError,
         LearnExtraMissing,
@@ -151,14 +153,14 @@ def explained_errors() -> Iterator[None]:
         UnsuitableAlgorithm,
         UnsupportedWorld,
     ) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     except WorldError as error:
         count = len(error.problems)
-        options.fail(str(error) if count == 1 else f"{error}\n\n{count} problems")
+        messages.fail(str(error) if count == 1 else f"{error}\n\n{count} problems")
     except (UnknownTask, WorkspaceError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     except OSError as error:
-        options.fail(options.describe_os_error(error))
+        messages.fail(messages.describe_os_error(error))
 
 
 def runs_folder(workspace: Path | None) -> Path:

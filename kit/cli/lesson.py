@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from kit.cli import VERBS, options
+from kit.cli import VERBS, messages, options
 from kit.cli.dialogue import Way, run_dialogue
 from kit.cli.full_screen import show_lesson, show_lessons
 from kit.cli.input_lines import InputBuffer
@@ -136,7 +136,7 @@ def command(
         WorldError,
         FileNotFoundError,
     ) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
 
 
 def _print_contract(folder: Path) -> NoReturn:
@@ -148,7 +148,7 @@ def _print_contract(folder: Path) -> NoReturn:
         for line in each.problem.splitlines():
             click.echo(f"     {escape_controls(line)}")
     if not findings:
-        options.fail(f"{folder}: there is no lesson.yaml in it or in a folder below it.")
+        messages.fail(f"{folder}: there is no lesson.yaml in it or in a folder below it.")
     broken = sum(not each.is_kept for each in findings)
     click.echo(f"\n{counted(len(findings), 'thing')} checked, {broken} to fix.")
     raise SystemExit(1 if broken else 0)
@@ -158,7 +158,7 @@ def _only_lesson(folder: Path) -> str | None:
     """The only lesson in a folder; else prints which there are."""
     found = lesson_folders(folder)
     if not found:
-        options.fail(f"{folder}: there is no lesson.yaml in it or in a folder below it.")
+        messages.fail(f"{folder}: there is no lesson.yaml in it or in a folder below it.")
     if len(found) == 1:
         return found[0].name
     for each in found:
@@ -368,5 +368,5 @@ def glossary_command(term: tuple[str, ...]) -> None:
         terms = read_glossary()
         shown = find_terms(terms, " ".join(term)) if term else terms
     except (UnknownTerm, WorldError, FileNotFoundError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     click.echo("\n".join(lines_of(glossary_blocks(shown))))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.dialogue import run_dialogue
 from kit.cli.full_screen import run_screen
 from kit.cli.process import ScreenClosed
@@ -112,7 +112,7 @@ def show(name: str, glyphs: str | None) -> None:
         own = None if name in map_names() else _own_card_of(name, own_card, WORLD_FILE)
         _show_card(own or find_map(name), glyphs)
     except (UnknownMap, WorldError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
 
 
 def _own_card_of(name: str, own_card: Any, world_file: str) -> MapCard | None:
@@ -138,7 +138,7 @@ def _show_card(card: MapCard, glyphs: str | None, paths: tuple[ScenePath, ...] =
     click.echo("\n".join(scene_rows(scene, columns - 1, max(10, rows - 6), ENCODERS[chosen](True))))
     for case in card.cases:
         x, y, theta = case.start
-        options.say(
+        messages.say(
             f"{case.name}: from ({x:g}, {y:g}, {theta:g} rad) to within {case.target_radius:g} m of "
             f"({case.target[0]:g}, {case.target[1]:g})"
         )
@@ -205,11 +205,11 @@ def new(
         made = write_map(folder, plan, title=_title(name), source="drawn in characters", is_pair=pair)
         scale = _drawing_scale(plan, cell)
     except UnicodeDecodeError:
-        options.fail(f"{drawing} is not text. To read a photograph, use `kit maps from-photo {drawing}`.")
+        messages.fail(f"{drawing} is not text. To read a photograph, use `kit maps from-photo {drawing}`.")
     except OSError as error:
-        options.fail(options.describe_os_error(error))
+        messages.fail(messages.describe_os_error(error))
     except (MapExists, DrawingError, NoRoute, WorkspaceError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     _report(made, scale, glyphs)
 
 
@@ -364,14 +364,14 @@ def from_photo(
             overlay=tinted,
         )
     except OSError as error:
-        options.fail(options.describe_os_error(error))
+        messages.fail(messages.describe_os_error(error))
     except NoRoute as error:
         shown = Path(f"{folder.name}-overlay.png")
         tinted.save(shown)
         _say_doubts(found)
-        options.fail(f"{error} {shown} shows in red what was read as walls.")
+        messages.fail(f"{error} {shown} shows in red what was read as walls.")
     except (MapExists, PhotoError, WorkspaceError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     width_m, height_m = plan.size
     boxes = (dotted_boxes(each, plan.walls.shape[0], plan.resolution) for each in found.strokes.doubts)
     _report(
@@ -420,12 +420,12 @@ def _say_doubts(found: PhotoPlan) -> None:
     strokes = found.strokes
     if strokes.doubts:
         kinds = " ".join(f"--keep {each.kind}" for each in strokes.doubts)
-        options.say(
+        messages.say(
             f"In doubt: {'; '.join(strokes.remarks)}. What is dotted in the picture, and blue in overlay.png, was left out; "
             f"{kinds} takes it too."
         )
     elif strokes.notes:
-        options.say(f"In doubt: {'; '.join(strokes.notes)}. Compare overlay.png with your drawing.")
+        messages.say(f"In doubt: {'; '.join(strokes.notes)}. Compare overlay.png with your drawing.")
 
 
 def _clicked(photo: Image, name: str, glyphs: str | None, color: str | None) -> Corners:
@@ -483,9 +483,9 @@ def _report(made: NewMap, scale: str, glyphs: str | None, doubtful: tuple[SceneP
     card = own_card(made.folder / WORLD_FILE)
     assert card is not None  # just written
     _show_card(card, glyphs, doubtful)
-    options.say(scale)
+    messages.say(scale)
     x, y = made.route.narrowest
-    options.say(
+    messages.say(
         f"The path from start to target is {made.route.length:.1f} m long; its narrowest passage, {made.route.width:.2f} m wide, "
         f"is at ({x:.2f}, {y:.2f})."
     )

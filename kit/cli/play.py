@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.full_screen import run_screen
 from kit.cli.process import ScreenClosed
 from kit.controllers import find_controller, prepare_workspace
@@ -65,7 +65,7 @@ def command(
         opened_workspace = prepare_workspace(workspace)
         driver = find_controller(controller, opened_workspace.controllers)
     except (LookupError, WorkspaceError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
     socket_dir = sockets_folder(opened_workspace.folder)
     if terminal.plain.value:
@@ -77,7 +77,7 @@ def command(
         try:
             where = find_scenario(place, case, root)
         except (LookupError, WorldError) as error:
-            options.fail(str(error))
+            messages.fail(str(error))
         kept = options.recording_file(record)
         line_by_line = PlainSession(
             where,
@@ -91,7 +91,7 @@ def command(
         try:
             run_plain_session(line_by_line)
         except OSError as error:
-            options.fail(options.describe_os_error(error))
+            messages.fail(messages.describe_os_error(error))
         return
     kept = options.recording_file(record)
 
@@ -119,6 +119,6 @@ def command(
         try:
             kept.complete(recording)
         except OSError as error:
-            options.fail(options.describe_os_error(error))
+            messages.fail(messages.describe_os_error(error))
         click.echo(f"Drive saved to {record}.")
     raise ScreenClosed(code)

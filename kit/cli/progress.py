@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text
 from kit.document.layout import lines_of
 from kit.document.rows import row_text
@@ -31,7 +31,7 @@ def _open_journal(workspace: Path | None) -> Iterator[ProgressJournal]:
         with options.open_journal(open_workspace(workspace)) as journal:
             yield journal
     except (ProgressError, WorkspaceError, WorldError, FileNotFoundError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
 
 
 @click.group(invoke_without_command=True)
@@ -78,7 +78,7 @@ def name_yourself(workspace: Path | None, name: str) -> None:
     """Set your name, for the leaderboard and your exports."""
     shown = " ".join(name.split())
     if not 1 <= len(shown) <= 40 or not shown.isprintable():
-        options.fail("A name has 1 to 40 printable characters.")
+        messages.fail("A name has 1 to 40 printable characters.")
     with _open_journal(workspace) as journal:
         journal.add(EventKind.ABOUT, "name", {"value": shown})
         click.echo(f"Your name is {shown}.")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.dialogue import run_dialogue
 from kit.cli.full_screen import show_dialogue
 from kit.document.blocks import Text
@@ -89,14 +89,14 @@ def command(
             else:
                 show_dialogue(QuizDialogue(session), terminal)
     except ProgressError as error:
-        options.fail(str(error))
+        messages.fail(str(error))
 
 
 def _read_bank() -> QuestionBank:
     try:
         return read_bank()
     except (WorldError, FileNotFoundError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
 
 
 def _choose_plan(bank: QuestionBank, lesson: str | None, today: bool) -> QuestionPlan:
@@ -105,14 +105,14 @@ def _choose_plan(bank: QuestionBank, lesson: str | None, today: bool) -> Questio
             return PracticePlan(bank)
         return quiz_plan(bank) if lesson is None else lesson_plan(bank, bank.find_lesson(lesson))
     except LessonWithoutQuestions as error:
-        options.fail(str(error))
+        messages.fail(str(error))
 
 
 def _open_journal(workspace: Path | None) -> ProgressJournal:
     try:
         return options.open_journal(open_workspace(workspace))
     except WorkspaceError as error:
-        options.fail(str(error))
+        messages.fail(str(error))
 
 
 def _start_session(
@@ -128,7 +128,7 @@ def _print_scores(bank: QuestionBank, workspace: Path | None) -> None:
             with _open_journal(workspace) as journal:
                 events = journal.events()
     except ProgressError as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     schedule = build_schedule(bank, events, local_now())
     click.echo("\n".join(lines_of(scores_blocks(bank, answers_from_events(events), schedule))))
 

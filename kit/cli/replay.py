@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Literal
 import click
 import numpy as np
 
-from kit.cli import learning_options, options
+from kit.cli import learning_options, messages, options
 from kit.cli.full_screen import show_screen
 from kit.learning.policies.policy import Policy
 from kit.learning.policies.policy_file import load_policy
-from kit.learning.training.runs import find_run
+from kit.learning.training.run_folders import find_run
 from kit.plain_text import escape_controls
 from kit.run.animation import AnimationSettings, ExportError, count_frames, export_recording
 from kit.run.recording import Recording, RecordingError, load_recording, rerun
@@ -105,9 +105,9 @@ def command(
         recording = load_recording(file)
         scenario = _scenario(recording, file, root)
     except (RecordingError, LookupError, WorldError, CannotShare) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     except OSError as error:
-        options.fail(options.describe_os_error(error))
+        messages.fail(messages.describe_os_error(error))
     if exported is not None:
         _export(
             recording,
@@ -131,7 +131,7 @@ def command(
     try:
         again = rerun(recording, scenario.world)
     except RecordingError as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     seconds = recording.ticks * recording.step_size
     click.echo(
         f"{scenario.title}: {recording.ticks} ticks, {seconds:.2f} s, {len(recording.inputs)} inputs, seed {recording.seed}"
@@ -144,7 +144,7 @@ def command(
         if again.poses.shape == recording.poses.shape
         else [0]
     )
-    options.say(
+    messages.say(
         f"not the same run: the poses differ from row {differing_rows[0]} on. Has the world changed since?"
     )
     raise SystemExit(1)
@@ -186,7 +186,7 @@ def _export(recording: Recording, scenario: Scenario, file: Path, settings: Anim
         with click.progressbar(length=count, label=file.name, file=sys.stderr) as progress:
             export_recording(recording, scenario, file, settings, on_frame=lambda: progress.update(1))
     except (ExportError, RecordingError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     except OSError as error:
-        options.fail(options.describe_os_error(error))
+        messages.fail(messages.describe_os_error(error))
     click.echo(f"{file}: {count} frames, {file.stat().st_size / 1e3:,.0f} kB")

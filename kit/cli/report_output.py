@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.school.progress import ProgressError
 from kit.workspace import write_atomically
 from kit.world.problems import WorldError
@@ -133,7 +133,7 @@ def write_outputs(made: Document, outputs: ReportOutputs, *, printed: Document |
             if outputs.glyphs == "ascii" or (outputs.glyphs is None and not _can_encode_blocks())
             else BLOCK_GLYPHS
         )
-        click.echo(options.replace_unencodable("\n".join(document_lines(printed or made, chosen))))
+        click.echo(messages.replace_unencodable("\n".join(document_lines(printed or made, chosen))))
 
 
 def _write(files: Mapping[Path, str]) -> None:
@@ -166,6 +166,6 @@ def explained_errors() -> Iterator[None]:
     except BrokenPipeError:
         raise  # whoever read the output has enough; click ends quietly
     except OSError as error:
-        options.fail(options.describe_os_error(error))
+        messages.fail(messages.describe_os_error(error))
     except (ProgressError, WorldError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.options import Storage
 from kit.controllers import find_controller, kit_controllers
 from kit.document.blocks import Picture, labelled_table
@@ -104,7 +104,7 @@ def command(
     try:
         opened_workspace = open_workspace(workspace, make=False)
     except WorkspaceError as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     participants: list[Callable[[Graph], ClosableParticipant]] = []
     if serve:
         participants.append(
@@ -134,9 +134,9 @@ def command(
                 streams=streams,
             )
     except (LookupError, WorldError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     except OSError as error:
-        options.fail(options.describe_os_error(error))
+        messages.fail(messages.describe_os_error(error))
     click.echo(json.dumps(summary.as_dict(), indent=2) if as_json else format_summary(summary))
     is_own = driver.file not in {each.file for each in kit_controllers()}
     if is_own or summary.metrics.distance_m < STANDS_STILL_M:  # the kit's controllers need not hear all

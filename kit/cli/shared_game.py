@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.full_screen import run_screen
 from kit.cli.process import ScreenClosed
 from kit.controllers import prepare_workspace
@@ -55,7 +55,7 @@ def host(
         shared_scenario(chosen)
         audience = Audience.of_group(group) if group is not None else Audience(everybody=everybody)
     except (UnknownLevel, WorkspaceError, WorldError, CannotShare, SharedGameError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     terminal = options.full_screen("A shared game")
     mode = SharedMode.TAG if tag else SharedMode.RACE
 
@@ -73,7 +73,7 @@ def host(
             file.parent.mkdir(exist_ok=True)
             save_recording(film, file)
         except OSError as error:
-            options.fail(options.describe_os_error(error))
+            messages.fail(messages.describe_os_error(error))
         click.echo(f"To replay this game: kit replay {file}")
     raise ScreenClosed(code)
 
@@ -87,7 +87,7 @@ def guest(workspace: Path | None, game: str | None, name: str | None) -> None:
     try:
         own_workspace = prepare_workspace(workspace)
     except WorkspaceError as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     join_shared_game(game, name, plays=True, workspace=own_workspace)
 
 
@@ -129,7 +129,7 @@ def join_shared_game(
 
             screen, code = run_screen(terminal, make_screen)
     except (SharedGameError, UnknownLevel, CannotShare, WorldError) as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     if screen.ended:
         click.echo(f"The game has ended: {screen.ended}.")
     raise SystemExit(code)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.full_screen import show_screen
 from kit.document.blocks import labelled_table
 from kit.document.layout import lines_of
@@ -45,7 +45,7 @@ def command(seed: int, workspace: Path | None, plain: bool, glyphs: str | None, 
     try:
         opened_workspace = prepare_workspace(workspace)
     except WorkspaceError as error:
-        options.fail(str(error))
+        messages.fail(str(error))
     terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
     if terminal.plain.value:
         click.echo(f"The kit, line by line. {terminal.plain.reason}")

@@ -8,20 +8,21 @@ from typing import Final
 
 import click
 
-from kit.cli import learning_options, options, report_output
+from kit.cli import learning_options, messages, options, report_output
 from kit.cli.sweep import run_sweep
 from kit.document.blocks import Document
 from kit.host.job_executors import ExecutorUnavailable
 from kit.host.job_folder import JobExecutor
-from kit.learning.training.algorithms import require_learn_extra
-from kit.learning.training.runs import RunError
+from kit.learning.training.learn_extra import require_learn_extra
+from kit.learning.training.run_config import RunError
 from kit.study import study_document
 from kit.study.printed_tables import study_chapters
-from kit.study.recorded_results import VARIANT_OPTIONS, RecordedResultError, StudyVariant
+from kit.study.recorded_results import RecordedResultError
 from kit.study.study_check import check_document
 from kit.study.study_document import DOCUMENT
 from kit.study.study_report import duration_text
 from kit.study.study_runs import StudyRun
+from kit.study.study_variants import VARIANT_OPTIONS, StudyVariant
 from kit.workspace import Workspace
 
 
@@ -104,7 +105,7 @@ def command(
             kind, wanted = _read_number(number)
             if again:
                 if by_kit and no_limit:
-                    options.fail("--kit and --no-limit are two ways to train: give one of them.")
+                    messages.fail("--kit and --no-limit are two ways to train: give one of them.")
                 variant: StudyVariant = "kit" if by_kit else "no-limit" if no_limit else "seed"
                 for each in _variants(wanted, variant):
                     _run_again(
@@ -120,7 +121,7 @@ def command(
                 kind, wanted, opened, to_files=to_files or whole, with_class=whole
             )
         except (RecordedResultError, study_document.UnknownStudyNumber) as error:
-            options.fail(str(error))
+            messages.fail(str(error))
         report_output.write_outputs(
             Document(study_document.TITLE, everything),
             outputs,
@@ -144,10 +145,10 @@ def _read_number(words: tuple[str, ...]) -> tuple[str, str]:
     kind, *rest = words or ("",)
     if kind.lower() in ("table", "figure"):
         if len(rest) != 1:
-            options.fail(f"{kind} needs one number, such as `kit study {kind.lower()} 3.5`.")
+            messages.fail(f"{kind} needs one number, such as `kit study {kind.lower()} 3.5`.")
         return kind.lower(), rest[0]
     if rest:
-        options.fail("Give one number at a time, such as `kit study 3.5` or `kit study figure 3.5`.")
+        messages.fail("Give one number at a time, such as `kit study 3.5` or `kit study figure 3.5`.")
     return "", kind
 
 
@@ -179,7 +180,7 @@ def _run_again(
     run = able.get(number)
     if run is None:
         words = VARIANT_OPTIONS[variant]
-        options.fail(f"--again{words} cannot reproduce that; it can reproduce {', '.join(able)}.")
+        messages.fail(f"--again{words} cannot reproduce that; it can reproduce {', '.join(able)}.")
     if run.groups:
         require_learn_extra()
     try:

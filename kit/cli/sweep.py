@@ -12,7 +12,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import learning_options, options
+from kit.cli import learning_options, messages, options
 from kit.document.layout import lines_of
 from kit.host.job_executors import ExecutorUnavailable
 from kit.host.job_folder import JobExecutor
@@ -24,7 +24,8 @@ from kit.learning.training.crosstable import (
     crosstable_tables,
 )
 from kit.learning.training.run_check import check_run_config
-from kit.learning.training.runs import NAME_PATTERN, PresetName, RunConfig
+from kit.learning.training.run_config import PresetName, RunConfig
+from kit.learning.training.run_folders import NAME_PATTERN
 from kit.learning.training.training_sweep import (
     TrainingSweep,
     combine,
@@ -216,7 +217,7 @@ def command(
         words = [configs[0].choice.name, *split(algos), *(["crosstable"] if crosstable else [])]
         title = name or "-".join(words)[:90]
         if not NAME_PATTERN.fullmatch(title):
-            options.fail(
+            messages.fail(
                 f"{title}: a sweep's name may contain letters, digits, '_', '-' and '.'; set one with --name."
             )
         folder = learning_options.runs_folder(workspace).parent / "sweeps" / title
@@ -228,7 +229,7 @@ def command(
                 sweep = TrainingSweep.prepare(folder, configs, episodes)
                 run(sweep)
         except ExecutorUnavailable as error:
-            options.fail(str(error))
+            messages.fail(str(error))
         except KeyboardInterrupt:
             click.echo("\nFinished training is kept; run the same command to continue.", err=True)
             raise SystemExit(130) from None
@@ -299,6 +300,6 @@ def _print_crosstable(sweep: TrainingSweep, failed: Sequence[str], *, as_json: b
         number, compare = printed_means(sweep.entries()[0].config.choice.task)
         click.echo("\n".join(lines_of(crosstable_tables(columns, compare))))
         if compare:
-            options.say(f"dissertation: means of its Table {number}; `kit study {number}` shows every cell.")
+            messages.say(f"dissertation: means of its Table {number}; `kit study {number}` shows every cell.")
     if waiting := len(sweep.waiting()) - len(failed):
         click.echo(f"{waiting} of {len(sweep.entries())} trainings have no result yet.")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import learning_options, options
+from kit.cli import learning_options, messages, options
 from kit.document.blocks import Text, labelled_table
 from kit.document.layout import Page, lines_of
 from kit.learning.authoring.new_task import NewTaskError, new_task_file
@@ -71,13 +71,13 @@ def new(name: str, source: str) -> None:
         try:
             file = new_task_file(name, source, Path())
         except NewTaskError as error:
-            options.fail(str(error))
+            messages.fail(str(error))
         read = read_task(file)
         check_task(read)
         own = workspace_task_file(name)
         found_by_name = file.parent.name == name or (own is not None and own.samefile(file))
         shown = name if found_by_name else file
-        options.say(f"{file}: edit it; `kit task check {shown}` checks it, `kit train {shown}` trains it.")
+        messages.say(f"{file}: edit it; `kit task check {shown}` checks it, `kit train {shown}` trains it.")
         _say_what_is_not_possible(read.task)
 
 
@@ -93,7 +93,7 @@ def check(task: str) -> None:
             try:
                 task = str(unpack_task(Path(task), Path(folder)))
             except TaskArchiveError as error:
-                options.fail(str(error))
+                messages.fail(str(error))
         found = find_task(task)
         assert found.file is not None  # every task is a file
         check_task(read_task(found.file))
@@ -122,7 +122,7 @@ def pack(task: str, archive: Path | None) -> None:
         try:
             files = pack_task(found.file, archive)
         except TaskArchiveError as error:
-            options.fail(str(error))
+            messages.fail(str(error))
         for file in files:
             click.echo(f"  {os.path.relpath(file, files[0].parent)}")
         click.echo(f"{archive}: {counted(len(files), 'file')}; `kit task unpack {archive}` unpacks it.")
@@ -142,8 +142,8 @@ def unpack(archive: Path, dest: Path) -> None:
         try:
             file = unpack_task(archive, dest)
         except TaskArchiveError as error:
-            options.fail(str(error))
-        options.say(
+            messages.fail(str(error))
+        messages.say(
             f"{file}: valid; `kit task show {file.parent}` shows it, `kit train {file.parent}` trains it."
         )
 
@@ -185,9 +185,9 @@ def list_tasks() -> None:
 def _say_what_is_not_possible(task: LearningTask) -> None:
     """Prints what a trained agent of a task will not be able to do, before anybody trains one."""
     for reason in race_refusals(task):
-        options.say(f"It cannot be raced: a level of the game cannot have {reason}.")
+        messages.say(f"It cannot be raced: a level of the game cannot have {reason}.")
     for reason in node_refusals(task):
-        options.say(f"Its agents can be neither raced nor exported as a node or a package: {reason}.")
+        messages.say(f"Its agents can be neither raced nor exported as a node or a package: {reason}.")
 
 
 def _page() -> Page:

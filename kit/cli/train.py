@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from kit.cli import learning_options, options
+from kit.cli import learning_options, messages, options
 from kit.cli.full_screen import run_screen
 from kit.cli.shared_game import join_shared_game
 from kit.document.layout import lines_of
@@ -19,29 +19,17 @@ from kit.learning.tasks.catalogue import all_tasks
 from kit.learning.tasks.disturbances import UniformRange
 from kit.learning.tasks.rewards import REWARDS
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.algorithms import (
-    ALGORITHMS,
-    IMITATION_ALGORITHMS,
-    algorithms_for,
-    find_algorithm,
-    require_learn_extra,
-)
+from kit.learning.training.algorithms import ALGORITHMS, IMITATION_ALGORITHMS, algorithms_for, find_algorithm
 from kit.learning.training.demonstrations import is_recording
 from kit.learning.training.events import EventReader, TrainingEnded, TrainingProgress
+from kit.learning.training.learn_extra import require_learn_extra
 from kit.learning.training.presets import LEARNING_RATE
 from kit.learning.training.run_check import check_run_config
+from kit.learning.training.run_config import PresetName, RunConfig, RunError, format_setting
+from kit.learning.training.run_folders import create_run, find_run, list_runs
 from kit.learning.training.run_text import format_event
 from kit.learning.training.run_upkeep import delete_run, disk_bytes, read_overviews, rename_run, runs_blocks
-from kit.learning.training.runs import (
-    PresetName,
-    RunConfig,
-    RunError,
-    TrainingRun,
-    create_run,
-    find_run,
-    format_setting,
-    list_runs,
-)
+from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training import resolve_preset
 from kit.learning.training.worker import start_worker
 from kit.plain_text import format_size
@@ -134,7 +122,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
                 break
             time.sleep(0.1)
     except KeyboardInterrupt:
-        options.say(
+        messages.say(
             f"\n{run.name} continues training. `kit watch {run.name}` shows it again, `kit runs {run.name} --stop` stops it."
         )
         return
@@ -142,7 +130,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
         if not once or not run.is_active:
             if run.last_log_line:
                 click.echo(run.last_log_line)
-            options.say(
+            messages.say(
                 f"{run.name} was interrupted. `kit train --resume {run.name}` continues from its last checkpoint."
             )
     elif ended.how == "failed":

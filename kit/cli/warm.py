@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from kit.cli import options
+from kit.cli import messages
 from kit.controllers import find_controller
 from kit.kernels.compilation_progress import PROGRESS
 from kit.kernels.shared_cache import let_all_read, make_ready, shared_folders, why_not_shared
@@ -57,7 +57,7 @@ def command(shared: bool) -> None:
             click.echo(title, err=True)
             use()
     took = time.perf_counter() - began
-    options.say(f"{counted(PROGRESS.count, 'function')} compiled, all others read, in {took:.0f} s.")
+    messages.say(f"{counted(PROGRESS.count, 'function')} compiled, all others read, in {took:.0f} s.")
     if shared:
         _close_installation()
 
@@ -92,24 +92,24 @@ def _step(task: LearningTask) -> None:
 def _open_installation() -> None:
     """Prepares the folders for all accounts, before anything is read from them."""
     if os.geteuid() != 0:
-        options.fail("--shared: only root makes what all accounts run: sudo kit warm --shared")
+        messages.fail("--shared: only root makes what all accounts run: sudo kit warm --shared")
     os.environ.pop("NUMBA_CACHE_DIR", None)  # it would keep them elsewhere
     os.umask(0o022)
     try:
         for folder in shared_folders():
             make_ready(folder)
     except OSError as error:
-        options.fail(f"--shared: {error.filename}: {error.strerror}")
+        messages.fail(f"--shared: {error.filename}: {error.strerror}")
 
 
 def _close_installation() -> None:
     try:
         size = sum(let_all_read(folder) for folder in shared_folders())
     except OSError as error:
-        options.fail(f"--shared: {error.filename}: {error.strerror}")
+        messages.fail(f"--shared: {error.filename}: {error.strerror}")
     for folder in shared_folders():
         if problem := why_not_shared(folder):
-            options.fail(f"--shared: {problem}.")
-    options.say(
+            messages.fail(f"--shared: {problem}.")
+    messages.say(
         f"{size / MIB:.1f} MB for all accounts in {shared_folders()[0]}, which only their owner may write."
     )

@@ -12,8 +12,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, ClassVar, Final, Generic, TypeVar
 
-from kit.dialogue.actions import ACTIONS, ScreenAction, ScreenActions
+from kit.dialogue.actions import ScreenActions
 from kit.dialogue.effects import Effect, Help, Leave, Remark
+from kit.dialogue.screen_action import ScreenAction
+from kit.dialogue.shared_actions import ACTIONS
 from kit.document.blocks import Block, Text, Tone
 
 D = TypeVar("D", bound="Dialogue")

@@ -8,8 +8,8 @@ from enum import Enum
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from kit.host.output import StackPosition
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import MIB, Limits
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.wire import LOST_PIPE, OVER_DISK_LIMIT, printable
 
 if TYPE_CHECKING:

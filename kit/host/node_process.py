@@ -23,8 +23,8 @@ from kit.host.process import HostedFile, PackageProgram, StudentProcess
 from kit.host.program_terminal import ProgramStreams
 from kit.host.protocol import HOLD_NS, Ended, Frame, Reply
 from kit.host.proxy_nodes import ForeignNameError, NameScope, ReservedNameError
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
 from kit.host.wire import ProtocolError
 from kit.ros.graph.graph import Graph
 

@@ -52,11 +52,11 @@ from kit.host.protocol import (
     parse,
 )
 from kit.host.sandbox import bubblewrap
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level, SandboxConfig
 from kit.host.sandbox.control_groups import ControlGroup, return_group, take_group
 from kit.host.sandbox.grants import ReadGrants, find_grants, library_folders, loader_folders
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, KIB, Limits
 from kit.host.sandbox.reaper import descendants, end_descendants, remove_folder
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level, SandboxConfig
 from kit.host.wire import HEADER, Json, ProtocolError, decode, encode
 
 Role: TypeAlias = Literal["node", "functions", "launch"]

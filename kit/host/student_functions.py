@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from kit.host.failure import Failure, FailureKind, StudentCodeError, protocol_violation
 from kit.host.process import HostedFile, StudentProcess
 from kit.host.protocol import BatchResult, FunctionNames, JsonResult
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
 from kit.host.wire import Json, numbers_to_text
 from kit.plain_text import nearest_name
 

@@ -14,7 +14,7 @@ from kit.host.protocol import Ended, Frame, Reply
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, MIB
 from kit.host.wire import Json, ProtocolError
 from kit.launch.command_folder import with_commands
-from kit.launch.program_lookup import INTERACTIVE_BOUNDS, LaunchBounds
+from kit.launch.launch_bounds import INTERACTIVE_BOUNDS, LaunchBounds
 from kit.launch.requests import DeclaredArgument, Request, parse_request
 from kit.plain_files import near_file
 from kit.ros.packages import (

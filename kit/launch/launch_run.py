@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 
 from kit.host.failure import StudentCodeError
 from kit.host.wire import Json
+from kit.launch.launch_bounds import INTERACTIVE_BOUNDS, LaunchBounds
 from kit.launch.launch_file_process import LaunchFileProcess, LaunchTarget
 from kit.launch.processes import (
     CommandProcess,
@@ -22,13 +23,7 @@ from kit.launch.processes import (
     ProgramUnavailable,
     suggest_fix,
 )
-from kit.launch.program_lookup import (
-    INTERACTIVE_BOUNDS,
-    LaunchBounds,
-    StartContext,
-    is_builtin,
-    start_process,
-)
+from kit.launch.program_lookup import StartContext, is_builtin, start_process
 from kit.launch.requests import (
     EndRequest,
     LogRequest,

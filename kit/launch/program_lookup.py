@@ -16,8 +16,6 @@ from kit.host.node_process import NodeProcess
 from kit.host.process import PackageProgram
 from kit.host.program_terminal import ProgramStreams
 from kit.host.python_command import python_command
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
-from kit.host.sandbox.limits import GIB, INTERACTIVE_LIMITS, MIB, Limits
 from kit.inspection.sockets import WORLD_VARIABLE
 from kit.launch.command_folder import with_commands
 from kit.launch.processes import (
@@ -29,17 +27,10 @@ from kit.launch.processes import (
     ProgramUnavailable,
 )
 from kit.launch.requests import StartRequest, WorldRequest, parse_world_request
-from kit.msg.geometry_msgs import Quaternion, Transform, TransformStamped, Vector3
 from kit.msg.interfaces import register_packages
-from kit.msg.std_msgs import Header
-from kit.msg.tf2_msgs import TFMessage
 from kit.ros.exceptions import InvalidRosArguments, NameValidationException, ParameterException
-from kit.ros.execution.arguments import parse_ros_arguments, split_ros_arguments
 from kit.ros.graph.graph import Graph
 from kit.ros.launch.unavailable import describe_unavailable
-from kit.ros.node.node import Node, create_graph_node
-from kit.ros.node.qos import DurabilityPolicy, QoSProfile
-from kit.ros.node.time import Time
 from kit.ros.packages import (
     SEARCH_VARIABLE,
     PackageError,
@@ -50,110 +41,11 @@ from kit.ros.packages import (
     read_package,
     workspace_folders,
 )
-from kit.ros.rotations import quaternion_from_euler
 
 if TYPE_CHECKING:
     from kit.run.session import SceneAddition
-
-
-EXECUTABLE: Final = "static_transform_publisher"
-_NUMBERS: Final = ("x", "y", "z", "yaw", "pitch", "roll", "qx", "qy", "qz", "qw")
-_FRAMES: Final = ("frame-id", "child-frame-id")
-
-
-def publish_transform(graph: Graph, arguments: Sequence[str]) -> Node:
-    """Makes the node that publishes the transform. Raises ValueError for wrong arguments."""
-    try:
-        ros = parse_ros_arguments(arguments)
-    except InvalidRosArguments as problem:
-        raise ValueError(str(problem)) from None
-    numbers, parent, child = _parse_arguments(split_ros_arguments(arguments)[0])
-    if "qw" in numbers or "qx" in numbers or "qy" in numbers or "qz" in numbers:
-        rotation = tuple(numbers.get(name, 1.0 if name == "qw" else 0.0) for name in ("qx", "qy", "qz", "qw"))
-    else:
-        roll, pitch, yaw = (numbers.get(name, 0.0) for name in ("roll", "pitch", "yaw"))
-        rotation = tuple(float(part) for part in quaternion_from_euler(roll, pitch, yaw))
-    name = ros.node_name(EXECUTABLE)
-    node = create_graph_node(graph, name, ros.namespace(name, "/"))
-    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    x, y, z, w = rotation
-    transform = TransformStamped(
-        header=Header(stamp=Time(nanoseconds=graph.now_ns).to_msg(), frame_id=parent),
-        child_frame_id=child,
-        transform=Transform(
-            translation=Vector3(**{axis: numbers.get(axis, 0.0) for axis in ("x", "y", "z")}),
-            rotation=Quaternion(x=x, y=y, z=z, w=w),
-        ),
-    )
-    node.create_publisher(TFMessage, "/tf_static", latched).publish(TFMessage(transforms=[transform]))
-    return node
-
-
-def _parse_arguments(arguments: Sequence[str]) -> tuple[dict[str, float], str, str]:
-    """Parses both spellings: ``x y z yaw pitch roll frame child`` (or with a quaternion), and ``--x 0 --frame-id map``."""
-    if any(argument.startswith("--") for argument in arguments):
-        pairs = dict(zip(arguments[::2], arguments[1::2], strict=False))
-        names = {f"--{name}" for name in (*_NUMBERS, *_FRAMES)}
-        unknown = sorted(pairs.keys() - names)
-        if unknown or len(arguments) % 2:
-            raise ValueError(f"unknown arguments: {' '.join(unknown or arguments)}")
-        frames = [pairs.pop(f"--{name}", "") for name in _FRAMES]
-        numbers = {name.removeprefix("--"): _number(value) for name, value in pairs.items()}
-    elif len(arguments) in (8, 9):
-        order = _NUMBERS[:6] if len(arguments) == 8 else (*_NUMBERS[:3], *_NUMBERS[6:])
-        numbers = {name: _number(value) for name, value in zip(order, arguments[:-2], strict=True)}
-        frames = list(arguments[-2:])
-    else:
-        raise ValueError(
-            "needs x y z yaw pitch roll frame_id child_frame_id, or --x 0 ... --frame-id A --child-frame-id B"
-        )
-    if not all(frames) or frames[0] == frames[1]:
-        raise ValueError("needs two different frames: --frame-id A --child-frame-id B")
-    return numbers, frames[0], frames[1]
-
-
-def _number(value: str) -> float:
-    try:
-        return float(value)
-    except ValueError:
-        raise ValueError(f"'{value}' is not a number") from None
-
-
-PROGRAM_LIMITS: Final = replace(
-    INTERACTIVE_LIMITS,
-    start_s=120.0,
-    reply_s=20.0,
-    memory=32 * GIB,
-    open_files=1024,
-    file_size=4 * GIB,
-    scratch=64 * GIB,
-    files=1_000_000,
-    output=MIB,
-    frame=16 * MIB,
-)
-"""Limits of a package's program: generous, since it may import a learning library and train."""
-
-
-@dataclass(frozen=True, slots=True)
-class LaunchBounds:
-    """Limits of what a launch starts. The defaults are for a user's own package."""
-
-    level: Level = INTERACTIVE_LEVEL
-    limits: Limits = PROGRAM_LIMITS
-    file_limits: Limits | None = None
-    """Limits of the launch file's own process; None: the usual ones, and the user's environment."""
-    commands: bool = True
-    """Whether other commands than programs of packages may be run."""
-    max_processes: int | None = None
-    """The number of processes that one launch may start; None: any."""
-
-    @property
-    def is_interactive(self) -> bool:
-        """Whether what is launched is the user's own, and is run from the user's working directory."""
-        return self.file_limits is None
-
-
-INTERACTIVE_BOUNDS: Final = LaunchBounds()
+from kit.launch.launch_bounds import INTERACTIVE_BOUNDS, LaunchBounds
+from kit.launch.static_transform import publish_transform
 
 
 @dataclass(frozen=True, slots=True)

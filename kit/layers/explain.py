@@ -8,10 +8,12 @@ from fractions import Fraction
 from functools import partial
 from itertools import combinations
 
+from kit.layers.bound_certificates import BoundCertificate
 from kit.layers.flatland.world_patch import WorldPatch
 from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.greedy import CollisionStep, GreedyRun, LaserStep
-from kit.layers.planning import BoundCertificate, LayerPlan, Relaxation
+from kit.layers.planning import LayerPlan
+from kit.layers.relaxations import Relaxation
 from kit.layers.requirements import LayerCase, Requirement, SightRequirement, layer_conflict
 from kit.plain_text import counted, join_with_and, wrap
 from kit.world.records import MAX_LAYERS

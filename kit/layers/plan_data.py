@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from kit.layers.assignment import LayerAssignment, RequirementBreach
+from kit.layers.bound_certificates import BoundCertificate
 from kit.layers.flatland.world_patch import WorldPatch
 from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.greedy import GreedyRun
-from kit.layers.planning import BoundCertificate, LayerPlan, Relaxation
+from kit.layers.planning import LayerPlan
+from kit.layers.relaxations import Relaxation
 from kit.layers.requirements import ContactRequirement, LayerCase, Requirement, SightRequirement
 from kit.world.records import MAX_LAYERS
 

@@ -27,7 +27,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
-from kit.layers.flatland.yaml_edits import format_flow_list, format_scalar
+from kit.layers.flatland.yaml_scalars import format_flow_list, format_scalar
 from kit.layers.requirements import (
     ContactRequirement,
     LaserEntity,

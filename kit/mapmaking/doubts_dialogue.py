@@ -7,9 +7,10 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from kit.dialogue.actions import ACTIONS, ScreenAction, digits
 from kit.dialogue.dialogue import Dialogue, DialogueAction, help_action, leave_action
 from kit.dialogue.effects import Effect, Leave
+from kit.dialogue.screen_action import ScreenAction, digits
+from kit.dialogue.shared_actions import ACTIONS
 from kit.document.blocks import Block, Choice, Choices, Picture, Text, Tone
 from kit.mapmaking.doubts import Doubt, JudgedStrokes
 from kit.render.encode import Encoder

@@ -22,8 +22,8 @@ from kit.host.file_watcher import FileWatcher
 from kit.host.node_process import NodeProcess
 from kit.host.process import PackageProgram
 from kit.host.program_terminal import ProgramStreams
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
 from kit.msg.geometry_msgs import Twist
 from kit.msg.interfaces import register_packages
 from kit.msg.std_msgs import Float32, String

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from types import MappingProxyType
 from typing import Any, ClassVar, Final
 
-from kit.dialogue.actions import ACTIONS, ScreenAction, digits, letter
 from kit.dialogue.dialogue import Dialogue, DialogueAction, Refused, help_action, leave_action
 from kit.dialogue.effects import Effect, Leave, StartTyping
+from kit.dialogue.screen_action import ScreenAction, digits, letter
+from kit.dialogue.shared_actions import ACTIONS
 from kit.document.blocks import Block, Choice, Choices, RatingScale, Text, Tone
 from kit.plain_text import counted, printable_text
 from kit.school.form_answers import InvalidAnswer, parse_answer

@@ -14,14 +14,9 @@ from kit.study.printed_tables import (
     SUCCESS,
     PrintedTable,
 )
-from kit.study.recorded_results import (
-    VARIANT_NAMES,
-    RecordedCell,
-    RecordedResult,
-    RecordedTest,
-    StudyVariant,
-    log_name,
-)
+from kit.study.recorded_results import RecordedCell, RecordedResult, RecordedTest
+from kit.study.result_logs import log_name
+from kit.study.study_variants import VARIANT_NAMES, StudyVariant
 
 SPREAD_NOTE: Final = (
     "The dissertation trained one agent of each kind; the only spread it prints is the SD of an agent over the cases. "

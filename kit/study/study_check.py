@@ -14,12 +14,11 @@ from kit.study.printed_tables import (
     PrintedTable,
     study_chapters,
 )
-from kit.study.recorded_results import VARIANT_NAMES, find_recorded_results
+from kit.study.recorded_results import Results
+from kit.study.result_logs import find_recorded_results
 from kit.study.study_document import DOCUMENT, recorded_study_document
-from kit.study.study_report import (
-    Results,
-)
 from kit.study.study_summary import summary_lines
+from kit.study.study_variants import VARIANT_NAMES
 from kit.study.task_comparison import test_differences
 
 README: Final = Path(__file__).parents[2] / "README.md"

@@ -21,13 +21,8 @@ from kit.document.blocks import (
 from kit.document.markdown import document_to_markdown
 from kit.plain_text import suggestion
 from kit.study.author_agents import author_agents_table
-from kit.study.evaluation import (
-    EvaluationData,
-    evaluation_chapters,
-    evaluation_plots,
-    evaluation_table,
-    read_evaluation_data,
-)
+from kit.study.evaluation import evaluation_chapters, evaluation_plots, evaluation_table
+from kit.study.evaluation_data import EvaluationData, read_evaluation_data
 from kit.study.printed_tables import (
     POTENTIAL_FIELDS,
     PrintedFigure,
@@ -36,28 +31,21 @@ from kit.study.printed_tables import (
     printed_table,
     study_chapters,
 )
-from kit.study.recorded_results import (
-    SHIPPED_FOLDER,
-    VARIANT_NAMES,
-    VARIANTS,
-    RecordedResult,
-    StudyVariant,
-    find_recorded_result,
-    find_recorded_results,
-)
+from kit.study.recorded_results import RecordedResult, Results
+from kit.study.result_logs import SHIPPED_FOLDER, find_recorded_result, find_recorded_results
 from kit.study.seed_spread import cells_below
 from kit.study.study_report import (
     Durations,
-    Results,
     figure_chapter,
     overview_chapter,
     paths_title,
     session_plot,
     table_chapter,
     table_status,
-    value_blocks,
 )
 from kit.study.study_summary import summary_chapter
+from kit.study.study_variants import VARIANT_NAMES, VARIANTS, StudyVariant
+from kit.study.value_blocks import value_blocks
 from kit.workspace import Workspace
 
 AUTHOR: Final = "author"

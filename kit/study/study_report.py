@@ -19,8 +19,8 @@ from kit.document.blocks import (
     Table,
     Text,
 )
-from kit.learning.training.measures import format_measure
 from kit.learning.training.run_upkeep import format_seconds
+from kit.study.comparison_table import RecordedCells, comparison_table
 from kit.study.printed_tables import (
     ADJACENCY,
     ADJACENCY_BY_POSES,
@@ -32,25 +32,17 @@ from kit.study.printed_tables import (
     StudyChapter,
 )
 from kit.study.recorded_results import (
-    CONTROLLERS,
-    VARIANT_NAMES,
-    VARIANT_OPTIONS,
-    RecordedCell,
     RecordedPath,
     RecordedResult,
     RecordedTest,
-    StudyVariant,
-    TrainedSeeds,
+    Results,
     TrainingSession,
-    log_name,
-    pooled_cell,
 )
+from kit.study.result_logs import log_name
 from kit.study.seed_spread import cells_below, spread_table
+from kit.study.seeds_table import seeds_table
+from kit.study.study_variants import CONTROLLERS, VARIANT_NAMES, VARIANT_OPTIONS, StudyVariant
 
-RecordedCells = Mapping[tuple[str, str], RecordedCell]
-"""Cells by row and column of a printed table."""
-Results = Mapping[StudyVariant, RecordedResult]
-"""Those that there are."""
 VARIANT_TITLES: Final[Mapping[StudyVariant, str]] = {
     "seed": "ours, by the dissertation's settings",
     "no-limit": "no limit, by the dissertation's settings without its limit of values",
@@ -86,9 +78,9 @@ def table_chapter(
     """
     cells = {variant: result.cells(table) for variant, result in results.items()}
     blocks: list[Block] = [Text(text) for text in (f"Section {table.section}.", *table.settings)]
-    blocks.append(_comparison_table(table, cells))
+    blocks.append(comparison_table(table, cells))
     if table.prints_best_test:
-        blocks.append(_seeds_table(table, results))
+        blocks.append(seeds_table(table, results))
     for variant, result in results.items():
         blocks += _recorded_blocks(table, variant, result, cells[variant])
     if any(cells.values()):
@@ -143,51 +135,6 @@ def session_plot(figure: PrintedFigure, test: RecordedTest) -> Plot | None:
     return BarChart(name, title, (figure.sessions,), rows, low, high)
 
 
-def value_blocks(figure: PrintedFigure, results: Results) -> list[Block]:
-    """The largest value and the success of each test, with and without the limit of values; none where there are none."""
-    tests = {name: result.tests_of(figure.group)[:1] for name, result in results.items()}
-    sessions = {
-        name: {each.steps: each for each in found[0].sessions} for name, found in tests.items() if found
-    }
-    steps = sorted({number for found in sessions.values() for number in found})
-    if not steps:
-        return []
-    columns = [Column("steps")]
-    for name in sessions:
-        columns += [Column(f"{VALUE_TITLES[name]}: value"), Column("success", decimals=2)]
-    rows, bars = [], []
-    for number in steps:
-        here = [found.get(number) for found in sessions.values()]
-        cells: list[Cell] = [f"{number:,}"]
-        for each in here:
-            known = each is not None and each.value_max is not None
-            cells += [format_measure(each.value_max) if known else None, each.share if each else None]  # type: ignore[union-attr, arg-type]  # known
-        rows.append(tuple(cells))
-        heights = tuple(
-            math.log10(max(1.0, each.value_max))
-            if each is not None and each.value_max is not None
-            else math.nan
-            for each in here
-        )
-        bars.append((f"{number:,} steps", heights))
-    high = max(height for _, heights in bars for height in heights if not math.isnan(height))
-    names = tuple(VALUE_TITLES[name] for name in sessions)
-    title = f"{figure.title}: the largest value of the last 1,000 observations, seed 0"
-    missing = [
-        Text(f"{VALUE_TITLES[name]}: no recorded result; `{figure.run}` makes it.")
-        for name in ("seed", "no-limit")
-        if name not in sessions
-    ]
-    return [
-        Table(f"figure-{figure.id}-values", title, tuple(columns), tuple(rows)),
-        BarChart(f"figure-{figure.id}", "Its decimal logarithm", names, tuple(bars), 0.0, math.ceil(high)),
-        *missing,
-    ]
-
-
-VALUE_TITLES: Final[Mapping[StudyVariant, str]] = {"seed": "limit 500", "no-limit": "no limit", "kit": "kit"}
-
-
 def _outcome_shares(session: TrainingSession) -> tuple[float, ...]:
     counts = (session.reached, session.collided, session.timed_out)
     return tuple(count / max(1, sum(counts)) for count in counts)
@@ -205,127 +152,6 @@ def table_status(results: Results, table: PrintedTable) -> str:
     if table.repeat_task or table.results_of or table.has_fields:
         return f"none; {table.results_of or table.id} --again"
     return "none" if table.run else "-"
-
-
-def _comparison_table(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> Table:
-    identity = f"table-{table.id.replace('.', '-')}"
-    is_compared = any(cells.values())
-    columns = tuple(
-        Column(title, decimals=max(decimals, 3) if is_compared and decimals else decimals)
-        for title, decimals in zip(table.columns, table.decimals, strict=True)
-    )
-    label = Column("", CellStyle.TEXT)
-    if not is_compared:
-        rows = tuple((row, *_printed_cells(table, row)) for row in table.rows)
-        return Table(identity, "As printed", (label, *columns), rows)
-    lines: list[tuple[Cell, ...]] = []
-    for row in table.rows:
-        lines.append((row, "printed", *_printed_cells(table, row)))
-        for variant, found in cells.items():
-            lines += _recorded_lines(table, row, VARIANT_NAMES[variant], found)
-    return Table(
-        identity,
-        "As printed, and ours",
-        (label, label, *columns),
-        tuple(lines),
-        note="at least, at most: the 95 % interval of the line above. episodes: over which an adjacency is taken, all of which "
-        "reached the target. differs: from the printed number.",
-        grouped=True,
-    )
-
-
-def _seeds_table(table: PrintedTable, results: Results) -> Table:
-    """One row for each seed: the best of its tests, as the print is one, and its best agent on fresh episodes."""
-    rows: list[tuple[Cell, ...]] = []
-    for variant in ("seed", "no-limit"):  # the kit's are trained for another end: for every case, or longer
-        result = results.get(variant)
-        settings = table.settings_of + (", no limit" if variant == "no-limit" else "")
-        for row, group in zip(table.rows, table.row_groups, strict=False):
-            seeds = TrainedSeeds.of(table, result, group)
-            if result is not None:
-                rows += [(row, settings, *_seed_cells(result, test)) for test in seeds.tests]
-            missing = seeds.planned - len(seeds.tests)
-            if missing:
-                rows.append((row, settings, f"{missing} of {seeds.planned}: not trained yet", *[None] * 8))
-    columns = (
-        Column("", CellStyle.TEXT),
-        Column("settings", CellStyle.TEXT),
-        Column("seed", CellStyle.TEXT),
-        *(Column(title) for title in ("at most", "steps")),
-        Column("best test", decimals=2),
-        Column("value"),
-        Column("fresh", decimals=2),
-        Column("rays", decimals=2),
-        Column("poses", decimals=2),
-        Column("of"),
-    )
-    return Table(
-        f"table-{table.id.replace('.', '-')}-seeds",
-        "Trained again: the best test of each seed, as the print is the best of up to 100 tests of one",
-        columns,
-        tuple(rows),
-        note=SEEDS_NOTE,
-    )
-
-
-SEEDS_NOTE: Final = (
-    "at most, steps: of training, which ends with a test of 0.8 or more. best test: 100 episodes. value: the largest in any test. "
-    "fresh: success of that agent on fresh episodes. rays, poses: its adjacency, the share of steps side by side by rays "
-    "(equations 4.7 to 4.9) and by poses (4.2 to 4.6), over the fresh episodes that reached the target; of: how many these are."
-)
-
-
-def _seed_cells(result: RecordedResult, test: RecordedTest) -> tuple[Cell, ...]:
-    episodes = test.episodes * len(test.own_cases)
-    sides = [pooled_cell((test,), measure) for measure in (ADJACENCY, ADJACENCY_BY_POSES)]
-    best = test.best_session
-    return (
-        f"{test.seed}",
-        f"{result.settings.most_steps:,}",
-        f"{test.steps:,}",
-        None if best is None else best.share,
-        None if test.largest_value is None else format_measure(test.largest_value),
-        sum(test.reached[case] for case in test.own_cases) / max(1, episodes),
-        *(None if side is None else side.value for side in sides),
-        None if sides[0] is None else f"{sides[0].episodes}",
-    )
-
-
-def _recorded_lines(table: PrintedTable, row: str, name: str, cells: RecordedCells) -> list[tuple[Cell, ...]]:
-    """The recorded cells of a row, their intervals, and what differs from the printed ones."""
-    ours = [cells.get((row, column)) for column in table.columns]
-    if not any(ours):
-        return []
-    intervals = [each.interval if each else None for each in ours]
-    lines: list[tuple[Cell, ...]] = [(row, name, *(_cell_number(each) for each in ours))]
-    if any(intervals):
-        lines.append((row, "at least", *(each.low if each else None for each in intervals)))
-        lines.append((row, "at most", *(each.high if each else None for each in intervals)))
-    counts = [each.episodes if each else None for each in ours]
-    if any(counts):
-        lines.append((row, "episodes", *counts))
-    differences = [
-        _cell_number(each, printed) if each and not math.isnan(printed) else None
-        for each, printed in zip(ours, table.rows[row], strict=True)
-    ]
-    lines.append((row, "differs", *differences))
-    return lines
-
-
-def _cell_number(cell: RecordedCell | None, printed: float = 0.0) -> Cell:
-    """The number, less a printed one; steps are whole."""
-    if cell is None:
-        return None
-    number = cell.value - printed
-    return round(number) if cell.measure == STEPS else number
-
-
-def _printed_cells(table: PrintedTable, row: str) -> tuple[Cell, ...]:
-    """Whole numbers without a point."""
-    return tuple(
-        int(number) if not decimals and not math.isnan(number) else number
-        for number, decimals in zip(table.rows[row], table.decimals, strict=True)
-    )
 
 
 def _picture(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> Plot:

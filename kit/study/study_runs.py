@@ -23,10 +23,11 @@ from kit.learning.policies.policy import Policy
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.learning_task import LearningTask
-from kit.learning.training.algorithms import versions
 from kit.learning.training.events import Evaluated, EventReader
+from kit.learning.training.learn_extra import versions
 from kit.learning.training.measures import VALUE_MAX
-from kit.learning.training.runs import PresetName, RunConfig, RunError, TrainingRun, format_settings
+from kit.learning.training.run_config import PresetName, RunConfig, RunError, format_settings
+from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_sweep import SweepEntry, TrainingSweep, combine
 from kit.render.scene import Scene
@@ -44,15 +45,14 @@ from kit.study.printed_tables import (
     printed_table,
 )
 from kit.study.recorded_results import (
-    CONTROLLERS,
-    SHIPPED_FOLDER,
-    VARIANT_OPTIONS,
     RecordedPath,
     RecordedResult,
     RecordedSettings,
     RecordedTest,
-    StudyVariant,
     TrainingSession,
+)
+from kit.study.result_logs import (
+    SHIPPED_FOLDER,
     append_event,
     log_name,
     read_recorded_result,
@@ -60,6 +60,7 @@ from kit.study.recorded_results import (
     source_number,
 )
 from kit.study.study_report import paths_title
+from kit.study.study_variants import CONTROLLERS, VARIANT_OPTIONS, StudyVariant
 from kit.workspace import Workspace
 
 PATH_INTERVAL_S: Final = 0.5

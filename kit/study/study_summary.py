@@ -17,6 +17,7 @@ from kit.document.blocks import (
 )
 from kit.document.markdown import table_to_markdown
 from kit.study.author_agents import read_author_agents
+from kit.study.comparison_table import RecordedCells
 from kit.study.printed_tables import (
     ADJACENCY,
     STEPS,
@@ -24,11 +25,9 @@ from kit.study.printed_tables import (
     PrintedTable,
     printed_table,
 )
-from kit.study.recorded_results import RecordedResult, TrainedSeeds, find_recorded_results
+from kit.study.recorded_results import RecordedResult, TrainedSeeds
+from kit.study.result_logs import find_recorded_results
 from kit.study.seed_spread import seed_means
-from kit.study.study_report import (
-    RecordedCells,
-)
 
 
 def summary_chapter() -> Chapter:

@@ -26,8 +26,8 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from kit.controllers import find_controller
 from kit.host.node_process import NodeProcess
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe_levels
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 from kit.msg.geometry_msgs import Twist
 from kit.msg.sensor_msgs import LaserScan

@@ -28,7 +28,8 @@ from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.tasks.catalogue import TASKS, all_tasks, find_task
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.runs import RunConfig, create_run
+from kit.learning.training.run_config import RunConfig
+from kit.learning.training.run_folders import create_run
 from kit.learning.training.training import train
 
 FIRST_SEED = 7000

@@ -32,8 +32,10 @@ from kit.learning.training.algorithms import ALGORITHMS
 from kit.learning.training.crosstable import case_groups, crosstable_columns, crosstable_tables
 from kit.learning.training.events import Evaluated, TrainingEnded
 from kit.learning.training.presets import KIT_PPO_HALLWAY, KIT_PPO_TURN
+from kit.learning.training.run_config import RunConfig
+from kit.learning.training.run_folders import create_run
 from kit.learning.training.run_text import success_shares
-from kit.learning.training.runs import RunConfig, TrainingRun, create_run
+from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training import make_learner, train
 from kit.learning.training.training_sweep import TrainingSweep, combine
 from kit.study.printed_tables import printed_means

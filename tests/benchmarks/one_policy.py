@@ -36,8 +36,8 @@ from kit.controllers import find_controller
 from kit.document.blocks import CellStyle, Column, Table
 from kit.document.layout import lines_of
 from kit.host.node_process import NodeProcess
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL
 from kit.launch.package_creation import place_models
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_start import EpisodeStart
@@ -50,7 +50,8 @@ from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.disturbances import UNDISTURBED
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.runs import RunConfig, create_run
+from kit.learning.training.run_config import RunConfig
+from kit.learning.training.run_folders import create_run
 from kit.learning.training.training import train
 from kit.run.episode import controller_arguments, run_until, when
 from kit.run.scenario import Scenario

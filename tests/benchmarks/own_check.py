@@ -37,7 +37,7 @@ from grader.grading import GradingOptions, grade
 from grader.kinds.environment.examination import EnvironmentTask
 from grader.reading import read_assignment
 from grader.submission import read_submission
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.school.lessons.checking import check_exercise, submission_path
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson, solutions_folder
 from kit.school.lessons.records import Exercise, Lesson

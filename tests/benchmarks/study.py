@@ -16,16 +16,11 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from kit.study.recorded_results import (
-    SHIPPED_FOLDER,
-    VARIANT_OPTIONS,
-    VARIANTS,
-    StudyVariant,
-    recorded_result_file,
-)
+from kit.study.result_logs import SHIPPED_FOLDER, recorded_result_file
 from kit.study.study_check import README
 from kit.study.study_document import DOCUMENT, recorded_study_document
 from kit.study.study_summary import summary_lines
+from kit.study.study_variants import VARIANT_OPTIONS, VARIANTS, StudyVariant
 from kit.workspace import Workspace
 
 HEADING = "## The dissertation, reproduced\n"

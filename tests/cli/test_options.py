@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from kit.cli import options
+from kit.cli import messages
 from kit.school.progress import FILE, EventKind, ProgressJournal
 from kit.workspace import open_workspace
 from tests.cli.verbs import kit
@@ -29,13 +29,13 @@ def test_sentences_and_errors_are_broken_between_words(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     text = "The file runs/turn-1/config.json: damaged. " * 3 + "\n  `kit train --resume turn-1` goes on"
-    options.say(text)
+    messages.say(text)
     said = capsys.readouterr().out.splitlines()
     assert all(len(line) <= 78 for line in said)
     assert " ".join(said).split() == text.split()
-    assert options.on_terminal(text) == text, "a log keeps each line whole"
+    assert messages.on_terminal(text) == text, "a log keeps each line whole"
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
-    shown = options.on_terminal(text).splitlines()
+    shown = messages.on_terminal(text).splitlines()
     assert all(len(line) <= 80 for line in shown)
     assert " ".join(shown).split() == text.split()
     assert shown[-1] == text.splitlines()[-1]

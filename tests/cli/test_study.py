@@ -18,9 +18,10 @@ from click.testing import CliRunner, Result
 from kit.cli import main
 from kit.cli import study as study_command
 from kit.learning.training.runs import TrainingRun
-from kit.study import printed_tables, recorded_results, study_document
+from kit.study import printed_tables, result_logs, study_document
 from kit.study.printed_tables import printed_table, study_chapters
-from kit.study.recorded_results import RecordedTest, append_event, read_recorded_result, recorded_result_file
+from kit.study.recorded_results import RecordedTest
+from kit.study.result_logs import append_event, read_recorded_result, recorded_result_file
 from kit.study.study_runs import StudyRun
 from kit.workspace import Workspace
 from tests.waiting import wait_until
@@ -33,7 +34,7 @@ def study(folder: Path, *words: str) -> Result:
 @pytest.fixture(autouse=True)
 def nothing_ships(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
     """What these tests record is all there is, whatever results come with the kit."""
-    monkeypatch.setattr(recorded_results, "SHIPPED_FOLDER", tmp_path_factory.mktemp("shipped"))
+    monkeypatch.setattr(result_logs, "SHIPPED_FOLDER", tmp_path_factory.mktemp("shipped"))
 
 
 def record(folder: Path) -> None:

@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 import pytest
 
 from kit.cli.dialogue import run_dialogue
-from kit.dialogue.actions import ACTIONS
 from kit.dialogue.dialogue import Dialogue, DialogueAction, help_action
+from kit.dialogue.shared_actions import ACTIONS
 from kit.document.blocks import Block, Text
 
 QUESTION = "How many layers does this need?"

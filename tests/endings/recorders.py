@@ -24,7 +24,9 @@ from typing import ClassVar, Final, Protocol
 
 from kit.inspection.sockets import running_worlds, sockets_folder
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.runs import RunConfig, TrainingRun, create_run
+from kit.learning.training.run_config import RunConfig
+from kit.learning.training.run_folders import create_run
+from kit.learning.training.runs import TrainingRun
 from kit.mapmaking.sketch_draft import SketchDraft
 from kit.part_file import part_path, parts_in
 from kit.ros.bag_storage import BagError, restore_bags

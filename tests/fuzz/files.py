@@ -32,10 +32,12 @@ from grader.reading import read_assignment
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused, SubmissionUnreadable
 from kit.host.failure import Failure
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.learning.policies.policy import PolicyError
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run, list_runs
+from kit.learning.training.run_config import RunConfig, RunError
+from kit.learning.training.run_folders import create_run, list_runs
+from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training import train
 from kit.run.recording import RecordingError, load_recording, rerun, save_recording
 from tests.fuzz.damage import (

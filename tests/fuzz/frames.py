@@ -25,8 +25,8 @@ from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
 from kit.host.process import Role
 from kit.host.protocol import ALLOWED_FRAMES, ConfinementRefused, ProcessState
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.limits import MIB, Limits
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import HEADER, Json
 from kit.launch.launch_file_process import LaunchFileProcess

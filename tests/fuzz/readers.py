@@ -23,7 +23,7 @@ from grader.reports import FORMATS
 from kit.bridge.channels import WireCodec
 from kit.document.markdown import document_to_markdown
 from kit.host.failure import StudentCodeError
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.policies.policy import Policy, PolicyError
 from kit.learning.policies.policy_file import load_policy, policy_bytes

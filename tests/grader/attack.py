@@ -17,8 +17,8 @@ from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import read_submission
 from grader.submitted_files import SubmissionRefused
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import can_mount_scratch, highest_level_up_to
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import CriterionStatus, GradingResult
 
 TOKEN = "735192468013"

@@ -18,7 +18,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from grader.grading import LevelUnavailable
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from tests.grader.attack import (
     DISOBEYED,
     HASTY,

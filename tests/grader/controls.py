@@ -113,7 +113,7 @@ CONTROLS: Final = (
     ),
     Control(
         "signals of the user",
-        "kit/host/sandbox/confinement.py",
+        "kit/host/sandbox/privileges.py",
         "        wanted[resource.RLIMIT_SIGPENDING] = MAX_PENDING_SIGNALS\n",
         "",
         "host/sandbox/test_confinement.py::test_no_attack_gets_anywhere",
@@ -197,21 +197,21 @@ CONTROLS: Final = (
     ),
     Control(
         "slow near walls by the clock",
-        "grader/driving/checks.py",
+        "grader/driving/checks/speeds.py",
         "    return min(shares) if len(shares) == len(asked) else 0.0\n",
         "    return 1.0\n",
         "grader/driving/test_checks.py::test_the_speed_must_follow_what_the_laser_measures",
     ),
     Control(
         "round and round without a laser",
-        "grader/driving/checks.py",
+        "grader/driving/checks/ways.py",
         "    return PLACE_SIZE * (len(np.unique(places, axis=0)) - 1) if len(places) else 0.0\n",
         "    return drive.score.distance_m\n",
         "grader/driving/test_checks.py::test_to_and_fro_leads_nowhere",
     ),
     Control(
         "all messages in the first tick",
-        "grader/driving/checks.py",
+        "grader/driving/checks/interfaces.py",
         "    return max(mean_error, uneven)\n",
         "    return mean_error\n",
         "grader/driving/test_checks.py::test_a_rate_is_kept_all_the_time",
@@ -274,7 +274,7 @@ CONTROLS: Final = (
     ),
     Control(
         "a program that reads otherwise than it runs",
-        "grader/submitted_files.py",
+        "grader/hidden_code.py",
         "    if encoding.removesuffix(\"-sig\") not in READ_AS_SHOWN:\n",
         "    if not encoding:\n",
         "grader/test_submission.py::test_what_reads_otherwise_than_it_runs_is_refused",
@@ -316,7 +316,7 @@ CONTROLS: Final = (
     ),
     Control(
         "one user for all runs",
-        "kit/host/sandbox/confinement.py",
+        "kit/host/sandbox/privileges.py",
         "        os.setresuid(user, user, user)\n",
         "",
         "host/sandbox/test_confinement.py::test_two_runs_have_two_users",

@@ -27,8 +27,8 @@ from PIL import Image
 from grader.assignment import Assignment
 from grader.evidence.reader_process import MEMORY_LIMIT
 from kit.host import process
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GIB, GRADER_LIMITS
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.wire import OVER_DISK_LIMIT
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.maps.batch_floor import FLOOR_CELL

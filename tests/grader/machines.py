@@ -22,15 +22,15 @@ from typing import Final
 import click
 
 from kit.host.sandbox import landlock
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe_levels
+from kit.host.sandbox.sandbox_config import Level
 
 ROOT: Final = Path(__file__).parents[2]
 ORDINARY_USER: Final = 65_534
 """``nobody``, of whom no file here is."""
 
 _NEW_MOUNT, _BIND, _RECURSIVE, _PRIVATE = 0x00020000, 4096, 16384, 1 << 18
-_PR_SET_NO_NEW_PRIVS, _PR_SET_SECCOMP, _FILTER = 38, 22, 2
+PR_SET_NO_NEW_PRIVS, _PR_SET_SECCOMP, _FILTER = 38, 22, 2
 _CREATE_RULESET: Final = 444
 """Landlock's first system call, on every architecture."""
 
@@ -103,7 +103,7 @@ def become_without_landlock() -> str:
     buffer = ctypes.create_string_buffer(instructions, len(instructions))
     record = struct.pack("@HxxxxxxQ", len(code), ctypes.addressof(buffer))
     libc = _libc()
-    _check(libc.prctl(_PR_SET_NO_NEW_PRIVS, ctypes.c_ulong(1), 0, 0, 0), "prctl")
+    _check(libc.prctl(PR_SET_NO_NEW_PRIVS, ctypes.c_ulong(1), 0, 0, 0), "prctl")
     _check(libc.prctl(_PR_SET_SECCOMP, ctypes.c_ulong(_FILTER), record, 0, 0), "seccomp")
     assert landlock.abi() == 0
     return ""

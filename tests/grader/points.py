@@ -25,8 +25,8 @@ from typing import Any, Final, TypeAlias
 import click
 
 from grader.self_test import written_out
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import probe_levels
+from kit.host.sandbox.sandbox_config import Level
 from kit.workspace import write_atomically
 from tests.test_wheel import build_wheel, install_wheel
 
@@ -56,7 +56,7 @@ from grader.cohort.gradebook import gradebook_rows
 from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions
 from grader.reading import read_assignment
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 
 def main():
     folder, level, jobs = Path(sys.argv[1]), Level(int(sys.argv[2])), int(sys.argv[3])

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from grader.reports import FORMATS
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import GradingVerdict
 from tests.cases import every_case
 from tests.grader.attack import TOKEN, Attack, attempt, works_undefended

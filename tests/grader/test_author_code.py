@@ -18,7 +18,7 @@ from grader.author_code import AuthorCodeError, run_author_code
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.wire import Json
 from kit.results.grading_result import CriterionStatus
 from tests.grader.conftest import FORWARD, LOCKS

@@ -17,7 +17,7 @@ import grader.check as contract
 from grader.__main__ import VERBS, main
 from grader.assignment import Assignment
 from grader.budgets import BUDGET_KEYS
-from grader.driving import checks as drives
+from grader.driving import check_table
 from grader.grading import GradingOptions, LevelTooLow, grade, open_grading
 from grader.kinds.contract import find_kind, kind_names
 from grader.kinds.controller import kind as controller
@@ -25,7 +25,7 @@ from grader.reading import read_assignment
 from grader.self_test import try_works, unfair_fail_odds
 from grader.submission import Submission
 from kit.host.process import child_seed
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from kit.run.recording import load_recording
 from tests.cases import every_case
@@ -142,7 +142,7 @@ def test_a_check_that_breaks_costs_nobody_anything(
     def broken(drive: object, params: object) -> float:
         raise KeyError("ours")
 
-    table = dict(drives.CHECKS)
+    table = dict(check_table.CHECKS)
     table["moves"] = dataclasses.replace(table["moves"], measure=broken)
     monkeypatch.setattr(controller, "KIND", dataclasses.replace(controller.KIND, checks=table))
     result = grade(quick, handed_in(FORWARD), DESK)
@@ -404,7 +404,7 @@ def test_the_plugin_calls_a_broken_grader_an_error(tmp_path: Path) -> None:
     (folder / "conftest.py").write_text(
         "import dataclasses\nfrom grader.driving import checks as drives\n"
         "def broken(drive, params): raise KeyError('ours')\n"
-        "drives.CHECKS = {k: dataclasses.replace(v, measure=broken) for k, v in drives.CHECKS.items()}\n"
+        "check_table.CHECKS = {k: dataclasses.replace(v, measure=broken) for k, v in check_table.CHECKS.items()}\n"
     )
     file = tmp_path / "ada.py"
     file.write_text(FORWARD)

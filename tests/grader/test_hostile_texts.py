@@ -13,7 +13,7 @@ from grader.assignment import Assignment
 from grader.grading import GradingOptions, grade
 from grader.reports import FORMATS
 from grader.submission import Submission
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import GradingVerdict
 from tests.grader.test_attacks import ANNOTATION
 

@@ -9,8 +9,8 @@ import pytest
 
 from grader import look_alikes
 from grader.look_alikes import look, mark_foreign_letters, outline
+from grader.shown_names import shown_name
 from grader.submission import read_submission
-from grader.submitted_files import shown_name
 from tests.grader.conftest import FORWARD
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from tests.grader.conftest import LOCKS
 from tests.grader.points import (
     PointsGrader,

@@ -19,7 +19,7 @@ from grader.kinds.reward.task_model import build_model
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.failure import StudentCodeError
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.learning.tasks.student_reward import LARGEST_REWARD
 from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from tests.cases import every_case

@@ -27,7 +27,7 @@ from grader.seeds import counterpart_seed, short_seeds_warning
 from grader.submission import Submission
 from kit.host.failure import Failure, FailureKind
 from kit.host.process import child_seed
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import (
     CriterionResult,
     CriterionStatus,

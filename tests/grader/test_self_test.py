@@ -12,7 +12,7 @@ import pytest
 from grader.grading import GradingOptions
 from grader.reading import read_assignment
 from grader.self_test import ENDING, EditsError, apply_edits, list_wrong_works, try_works, written_out
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from tests.grader.conftest import TEMPLATES
 
 SOLUTION = "import math\n\n\ndef turn(angle):\n    speed = 2.0 * angle\n    return speed\n\n\ndef stop():\n    return 0.0\n"

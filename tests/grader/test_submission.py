@@ -18,6 +18,7 @@ import pytest
 from grader import archives
 from grader import submission as submission_module
 from grader.archives import MAX_COMPRESSION_RATIO, MAX_DIRECTORY_BYTES, MAX_HEADER_BYTES, _pax_values
+from grader.shown_names import is_plain_name
 from grader.submission import MAX_NAMED, Submission, read_submission
 from grader.submitted_files import (
     MAX_BYTES,
@@ -26,7 +27,6 @@ from grader.submitted_files import (
     SubmissionRefused,
     SubmissionUnreadable,
     SubmittedFiles,
-    is_plain_name,
     reading_submission,
 )
 from tests.grader.packed import zipped

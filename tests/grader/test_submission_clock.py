@@ -11,8 +11,8 @@ from grader.budgets import default_submission_limit_s
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission, read_submission
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
+from kit.host.sandbox.sandbox_config import Level
 from kit.learning.policies.policy_file import policy_bytes
 from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from tests.grader.conftest import FORWARD, TEMPLATES, write_assignment

@@ -12,8 +12,8 @@ from typing import Any, Final
 
 import pytest
 
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
+from kit.host.sandbox.sandbox_config import Level
 from tests.grader.conftest import FORWARD, write_assignment
 
 ROOT: Final = Path(__file__).parents[2]

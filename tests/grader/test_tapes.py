@@ -12,7 +12,7 @@ from grader.driving.drive_record import GradedDrive
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.school.lessons.reading import lesson_names, lessons_folder, solutions_folder
 from tests.kit_content import kit_lesson
 

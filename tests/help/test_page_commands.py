@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from kit.help.topic import topic_names
-from kit.learning.training.runs import find_run, list_runs
+from kit.learning.training.run_folders import find_run, list_runs
 from tests.help.page_commands import (
     NAMES,
     NOT_RUN,

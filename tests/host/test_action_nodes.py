@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import is_level_available
+from kit.host.sandbox.sandbox_config import Level
 from kit.msg.action_msgs import GoalStatus
 from kit.msg.example_interfaces import Fibonacci
 from kit.msg.lifecycle_msgs import ChangeState, GetState

@@ -12,10 +12,10 @@ import pytest
 
 from kit.host.node_process import NodeProcess
 from kit.host.process import child_seed
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
+from kit.launch.launch_bounds import LaunchBounds
 from kit.launch.launch_file_process import LaunchFileProcess
-from kit.launch.program_lookup import LaunchBounds
 from kit.ros.graph.graph import Graph
 from tests.host.conftest import QUICK, Student
 

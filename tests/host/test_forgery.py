@@ -11,8 +11,8 @@ import pytest
 
 from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.probe import is_level_available
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
 from kit.host.student_functions import StudentFunctions
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node

@@ -22,8 +22,8 @@ import pytest
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.process import MAX_SOURCE
 from kit.host.sandbox import landlock
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS, MIB, Limits
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 from tests.host.conftest import LINUX, QUICK, Student
 

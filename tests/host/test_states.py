@@ -10,7 +10,7 @@ import pytest
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.process import Role, StudentProcess
 from kit.host.protocol import ALLOWED_FRAMES, Confined, ConfinementRefused, ProcessState, parse
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL
 from tests.host.conftest import LINUX, QUICK, Speaker, Student
 
 FRAMES: dict[str, Callable[[int], list[Any]]] = {

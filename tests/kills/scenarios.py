@@ -25,7 +25,9 @@ from kit.inspection.sockets import SUFFIX, UNREADY_SUFFIX
 from kit.learning.policies.policy import PolicyError
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.events import TrainingEvent, TrainingStarted
-from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run
+from kit.learning.training.run_config import RunConfig, RunError
+from kit.learning.training.run_folders import create_run
+from kit.learning.training.runs import TrainingRun
 from kit.run.recording import RecordingError, load_recording
 from kit.run.recording_file import restore_recordings
 from kit.school.progress import EventKind, ProgressJournal

@@ -9,12 +9,14 @@ from itertools import combinations
 import pytest
 
 from kit.layers import explain as words
+from kit.layers.bound_certificates import BoundCertificate
 from kit.layers.examples import EXAMPLES
 from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
 from kit.layers.flatland.world_case import current_case
 from kit.layers.flatland.world_planning import plan_world
 from kit.layers.greedy import run_greedy
-from kit.layers.planning import BoundCertificate, LayerPlan, allow_unwanted, drop_requirements, solve_layers
+from kit.layers.planning import LayerPlan, solve_layers
+from kit.layers.relaxations import allow_unwanted, drop_requirements
 from kit.layers.requirements import ContactRequirement, Requirement
 from tests.cases import every_case
 from tests.layers.cases import random_case, random_graph

@@ -7,6 +7,7 @@ import re
 from fractions import Fraction
 from pathlib import Path
 
+from kit.layers.bound_certificates import BoundCertificate
 from kit.layers.examples import EXAMPLES
 from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
 from kit.layers.flatland.world_case import current_case
@@ -23,7 +24,7 @@ from kit.layers.plan_data import (
     plan_data,
     world_data,
 )
-from kit.layers.planning import BoundCertificate, solve_layers
+from kit.layers.planning import solve_layers
 from kit.layers.requirements import ContactRequirement, LayerCase, LayerEntity, Requirement, SightRequirement
 from tests.cases import every_case
 from tests.layers.cases import graph

@@ -11,16 +11,15 @@ from itertools import combinations
 import pytest
 
 from kit.layers.assignment import find_breaches
-from kit.layers.candidates import find_candidates
-from kit.layers.examples import EXAMPLES
-from kit.layers.planning import (
+from kit.layers.bound_certificates import (
     BoundCertificate,
-    allow_unwanted,
-    drop_requirements,
     greedy_conflict_clique,
     is_valid_optimality_certificate,
-    solve_layers,
 )
+from kit.layers.candidates import find_candidates
+from kit.layers.examples import EXAMPLES
+from kit.layers.planning import solve_layers
+from kit.layers.relaxations import allow_unwanted, drop_requirements
 from kit.layers.requirements import (
     ContactRequirement,
     LayerCase,

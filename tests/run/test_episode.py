@@ -21,8 +21,8 @@ from kit.controllers import ControllerFile, find_controller
 from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL
 from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.goals.patrol import PatrolGoal
 from kit.ros.execution.arguments import parse_ros_arguments

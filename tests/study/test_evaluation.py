@@ -26,13 +26,11 @@ from kit.school.report.inference import (
     shapiro_wilk,
 )
 from kit.school.report.measures import ClassRatings, analyse_item, kr20
-from kit.study.evaluation import (
-    DATA_FILE,
+from kit.study.evaluation import evaluation_chapters, evaluation_table
+from kit.study.evaluation_data import DATA_FILE, read_evaluation_data
+from kit.study.evaluation_tables import (
     TableRows,
-    evaluation_chapters,
-    evaluation_table,
     print_differences,
-    read_evaluation_data,
     recompute_tables,
     score_order,
     setting_of,

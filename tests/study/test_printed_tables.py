@@ -14,7 +14,8 @@ from kit.cli import main
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.catalogue import find_task, task_names
 from kit.learning.training.crosstable import CrosstableColumn
-from kit.study.evaluation import evaluation_plots, read_evaluation_data
+from kit.study.evaluation import evaluation_plots
+from kit.study.evaluation_data import read_evaluation_data
 from kit.study.pairs import TABLE_46, TABLE_53
 from kit.study.printed_tables import (
     ADJACENCY,

@@ -13,10 +13,9 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.study import recorded_results, study_check, study_document
+from kit.study import result_logs, study_check, study_document
 from kit.study.printed_tables import ADJACENCY, FIGURE, SUCCESS, parts_of, printed_table
 from kit.study.recorded_results import (
-    SHIPPED_FOLDER,
     RecordedCell,
     RecordedPath,
     RecordedResult,
@@ -24,10 +23,8 @@ from kit.study.recorded_results import (
     RecordedSettings,
     RecordedTest,
     TrainingSession,
-    append_event,
-    find_recorded_result,
-    read_recorded_result,
 )
+from kit.study.result_logs import SHIPPED_FOLDER, append_event, find_recorded_result, read_recorded_result
 from kit.study.seed_spread import cells_below
 from kit.study.study_check import check_document, incomparable_rows
 from kit.study.study_document import recorded_study_document
@@ -87,7 +84,7 @@ def test_an_adjacency_without_a_success_is_found(tmp_path: Path, monkeypatch: py
 @pytest.fixture
 def shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with one log and the document that follows from it."""
-    for module in (recorded_results, study_document):
+    for module in (result_logs, study_document):
         monkeypatch.setattr(module, "SHIPPED_FOLDER", tmp_path)
     monkeypatch.setattr(study_check, "DOCUMENT", tmp_path / "STUDY.md")
     monkeypatch.setattr(study_check, "README", tmp_path / "README.md")

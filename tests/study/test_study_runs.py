@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from kit.controllers import ControllerFile
-from kit.learning.training.runs import RunError
+from kit.learning.training.run_config import RunError
 from kit.learning.training.training import resolve_preset
 from kit.run.scenario import Scenario
 from kit.study import study_runs
@@ -23,10 +23,8 @@ from kit.study.recorded_results import (
     SideShare,
     TrainedSeeds,
     TrainingSession,
-    append_event,
-    read_recorded_result,
-    recorded_result_file,
 )
+from kit.study.result_logs import append_event, read_recorded_result, recorded_result_file
 from kit.study.study_runs import StudyRun
 from kit.workspace import Workspace
 

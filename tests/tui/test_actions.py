@@ -19,8 +19,10 @@ from textual.screen import Screen
 
 import kit.school
 import kit.tui.screens
-from kit.dialogue.actions import ACTIONS, SHARED_IDS, ScreenAction, ScreenActions
+from kit.dialogue.actions import ScreenActions
 from kit.dialogue.dialogue import Dialogue
+from kit.dialogue.screen_action import ScreenAction
+from kit.dialogue.shared_actions import ACTIONS, SHARED_IDS
 from kit.school.lessons.lesson_dialogue import LessonDialogue
 from kit.tui.rows.key_rows import footer, help_page
 from kit.tui.screens.dialogs import WIDTH

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from grader.assignment import Assignment, Shift, Trial
-from grader.driving.checks import CHECKS
+from grader.driving.check_table import CHECKS
 from grader.driving.service_calls import read_service_call
 from grader.evidence.contract import (
     EpisodeCollector,

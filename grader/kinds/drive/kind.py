@@ -21,7 +21,7 @@ import numpy as np
 
 from grader.assignment import Assignment
 from grader.check import NoParams, check
-from grader.driving.checks import CHECKS
+from grader.driving.check_table import CHECKS
 from grader.driving.drive_record import GradedDrive
 from grader.evidence.contract import (
     Evidence,

@@ -18,13 +18,15 @@ from pathlib import Path
 from typing import Any, Final
 
 from grader.assignment import Assignment
-from grader.driving.episodes import MAX_PRINTED_LINES, STEP, RestrictedRunner, with_laser_settings
+from grader.driving.episodes import STEP, with_laser_settings
+from grader.driving.restricted_runner import RestrictedRunner
+from grader.driving.traffic import MAX_PRINTED_LINES
 from grader.evidence.submission_clock import SubmissionClock
 from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
 from kit.host.private_folder import private_folder
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.wire import Json, ProtocolError, decode, printable
 from kit.msg.message import Message
 from kit.msg.std_msgs import String

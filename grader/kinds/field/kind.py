@@ -21,7 +21,7 @@ import numpy as np
 
 from grader.assignment import Assignment, Trial
 from grader.check import Check, NoParams, check
-from grader.driving.checks import CHECKS as DRIVE_CHECKS
+from grader.driving.check_table import CHECKS as DRIVE_CHECKS
 from grader.driving.drive_record import GradedDrive
 from grader.driving.episodes import shifted_start
 from grader.evidence.contract import (

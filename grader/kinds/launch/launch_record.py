@@ -18,18 +18,18 @@ from typing import Any, Final
 
 import numpy as np
 
-from grader.driving.episodes import TrafficRecorder
+from grader.driving.traffic import TrafficRecorder
 from grader.evidence.submission_clock import SubmissionClock
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.private_folder import private_folder
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import Limits
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.wire import printable
+from kit.launch.launch_bounds import LaunchBounds
 from kit.launch.launch_file_process import SHARE_FOLDER, LaunchTarget, declared_arguments
 from kit.launch.launch_run import GraphOnlyRun, Launch
 from kit.launch.plain_launch import LaunchSession
 from kit.launch.processes import ProcessStartError
-from kit.launch.program_lookup import LaunchBounds
 from kit.launch.requests import DeclaredArgument
 from kit.msg.rcl_interfaces import GetParameters, ParameterType
 from kit.render.world_text import scene_rows

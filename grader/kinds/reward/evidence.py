@@ -33,7 +33,7 @@ from grader.kinds.reward.transitions import MODEL_FACTS, TransitionBatch, to_tra
 from grader.submitted_files import reading_submission
 from kit.arrays import FloatArray
 from kit.host.failure import Failure, FailureKind, StudentCodeError
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import printable
 from kit.learning.tasks.student_reward import REWARD_FUNCTION, RewardFileError, call_reward, reward_parameters

@@ -15,7 +15,8 @@ from kit.learning.policies.evaluation import Evaluator
 from kit.learning.policies.paths_picture import worst_drive
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.reward import RewardFunction
-from kit.learning.training.algorithms import find_algorithm, require_learn_extra
+from kit.learning.training.algorithms import find_algorithm
+from kit.learning.training.learn_extra import require_learn_extra
 from kit.learning.training.learner import Learner
 from kit.learning.training.presets import find_preset
 from kit.learning.training.training import make_learner

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from grader.evidence.reader_process import MEMORY_LIMIT, ReaderProcess
 from kit.host.failure import StudentCodeError
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.wire import printable
 
 if TYPE_CHECKING:

@@ -40,12 +40,12 @@ from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import (
     ALGORITHMS,
-    LearnExtraMissing,
     UnknownAlgorithm,
     UnsuitableAlgorithm,
     check_suits,
     find_algorithm,
 )
+from kit.learning.training.learn_extra import LearnExtraMissing
 from kit.learning.training.presets import LinearSchedule
 from kit.plain_text import quoted, suggestion
 from kit.world.yaml_section import Section

@@ -1,4 +1,8 @@
-"""Plain records about a world and its runs, sent as JSON. Lengths in metres, angles in radians."""
+"""Plain records about a world and its runs, sent as JSON. Lengths in metres, angles in radians.
+
+They are not the world's own records, since a confined process that has read a stranger's world writes them: what arrives is
+checked value by value, and holds no arrays, functions or files.
+"""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ from grader.kinds.world.world_process import READ_TIMEOUT_S, WorldProcess
 from grader.seeds import read_seeds
 from kit.controllers import find_controller
 from kit.host.failure import StudentCodeError
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.plain_files import is_file_there
 from kit.plain_text import quoted
 from kit.run.scenario import Scenario

@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from grader.evidence.reader_process import MEMORY_LIMIT, ReaderProcess
 from grader.kinds.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from kit.host.failure import Failure, FailureKind
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
-
-if TYPE_CHECKING:
-    pass
-
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
 
 READ_TIMEOUT_S: Final = 30.0
 """Seconds to read a world, including the start on a busy machine."""

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.cli.launch import run_launch
 from kit.cli.ros.world_client import EXIT_INTERRUPTED, exit_with_error
 from kit.host.program_terminal import ProgramTerminal, has_user_terminal
@@ -58,7 +58,7 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
         try:
             package = read_package(folder).name
         except PackageError as problem:
-            options.fail(str(problem))
+            messages.fail(str(problem))
     if package.endswith(".py"):
         request = StartRequest(
             1, Path(package).stem, None, None, ("python3", package, *words), False, _environment(), None, ""
@@ -68,7 +68,7 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
             1, words[0], package, words[0], tuple(words[1:]), False, _environment(), None, ""
         )
     else:
-        options.fail(f"Give a program of the package; `kit pkg executables {package}` lists them.")
+        messages.fail(f"Give a program of the package; `kit pkg executables {package}` lists them.")
     sockets = sockets_folder(opened_workspace.folder)
 
     def on_output(line: PrintedLine) -> None:
@@ -96,9 +96,9 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
         else:
             ended = run(None)
     except (ProcessStartError, WorldNotFound) as problem:
-        options.fail(str(problem))
+        messages.fail(str(problem))
     except OSError as problem:
-        options.fail(options.describe_os_error(problem))
+        messages.fail(messages.describe_os_error(problem))
     except WorldDisconnected as problem:
         exit_with_error(str(problem))
     except KeyboardInterrupt:

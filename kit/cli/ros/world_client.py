@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 
 import click
 
-from kit.cli import options
+from kit.cli import messages, options
 from kit.inspection.client import InspectionClient, ServiceTimeout, WorldDisconnected
 from kit.inspection.sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
 from kit.msg.interfaces import register_packages
@@ -48,7 +48,7 @@ def connect_to_world(world: str | None, workspace: Path | None) -> Iterator[Insp
         ) as client:
             yield client
     except WorldNotFound as problem:
-        options.fail(str(problem))
+        messages.fail(str(problem))
     except (WorldDisconnected, ServiceTimeout) as problem:
         exit_with_error(str(problem))
     except KeyboardInterrupt:

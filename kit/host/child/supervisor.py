@@ -26,7 +26,7 @@ from kit.host.child import function_calls
 from kit.host.child.command_loop import CommandChannel, CommandSession, enable_stack_dumps
 from kit.host.child.import_hooks import on_import
 from kit.host.child.student_module import STDERR, StudentProgram, explain
-from kit.host.sandbox import confinement
+from kit.host.sandbox import confinement, process_control, sandbox_config
 from kit.host.sandbox.limits import INTERVAL_S, PAUSE_PER_COUNT, exceeds_disk_limit
 from kit.host.sandbox.namespaces import unmount_scratch
 from kit.host.sandbox.reaper import end_descendants, remove_folder
@@ -50,11 +50,11 @@ def run() -> int:
 def _start_student() -> int:
     channel = CommandChannel(PIPE)
     role, record, streams = channel.receive()
-    config = confinement.SandboxConfig.from_json(record)
-    confinement.adopt_orphans()
+    config = sandbox_config.SandboxConfig.from_json(record)
+    process_control.adopt_orphans()
     try:
         is_disk_limited = confinement.prepare(config)
-    except confinement.ConfinementError as problem:
+    except sandbox_config.ConfinementError as problem:
         channel.send(["refused", str(problem)])
         return 1
     _preload(role)
@@ -74,7 +74,7 @@ def _start_student() -> int:
     return _supervise(child, ended, config, is_disk_limited=is_disk_limited)
 
 
-def _supervise(child: int, ended: int, config: confinement.SandboxConfig, *, is_disk_limited: bool) -> int:
+def _supervise(child: int, ended: int, config: sandbox_config.SandboxConfig, *, is_disk_limited: bool) -> int:
     """Waits for the end, cleans up, and returns the child's exit status: 128 + n for signal n.
 
     Ends a child that has written more than it may, and returns OVER_DISK_LIMIT, unless ``is_disk_limited``: the file system
@@ -143,7 +143,7 @@ def _redirect_to_null(*descriptors: int) -> None:
     os.close(null)
 
 
-def _run_student(role: str, config: confinement.SandboxConfig, streams: Streams) -> int:
+def _run_student(role: str, config: sandbox_config.SandboxConfig, streams: Streams) -> int:
     """Runs in the child: confines it, then runs the student's code."""
     os.setsid()
     if config.makes_namespaces:
@@ -158,7 +158,7 @@ def _run_student(role: str, config: confinement.SandboxConfig, streams: Streams)
     dumps = _connect_streams(streams)
     try:
         confinement.confine(config)
-    except confinement.ConfinementError as problem:
+    except sandbox_config.ConfinementError as problem:
         channel.send(["refused", str(problem)])
         return 1
     channel.send(["confined", int(config.level)])

@@ -14,8 +14,8 @@ from typing import Final
 from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.private_folder import private_folder
 from kit.host.sandbox import bubblewrap, landlock
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.control_groups import can_make_groups
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 
 TRIAL_S: Final = 20.0

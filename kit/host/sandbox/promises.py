@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 
 
 @dataclass(frozen=True, slots=True)

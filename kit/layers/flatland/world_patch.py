@@ -32,8 +32,8 @@ from kit.layers.flatland.yaml_edits import (
     UnsafeEdit,
     YamlChange,
     apply_changes,
-    format_flow_list,
 )
+from kit.layers.flatland.yaml_scalars import format_flow_list
 from kit.layers.requirements import ContactRequirement, LayerCase, Relation, Sighting
 from kit.layers.requirements_file import RequirementsFile
 from kit.plain_text import quoted, suggestion

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import TypeAlias
 
 import yaml
+
+from kit.layers.flatland.yaml_scalars import COMPUTED, format_flow_list, format_scalar
 
 MappingStart: TypeAlias = tuple[int, int]
 """Line and column of a mapping's beginning, from 1: how ``kit.world`` names it."""
@@ -163,7 +165,7 @@ class _YamlDocument:
         shared = any(self._uses[id(node)] > 1 for node in (value, *_scalar_nodes(value)))
         if shared or self._text[start] in "&*!":
             raise UnsafeEdit(f"the list in line {value.start_mark.line + 1} has an anchor, an alias or a tag")
-        if any(_COMPUTED.match(leaf.value) for leaf in _scalar_nodes(value)):
+        if any(COMPUTED.match(leaf.value) for leaf in _scalar_nodes(value)):
             raise UnsafeEdit(
                 f"the list in line {value.start_mark.line + 1} is computed ($include, env or $eval)"
             )
@@ -309,23 +311,3 @@ def _scalar_nodes(node: yaml.Node) -> Iterator[yaml.ScalarNode]:
     elif isinstance(node, yaml.SequenceNode):
         for item in node.value:
             yield from _scalar_nodes(item)
-
-
-_COMPUTED: Final = re.compile(r"\s*(\$|env\s*\(|param\s*\()")
-_PLAIN: Final = re.compile(r"[A-Za-z_][\w./+-]*(?<![.])", re.ASCII)
-_RESERVED_WORDS: Final = frozenset(["y", "n", "yes", "no", "on", "off", "true", "false", "null"])
-_ESCAPES: Final[Mapping[str, str]] = {'"': '\\"', "\\": "\\\\"}
-
-
-def format_scalar(text: str) -> str:
-    """A YAML scalar that every reader takes for this text."""
-    if _PLAIN.fullmatch(text) and text.lower() not in _RESERVED_WORDS:
-        return text
-    return (
-        '"' + "".join(_ESCAPES.get(c) or (c if c.isprintable() else f"\\U{ord(c):08x}") for c in text) + '"'
-    )
-
-
-def format_flow_list(names: Iterable[str]) -> str:
-    """``[a, b]``"""
-    return f"[{', '.join(format_scalar(name) for name in names)}]"

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple, cast
 
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.maps.ray_directions import LEFT_RAYS
-from kit.learning.policies.node_goals.goal_count import GoalCount
+from kit.learning.policies.node_goals.goal_count import NodeCount
 from kit.learning.policies.policy import Policy, PolicyError
 from kit.learning.policies.policy_file import policy_bytes
 from kit.learning.tasks.actions import DiscreteActions
@@ -105,7 +105,7 @@ def _count_text(goal: Goal | None) -> str:
     """The classes by which a node counts a goal, as their files have them; None: those of a node that is not told."""
     common = _class_text(files(GOAL_PROGRAMS).joinpath("goal_count.py").read_text())
     own = "" if goal is None else _class_text(files(GOAL_PROGRAMS).joinpath(f"{goal.kind}.py").read_text())
-    name = own.removeprefix("class ").partition("(")[0] or "GoalCount"
+    name = own.removeprefix("class ").partition("(")[0] or "NodeCount"
     return f"{common}{own}COUNT = {name}\n\n\n"
 
 
@@ -114,16 +114,16 @@ def _class_text(program: str) -> str:
     return "class " + program.partition("\nclass ")[2].rstrip() + "\n\n\n"
 
 
-def node_count(task: LearningTask) -> GoalCount:
+def node_count(task: LearningTask) -> NodeCount:
     """Counts the goal as the node of a policy of this task does. ValueError where none can: see ``node_refusals``."""
     if not task.observation.achieved:
-        return GoalCount({})
+        return NodeCount({})
     goal = task.goal
     if not _can_count(goal):
         raise ValueError(f"a node cannot count the goal {goal.kind}")
     counts = vars(import_module(f"{GOAL_PROGRAMS}.{goal.kind}")).values()
-    kind = next(each for each in counts if isinstance(each, type) and GoalCount in each.__bases__)
-    return cast(GoalCount, kind(_goal_facts(task)))
+    kind = next(each for each in counts if isinstance(each, type) and NodeCount in each.__bases__)
+    return cast(NodeCount, kind(_goal_facts(task)))
 
 
 def _goal_facts(task: LearningTask) -> dict[str, Any]:

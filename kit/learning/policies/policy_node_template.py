@@ -47,9 +47,8 @@ TOPICS: list[list[str]] = []  # of each robot: its commands, its scans, its odom
 RAYS: list[list[int]] = []  # by robot: rays given as they are
 SECTORS: list[int] = []  # which sector each ray belongs to
 ANGLES: list[float] = []  # rad, the direction of each ray, to the left of straight ahead
-PARTS: list[
-    str
-] = []  # what follows the numbers of each robot's scan: speeds, last_action, own_pose, target and others
+# what follows the numbers of each robot's scan: speeds, last_action, own_pose, target and others
+PARTS: list[str] = []
 FRAMES = 1  # how many of the last observations it sees, the newest last
 CLIP, SCALE = 2.0, 1.0  # how far it sees [m], and what ranges, distances and coordinates are multiplied by
 TARGET_CLIP, PLACE_CLIP = 4.0, 100.0  # how far it is told of the target, and of its own place [m]
@@ -60,20 +59,19 @@ LEADER_FRAME = ""  # likewise
 HULL: list[list[list[float]]] = []  # convex parts of a robot [m]; empty where the middle of its axle arrives
 HEADING_TOLERANCE = math.pi  # how far from the target's heading a robot has still arrived [rad]
 GOAL: dict[str, Any] = {}  # what is known of the goal that is counted
-LEFT_RAYS: list[
-    int
-] = []  # rays to the left, by which the distance to a wall is told; those to the right mirror them
+# rays to the left, by which the distance to a wall is told; those to the right mirror them
+LEFT_RAYS: list[int] = []
 POLICY = ""
 # --- what was learned ---
 
 
 # --- how its goal is counted ---
 from kit.learning.policies.node_goals.goal_count import (  # noqa: E402 - its text stands here when a node is written
-    GoalCount,
     GoalProgress,
+    NodeCount,
 )
 
-COUNT: type[GoalCount] = GoalCount
+COUNT: type[NodeCount] = NodeCount
 # --- how its goal is counted ---
 
 

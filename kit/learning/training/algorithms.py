@@ -9,14 +9,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
-from importlib.util import find_spec
 from inspect import signature
-from platform import machine, python_version, system
 from types import MappingProxyType
 from typing import Any, Literal
 
-from kit.installation import install_command
 from kit.plain_text import nearest_name, quoted
 
 AlgorithmFamily = Literal["rollouts", "replay", "search", "table", "imitation"]
@@ -259,42 +255,3 @@ def check_suits(algorithm: Algorithm, *, is_continuous: bool) -> None:
         f"it: {', '.join(able)}. Or use a task with continuous actions, such as smooth-turn; in your own file, "
         "write `actions: {linear: [-0.2, 0.5], angular: [-2, 2]}`."
     )
-
-
-# The packages of the extra ``learn``
-
-REQUIRED_PACKAGES = ("torch", "stable_baselines3", "sb3_contrib")
-RECORDED_PACKAGES = (
-    "robot-learning-kit",
-    "torch",
-    "stable-baselines3",
-    "sb3-contrib",
-    "gymnasium",
-    "numpy",
-    "numba",
-)
-
-
-class LearnExtraMissing(Exception):
-    """The extra ``learn`` is not installed; the message says how to install it."""
-
-
-def require_learn_extra() -> None:
-    """LearnExtraMissing if training cannot start. Imports nothing."""
-    missing = [name for name in REQUIRED_PACKAGES if find_spec(name) is None]
-    if missing:
-        raise LearnExtraMissing(
-            f"Training needs packages that are not installed: {', '.join(missing)}. To have them, type:\n  {install_command('learn')}\n"
-            "Viewing runs, and testing and playing trained policies, work without them."
-        )
-
-
-def versions() -> dict[str, str]:
-    """Returns the versions of packages, Python and machine that a run depends on."""
-    found = {"python": python_version(), "machine": f"{system()} {machine()}"}
-    for name in RECORDED_PACKAGES:
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            continue
-    return found

@@ -14,7 +14,8 @@ from kit.document.blocks import Cell, CellStyle, Column, Table
 from kit.learning.policies.evaluation import Evaluator
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.runs import RunConfig, RunError, TrainingRun
+from kit.learning.training.run_config import RunConfig, RunError
+from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training_sweep import ALL_CASES, TrainingSweep
 from kit.workspace import write_atomically
 

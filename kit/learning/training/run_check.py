@@ -18,14 +18,10 @@ from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.student_reward import StudentReward
 from kit.learning.tasks.task_reader import read_task
 from kit.learning.tasks.transition import EpisodeState, Transition
-from kit.learning.training.algorithms import (
-    IMITATION_ALGORITHMS,
-    Algorithm,
-    find_algorithm,
-    require_learn_extra,
-)
+from kit.learning.training.algorithms import IMITATION_ALGORITHMS, Algorithm, find_algorithm
 from kit.learning.training.demonstrations import DemonstrationError
-from kit.learning.training.runs import RunConfig, RunError
+from kit.learning.training.learn_extra import require_learn_extra
+from kit.learning.training.run_config import RunConfig, RunError
 from kit.learning.training.training import fit_task_spec, resolve_preset
 
 

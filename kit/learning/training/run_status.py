@@ -22,8 +22,9 @@ from kit.learning.training.events import (
     TrainingStarted,
 )
 from kit.learning.training.measures import MEASURES
+from kit.learning.training.run_config import RunConfig
 from kit.learning.training.run_text import format_event, success_shares
-from kit.learning.training.runs import RunCommand, RunConfig, TrainingSummary, summarise_events
+from kit.learning.training.runs import RunCommand, TrainingSummary, summarise_events
 from kit.learning.training.training import resolve_preset
 
 RECENT_REPORTS = 10

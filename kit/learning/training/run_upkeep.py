@@ -16,9 +16,11 @@ from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.training.algorithms import UnknownAlgorithm
 from kit.learning.training.events import Evaluated
 from kit.learning.training.measures import VALUE_MAX, format_measure, is_value_too_large, value_warning
+from kit.learning.training.run_config import RunError
+from kit.learning.training.run_folders import NAME_PATTERN
 from kit.learning.training.run_status import RunTracker, plan_of_run
 from kit.learning.training.run_text import success_shares
-from kit.learning.training.runs import NAME_PATTERN, RunError, TrainingRun, TrainingSummary
+from kit.learning.training.runs import TrainingRun, TrainingSummary
 from kit.plain_text import counted, format_size, quoted
 from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import Encoder

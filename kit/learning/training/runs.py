@@ -10,22 +10,18 @@ from __future__ import annotations
 import fcntl
 import io
 import json
-import math
 import os
-import re
 import time
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import IO, Any, Final, Literal, get_args
 
 from kit.array_archives import READ_ERRORS, check_arrays, check_stored
-from kit.field_types import check_field_types
 from kit.learning.policies.policy import Policy
 from kit.learning.policies.policy_file import load_policy
-from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.events import (
     Evaluated,
     EventReader,
@@ -34,15 +30,12 @@ from kit.learning.training.events import (
     TrainingProgress,
     TrainingStarted,
 )
+from kit.learning.training.run_config import RunConfig, RunError
 from kit.plain_files import open_plain_file
-from kit.plain_text import quoted, suggestion
 from kit.workspace import write_atomically
 
 RunCommand = Literal["go", "pause", "stop"]
 """Commands that a user interface may send to a learner."""
-PresetName = Literal["kit", "seed", "seed-text"]
-"""The kit's; the dissertation's as its code ran; the same as its text says (section 3.1.2)."""
-NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,99}")
 LOCK_WAIT_S = 0.2
 """Seconds a learner waits for the lock, which a process that checks the run holds for a moment."""
 
@@ -59,83 +52,6 @@ def _try_lock(lock: IO[bytes]) -> bool:
             time.sleep(LOCK_WAIT_S / 20)
         else:
             return True
-
-
-NO_LIMIT = "none"
-"""Stands for an infinite limit."""
-
-
-def format_settings(settings: Iterable[tuple[str, float]]) -> str:
-    """Changed settings, as ``--set`` takes them: ``gamma=0.98 n_steps=64``."""
-    return " ".join(f"{name}={format_setting(number)}" for name, number in settings)
-
-
-def format_setting(number: float) -> str:
-    """A setting's number, as ``--set`` takes it: infinity, of a limit, is ``none``."""
-    return NO_LIMIT if math.isinf(number) else f"{number:.12g}"
-
-
-class RunError(Exception):
-    """A run is missing, damaged or busy, or cannot be written; the message says what to do."""
-
-
-@dataclass(frozen=True, slots=True)
-class RunConfig:
-    """The task of a run and how it is learned."""
-
-    choice: TaskSpec
-    algorithm: str = "ppo"
-    preset: PresetName = "kit"
-    seed: int = 0
-    steps: int | None = None
-    """Instead of the preset's."""
-    worlds: int | None = None
-    learning_rate: float | None = None
-    """Constant, instead of the preset's."""
-    goal: float | None = None
-    """Instead of the strategy's."""
-    keep_training: bool = False
-    """Use the dissertation's first strategy: to the last step, whatever tests say."""
-    reward_file: str | None = None
-    """A student's reward, instead of the task's."""
-    mirrored: bool = False
-    """Half of the worlds are seen in a mirror: what is learned on one side is known on the other."""
-    imitate: tuple[str, ...] = ()
-    """Files of demonstrators: recordings, policies, controllers."""
-    settings: tuple[tuple[str, float], ...] = ()
-    """Names and numbers of settings, instead of the preset's; see ``kit.learning.training.presets``."""
-
-    @property
-    def preset_text(self) -> str:
-        """The preset and the settings that differ from it: ``preset kit, gamma=0.98``."""
-        return f"preset {self.preset}" + (f", {format_settings(self.settings)}" if self.settings else "")
-
-    @property
-    def reward_name(self) -> str:
-        """The reward that is not the task's own: a file's name, or the name of one of the kit's; else empty."""
-        return Path(self.reward_file).name if self.reward_file is not None else self.choice.reward or ""
-
-    def as_dict(self) -> dict[str, Any]:
-        """JSON-able."""
-        values = {name: getattr(self, name) for name in self.__dataclass_fields__ if name != "choice"}
-        return {"choice": self.choice.as_dict(), **values, "settings": dict(self.settings)}
-
-    @classmethod
-    def from_dict(cls, data: Any) -> RunConfig:
-        """Reads what ``as_dict`` returned. Raises ValueError for anything else."""
-        try:
-            plain = {name: value for name, value in data.items() if name not in ("choice", "settings")}
-            settings = tuple((str(name), number) for name, number in data["settings"].items())
-            check_field_types(cls, plain)
-            if not all(type(number) in (int, float) for _, number in settings):
-                raise ValueError("settings are numbers")
-            choice = TaskSpec.from_dict(data["choice"])
-            config = cls(choice, **{**plain, "imitate": tuple(data["imitate"])}, settings=settings)
-        except (TypeError, KeyError, AttributeError) as error:
-            raise ValueError(f"not the configuration of a run: {error}") from None
-        if config.seed < 0 or any(count is not None and count < 1 for count in (config.steps, config.worlds)):
-            raise ValueError(f"seed {config.seed}, {config.steps} steps, {config.worlds} worlds")
-        return config
 
 
 RunState = Literal["running", "paused", "finished", "stopped", "failed", "interrupted", "new"]
@@ -368,74 +284,3 @@ def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: R
     if alive:
         state = "paused" if order == "pause" else "running"
     return TrainingSummary(state, steps, seconds, rate, tested, best, reason, measures)
-
-
-def create_run(folder: Path, config: RunConfig, name: str | None = None) -> TrainingRun:
-    """Makes a run's folder in ``folder``; by default named after what it learns. RunError if that is taken.
-
-    The run keeps its own copies of the task's and the reward's files.
-    """
-    config = replace(config, choice=config.choice.frozen())
-    task = config.choice.resolve()
-    if config.reward_file is None and task.reward_file is not None:
-        config = replace(config, reward_file=str(task.reward_file.absolute()))
-    if name is not None and not NAME_PATTERN.fullmatch(name):
-        raise RunError(f"{quoted(name)}: a run's name may contain letters, digits, '_', '-' and '.'.")
-    made = (
-        _make_folder(folder, name) if name is not None else _make_unused_folder(folder, _default_name(config))
-    )
-    if config.reward_file is not None:  # the run keeps its own: the student goes on writing
-        write_atomically(TrainingRun(made).reward, Path(config.reward_file).read_bytes())
-    for number, name in enumerate(config.imitate):
-        if name.endswith(".npz"):
-            write_atomically(made / f"demonstration-{number}.npz", Path(name).read_bytes())
-    if config.choice.text is not None:
-        write_atomically(TrainingRun(made).task, config.choice.text.encode())
-    write_atomically(made / "config.json", json.dumps(config.as_dict(), indent=1).encode())
-    return TrainingRun(made)
-
-
-def _default_name(config: RunConfig) -> str:
-    parts = [config.choice.name, *config.choice.on, config.algorithm, config.preset]
-    return "-".join([*parts, str(config.seed)])[:90]
-
-
-def _make_folder(folder: Path, name: str) -> Path:
-    try:
-        (folder / name).mkdir()
-    except FileExistsError:
-        raise RunError(
-            f"a run {name} already exists. Choose another name with --name, or resume it: "
-            f"`kit train --resume {name}`."
-        ) from None
-    return folder / name
-
-
-def _make_unused_folder(folder: Path, name: str) -> Path:
-    """The first of name, name-2, name-3, ... that is free."""
-    number = 1
-    while True:
-        try:
-            return _make_folder(folder, name if number == 1 else f"{name}-{number}")
-        except RunError:
-            number += 1
-
-
-def list_runs(folder: Path) -> tuple[TrainingRun, ...]:
-    """Every run in the folder, the one begun last first."""
-    files = [(file.stat().st_mtime, file.parent) for file in folder.glob("*/config.json")]
-    return tuple(TrainingRun(each) for _, each in sorted(files, reverse=True))
-
-
-def find_run(folder: Path, name: str | None = None) -> TrainingRun:
-    """The run of that name, or, without one, the one begun last. RunError if there is none."""
-    runs = {run.name: run for run in list_runs(folder)}
-    if name is None:
-        if not runs:
-            raise RunError("There are no runs yet. `kit train turn` starts one.")
-        return next(iter(runs.values()))
-    if name in runs:
-        return runs[name]
-    if not runs:
-        raise RunError(f"There is no run {quoted(name)}, nor any other. `kit train turn` starts one.")
-    raise RunError(f"There is no run {quoted(name)}: {suggestion(name, runs)}")

@@ -1,8 +1,9 @@
 """The process that runs trainings of a sweep.
 
 ``python -m kit.learning.training.sweep_worker FOLDER`` runs those whose keys come on standard input; with ``--shard I/N``
-those of a share that have no result yet, one after the other; with ``--all`` those without a result, in processes side by side,
-which ``start_sweep`` starts in a session of its own. A signal to end, or the end of the process that started this one, leaves a checkpoint of the training that runs.
+those of a share that have no result yet, one after the other; with ``--all``, as ``start_sweep`` starts it in a session of its
+own, all that have none, in processes side by side. A signal to end, or the end of the process that started this one, leaves a
+checkpoint of the training that runs.
 """
 
 from __future__ import annotations

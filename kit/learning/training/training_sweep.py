@@ -34,14 +34,9 @@ from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.policies.evaluation import evaluate_on
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.runs import (
-    PresetName,
-    RunConfig,
-    RunError,
-    TrainingRun,
-    create_run,
-    format_settings,
-)
+from kit.learning.training.run_config import PresetName, RunConfig, RunError, format_settings
+from kit.learning.training.run_folders import create_run
+from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training import resolve_preset, train
 from kit.workspace import make_private_folder, write_atomically
 

@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from kit.installation import install_command
 from kit.learning.training.run_check import check_settings
-from kit.learning.training.runs import RunConfig, RunError, format_settings
+from kit.learning.training.run_config import RunConfig, RunError, format_settings
 from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_sweep import TrainingSweep, sweep_rows
 

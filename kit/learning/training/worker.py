@@ -13,8 +13,9 @@ from pathlib import Path
 from types import FrameType
 
 from kit.host.python_command import python_command
-from kit.learning.training.algorithms import LearnExtraMissing
-from kit.learning.training.runs import RunError, TrainingRun
+from kit.learning.training.learn_extra import LearnExtraMissing
+from kit.learning.training.run_config import RunError
+from kit.learning.training.runs import TrainingRun
 
 EXIT_SIGNALS = (signal.SIGTERM, signal.SIGINT)
 

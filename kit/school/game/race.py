@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any, Final
 from kit.controllers import ControllerFile, find_controller, kit_controllers
 from kit.host.failure import Failure, FailureKind
 from kit.host.private_folder import private_folder
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
-from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.host.sandbox.probe import is_level_available
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL
+from kit.host.sandbox.sandbox_config import Level as Confinement
 from kit.run.episode import EndCondition, EndReason, run_until, when, when_failed
 from kit.run.lockstep import Observer
 from kit.run.metrics import MetricsRecorder

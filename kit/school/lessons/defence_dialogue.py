@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from types import MappingProxyType
 from typing import Any, ClassVar
 
-from kit.dialogue.actions import ACTIONS, ScreenAction, digits
 from kit.dialogue.dialogue import Dialogue, DialogueAction, Refused, leave_action
 from kit.dialogue.effects import Effect
+from kit.dialogue.screen_action import ScreenAction, digits
+from kit.dialogue.shared_actions import ACTIONS
 from kit.document.blocks import Block, Choice, Choices, Text, Tone
 from kit.geometry import whole_degrees
 from kit.plain_text import counted

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from kit.dialogue.actions import ACTIONS
 from kit.dialogue.dialogue import DialogueAction, Refused
 from kit.dialogue.effects import Effect, Tell
+from kit.dialogue.shared_actions import ACTIONS
 from kit.document.blocks import Block, Text, Tone
 from kit.plain_text import quoted, suggestion
 from kit.school.lessons.reading import lesson_number, lessons_folder

@@ -10,8 +10,8 @@ from typing import Final
 
 from kit.controllers import find_controller
 from kit.host.python_command import python_command
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
+from kit.host.sandbox.sandbox_config import Level
 from kit.plain_text import quoted, suggestion
 from kit.school.lessons.checking import SOLUTIONS
 from kit.school.lessons.reading import LESSON_FILE, read_lesson

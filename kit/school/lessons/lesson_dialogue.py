@@ -8,9 +8,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from kit.dialogue.actions import ACTIONS, ScreenAction, digits, letter
 from kit.dialogue.dialogue import Dialogue, DialogueAction, Refused, help_action, leave_action
 from kit.dialogue.effects import Choose, Effect, Leave, Open, Option, Remark, Show, Tell, Work
+from kit.dialogue.screen_action import ScreenAction, digits, letter
+from kit.dialogue.shared_actions import ACTIONS
 from kit.document.blocks import Block, Marked, Picture, Text, Tone
 from kit.render.encode import AsciiEncoder
 from kit.run.scenario import find_scenario

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
 from kit.host.sandbox.probe import highest_level_up_to
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
 from kit.results.grading_result import CriterionResult
 from kit.school.game.levels import GameLevel, levels_of_lesson
 from kit.school.lessons import checking

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from kit.host.failure import StudentCodeError
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.learning.grid.grid_world import FLOOR, START, TARGET, WALL, GridCell, GridWorld
 from kit.school.lessons.own_learners import OwnLinesError, StudentLines, make_own_learner
 from kit.school.lessons.records import LearningScene

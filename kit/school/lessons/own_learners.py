@@ -18,7 +18,7 @@ from typing import Any, Final, Protocol, Self
 import numpy as np
 
 from kit.arrays import BoolArray, FloatArray, IntArray
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 from kit.learning.grid.chances import softmax
 from kit.learning.grid.dqn import DqnLearner, ReplayedStep

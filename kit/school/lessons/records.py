@@ -12,7 +12,7 @@ from kit.learning.grid.grid_learner import GridLearnerSettings
 from kit.learning.grid.grid_world import GridWorld
 
 if TYPE_CHECKING:
-    from kit.host.sandbox.confinement import Level
+    from kit.host.sandbox.sandbox_config import Level
     from kit.school.lessons.own_learners import KeptLines
 
 RECORDING_SUFFIX: Final = ".npz"
@@ -286,7 +286,7 @@ class Lesson:
 def scene_confinement_level(scene: LessonScene) -> Level:
     """How far the controller of a lesson's scene is confined: the kit's own run as a student's do; somebody else's as
     confined as this machine can. Slow the first time: the machine is asked what it can."""
-    from kit.host.sandbox.confinement import INTERACTIVE_LEVEL, Level
     from kit.host.sandbox.probe import highest_level_up_to
+    from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
 
     return highest_level_up_to(max(Level)) if scene.is_foreign else INTERACTIVE_LEVEL

@@ -7,9 +7,10 @@ from enum import Enum
 from types import MappingProxyType
 from typing import Any, ClassVar, Final
 
-from kit.dialogue.actions import ACTIONS, ScreenAction, digits, letter
 from kit.dialogue.dialogue import Dialogue, DialogueAction, help_action, leave_action
 from kit.dialogue.effects import Effect
+from kit.dialogue.screen_action import ScreenAction, digits, letter
+from kit.dialogue.shared_actions import ACTIONS
 from kit.document.blocks import Block, Choice, Choices, KeyLine, Picture, Text, Tone
 from kit.school.lessons.glossary import glossary_action
 from kit.school.progress import ProgressError

@@ -179,7 +179,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         self._doing = progress
 
     async def _choose_run(self) -> str | None:
-        from kit.learning.training.runs import list_runs
+        from kit.learning.training.run_folders import list_runs
 
         runs = [run.name for run in await to_thread(list_runs, self._workspace.runs)]
         if not runs:

@@ -17,7 +17,8 @@ from textual.screen import ModalScreen
 from textual.widgets import Input, OptionList
 from textual.widgets.option_list import Option
 
-from kit.dialogue.actions import ScreenAction, ScreenActions
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import ScreenAction
 from kit.document.rows import Row, broken, row, side_by_side
 from kit.plain_text import wrap
 from kit.render.roles import COLOR_SCHEMES

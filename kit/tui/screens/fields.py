@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING, ClassVar, Final
 from textual.binding import BindingType
 
 from kit.arrays import FloatArray
-from kit.dialogue.actions import VIEW_IDS, ScreenAction, ScreenActions, letter
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import ScreenAction, letter
+from kit.dialogue.shared_actions import VIEW_IDS
 from kit.document.rows import Row, row
 from kit.fields import adjacency
 from kit.fields.controller_setup import ControllerSetup, mean_position

@@ -14,7 +14,8 @@ from textual.message import Message as ScreenMessage
 from textual.timer import Timer
 from textual.widgets import Input
 
-from kit.dialogue.actions import ScreenActions, letter
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import letter
 from kit.document.rows import row
 from kit.msg.conversion import FieldValue, field_values
 from kit.render.graph import GraphDrawing, GraphElement, GraphView, draw_graph

@@ -14,7 +14,8 @@ from textual.binding import BindingType
 from textual.containers import Container, Vertical
 from textual.widgets import Static
 
-from kit.dialogue.actions import ScreenActions, letter
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import letter
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import DRIVE_KEYS, DriveKey
 from kit.tui.input.modes import Clock, KeyEventKind

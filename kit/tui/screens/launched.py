@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, ClassVar
 from textual.binding import BindingType
 from textual.message import Message
 
-from kit.dialogue.actions import VIEW_IDS, ScreenAction, ScreenActions
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import ScreenAction
+from kit.dialogue.shared_actions import VIEW_IDS
 from kit.inspection.sockets import sockets_folder, world_name
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings

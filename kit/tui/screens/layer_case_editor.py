@@ -12,7 +12,8 @@ from textual.binding import BindingType
 from textual.containers import Horizontal
 from textual.widgets import Input
 
-from kit.dialogue.actions import ScreenAction, ScreenActions, letter
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import ScreenAction, letter
 from kit.document.rows import row, spread
 from kit.layers.case_table import CaseTable, RowKind
 from kit.layers.drawing.matrix import draw_matrix

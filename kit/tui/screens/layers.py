@@ -14,7 +14,8 @@ from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input
 
-from kit.dialogue.actions import ScreenAction, ScreenActions, digits, letter
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import ScreenAction, digits, letter
 from kit.document.rows import Row, row, spread, window
 from kit.layers.case_sources import PlanningTask, UnknownPlanningTask, open_task, solve_task
 from kit.layers.drawing.graph import MAX_ENTITIES_IN_PICTURE

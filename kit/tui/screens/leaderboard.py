@@ -9,7 +9,8 @@ from typing import ClassVar
 from textual import events, work
 from textual.binding import BindingType
 
-from kit.dialogue.actions import ScreenActions, letter
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import letter
 from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row
 from kit.school.game import leaderboard

@@ -14,7 +14,8 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 
 from kit.controllers import user_controllers
-from kit.dialogue.actions import ScreenActions, letter
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import letter
 from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row, side_by_side, spread
 from kit.document.tables import list_rows
@@ -305,6 +306,6 @@ class MatchReplayScreen(ReplayScreen):
 
 def _agents(runs: Path) -> list[str]:
     """The names of all trainings."""
-    from kit.learning.training.runs import list_runs
+    from kit.learning.training.run_folders import list_runs
 
     return [each.name for each in list_runs(runs)]

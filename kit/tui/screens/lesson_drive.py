@@ -9,7 +9,9 @@ from textual.binding import BindingType
 from textual.message import Message
 
 from kit.controllers import find_controller
-from kit.dialogue.actions import VIEW_IDS, ScreenAction, ScreenActions
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import ScreenAction
+from kit.dialogue.shared_actions import VIEW_IDS
 from kit.document.rows import Row, row
 from kit.inspection.sockets import sockets_folder
 from kit.run.recording import Recording

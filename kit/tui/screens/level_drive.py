@@ -17,7 +17,8 @@ from textual.message import Message
 from textual.screen import ModalScreen
 
 from kit.controllers import ControllerFile, find_controller
-from kit.dialogue.actions import VIEW_IDS, ScreenActions
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.shared_actions import VIEW_IDS
 from kit.document.rows import Row, row, spread
 from kit.inspection.sockets import sockets_folder
 from kit.plain_text import format_clock

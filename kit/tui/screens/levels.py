@@ -15,7 +15,8 @@ from textual.binding import BindingType
 from textual.containers import Horizontal
 
 from kit.controllers import ControllerFile, kit_controllers, user_controllers
-from kit.dialogue.actions import ScreenActions, letter
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import letter
 from kit.document.rows import Row, row, spread
 from kit.plain_text import counted
 from kit.render.scene import Scene
@@ -431,7 +432,7 @@ class LevelsScreen(RowsScreen[None]):
 
     async def _drive_agent(self, run: TrainingRun) -> None:
         from kit.learning.policies.policy import PolicyError
-        from kit.learning.training.runs import RunError
+        from kit.learning.training.run_config import RunError
 
         with ExitStack() as stack:
             try:
@@ -544,6 +545,6 @@ class LevelsScreen(RowsScreen[None]):
 
 
 def _runs(folder: Path) -> list[TrainingRun]:
-    from kit.learning.training.runs import list_runs
+    from kit.learning.training.run_folders import list_runs
 
     return list(list_runs(folder))

@@ -12,7 +12,8 @@ from textual.binding import BindingType
 from textual.containers import Horizontal
 from textual.message import Message
 
-from kit.dialogue.actions import ScreenAction, ScreenActions, digits
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import ScreenAction, digits
 from kit.document.rows import Row, row
 from kit.mapmaking.map_sketch import MapSketch, SketchMark, Square
 from kit.mapmaking.new_map import NewMap

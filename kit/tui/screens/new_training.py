@@ -14,7 +14,8 @@ from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
 
-from kit.dialogue.actions import ScreenAction, ScreenActions
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import ScreenAction
 from kit.document.rows import row
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.training_rows import settings
@@ -23,7 +24,8 @@ from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import TextRows
 
 if TYPE_CHECKING:
-    from kit.learning.training.runs import PresetName, RunConfig, TrainingRun
+    from kit.learning.training.run_config import PresetName, RunConfig
+    from kit.learning.training.runs import TrainingRun
     from kit.learning.training.training_sweep import TrainingSweep
     from kit.tui.theme import Theme
 
@@ -88,7 +90,7 @@ class TrainingChoices:
     def config(self) -> RunConfig:
         """The configuration of a run."""
         from kit.learning.tasks.task_spec import TaskSpec
-        from kit.learning.training.runs import RunConfig
+        from kit.learning.training.run_config import RunConfig
 
         return RunConfig(
             TaskSpec(self.task, self.cases),
@@ -256,7 +258,7 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
 def begin_training(folder: Path, config: RunConfig) -> TrainingRun:
     """Checks everything that can be wrong before anything is written, and starts the training. Raises what is wrong."""
     from kit.learning.training.run_check import check_run_config
-    from kit.learning.training.runs import create_run
+    from kit.learning.training.run_folders import create_run
     from kit.learning.training.worker import start_worker
 
     check_run_config(config)

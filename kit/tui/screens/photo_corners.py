@@ -12,7 +12,8 @@ from textual.binding import BindingType
 from textual.message import Message
 
 from kit.arrays import FloatArray
-from kit.dialogue.actions import ScreenAction, ScreenActions
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import ScreenAction
 from kit.document.rows import row
 from kit.mapmaking.pixels import Corners
 from kit.mapmaking.sheet import order_corners

@@ -12,7 +12,8 @@ from textual import work
 from textual.binding import BindingType
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers, user_controllers
-from kit.dialogue.actions import VIEW_IDS, ScreenActions
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.shared_actions import VIEW_IDS
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import named
 from kit.tui.input.driver import key_driver
@@ -312,7 +313,8 @@ def _look_again(session: Session) -> None:
 
 def _agent_items(folder: Path) -> list[PickerItem]:
     """The trainings that have left a policy. In another thread: files may be far away."""
-    from kit.learning.training.runs import RunError, list_runs
+    from kit.learning.training.run_config import RunError
+    from kit.learning.training.run_folders import list_runs
 
     items = []
     for run in list_runs(folder):
@@ -327,7 +329,7 @@ def _agent_items(folder: Path) -> list[PickerItem]:
 def _write_agent(folder: Path, name: str) -> tuple[ControllerFile, Policy]:
     """The node of a run's best policy, kept in the run's folder. Raises RunError, PolicyError and OSError."""
     from kit.learning.policies.policy_node import format_policy_node
-    from kit.learning.training.runs import find_run
+    from kit.learning.training.run_folders import find_run
 
     run = find_run(folder, name)
     policy = run.policy()

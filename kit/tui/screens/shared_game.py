@@ -11,7 +11,8 @@ from textual import work
 from textual.binding import BindingType
 from textual.message import Message
 
-from kit.dialogue.actions import VIEW_IDS, ScreenActions
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.shared_actions import VIEW_IDS
 from kit.document.rows import row
 from kit.geometry import Pose
 from kit.render.scene import Disc, Scene, ScenePath

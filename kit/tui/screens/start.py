@@ -13,7 +13,8 @@ from textual import work
 from textual.binding import BindingType
 from textual.screen import Screen
 
-from kit.dialogue.actions import ScreenAction, ScreenActions
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import ScreenAction
 from kit.document.rows import Row, row, spread
 from kit.inspection.sockets import sockets_folder
 from kit.plain_text import counted, wrap

@@ -15,7 +15,8 @@ from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.message import Message
 
-from kit.dialogue.actions import ScreenActions, letter
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import letter
 from kit.document.rows import row
 from kit.render.scene import Scene
 from kit.tui.rows import readout_rows, training_rows
@@ -104,8 +105,8 @@ class TrainingFollower:
         from kit.learning.tasks.learning_task import UnknownTask
         from kit.learning.training.algorithms import UnknownAlgorithm
         from kit.learning.training.events import EventReader
+        from kit.learning.training.run_config import RunError
         from kit.learning.training.run_status import RunTracker, plan_of_run
-        from kit.learning.training.runs import RunError
 
         try:
             plan = plan_of_run(self._run.config())
@@ -133,7 +134,7 @@ class TrainingFollower:
 
     def _run_jobs(self) -> None:
         """Waits for one, but not for long."""
-        from kit.learning.training.runs import RunError
+        from kit.learning.training.run_config import RunError
 
         try:
             job = self._jobs.get(timeout=POLL_S)
@@ -160,7 +161,7 @@ class TrainingFollower:
     def _drive(self, plan: RunPlan) -> None:
         from kit.learning.policies.policy import PolicyError
         from kit.learning.training.demonstration import Demonstration
-        from kit.learning.training.runs import RunError
+        from kit.learning.training.run_config import RunError
 
         demonstration = Demonstration(self._run, greedy=plan.greedy)
         while not self._closed.is_set():

@@ -12,7 +12,8 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal
 
-from kit.dialogue.actions import ScreenAction, ScreenActions, letter
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import ScreenAction, letter
 from kit.document.blocks import Block, Text
 from kit.document.rows import row, spread
 from kit.plain_text import counted, format_size
@@ -305,7 +306,7 @@ class TrainingsScreen(RowsScreen[None]):
             await self._do(lambda: delete_run(run))
 
     async def _do(self, change: Callable[[], object]) -> None:
-        from kit.learning.training.runs import RunError
+        from kit.learning.training.run_config import RunError
 
         try:
             await to_thread(change)
@@ -324,8 +325,8 @@ class TrainingsScreen(RowsScreen[None]):
 
 
 def _read_runs(folder: Path) -> Sequence[RunOverview]:
+    from kit.learning.training.run_folders import list_runs
     from kit.learning.training.run_upkeep import read_overviews
-    from kit.learning.training.runs import list_runs
 
     return read_overviews(list_runs(folder))
 

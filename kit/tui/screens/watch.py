@@ -11,7 +11,8 @@ from textual.app import ComposeResult
 from textual.containers import Horizontal
 from textual.message import Message
 
-from kit.dialogue.actions import ACTIONS, ScreenActions
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.shared_actions import ACTIONS
 from kit.document.rows import Row, row
 from kit.kernels.compilation_progress import PROGRESS
 from kit.run.pacing import MAXIMUM, REAL_TIME

@@ -5,19 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from textual.app import ComposeResult
 from textual.containers import Container
 from textual.widget import Widget
 
 from kit.document.rows import Row, row
-from kit.tui.widgets.text_rows import TextRows
-
-if TYPE_CHECKING:
-    pass
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.playback_scene_view import PlaybackSceneView
+from kit.tui.widgets.text_rows import TextRows
 
 LEAST_PICTURE: Final = 8
 MOST_PICTURE: Final = 14

@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 from grader.__main__ import main
 from grader.reading import read_assignment
 from kit.host.sandbox import probe
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.school.lessons.reading import lessons_folder
 from tests.grader.conftest import LOCKS, write_assignment
 

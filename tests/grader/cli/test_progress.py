@@ -12,7 +12,7 @@ from grader.evidence.submission_clock import DRIVE_KIND, SubmissionClock, Traini
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import read_submission
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.school.lessons.checking import ExerciseCheck
 from kit.school.lessons.reading import find_lesson
 from tests.grader.conftest import FORWARD, write_assignment

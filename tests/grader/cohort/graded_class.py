@@ -9,7 +9,7 @@ from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions
 from grader.reading import read_assignment
 from grader.version import grader_version
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import PUBLIC_SEEDS, CriterionResult, CriterionStatus, GradingResult
 from tests.grader.conftest import write_assignment
 

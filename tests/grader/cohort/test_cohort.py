@@ -51,7 +51,7 @@ from grader.submission import read_submission
 from kit.host.job_executors import ExecutorUnavailable, JobPool
 from kit.host.job_folder import JobExecutor
 from kit.host.sandbox import probe
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import GradingVerdict
 from kit.world.problems import WorldError
 from tests.cases import every_case

@@ -21,7 +21,7 @@ from grader.grading import GradingOptions
 from grader.reading import read_assignment
 from kit.host.job_executors import MAX_RESULT_BYTES
 from kit.host.job_folder import JobExecutor
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from tests.fuzz.damage import damage_json, nudge_json
 from tests.grader.conftest import FORWARD, write_assignment

@@ -30,7 +30,7 @@ from grader.reading import read_assignment
 from grader.submission import Submission
 from grader.submitted_files import SubmissionUnreadable
 from kit.document.layout import Page, lines_of
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from tests.grader.conftest import FORWARD, QUICK, write_assignment
 from tests.grader.test_submission import nested_folders, zipped
 
@@ -58,7 +58,7 @@ from pathlib import Path
 from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 resource.setrlimit(resource.RLIMIT_CPU, (60, 60))
 assignment, cohort, queue = map(Path, sys.argv[1:])
 entries = prepare_queue(Queue(queue), cohort, read_assignment(assignment), GradingOptions(Level.LIMITED))

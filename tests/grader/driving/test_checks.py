@@ -10,15 +10,16 @@ import numpy as np
 import pytest
 
 from grader.check import NoParams
-from grader.driving import checks as drives
-from grader.driving.checks import CircleParams, FlagByRangeParams, SpeedByFlagParams, SpeedByRangeParams
+from grader.driving.checks import interfaces, speeds, walls, ways
+from grader.driving.checks.speeds import FlagByRangeParams, SpeedByFlagParams, SpeedByRangeParams
+from grader.driving.checks.ways import CircleParams
 from grader.driving.drive_record import GradedDrive
 from grader.grading import GradingOptions, grade
 from grader.kinds.environment.examination import FreePlacementRunner
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.arrays import FloatArray
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.ros.graph.graph import Graph
 from kit.run.scenario import find_scenario
 from kit.sim.simulation import Simulation, SimulationError
@@ -30,7 +31,7 @@ SECONDS = 20
 
 
 def rate_of(per_second: dict[int, int], rate: float) -> float:
-    return drives._rate_error(per_second, rate, SECONDS)
+    return interfaces._rate_error(per_second, rate, SECONDS)
 
 
 @every_case(
@@ -108,14 +109,14 @@ def test_all_messages_and_lines_in_the_first_tick_are_no_rate(
     assert sum(graded(tmp_path / "r", checks, source).values()) == pytest.approx(points)
 
 
-def drive_by_range(distances: list[float], speeds: list[float]) -> float:
+def drive_by_range(distances: list[float], driven: list[float]) -> float:
     """What ``speed_by_range`` measures where a scan comes ten times a second, and a command right after it."""
     times = np.arange(len(distances)) / 10
     drive = drive_of(
         ahead={"/static_laser": np.column_stack([times, distances, distances])},
-        commands=np.column_stack([times + 0.01, speeds, 0 * times]),
+        commands=np.column_stack([times + 0.01, driven, 0 * times]),
     )
-    return drives.speed_by_range.measure(drive, SpeedByRangeParams())
+    return speeds.speed_by_range.measure(drive, SpeedByRangeParams())
 
 
 def drive_of(**fields: Any) -> GradedDrive:
@@ -146,7 +147,7 @@ def flags_by_range(near: list[float], wide: list[float], said: list[bool]) -> fl
         ahead={"/static_laser": np.column_stack([times, near, wide])},
         flags={"/wall_ahead": np.column_stack([times, said])},
     )
-    return drives.flag_by_range.measure(drive, FlagByRangeParams())
+    return speeds.flag_by_range.measure(drive, FlagByRangeParams())
 
 
 def test_what_is_said_of_walls_must_be_true() -> None:
@@ -162,13 +163,13 @@ def test_what_is_said_of_walls_must_be_true() -> None:
 
 
 def test_the_speed_must_follow_what_was_said() -> None:
-    def measured(said: list[bool], speeds: list[float]) -> float:
+    def measured(said: list[bool], driven: list[float]) -> float:
         times = np.arange(len(said)) / 10
         drive = drive_of(
             flags={"/wall_ahead": np.column_stack([times, said])},
-            commands=np.column_stack([times + 0.01, speeds, 0 * times]),
+            commands=np.column_stack([times + 0.01, driven, 0 * times]),
         )
-        return drives.speed_by_flag.measure(drive, SpeedByFlagParams())
+        return speeds.speed_by_flag.measure(drive, SpeedByFlagParams())
 
     said = [False] * 20 + [True] * 20
     assert measured(said, [0.4] * 20 + [0.0] * 20) == 1.0
@@ -182,7 +183,7 @@ def test_to_and_fro_leads_nowhere() -> None:
     along = np.linspace(0, 6, 2500)
 
     def ground(x: FloatArray, y: FloatArray) -> float:
-        return drives.gets_about.measure(drive_of(track=np.column_stack([x, y, 0 * x])), NoParams())
+        return ways.gets_about.measure(drive_of(track=np.column_stack([x, y, 0 * x])), NoParams())
 
     assert ground(along, 0 * along) == pytest.approx(6.0, abs=0.3)
     assert ground(np.abs(along % 0.3 - 0.15), 0 * along) <= 0.2
@@ -194,7 +195,7 @@ def test_a_circle_is_driven_one_way_round() -> None:
     def off(angles: FloatArray, turning: str = "left") -> float:
         track = np.column_stack([0.3 * np.cos(angles), 0.3 * np.sin(angles), angles])
         drive = drive_of(track=track, recording=SimpleNamespace(step_size=0.01))
-        return drives.circle.measure(drive, CircleParams(0.3, 0.0, turning))
+        return ways.circle.measure(drive, CircleParams(0.3, 0.0, turning))
 
     round_it = np.linspace(0, 15, 1500)
     assert off(round_it) < 0.01
@@ -221,7 +222,7 @@ def test_home_after_a_bump_and_not_otherwise(
 ) -> None:
     inputs = [SimpleNamespace(kind="move_model", tick=tick) for tick in sent]
     drive = drive_of(bump_ticks=bumps, recording=SimpleNamespace(inputs=inputs, step_size=0.01))
-    assert drives.goes_home.measure(drive, NoParams()) == pytest.approx(share)
+    assert walls.goes_home.measure(drive, NoParams()) == pytest.approx(share)
 
 
 TWO_ROBOTS = """

@@ -16,14 +16,9 @@ import numpy as np
 import pytest
 
 from grader.assignment import Assignment, Shift, Trial
-from grader.driving.checks import (
-    CHECKS,
-    CircleParams,
-    HeadingParams,
-    NodeNamesParams,
-    ProfilesParams,
-    TopicsParams,
-)
+from grader.driving.check_table import CHECKS
+from grader.driving.checks.interfaces import NodeNamesParams, ProfilesParams, TopicsParams
+from grader.driving.checks.ways import CircleParams, HeadingParams
 from grader.driving.drive_record import GradedDrive
 from grader.driving.episodes import run_episode
 from grader.evidence.contract import EpisodeSpec
@@ -31,8 +26,8 @@ from grader.grading import GradingOptions, grade
 from grader.kinds.drive.kind import MAX_INPUTS_PER_S
 from grader.reading import read_assignment
 from grader.submission import Submission
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from kit.run.recording import Input, Recording, load_recording, save_recording
 from kit.run.scenario import find_scenario

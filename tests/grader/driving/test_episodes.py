@@ -11,15 +11,17 @@ import pytest
 
 from grader.assignment import Assignment, Shift, Trial
 from grader.check import Check
-from grader.driving.checks import CHECKS, DistanceBandParams, TopicRateParams, TopicsParams
+from grader.driving.check_table import CHECKS
+from grader.driving.checks.interfaces import TopicRateParams, TopicsParams
+from grader.driving.checks.walls import DistanceBandParams
 from grader.driving.drive_record import GradedDrive
 from grader.driving.episodes import run_episode, shifted_start
 from grader.evidence.contract import EpisodeSpec
 from kit.controllers import find_controller
 from kit.host.failure import FailureKind
 from kit.host.proxy_nodes import ProxyNodes
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.wire import Json
 from kit.run.recording import rerun
 from kit.run.scenario import find_scenario

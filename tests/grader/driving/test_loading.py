@@ -12,8 +12,8 @@ from grader.driving.drive_record import GradedDrive
 from grader.driving.episodes import ProgramLoading, run_episode
 from grader.evidence.contract import EpisodeSpec
 from kit.host.failure import FailureKind
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
+from kit.host.sandbox.sandbox_config import Level
 from kit.run.scenario import find_scenario
 from tests.grader.conftest import FORWARD
 

@@ -7,7 +7,7 @@ import pytest
 from grader.evidence.contract import EpisodeCollector, EpisodeSpec, EvidenceOptions, EvidenceRecord
 from grader.reading import read_assignment
 from kit.host.failure import Failure, FailureKind
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.school.lessons.reading import lessons_folder
 
 DIED = Failure(FailureKind.EXCEPTION, "program.py:7: NameError: name 'ranges' is not defined")

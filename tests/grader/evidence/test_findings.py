@@ -21,7 +21,7 @@ from grader.new_assignment import example_of_kind, make_assignment
 from grader.reading import read_assignment
 from grader.self_test import WorkRole, works_of, written_out
 from grader.submission import Submission, read_submission
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from tests.grader.conftest import FORWARD, QUICK, write_assignment
 
 DESK = GradingOptions(Level.LIMITED)

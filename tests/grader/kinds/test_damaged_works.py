@@ -16,7 +16,7 @@ from grader.new_assignment import example_of_kind, make_assignment
 from grader.reading import read_assignment
 from grader.submission import Submission, read_submission
 from grader.submitted_files import SubmissionRefused
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import GradingVerdict
 
 LESSONS = Path(__file__).parents[3] / "lessons"

@@ -10,7 +10,7 @@ from grader.assignment import Assignment
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import Submission
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 
 ASSIGNMENT_TEXT = """

@@ -26,7 +26,7 @@ from grader.kinds.function.kind import (
 from grader.new_assignment import example_of_kind, make_assignment
 from grader.reading import read_assignment
 from grader.submission import Submission, read_submission
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json
 from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict

@@ -15,8 +15,8 @@ from grader.grading import GradingOptions, grade
 from grader.kinds.launch.launch_record import MAX_PROGRAMS, MAX_STRIDE, _driven_distance, offered_truths
 from grader.reading import read_assignment
 from grader.submission import Submission
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
+from kit.host.sandbox.sandbox_config import Level
 from kit.launch.launch_file_process import LaunchTarget
 from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from kit.world.problems import WorldError

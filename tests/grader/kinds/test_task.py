@@ -14,8 +14,8 @@ from grader.grading import GradingOptions, grade
 from grader.kinds.task.posed_task import ActionLoop, PosedTask
 from grader.reading import read_assignment
 from grader.submission import Submission
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
+from kit.host.sandbox.sandbox_config import Level
 from kit.learning.policies.policy import task_interface
 from kit.learning.policies.policy_file import policy_bytes
 from kit.learning.tasks.task_spec import TaskSpec

@@ -15,7 +15,7 @@ from grader.kinds.training import kind as training
 from grader.kinds.training.kind import CHECKS, collect_evidence
 from grader.reading import read_assignment
 from grader.submission import Submission
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import CriterionStatus
 from kit.school.lessons.reading import lessons_folder
 from kit.world.problems import WorldError
@@ -196,7 +196,7 @@ from pathlib import Path
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import read_submission
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 
 sheet, file = map(Path, sys.argv[1:])
 assignment = read_assignment(sheet)

@@ -16,7 +16,7 @@ from grader.reading import read_assignment
 from grader.submission import Submission
 from grader.teacher_tests.deadline import TestDeadline, TestTimeUsedUp
 from grader.teacher_tests.reading import read_teacher_tests
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import (
     CriterionResult,
     CriterionStatus,

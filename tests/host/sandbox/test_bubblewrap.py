@@ -16,9 +16,9 @@ import pytest
 from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.private_folder import PREFIX
 from kit.host.sandbox import bubblewrap
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import is_level_available
 from kit.host.sandbox.reaper import descendants
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 from tests.host.conftest import QUICK, Student
 from tests.host.sandbox import test_confinement, test_grants

@@ -25,9 +25,9 @@ from kit.controllers import find_controller
 from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
 from kit.host.sandbox import landlock, seccomp
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import MIB
 from kit.host.sandbox.probe import SandboxSupport, can_mount_scratch, highest_level, probe_levels
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 from kit.msg.geometry_msgs import Twist
 from kit.msg.sensor_msgs import LaserScan
@@ -409,7 +409,7 @@ def test_without_rights_the_levels_end_where_they_are_needed(student: Student) -
         import sys; sys.path.insert(0, {str(Path(__file__).parents[3])!r})
         from pathlib import Path
         from kit.host.student_functions import StudentFunctions
-        from kit.host.sandbox.confinement import Level
+        from kit.host.sandbox.sandbox_config import Level
         from kit.host.sandbox.probe import probe_levels
         for support in probe_levels(): print(support.level.value, support.is_available, support.reason)
         for level in (Level.LIMITED, Level.FILTERED):
@@ -439,7 +439,7 @@ import sys, os
 sys.path.insert(0, {root!r})
 from pathlib import Path
 from kit.host.student_functions import StudentFunctions
-from kit.host.sandbox.confinement import shield_this_process
+from kit.host.sandbox.process_control import shield_this_process
 shield_this_process()
 with StudentFunctions(Path({file!r})) as functions:
     print(functions.call_batch("f", [{{"grader": os.getpid()}}]))

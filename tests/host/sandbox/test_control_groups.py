@@ -11,10 +11,10 @@ import pytest
 
 from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.sandbox import control_groups
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.control_groups import can_make_groups, remove_free_groups, return_group, take_group
 from kit.host.sandbox.limits import GRADER_LIMITS, INTERACTIVE_LIMITS, MIB
 from kit.host.sandbox.probe import is_level_available
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 
 ROOT = Path(__file__).parents[3]

@@ -10,10 +10,10 @@ import pytest
 
 from kit.host.process import process_environment
 from kit.host.sandbox import grants
-from kit.host.sandbox.confinement import Level, SandboxConfig
 from kit.host.sandbox.grants import find_grants
 from kit.host.sandbox.namespaces import FileTree, plan_mounts
 from kit.host.sandbox.probe import is_level_available
+from kit.host.sandbox.sandbox_config import Level, SandboxConfig
 from kit.host.student_functions import StudentFunctions
 from tests.host.conftest import QUICK, Student
 

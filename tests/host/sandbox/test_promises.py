@@ -19,11 +19,11 @@ import pytest
 from kit.host import process
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox import grants
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import MIB, Limits
 from kit.host.sandbox.probe import can_mount_scratch, is_level_available
 from kit.host.sandbox.promises import PROMISES, Promise, markdown_table, promises_since
 from kit.host.sandbox.reaper import descendants
+from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 from tests.grader import test_returned_numbers, test_secrets
 from tests.grader.controls import CONTROLS

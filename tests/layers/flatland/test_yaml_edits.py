@@ -11,9 +11,8 @@ from kit.layers.flatland.yaml_edits import (
     UnsafeEdit,
     YamlChange,
     apply_changes,
-    format_flow_list,
-    format_scalar,
 )
+from kit.layers.flatland.yaml_scalars import format_flow_list, format_scalar
 from tests.cases import every_case
 
 

@@ -21,7 +21,8 @@ from kit.learning.tasks.actions import ContinuousActions
 from kit.learning.tasks.learning_task import LearningTask, StartVariation
 from kit.learning.tasks.task_reader import read_task
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.runs import RunConfig, create_run
+from kit.learning.training.run_config import RunConfig
+from kit.learning.training.run_folders import create_run
 from kit.learning.training.training import train
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.sim.plugins.laser import LaserParams

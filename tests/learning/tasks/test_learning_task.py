@@ -22,7 +22,8 @@ from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.events import TrainingNote
 from kit.learning.training.presets import find_preset
-from kit.learning.training.runs import RunConfig, create_run
+from kit.learning.training.run_config import RunConfig
+from kit.learning.training.run_folders import create_run
 from kit.learning.training.training import make_learner, train
 from kit.world.problems import WorldError
 from tests.learning.tasks.tasks_for_tests import one_world, task_of

@@ -38,7 +38,8 @@ from kit.learning.training.presets import (
     TabularParams,
     find_preset,
 )
-from kit.learning.training.runs import RunConfig, create_run
+from kit.learning.training.run_config import RunConfig
+from kit.learning.training.run_folders import create_run
 from kit.learning.training.stopping_rules import TrainUntilGoal
 from kit.learning.training.training import fit_task_spec, make_learner, train
 from tests.cases import every_case

@@ -19,7 +19,7 @@ from kit.learning.training.crosstable import (
     crosstable_columns,
     crosstable_tables,
 )
-from kit.learning.training.runs import RunError
+from kit.learning.training.run_config import RunError
 from kit.learning.training.training_sweep import ALL_CASES, TrainingSweep, combine
 from kit.study.printed_tables import printed_means
 

@@ -13,7 +13,9 @@ from kit.learning.policies.policy_file import save_policy
 from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.demonstration import Demonstration
-from kit.learning.training.runs import RunConfig, TrainingRun, create_run
+from kit.learning.training.run_config import RunConfig
+from kit.learning.training.run_folders import create_run
+from kit.learning.training.runs import TrainingRun
 
 FORWARD, LEFT = 0, 1
 

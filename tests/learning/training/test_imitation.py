@@ -27,7 +27,8 @@ from kit.learning.training.demonstrations import (
     actions_of_twists,
 )
 from kit.learning.training.presets import ImitationParams, LinearSchedule, Preset
-from kit.learning.training.runs import RunConfig, create_run
+from kit.learning.training.run_config import RunConfig
+from kit.learning.training.run_folders import create_run
 from kit.learning.training.stopping_rules import TrainUntilGoal
 from kit.learning.training.training import make_learner, train
 from kit.run.headless import run_episode

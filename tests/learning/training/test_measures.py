@@ -24,7 +24,9 @@ from kit.learning.training.measures import (
     value_warning,
 )
 from kit.learning.training.presets import find_preset
-from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run, format_settings
+from kit.learning.training.run_config import RunConfig, RunError, format_settings
+from kit.learning.training.run_folders import create_run
+from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training import resolve_preset, train
 
 UPDATES = {"explained_variance", "entropy"}

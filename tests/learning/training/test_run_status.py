@@ -17,8 +17,8 @@ from kit.learning.training.events import (
     TrainingProgress,
     TrainingStarted,
 )
+from kit.learning.training.run_config import RunConfig
 from kit.learning.training.run_status import RECENT_REPORTS, RunPlan, RunStatus, RunTracker, plan_of_run
-from kit.learning.training.runs import RunConfig
 
 A, B = "turn_a_to_b", "turn_b_to_a"
 PLAN = RunPlan("turn", (A, B), 10_000, 0.9, True)

@@ -13,6 +13,8 @@ from kit.learning.tasks.rewards import REWARDS
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.events import EventWriter, TrainingProgress
 from kit.learning.training.run_check import check_run_config
+from kit.learning.training.run_config import RunConfig, RunError
+from kit.learning.training.run_folders import create_run, find_run, list_runs
 from kit.learning.training.run_upkeep import (
     delete_run,
     disk_bytes,
@@ -22,7 +24,7 @@ from kit.learning.training.run_upkeep import (
     runs_blocks,
     runs_table,
 )
-from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run, find_run, list_runs
+from kit.learning.training.runs import TrainingRun
 
 
 @pytest.fixture

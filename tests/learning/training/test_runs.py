@@ -26,15 +26,9 @@ from kit.learning.training.events import (
     decode_event,
     encode_event,
 )
-from kit.learning.training.runs import (
-    RunConfig,
-    RunError,
-    TrainingRun,
-    create_run,
-    find_run,
-    list_runs,
-    summarise_events,
-)
+from kit.learning.training.run_config import RunConfig, RunError
+from kit.learning.training.run_folders import create_run, find_run, list_runs
+from kit.learning.training.runs import TrainingRun, summarise_events
 from tests.cases import every_case
 
 CONFIG = RunConfig(TaskSpec("turn"), "q-learning", seed=3)

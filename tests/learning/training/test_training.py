@@ -18,10 +18,13 @@ import pytest
 
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.algorithms import ALGORITHMS, LearnExtraMissing
+from kit.learning.training.algorithms import ALGORITHMS
 from kit.learning.training.events import Evaluated, TrainingNote, TrainingProgress, TrainingStarted
+from kit.learning.training.learn_extra import LearnExtraMissing
 from kit.learning.training.presets import KIT_PPO_HALLWAY
-from kit.learning.training.runs import RunConfig, RunError, TrainingRun, create_run
+from kit.learning.training.run_config import RunConfig, RunError
+from kit.learning.training.run_folders import create_run
+from kit.learning.training.runs import TrainingRun
 from kit.learning.training.stopping_rules import CaseCount, TrainThenTest, TrainUntilSure
 from kit.learning.training.training import fit_task_spec, make_learner, practice_shares, resolve_preset, train
 from kit.learning.training.worker import start_worker
@@ -228,7 +231,7 @@ def test_a_network_s_run_is_whole_too(tmp_path: Path) -> None:
 
 
 def test_without_the_extra_it_says_how_to_get_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("kit.learning.training.algorithms.find_spec", lambda name: None)
+    monkeypatch.setattr("kit.learning.training.learn_extra.find_spec", lambda name: None)
     run = create_run(tmp_path, RunConfig(TaskSpec("turn")))
     with pytest.raises(LearnExtraMissing, match=r"torch.*\n.*pip install"):
         train(run)

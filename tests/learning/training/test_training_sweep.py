@@ -20,7 +20,8 @@ from kit.cli import main
 from kit.document.layout import lines_of
 from kit.host.job_folder import JobExecutor
 from kit.learning.policies.confidence_intervals import wilson_interval
-from kit.learning.training.runs import RunError, TrainingRun
+from kit.learning.training.run_config import RunError
+from kit.learning.training.runs import TrainingRun
 from kit.learning.training.sweep_worker import start_sweep
 from kit.learning.training.training_sweep import (
     SweepResult,

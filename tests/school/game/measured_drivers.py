@@ -136,7 +136,7 @@ def main() -> None:
 
 def _agent(level: GameLevel, place: Path) -> tuple[RaceFinish, Medal]:
     from kit.learning.policies.policy_file import load_policy
-    from kit.learning.training.runs import find_run
+    from kit.learning.training.run_folders import find_run
 
     policy = load_policy(place) if place.is_file() else find_run(place.parent, place.name).policy()
     with agent_controller(policy) as program:

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from kit.controllers import find_controller, kit_controllers
-from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.probe import is_level_available
+from kit.host.sandbox.sandbox_config import Level as Confinement
 from kit.learning.tasks.goals.target import REACH_TARGET
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.episode import EndCondition, EndReason, run_until

@@ -26,7 +26,7 @@ from grader.reading import read_assignment
 from grader.submission import read_submission
 from kit.cli import main
 from kit.controllers import find_controller
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.layers.case_sources import open_task
 from kit.layers.greedy import run_greedy
 from kit.layers.planning import solve_layers

@@ -13,7 +13,7 @@ from grader.grading import GradingOptions, grade
 from grader.kinds.answers.kind import AnswerQuestion
 from grader.reading import read_assignment
 from grader.submission import read_submission
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.school.lessons.checking import read_solution, submission_path
 from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.records import Exercise

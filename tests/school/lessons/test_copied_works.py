@@ -18,7 +18,7 @@ from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment
 from grader.submission import read_submission
 from kit.document.markup import parse_markup
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.school.lessons.checking import STARTER
 from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.records import Exercise, Lesson

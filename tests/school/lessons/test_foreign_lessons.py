@@ -10,8 +10,8 @@ from textual.pilot import Pilot
 
 from kit.cli import main
 from kit.document.markup import parse_markup
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
 from kit.host.sandbox.probe import is_level_available
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.markdown import markdown_to_markup
 from kit.school.lessons.reading import read_lesson

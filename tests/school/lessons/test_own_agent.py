@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from kit.host.sandbox.confinement import INTERACTIVE_LEVEL
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL
 from kit.run.recording import load_recording
 from kit.run.scenario import find_recorded_scenario
 from kit.school.lessons.checking import STARTER

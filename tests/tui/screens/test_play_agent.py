@@ -13,7 +13,8 @@ from kit.learning.policies.policy import ActionSampling, Policy, task_interface
 from kit.learning.policies.policy_file import save_policy
 from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.runs import RunConfig, create_run
+from kit.learning.training.run_config import RunConfig
+from kit.learning.training.run_folders import create_run
 from kit.run.headless import run_episode
 from kit.run.recording import load_recording
 from kit.run.scenario import find_scenario

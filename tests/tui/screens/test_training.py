@@ -14,7 +14,9 @@ from kit.learning.policies.policy import ActionSampling, Policy, task_interface
 from kit.learning.policies.policy_file import save_policy
 from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.runs import RunConfig, TrainingRun, create_run
+from kit.learning.training.run_config import RunConfig
+from kit.learning.training.run_folders import create_run
+from kit.learning.training.runs import TrainingRun
 from kit.render.curve import Axes, Curve
 from kit.render.encode import AsciiEncoder
 from kit.tui.rows.readout_rows import agent_panel

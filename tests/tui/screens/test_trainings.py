@@ -15,7 +15,9 @@ from kit.learning.policies.policy import ActionSampling, Policy, task_interface
 from kit.learning.policies.policy_file import save_policy
 from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.runs import RunConfig, TrainingRun, create_run, find_run, list_runs
+from kit.learning.training.run_config import RunConfig
+from kit.learning.training.run_folders import create_run, find_run, list_runs
+from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training_sweep import TrainingSweep
 from kit.tui.screens.new_training import NewTrainingScreen, TrainingChoices
 from kit.tui.screens.trainings import TrainingsScreen

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from kit.learning.policies.node_goals.goal_count import GoalCount, GoalStep
+from kit.learning.policies.node_goals.goal_count import GoalStep, NodeCount
 
 
-class CoverCount(GoalCount):
+class CoverCount(NodeCount):
     """The number of cells of the floor that have been covered."""
 
     def __init__(self, facts: dict[str, Any]) -> None:

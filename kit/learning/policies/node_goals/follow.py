@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from kit.learning.policies.node_goals.goal_count import GoalCount, GoalStep
+from kit.learning.policies.node_goals.goal_count import GoalStep, NodeCount
 
 
-class FollowCount(GoalCount):
+class FollowCount(NodeCount):
     """Seconds in which every robot was near its leader."""
 
     def count(self, count: float, step: GoalStep) -> float:

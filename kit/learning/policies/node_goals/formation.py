@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from kit.learning.policies.node_goals.goal_count import GoalCount, GoalStep
+from kit.learning.policies.node_goals.goal_count import GoalStep, NodeCount
 
 
-class FormationCount(GoalCount):
+class FormationCount(NodeCount):
     """Metres driven forward in formation, the mean of all robots."""
 
     def count(self, count: float, step: GoalStep) -> float:

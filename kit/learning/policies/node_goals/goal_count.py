@@ -32,7 +32,7 @@ class GoalStep(NamedTuple):
         return metres
 
 
-class GoalCount:
+class NodeCount:
     """How much of the goal is achieved: nothing, where the policy is not told."""
 
     def __init__(self, facts: dict[str, Any]) -> None:
@@ -58,7 +58,7 @@ class GoalProgress:
 
     def __init__(
         self,
-        goal_count: GoalCount,
+        goal_count: NodeCount,
         is_inside: Callable[[int, np.ndarray, Sequence[float]], bool],
         route: Sequence[Sequence[float]],
         robots: int,

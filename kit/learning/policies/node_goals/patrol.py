@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from kit.learning.policies.node_goals.goal_count import GoalCount, GoalStep
+from kit.learning.policies.node_goals.goal_count import GoalStep, NodeCount
 
 
-class PatrolCount(GoalCount):
+class PatrolCount(NodeCount):
     """The number of targets that have been reached."""
 
     def count(self, count: float, step: GoalStep) -> float:

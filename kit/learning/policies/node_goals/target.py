@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from kit.learning.policies.node_goals.goal_count import GoalCount, GoalStep
+from kit.learning.policies.node_goals.goal_count import GoalStep, NodeCount
 
 
-class TargetCount(GoalCount):
+class TargetCount(NodeCount):
     """1 while every robot is in the target, else 0."""
 
     def count(self, count: float, step: GoalStep) -> float:

@@ -40,8 +40,9 @@ class TrainingTask(ChallengeTask):
         )
 
     def judge(self, handed_in: HandedIn) -> Judgement:
+        from kit.learning.training.run_config import RunError
+        from kit.learning.training.run_folders import find_run
         from kit.learning.training.run_text import success_shares
-        from kit.learning.training.runs import RunError, find_run
 
         name = handed_in.answer
         try:

@@ -141,7 +141,8 @@ def program_of_agent(name: str, runs: Path) -> bytes:
     from kit.learning.policies.policy import PolicyError
     from kit.learning.policies.policy_file import load_policy
     from kit.learning.policies.policy_node import format_policy_node
-    from kit.learning.training.runs import RunError, find_run
+    from kit.learning.training.run_config import RunError
+    from kit.learning.training.run_folders import find_run
 
     try:
         file = Path(name)

@@ -25,8 +25,8 @@ from kit.host.job_executors import in_shard, read_result
 from kit.host.job_folder import JobFolder
 from kit.host.private_folder import private_folder
 from kit.host.python_command import python_command
-from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.limits import GRADER_LIMITS
+from kit.host.sandbox.sandbox_config import Level as Confinement
 from kit.plain_files import open_plain_file, read_plain_file
 from kit.run.recording import Recording, RecordingError
 from kit.school.game.league.entries import FOLDER as ENTRIES

@@ -17,8 +17,8 @@ from kit.controllers import ControllerFile
 from kit.host.failure import StudentCodeError
 from kit.host.node_process import NodeProcess
 from kit.host.proxy_nodes import NameScope
-from kit.host.sandbox.confinement import Level as Confinement
 from kit.host.sandbox.limits import Limits
+from kit.host.sandbox.sandbox_config import Level as Confinement
 from kit.msg.geometry_msgs import PoseStamped, Twist
 from kit.msg.std_msgs import Bool
 from kit.ros.graph.graph import Graph

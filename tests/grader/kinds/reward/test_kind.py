@@ -29,8 +29,8 @@ from grader.kinds.reward.task_model import (
 from grader.kinds.reward.transitions import MODEL_FACTS, TransitionBatch, to_transition
 from kit.arrays import FloatArray
 from kit.host.failure import FailureKind
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.limits import GRADER_LIMITS
+from kit.host.sandbox.sandbox_config import Level
 from kit.learning.tasks.reward import Reward, RewardFunction
 from kit.learning.tasks.rewards import ALGORITHM_1, ALGORITHM_3
 from kit.learning.tasks.student_reward import LARGEST_REWARD, reward_columns

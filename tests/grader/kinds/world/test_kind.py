@@ -27,8 +27,8 @@ from grader.reading import read_assignment
 from grader.submission import read_submission
 from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.sandbox import landlock
-from kit.host.sandbox.confinement import Level
 from kit.host.sandbox.probe import highest_level_up_to
+from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import CriterionStatus, GradingVerdict
 from kit.world.problems import WorldError
 from tests.grader.conftest import TEMPLATES

@@ -15,7 +15,7 @@ import pytest
 
 from kit.controllers import kit_controllers
 from kit.document.layout import lines_of
-from kit.host.sandbox.confinement import Level
+from kit.host.sandbox.sandbox_config import Level
 from kit.school.game.league import league as league_module
 from kit.school.game.league.entries import MAX_BYTES, LeagueError, read_entries, submit, withdraw
 from kit.school.game.league.league import League, LeagueJob, drive_job, own_league, read_programme, tag_job

@@ -1,0 +1,1 @@
+"""Checks of controllers, by what they look at."""
