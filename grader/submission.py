@@ -15,7 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, Final
 
-from grader.archives import MAX_PACKED_BYTES, archive_stem, packed_limit, unpack_archive
+from grader.archives.archive import MAX_PACKED_BYTES, archive_stem, unpack_archive
+from grader.archives.streams import packed_limit
 from grader.file_formats import YAML_ENDINGS, what_instead, wrong_format
 from grader.hidden_code import hidden_code
 from grader.shown_names import is_plain_name, shown_name

@@ -11,17 +11,8 @@ import click
 
 from grader.cli import options
 from grader.cli.progress import counted_progress
-from grader.cohort.gradebook import (
-    UNREADABLE,
-    WAITING,
-    as_csv,
-    as_json,
-    attention_blocks,
-    class_blocks,
-    gradebook_rows,
-    summary,
-    unjudged_line,
-)
+from grader.cohort.class_findings import attention_blocks, class_blocks, unjudged_line
+from grader.cohort.gradebook import UNREADABLE, WAITING, as_csv, as_json, gradebook_rows, summary
 from grader.cohort.program_ladder import LadderRace, find_programs, race_all, rank
 from grader.cohort.queue import (
     Queue,

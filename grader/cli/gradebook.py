@@ -7,23 +7,19 @@ from pathlib import Path
 import click
 
 from grader.cli import options
+from grader.cohort.choice_rules import RULES
+from grader.cohort.class_findings import attention_blocks, class_blocks
 from grader.cohort.class_list import ClassRules, class_table
 from grader.cohort.exports import EXPORTS
 from grader.cohort.feedback import write_feedback
-from grader.cohort.gradebook import (
-    RULES,
-    as_json,
-    attention_blocks,
-    changes,
-    class_blocks,
-    read_json,
-    read_submission_times,
-)
+from grader.cohort.gradebook import as_json, read_json
+from grader.cohort.gradebook_changes import changes
 from grader.cohort.lateness import read_policy
 from grader.cohort.marks import read_marks
 from grader.cohort.queue import Queue, QueueError
 from grader.cohort.roster import read_roster
 from grader.cohort.statistics import class_document
+from grader.cohort.submission_times import read_submission_times
 from kit.cli.messages import describe_error
 from kit.cli.options import ExistingPath
 from kit.document.layout import document_lines, lines_of

@@ -10,19 +10,13 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from grader.cohort.gradebook import (
-    MISSING,
-    RULES,
-    GradebookRow,
-    SubmissionTime,
-    choose_submissions,
-    gradebook_rows,
-    time_of,
-)
+from grader.cohort.choice_rules import RULES, choose_submissions
+from grader.cohort.gradebook import MISSING, GradebookRow, gradebook_rows, time_of
 from grader.cohort.lateness import LatePolicy
 from grader.cohort.marks import ManualMark
 from grader.cohort.queue import Queue
 from grader.cohort.roster import Roster, RosterEntry, WorkOwners, owners_of
+from grader.cohort.submission_times import SubmissionTime
 from grader.look_alikes import look
 from grader.reports.cleaning import clean_line
 from kit.plain_text import counted, join_names, suggestion

@@ -7,67 +7,19 @@ import io
 import json
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
-from datetime import datetime, tzinfo
-from pathlib import Path
-from types import MappingProxyType
 from typing import Any, Final
 
-from grader.cohort.lateness import EXAMPLE, Lateness, LatePolicy, parse_time
+from grader.cohort.lateness import Lateness, LatePolicy
 from grader.cohort.queue import Queue, QueueEntry, UnreadableWork
 from grader.cohort.roster import RosterEntry, WorkOwners
+from grader.cohort.submission_times import SubmissionTime
 from grader.look_alikes import look
 from grader.reports.cleaning import clean_line, spreadsheet_cell
-from kit.document.blocks import Block, Text
 from kit.field_types import check_field_types
-from kit.plain_text import counted, join_names
 from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from kit.results.result_blocks import format_points
-
-
-@dataclass(frozen=True, slots=True)
-class SubmissionTime:
-    """When a submission was handed in, and by which student."""
-
-    at: datetime
-    student: str
-    """By default the submission's own name."""
-
-
-def read_submission_times(file: Path, zone: tzinfo | None = None) -> Mapping[str, SubmissionTime]:
-    """Reads a CSV file with the columns ``name`` and ``submitted``, and ``student`` if some submit more than once; or Moodle's
-    grading worksheet, by its participants.
-
-    ``zone``: of times that name none. Raises ValueError, OSError.
-    """
-    arrivals: dict[str, SubmissionTime] = {}
-    with file.open(newline="", encoding="utf-8-sig") as opened:
-        reader = csv.DictReader(opened)
-        of_moodle = MOODLE_SUBMITTED in (reader.fieldnames or ())
-        for number, row in enumerate(reader, 2):
-            name = (
-                (row.get("Identifier") or "").removeprefix("Participant ")
-                if of_moodle
-                else row.get("name") or ""
-            )
-            submitted = (row.get(MOODLE_SUBMITTED if of_moodle else "submitted") or "").strip()
-            if of_moodle and submitted in ("", "-"):
-                continue  # who handed in nothing
-            if not name:
-                raise ValueError(f"{file}:{number}: a row needs a name, and a time such as {EXAMPLE}")
-            try:
-                at = parse_time(submitted, zone)
-            except ValueError as problem:
-                raise ValueError(f"{file}:{number}: submitted {problem}") from None
-            if name in arrivals:
-                raise ValueError(f"{file}:{number}: {name} is there twice")
-            arrivals[name] = SubmissionTime(at, (row.get("student") or "").strip() or name)
-    return arrivals
-
-
-MOODLE_SUBMITTED: Final = "Last modified (submission)"
-
 
 UNREADABLE: Final = "unreadable"
 """What was handed in cannot be read: no grade, not 0, until the teacher has decided."""
@@ -76,8 +28,6 @@ MISSING: Final = "missing"
 """A student of the roster has handed in nothing: no grade either."""
 SAME_ERRORS: Final = 3
 """If this many submissions of a class cannot be read for the same internal error, the grader is at fault."""
-MAX_LISTED: Final = 40
-"""Submissions that need attention, listed one by one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,7 +199,7 @@ def as_csv(table: Sequence[GradebookRow], *, decimal_comma: bool = False) -> str
     )
 
     def number(points: float | None) -> str:
-        return _number(points).replace(".", ",") if decimal_comma else _number(points)
+        return points_text(points).replace(".", ",") if decimal_comma else points_text(points)
 
     writer.writerow(
         [
@@ -282,7 +232,7 @@ def comment_text(row: GradebookRow) -> str:
     return " ".join(f"{each}: {text}" if each else text for each, text in row.comments.items())
 
 
-def _number(points: float | None) -> str:
+def points_text(points: float | None) -> str:
     return "" if points is None else format_points(points)
 
 
@@ -299,42 +249,6 @@ def _row_from_json(content: Mapping[str, Any]) -> GradebookRow:
     read = {**content, "student": student, "marked": tuple(content["marked"])}
     check_field_types(GradebookRow, read)
     return GradebookRow(**read)
-
-
-def changes(before: Sequence[GradebookRow], after: Sequence[GradebookRow]) -> Iterator[str]:
-    """Yields a line for each difference between two gradebooks, criterion by criterion, to be read before the new one is
-    published. What is not graded yet is no difference: its number is said last."""
-    old, new = {row.name: row for row in before}, {row.name: row for row in after}
-    unfinished = 0
-    for name in sorted(old.keys() | new.keys()):
-        was, now = old.get(name), new.get(name)
-        if was is None or now is None:
-            yield f"{clean_line(name)}: {'new' if was is None else 'gone'}"
-        elif now.verdict == WAITING:
-            unfinished += was.verdict != WAITING
-        elif (was.final, was.verdict, dict(was.statuses), dict(was.tests)) != (
-            now.final,
-            now.verdict,
-            dict(now.statuses),
-            dict(now.tests),
-        ):
-            detail = ", ".join(_criterion_changes(was, now))
-            finals = f"{_number(was.final) or 'none'} -> {_number(now.final) or 'none'}"
-            yield f"{clean_line(name)}: {finals}{f' ({detail})' if detail else ''}"
-    if unfinished:
-        yield f"{counted(unfinished, 'submission')} not graded again yet: run the same `grader cohort` to go on"
-
-
-def _criterion_changes(was: GradebookRow, now: GradebookRow) -> Iterator[str]:
-    """Yields each criterion whose points or status differ, in the present order."""
-    for each in (*now.statuses, *(id_ for id_ in was.statuses if id_ not in now.statuses)):
-        points = _number(was.tests.get(each)) or "-", _number(now.tests.get(each)) or "-"
-        status = was.statuses.get(each, "-"), now.statuses.get(each, "-")
-        if points[0] != points[1]:
-            word = "" if status[0] == status[1] else f", {status[0]} -> {status[1]}"
-            yield f"{clean_line(each)} {points[0]} -> {points[1]}{word}"
-        elif status[0] != status[1]:
-            yield f"{clean_line(each)} {status[0]} -> {status[1]}"
 
 
 def summary(table: Sequence[GradebookRow]) -> str:
@@ -354,115 +268,3 @@ def summary(table: Sequence[GradebookRow]) -> str:
         return text
     word = "level" if len(levels) == 1 else "levels"
     return f"{text}, at confinement {word} {', '.join(map(str, levels))}"
-
-
-def attention_blocks(table: Sequence[GradebookRow]) -> list[Block]:
-    """Each submission that has no grade and why: first the unreadable ones, then the grader's faults."""
-    order = (UNREADABLE, GradingVerdict.BROKEN.value)
-    rows = sorted(
-        (row for row in table if row.verdict in order), key=lambda row: (order.index(row.verdict), row.name)
-    )
-    if not rows:
-        return []
-    verbs = ("has", "needs") if len(rows) == 1 else ("have", "need")
-    told = [f"{clean_line(row.name)}: {row.verdict}. {row.note}" for row in rows[:MAX_LISTED]]
-    if len(rows) > MAX_LISTED:
-        told.append(f"and {len(rows) - MAX_LISTED} more: see the gradebook")
-    return [
-        Text(f"{len(rows)} {verbs[0]} no grade and {verbs[1]} your attention:"),
-        *(Text(each, indent=2, hang=2, is_tight=True) for each in told),
-    ]
-
-
-def equal_works(table: Sequence[GradebookRow]) -> tuple[tuple[GradebookRow, ...], ...]:
-    """Returns the rows whose works are the same to the byte, together; those of one group's work are no finding."""
-    by_digest: dict[str, dict[str, GradebookRow]] = {}
-    for row in table:
-        if row.submission:
-            by_digest.setdefault(row.submission, {}).setdefault(row.work, row)
-    return tuple(tuple(works.values()) for works in by_digest.values() if len(works) > 1)
-
-
-def class_blocks(table: Sequence[GradebookRow]) -> list[Block]:
-    """Returns what a teacher should look at besides missing grades: equal works, works that fit nobody, students without one."""
-    strangers = [row.name for row in table if row.student is None]
-    has_roster = len(strangers) < len(table)
-    missing = [row.name for row in table if row.verdict == MISSING]
-    told = [
-        f"The same work to the byte: {join_names(tuple(clean_line(row.name) for row in rows), 8)}."
-        for rows in equal_works(table)
-    ]
-    if has_roster and strangers:
-        shown = join_names(tuple(map(clean_line, strangers)), 8)
-        told.append(f"{counted(len(strangers), 'work')} of nobody in the roster: {shown}.")
-    if missing:
-        told.append(f"{len(missing)} handed in nothing: {join_names(tuple(map(clean_line, missing)), 12)}.")
-    return [Text(each, is_tight=True) for each in told]
-
-
-def unjudged_line(table: Sequence[GradebookRow], max_points: float) -> str:
-    """Returns a sentence on the points that could not be earned without secret seeds; empty if there are none."""
-    judged = max((row.max_points for row in table if row.points is not None), default=max_points)
-    left = max_points - judged
-    if left <= 1e-9:
-        return ""
-    return f"{format_points(left)} of {format_points(max_points)} points were not graded; nobody loses them."
-
-
-SortKey = tuple[float, float, str]
-
-
-def _latest(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
-    return submitted.at.timestamp(), 0.0, row.name
-
-
-def _latest_in_time(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
-    return row.kept, submitted.at.timestamp(), row.name
-
-
-def _best(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
-    # A missing grade ranks first: the teacher must see it before another submission counts.
-    return float("inf") if row.final is None else row.final, submitted.at.timestamp(), row.name
-
-
-RULES: Final[Mapping[str, tuple[str, Callable[[GradebookRow, SubmissionTime], SortKey]]]] = MappingProxyType(
-    {
-        "latest": ("the latest", _latest),
-        "in-time": ("the latest of those that lost least by lateness", _latest_in_time),
-        "best": ("the best", _best),
-    }
-)
-"""Description of the chosen submission, and the sort key that is largest for it, by rule."""
-
-
-def choose_submissions(
-    table: Sequence[GradebookRow], submission_times: Mapping[str, SubmissionTime], rule: str
-) -> tuple[GradebookRow, ...]:
-    """Returns one row per student, under the student's name. A submission without a time counts as a student of its own.
-
-    A time that belongs to no submission changes nothing. Raises KeyError for an unknown rule, ValueError for a student's name
-    that is also that of a submission without a time.
-    """
-    return tuple(sorted(_chosen(table, submission_times, rule), key=lambda row: row.name))
-
-
-def _chosen(
-    table: Sequence[GradebookRow], submission_times: Mapping[str, SubmissionTime], rule: str
-) -> Iterator[GradebookRow]:
-    rule_text, rank = RULES[rule]
-    by_student: dict[str, list[GradebookRow]] = {}
-    for row in table:
-        submitted = submission_times.get(row.name)
-        by_student.setdefault(row.name if submitted is None else submitted.student, []).append(row)
-    for student, submissions in by_student.items():
-        if len(submissions) == 1:
-            yield replace(submissions[0], name=student)
-            continue
-        unknown = [row.name for row in submissions if row.name not in submission_times]
-        if unknown:
-            raise ValueError(
-                f"{student} is a student and the name of a submission without a time: {unknown[0]}"
-            )
-        chosen = max(submissions, key=lambda row: rank(row, submission_times[row.name]))
-        note = f"{chosen.name}, {rule_text} of {len(submissions)}"
-        yield replace(chosen, name=student, note=f"{note}. {chosen.note}" if chosen.note else note)

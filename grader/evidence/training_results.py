@@ -11,7 +11,7 @@ from typing import Final
 
 from kit.learning.policies.confidence_intervals import lower_bound
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.presets import LinearSchedule
+from kit.learning.training.algorithm_settings import LinearSchedule
 from kit.learning.training.stopping_rules import CaseCount, CaseCounts, success_rate
 
 PICTURE_ROWS: Final = 16

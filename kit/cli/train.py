@@ -19,11 +19,11 @@ from kit.learning.tasks.catalogue import all_tasks
 from kit.learning.tasks.disturbances import UniformRange
 from kit.learning.tasks.rewards import REWARDS
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithm_settings import LEARNING_RATE
 from kit.learning.training.algorithms import ALGORITHMS, IMITATION_ALGORITHMS, algorithms_for, find_algorithm
 from kit.learning.training.demonstrations import is_recording
 from kit.learning.training.events import EventReader, TrainingEnded, TrainingProgress
 from kit.learning.training.learn_extra import require_learn_extra
-from kit.learning.training.presets import LEARNING_RATE
 from kit.learning.training.run_check import check_run_config
 from kit.learning.training.run_config import PresetName, RunConfig, RunError, format_setting
 from kit.learning.training.run_folders import create_run, find_run, list_runs

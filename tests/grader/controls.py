@@ -127,7 +127,7 @@ CONTROLS: Final = (
     ),
     Control(
         "a header of very many records",
-        "grader/archives.py",
+        "grader/archives/tar_archive.py",
         "    for _ in range(MAX_HEADER_RECORDS + 1):\n",
         "    while True:\n",
         "grader/test_submission.py::test_a_header_of_very_many_records_is_refused_at_once",

@@ -15,9 +15,11 @@ from pathlib import Path
 
 import pytest
 
-from grader import archives
 from grader import submission as submission_module
-from grader.archives import MAX_COMPRESSION_RATIO, MAX_DIRECTORY_BYTES, MAX_HEADER_BYTES, _pax_values
+from grader.archives import streams
+from grader.archives.streams import MAX_COMPRESSION_RATIO
+from grader.archives.tar_archive import MAX_HEADER_BYTES, _pax_values
+from grader.archives.zip_archive import MAX_DIRECTORY_BYTES
 from grader.shown_names import is_plain_name
 from grader.submission import MAX_NAMED, Submission, read_submission
 from grader.submitted_files import (
@@ -293,7 +295,7 @@ def test_what_is_passed_over_in_a_compressed_archive_counts_too(
 ) -> None:
     content = tarred({"controller.py": b"x = 1", "video.mp4": os.urandom(200_000)})
     assert unpack_archive(content, "a.tgz", tmp_path).files == {"controller.py": b"x = 1"}
-    monkeypatch.setattr(archives, "MAX_UNPACKED_BYTES", 150_000)
+    monkeypatch.setattr(streams, "MAX_UNPACKED_BYTES", 150_000)
     with pytest.raises(SubmissionRefused, match="bomb"):
         unpack_archive(content, "a.tgz", tmp_path)
 

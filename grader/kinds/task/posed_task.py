@@ -38,8 +38,9 @@ from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_case import EpisodePlaces, TaskCase
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithm_settings import LinearSchedule
 from kit.learning.training.algorithms import find_algorithm
-from kit.learning.training.presets import LinearSchedule, find_preset
+from kit.learning.training.presets import find_preset
 from kit.learning.training.tabular import table_rows
 from kit.learning.training.training import make_learner
 from kit.plain_files import is_file_there

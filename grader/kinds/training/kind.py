@@ -38,6 +38,7 @@ from kit.host.wire import printable
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithm_settings import LinearSchedule
 from kit.learning.training.algorithms import (
     ALGORITHMS,
     UnknownAlgorithm,
@@ -46,7 +47,6 @@ from kit.learning.training.algorithms import (
     find_algorithm,
 )
 from kit.learning.training.learn_extra import LearnExtraMissing
-from kit.learning.training.presets import LinearSchedule
 from kit.plain_text import quoted, suggestion
 from kit.world.yaml_section import Section
 

@@ -25,10 +25,11 @@ from kit.learning.policies.paths_picture import worst_drive
 from kit.learning.policies.policy import Policy
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.actions import DiscreteActions
+from kit.learning.training.algorithm_settings import TabularParams
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.learn_extra import require_learn_extra
 from kit.learning.training.learner import Learner, StopLearning
-from kit.learning.training.presets import Preset, TabularParams, find_preset
+from kit.learning.training.presets import Preset, find_preset
 from kit.learning.training.stopping_rules import (
     CaseCount,
     CaseCounts,

@@ -25,10 +25,11 @@ from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 from kit.learning.policies.policy import ActionSampling, Policy, action_counts, task_interface
 from kit.learning.policies.policy_network import Activation, LinearLayer, PolicyNetwork
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithm_settings import LinearSchedule, ReplayParams
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.deep import LEARNING_RATE_FACTOR, EpisodeReporter
 from kit.learning.training.learner import TrainingCallback
-from kit.learning.training.presets import LinearSchedule, Preset, ReplayParams
+from kit.learning.training.presets import Preset
 
 ADAM_DECAY: Final = (0.9, 0.999)
 ADAM_EPSILON: Final = 1e-7

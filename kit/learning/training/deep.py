@@ -25,10 +25,11 @@ from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
 from kit.learning.policies.export import export_critic, export_network, export_sampling
 from kit.learning.policies.policy import Policy, action_counts, task_interface
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithm_settings import LinearSchedule, OnPolicyParams
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.measures import RecentExperience
-from kit.learning.training.presets import LinearSchedule, OnPolicyParams, Preset
+from kit.learning.training.presets import Preset
 
 LEARNING_RATE_FACTOR = 0.5
 """Factor for the learning rate each time a learner returns to an earlier policy."""

@@ -24,10 +24,11 @@ from kit.learning.policies.policy import ActionSampling, Policy, action_counts, 
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithm_settings import ImitationParams, LinearSchedule
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.demonstrations import DemonstrationError, Demonstrator, Examples, join_examples
 from kit.learning.training.learner import TrainingCallback
-from kit.learning.training.presets import ImitationParams, LinearSchedule, Preset
+from kit.learning.training.presets import Preset
 
 ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU}
 DEFAULT_RATE = LinearSchedule(1e-3, 1e-4)

@@ -24,10 +24,11 @@ from kit.learning.environment.episode_stats import EpisodeStatsRecorder
 from kit.learning.policies.policy import ActionSampling, Policy, action_counts, task_interface
 from kit.learning.policies.policy_network import ActionValueTable
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithm_settings import TabularParams
 from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.measures import RecentExperience
-from kit.learning.training.presets import Preset, TabularParams
+from kit.learning.training.presets import Preset
 
 MAX_STATES = 20_000
 LEARNING_RATE_FACTOR = 0.5

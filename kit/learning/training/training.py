@@ -34,6 +34,7 @@ from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.reward import RewardFunction
 from kit.learning.tasks.student_reward import RewardFileError, StudentReward
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithm_settings import LinearSchedule
 from kit.learning.training.algorithms import Algorithm, UnsuitableAlgorithm, check_suits, find_algorithm
 from kit.learning.training.demonstrations import DemonstrationError
 from kit.learning.training.events import (
@@ -48,7 +49,7 @@ from kit.learning.training.events import (
 from kit.learning.training.learn_extra import require_learn_extra, versions
 from kit.learning.training.learner import Learner, StopLearning
 from kit.learning.training.measures import is_value_too_large, value_warning
-from kit.learning.training.presets import LinearSchedule, Preset, find_preset
+from kit.learning.training.presets import Preset, find_preset
 from kit.learning.training.run_config import RunConfig, RunError
 from kit.learning.training.runs import TrainingRun
 from kit.learning.training.stopping_rules import (

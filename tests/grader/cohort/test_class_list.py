@@ -15,6 +15,7 @@ import pytest
 from click.testing import CliRunner
 
 from grader.__main__ import main
+from grader.cohort.class_findings import class_blocks
 from grader.cohort.class_list import ClassRules, ClassTable, class_table
 from grader.cohort.exports import for_canvas, for_moodle
 from grader.cohort.feedback import write_feedback
@@ -22,21 +23,19 @@ from grader.cohort.gradebook import (
     MISSING,
     WAITING,
     GradebookRow,
-    SubmissionTime,
     as_csv,
     as_json,
-    changes,
-    class_blocks,
     gradebook_rows,
     late_text,
     read_json,
-    read_submission_times,
 )
+from grader.cohort.gradebook_changes import changes
 from grader.cohort.lateness import DueDateExtension, LatePolicy, read_policy
 from grader.cohort.marks import read_marks
 from grader.cohort.queue import Queue
 from grader.cohort.roster import owners_of, read_roster
 from grader.cohort.statistics import class_document, discrimination
+from grader.cohort.submission_times import SubmissionTime, read_submission_times
 from kit.document.layout import document_lines, lines_of
 from kit.world.problems import WorldError
 from tests.grader.cohort.graded_class import graded_queue

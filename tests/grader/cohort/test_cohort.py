@@ -27,17 +27,9 @@ from grader import version
 from grader.__main__ import main
 from grader.assignment import Assignment
 from grader.cohort import gradebook
-from grader.cohort.gradebook import (
-    RULES,
-    GradebookRow,
-    SubmissionTime,
-    as_csv,
-    as_json,
-    changes,
-    choose_submissions,
-    gradebook_rows,
-    read_submission_times,
-)
+from grader.cohort.choice_rules import RULES, choose_submissions
+from grader.cohort.gradebook import GradebookRow, as_csv, as_json, gradebook_rows
+from grader.cohort.gradebook_changes import changes
 from grader.cohort.lateness import LatePolicy, find_zone, parse_time, read_policy
 from grader.cohort.queue import (
     Queue,
@@ -45,6 +37,7 @@ from grader.cohort.queue import (
     job_key,
     prepare_queue,
 )
+from grader.cohort.submission_times import SubmissionTime, read_submission_times
 from grader.grading import GradingOptions
 from grader.reading import read_assignment
 from grader.submission import read_submission

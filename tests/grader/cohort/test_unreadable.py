@@ -16,14 +16,8 @@ from click.testing import CliRunner, Result
 
 from grader import submission as submission_module
 from grader.__main__ import main
-from grader.cohort.gradebook import (
-    MAX_LISTED,
-    SAME_ERRORS,
-    UNREADABLE,
-    GradebookRow,
-    attention_blocks,
-    gradebook_rows,
-)
+from grader.cohort.class_findings import MAX_LISTED, attention_blocks
+from grader.cohort.gradebook import SAME_ERRORS, UNREADABLE, GradebookRow, gradebook_rows
 from grader.cohort.queue import Queue, prepare_queue
 from grader.grading import GradingOptions, grade
 from grader.reading import read_assignment

@@ -19,6 +19,14 @@ from kit.learning.tasks.catalogue import TASKS, find_task
 from kit.learning.tasks.learning_task import LearningTask, StartVariation
 from kit.learning.tasks.rewards import PROGRESS
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithm_settings import (
+    ActorCriticReplayParams,
+    ARSSettings,
+    LinearSchedule,
+    OnPolicyParams,
+    ReplayParams,
+    TabularParams,
+)
 from kit.learning.training.algorithms import (
     ALGORITHMS,
     Algorithm,
@@ -27,17 +35,7 @@ from kit.learning.training.algorithms import (
     find_algorithm,
 )
 from kit.learning.training.learner import Learner, StopLearning
-from kit.learning.training.presets import (
-    PRESETS,
-    ActorCriticReplayParams,
-    ARSSettings,
-    LinearSchedule,
-    OnPolicyParams,
-    Preset,
-    ReplayParams,
-    TabularParams,
-    find_preset,
-)
+from kit.learning.training.presets import PRESETS, Preset, find_preset
 from kit.learning.training.run_config import RunConfig
 from kit.learning.training.run_folders import create_run
 from kit.learning.training.stopping_rules import TrainUntilGoal

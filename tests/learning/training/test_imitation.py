@@ -17,6 +17,7 @@ from kit.learning.policies.policy_file import save_policy
 from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
 from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithm_settings import ImitationParams, LinearSchedule
 from kit.learning.training.algorithms import find_algorithm
 from kit.learning.training.controller_demonstrator import ControllerDemonstrator, read_demonstrator
 from kit.learning.training.demonstrations import (
@@ -26,7 +27,7 @@ from kit.learning.training.demonstrations import (
     RecordedDemonstrator,
     actions_of_twists,
 )
-from kit.learning.training.presets import ImitationParams, LinearSchedule, Preset
+from kit.learning.training.presets import Preset
 from kit.learning.training.run_config import RunConfig
 from kit.learning.training.run_folders import create_run
 from kit.learning.training.stopping_rules import TrainUntilGoal

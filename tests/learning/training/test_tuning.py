@@ -13,8 +13,9 @@ from click.testing import CliRunner
 
 from kit.cli import main
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithm_settings import LinearSchedule
 from kit.learning.training.algorithms import ALGORITHMS, find_algorithm
-from kit.learning.training.presets import LinearSchedule, find_preset
+from kit.learning.training.presets import find_preset
 from kit.learning.training.run_config import RunConfig, RunError, format_settings
 from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_sweep import (

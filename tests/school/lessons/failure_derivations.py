@@ -25,8 +25,9 @@ from kit.learning.grid.grid_learner import GridLearnerSettings
 from kit.learning.grid.grid_world import GridWorld
 from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithm_settings import ReplayParams
 from kit.learning.training.algorithms import ALGORITHMS, UnsuitableAlgorithm, check_suits, find_algorithm
-from kit.learning.training.presets import ReplayParams, find_preset
+from kit.learning.training.presets import find_preset
 from kit.learning.training.training import make_learner
 from kit.school.lessons.records import LessonStep
 from tests.kit_content import lesson_reference

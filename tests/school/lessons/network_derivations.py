@@ -13,7 +13,7 @@ import numpy as np
 from kit.learning.grid.dqn import BATCH, HIDDEN, DqnLearner, ValueNetwork
 from kit.learning.grid.grid_learner import GridLearnerSettings
 from kit.learning.grid.grid_world import MOVES, GridWorld
-from kit.learning.training.presets import TabularParams
+from kit.learning.training.algorithm_settings import TabularParams
 from kit.school.lessons.records import LearningScene, LessonStep
 from tests.kit_content import kit_lesson
 from tests.school.lessons.table_derivations import SEEN, scene_of

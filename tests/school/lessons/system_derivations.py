@@ -331,7 +331,7 @@ def wrapped_degrees(words: str, step: LessonStep, folder: Path) -> str:
 
 
 def values_above_the_limit(words: str, step: LessonStep, folder: Path) -> str:
-    from kit.learning.training.presets import SEED_DQN  # brings torch along
+    from kit.learning.training.presets import SEED_DQN
 
     limit = SEED_DQN.settings.value_limit  # type: ignore[union-attr]  # a deep Q-network's
     if words.startswith("pass"):

@@ -17,8 +17,9 @@ from kit.learning.grid.registry import make_grid_learner
 from kit.learning.policies.policy_network import ActionValueTable
 from kit.learning.tasks.catalogue import TURN
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.algorithm_settings import TabularParams
 from kit.learning.training.algorithms import find_algorithm
-from kit.learning.training.presets import TabularParams, find_preset
+from kit.learning.training.presets import find_preset
 from kit.learning.training.tabular import MAX_STATES
 from kit.learning.training.training import make_learner
 from kit.school.lessons.records import LearningScene, LessonStep

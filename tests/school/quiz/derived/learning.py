@@ -18,7 +18,7 @@ from kit.learning.tasks.catalogue import TURN
 from kit.learning.tasks.reward import Reward, TermWeight
 from kit.learning.tasks.rewards import ALGORITHM_3
 from kit.learning.tasks.transition import EpisodeState, Transition
-from kit.learning.training.presets import LinearSchedule
+from kit.learning.training.algorithm_settings import LinearSchedule
 from kit.learning.training.tabular import QLearning, Sarsa, TableLearner
 from kit.school.quiz.items import QuizItem
 from tests.learning.worlds import sampled
