@@ -14,7 +14,7 @@ import click
 
 from kit.cli import messages, options
 from kit.cli.full_screen import show_dialogue
-from kit.cli.plain import InputBuffer, InputLines
+from kit.cli.input_lines import InputBuffer, InputLines
 from kit.dialogue.dialogue import Dialogue, DialogueAction, Turn
 from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show, StartTyping, Tell, Work
 from kit.document.blocks import Block, Text, labelled_table

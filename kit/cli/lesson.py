@@ -13,7 +13,8 @@ import click
 from kit.cli import VERBS, messages, options
 from kit.cli.dialogue import Way, run_dialogue
 from kit.cli.full_screen import show_lesson, show_lessons
-from kit.cli.plain import HEIGHT, WIDTH, InputBuffer, PlainSession, run_plain_session
+from kit.cli.input_lines import InputBuffer
+from kit.cli.plain import HEIGHT, WIDTH, PlainSession, run_plain_session
 from kit.controllers import find_controller, prepare_workspace
 from kit.document.blocks import Block, Text, Tone, labelled_table
 from kit.document.layout import lines_of

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import shutil
 import sys
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-import numpy as np
 
 from kit.cli import messages, options
+from kit.cli.dialogue import run_dialogue
 from kit.cli.full_screen import run_screen
 from kit.cli.process import ScreenClosed
 from kit.document.blocks import Block, Picture, Table, Text, labelled_table
 from kit.document.layout import lines_of
+from kit.mapmaking.doubts import DOUBTS
 from kit.run.scenario import scenario_on_map
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.catalogue import (
@@ -40,6 +42,7 @@ if TYPE_CHECKING:
     from kit.mapmaking.pixels import Corners
     from kit.render.scene import ScenePath
     from kit.tui.app import KitApp
+    from kit.tui.screens.dialogue import DialogueScreen
     from kit.tui.screens.map_drawing import MapDrawingScreen
     from kit.tui.screens.photo_corners import PhotoCornersScreen
 
@@ -294,7 +297,13 @@ def _draw(
 )
 @click.option("--start", metavar="X,Y", help="Start of the robot [m from the sheet's lower left corner].")
 @click.option("--target", metavar="X,Y", help="Target of the robot, likewise.")
-@click.option("--keep-all", is_flag=True, help="Take all lines for walls, also pale, thin and small ones.")
+@click.option(
+    "--keep",
+    "keep",
+    type=click.Choice([*DOUBTS, "all", "none"]),
+    multiple=True,
+    help="Take this kind of doubtful lines for walls too, or all, or none; may be repeated (default: a terminal asks).",
+)
 @options.workspace
 @options.glyphs
 @options.color
@@ -308,7 +317,7 @@ def from_photo(
     clicks: bool,
     start: str | None,
     target: str | None,
-    keep_all: bool,
+    keep: tuple[str, ...],
     workspace: Path | None,
     glyphs: str | None,
     color: str | None,
@@ -317,23 +326,25 @@ def from_photo(
 
     Draw the walls with a dark pen on white paper. Photograph the whole sheet on a darker table; tilt and shadows are
     fine. The kit finds the sheet, corrects the perspective, finds the lines, closes small gaps, removes specks, and
-    checks that a robot can drive from start to target. Lines that are much paler, thinner or smaller than the walls, such
-    as the rules of the paper, folds and writing, are left out and told; --keep-all takes them too. Compare overlay.png in
-    the map's folder with your drawing; if no map can be made, it is written here.
+    checks that a robot can drive from start to target. Of lines that are much paler, thinner or smaller than the walls, or
+    beyond them, such as the rules of the paper, folds and writing, it asks on a terminal whether they are walls; elsewhere
+    they are left out and told, and --keep takes them too. Compare overlay.png in the map's folder with your drawing; if
+    no map can be made, it is written here.
 
     \b
     kit maps from-photo plan.jpg --width 5             sheet 5 m wide
     kit maps from-photo plan.jpg hall --walls-width 4  outer walls 4 m apart
     kit maps from-photo plan.jpg --width 5 --click     click the corners
     """
+    from kit.mapmaking.doubts_dialogue import dotted_boxes
     from kit.mapmaking.new_map import MapExists, check_name, tint_strokes, write_map
     from kit.mapmaking.photo import PAPER, PhotoError, PhotoScale, open_photo, plan_from_photo
     from kit.mapmaking.route import NoRoute
 
-    if (width is None) == (walls_width is None):
-        raise click.UsageError(
-            "Give the size: --width METRES of the sheet, or --walls-width METRES between the outer walls."
-        )
+    try:
+        scale = PhotoScale(width, walls_width)
+    except PhotoError as error:
+        raise click.UsageError(str(error)) from None
     if clicks and corners is not None:
         raise click.UsageError("--click and --corners cannot be combined; give one of them.")
     places = [_point(text, option) for text, option in ((start, "--start"), (target, "--target"))]
@@ -341,15 +352,9 @@ def from_photo(
         folder = check_name(name or picture.stem, open_workspace(workspace).worlds)
         photo = open_photo(picture)
         known = _clicked(photo, picture.name, glyphs, color) if clicks else _corners(corners, photo)
-        found = plan_from_photo(
-            photo,
-            PhotoScale(width, walls_width),
-            paper=PAPER[paper],
-            corners=known,
-            are_rough=clicks,
-            keep_doubtful=keep_all,
-        )
-        tinted = tint_strokes(found.sheet, found.plan.walls, None if keep_all else found.strokes.doubtful)
+        found = plan_from_photo(photo, scale, paper=PAPER[paper], corners=known, are_rough=clicks)
+        found = found.keeping(_kept_doubts(found, keep, glyphs, color))
+        tinted = tint_strokes(found.sheet, found.plan.walls, found.strokes.doubtful)
         plan = replace(found.plan, start=places[0], target=places[1])
         made = write_map(
             folder,
@@ -363,51 +368,64 @@ def from_photo(
     except NoRoute as error:
         shown = Path(f"{folder.name}-overlay.png")
         tinted.save(shown)
-        _say_doubts(found, keep_all=keep_all)
+        _say_doubts(found)
         messages.fail(f"{error} {shown} shows in red what was read as walls.")
     except (MapExists, PhotoError, WorkspaceError) as error:
         messages.fail(str(error))
     width_m, height_m = plan.size
+    boxes = (dotted_boxes(each, plan.walls.shape[0], plan.resolution) for each in found.strokes.doubts)
     _report(
         made,
         f"Scale: sheet {width_m:.3g} m by {height_m:.3g} m, outer walls {found.walls_width:.3g} m apart "
         f"(from {'--width' if width is not None else '--walls-width'}).",
         glyphs,
-        () if keep_all else _doubtful_boxes(found),
+        tuple(chain.from_iterable(boxes)),
     )
-    _say_doubts(found, keep_all=keep_all)
+    _say_doubts(found)
 
 
-MAX_BOXES = 40
-"""Pieces of a sheet that are shown as doubtful."""
+def _kept_doubts(
+    found: PhotoPlan, keep: tuple[str, ...], glyphs: str | None, color: str | None
+) -> Collection[str]:
+    """The kinds of doubtful strokes to take for walls: those of ``--keep``; without it a terminal asks, and elsewhere none
+    is taken."""
+    if keep:
+        return DOUBTS if "all" in keep else [each for each in keep if each != "none"]
+    if not found.strokes.doubts or not (sys.stdin.isatty() and sys.stdout.isatty()):
+        return ()
+    from kit.mapmaking.doubts_dialogue import DoubtsDialogue
+    from kit.render.encode import ENCODERS
 
-
-def _say_doubts(found: PhotoPlan, *, keep_all: bool) -> None:
-    """Says what on the sheet may be no wall."""
-    if not found.strokes.remarks:
-        return
-    told = "; ".join(found.strokes.remarks)
-    if keep_all:
-        messages.say(f"Taken as walls, as --keep-all says: {told}.")
-    elif found.strokes.doubtful.any():
-        messages.say(
-            f"In doubt: {told}. What is dotted in the picture, and blue in overlay.png, was left out; --keep-all takes it too."
-        )
+    terminal = options.terminal(glyphs=glyphs, color=color)
+    dialogue = DoubtsDialogue(found.strokes, ENCODERS[terminal.glyphs.value](True))
+    code = 0
+    if terminal.plain.value:
+        run_dialogue(dialogue)
     else:
-        messages.say(f"In doubt: {told}. Compare overlay.png with your drawing.")
+
+        def make_screen(app: KitApp) -> DialogueScreen:
+            from kit.tui.screens.dialogue import DialogueScreen
+
+            return DialogueScreen(dialogue)
+
+        _, code = run_screen(terminal, make_screen)
+    if not dialogue.is_over:
+        click.echo("No map was made: you left before it was said what is a wall.")
+        raise SystemExit(code or 1)
+    return dialogue.kept
 
 
-def _doubtful_boxes(found: PhotoPlan) -> tuple[ScenePath, ...]:
-    """Dotted boxes around the largest pieces of what was left out [m]."""
-    from kit.render.scene import ScenePath
-
-    height, resolution = found.plan.walls.shape[0], found.plan.resolution
-    boxes = []
-    for left, top, right, bottom in found.strokes.doubtful_boxes()[:MAX_BOXES]:
-        corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)]
-        points = np.array([(x * resolution, (height - y) * resolution) for x, y in corners])
-        boxes.append(ScenePath(points, "dotted"))
-    return tuple(boxes)
+def _say_doubts(found: PhotoPlan) -> None:
+    """Says what on the sheet may be no wall, and the option that takes it for one."""
+    strokes = found.strokes
+    if strokes.doubts:
+        kinds = " ".join(f"--keep {each.kind}" for each in strokes.doubts)
+        messages.say(
+            f"In doubt: {'; '.join(strokes.remarks)}. What is dotted in the picture, and blue in overlay.png, was left out; "
+            f"{kinds} takes it too."
+        )
+    elif strokes.notes:
+        messages.say(f"In doubt: {'; '.join(strokes.notes)}. Compare overlay.png with your drawing.")
 
 
 def _clicked(photo: Image, name: str, glyphs: str | None, color: str | None) -> Corners:

@@ -1,13 +1,14 @@
 """Tells which strokes on a sheet are walls for sure, and which may be rules, folds, writing, measures or slips of the pen.
 
 Walls are drawn with one pen. So what is much paler or thinner than most, small, or outside of the outer wall is doubtful: it is
-left out, shown, and may be kept on demand.
+left out, shown, and may be kept.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -32,22 +33,71 @@ ENCLOSED: Final = 0.002
 """A room without a door has at least this share of the sheet's area."""
 
 
+DOUBTS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "pale": "pale lines: rules of the paper, folds or shadows",
+        "outside": "lines beyond the outer wall",
+        "small": "small pieces: writing or loose strokes",
+        "thin": "thin lines: measures or writing",
+    }
+)
+"""Kinds of strokes that may be no walls, and what each is, in a few words."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Doubt:
+    """Strokes of one kind that may be no walls."""
+
+    kind: str
+    """Of ``DOUBTS``."""
+    strokes: BoolArray
+    """(rows, columns)"""
+
+    @property
+    def text(self) -> str:
+        return DOUBTS[self.kind]
+
+    def boxes(self) -> list[tuple[int, int, int, int]]:
+        """Left, top, right and bottom [pixels] of its pieces, the largest first."""
+        found = _boxes(connected_parts(self.strokes, across_corners=True)).values()
+        ordered = sorted(found, key=lambda box: -box.diagonal)
+        return [(box.left, box.top, box.left + box.width, box.top + box.height) for box in ordered]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class JudgedStrokes:
     """The strokes of a sheet."""
 
     walls: BoolArray
-    """(rows, columns) those that are walls for sure."""
-    doubtful: BoolArray
-    """(rows, columns) those that may be something else."""
-    remarks: tuple[str, ...] = ()
-    """What is doubtful, and what else is strange, each in a few words."""
+    """(rows, columns) those that are walls for sure, or were said to be."""
+    doubts: tuple[Doubt, ...] = ()
+    """Those that may be something else, by kind."""
+    notes: tuple[str, ...] = ()
+    """What is strange about the walls themselves, each in a few words."""
 
-    def doubtful_boxes(self) -> list[tuple[int, int, int, int]]:
-        """Left, top, right and bottom [pixels] of the pieces of what is doubtful, the largest first."""
-        boxes = _boxes(connected_parts(self.doubtful, across_corners=True)).values()
-        ordered = sorted(boxes, key=lambda box: -box.diagonal)
-        return [(box.left, box.top, box.left + box.width, box.top + box.height) for box in ordered]
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """All that is doubtful or strange, each in a few words."""
+        return (*(each.text for each in self.doubts), *self.notes)
+
+    @property
+    def doubtful(self) -> BoolArray:
+        """(rows, columns) all strokes that may be something else."""
+        return union(self.walls.shape, (each.strokes for each in self.doubts))
+
+    def keeping(self, kinds: Collection[str]) -> JudgedStrokes:
+        """The same with the doubtful strokes of these kinds taken for walls."""
+        kept = union(self.walls.shape, (each.strokes for each in self.doubts if each.kind in kinds))
+        left = tuple(each for each in self.doubts if each.kind not in kinds)
+        return JudgedStrokes(self.walls | kept, left, self.notes)
+
+
+def union(shape: tuple[int, ...], masks: Iterable[BoolArray]) -> BoolArray:
+    """Where any of the masks is true."""
+    found = np.zeros(shape, dtype=np.bool_)
+    for each in masks:
+        found |= each
+    return found
 
 
 def usual_depth(depth: FloatArray, mask: BoolArray) -> float:
@@ -57,35 +107,35 @@ def usual_depth(depth: FloatArray, mask: BoolArray) -> float:
 
 def judge_strokes(everything: BoolArray, deep: BoolArray) -> JudgedStrokes:
     """Judges strokes (rows, columns). ``deep``: those that are not pale."""
-    remarks: list[str] = []
+    found: dict[str, BoolArray] = {}
     walls = everything
     pale = everything & ~grown(deep, 9)
     if _extent(pale) >= LEAST * everything.shape[1] and deep.any():
         walls = deep
-        remarks.append("pale lines: rules of the paper, folds or shadows")
+        found["pale"] = pale
     parts = connected_parts(walls, across_corners=True)
     boxes = _boxes(parts)
     if not boxes:
-        return JudgedStrokes(walls, everything & ~walls, tuple(remarks))
+        return JudgedStrokes(walls, tuple(Doubt(kind, mask) for kind, mask in found.items()))
     main = max(boxes, key=lambda number: boxes[number].diagonal)
     pen = _pen_width(parts == main)
-    outside = _outside(walls)
-    doubtful = np.zeros_like(walls)
-    for number, reason in _doubtful_parts(parts, boxes, main, pen, outside):
-        doubtful |= parts == number
-        if reason not in remarks:
-            remarks.append(reason)
-    kept = walls & ~doubtful
+    for number, kind in _doubtful_parts(parts, boxes, main, pen, _outside(walls)):
+        found[kind] = found.get(kind, np.zeros_like(walls)) | (parts == number)
+    kept = walls & ~union(walls.shape, (mask for kind, mask in found.items() if kind != "pale"))
     beyond = _beyond(kept, pen)
     if _extent(beyond) >= LEAST * walls.shape[1]:
-        kept = _without(kept, beyond)
-        remarks.append("lines beyond the outer wall")
+        trimmed = _without(kept, beyond)
+        found["outside"] = found.get("outside", np.zeros_like(walls)) | (kept & ~trimmed)
+        kept = trimmed
+    notes = []
     if _extent(_thin_bits(kept, pen)) >= 2.0 * LEAST * walls.shape[1]:
-        remarks.append("thin lines at the walls, which are kept: folds or rules")
+        notes.append("thin lines at the walls, which are kept: folds or rules")
     rooms = _closed_rooms(kept)
     if rooms:
-        remarks.append("a room without a door" if rooms == 1 else f"{rooms} rooms without a door")
-    return JudgedStrokes(kept, everything & ~grown(kept, 5), tuple(dict.fromkeys(remarks)))
+        notes.append("a room without a door" if rooms == 1 else f"{rooms} rooms without a door")
+    near = grown(kept, 5)
+    doubts = tuple(Doubt(kind, mask & ~near) for kind, mask in found.items())
+    return JudgedStrokes(kept, doubts, tuple(notes))
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,13 +187,13 @@ def _doubtful_parts(
         length = box.pixels / pen
         own = box.pixels / max(1.0, box.diagonal)
         if near_outside[box.row, box.column]:
-            yield number, "lines beyond the outer wall"
+            yield number, "outside"
         elif box.diagonal < SMALL * width or (
             min(box.width, box.height) < LOW * width and length > CROWDED * box.diagonal
         ):
-            yield number, "small pieces: writing or loose strokes"
+            yield number, "small"
         elif _has_arrows(parts, number, box, pen) or (own < THIN * pen and pen - own > 1.0):
-            yield number, "thin lines: measures or writing"
+            yield number, "thin"
 
 
 def _has_arrows(parts: np.ndarray, number: int, box: _Box, pen: float) -> bool:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -39,24 +40,46 @@ class PhotoError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class PhotoScale:
-    """What a length on the sheet is in the world: one of the two is given."""
+    """What a length on the sheet is in the world: one of the two is given, else PhotoError."""
 
     sheet_width: float | None = None
     """The sheet's width [m]."""
     walls_width: float | None = None
     """From the outside of the leftmost wall to that of the rightmost one [m]."""
 
+    def __post_init__(self) -> None:
+        if (self.sheet_width is None) == (self.walls_width is None):
+            raise PhotoError(
+                "Give the size: --width METRES of the sheet, or --walls-width METRES between the outer walls."
+            )
+
+    def resolution(self, walls: BoolArray) -> float:
+        """The side of a pixel [m]."""
+        if self.walls_width is not None:
+            return self.walls_width / _walls_columns(walls)
+        assert self.sheet_width is not None  # one of the two is given
+        return self.sheet_width / int(walls.shape[1])
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PhotoPlan:
     """The walls that were found, and the flat sheet that they were found on."""
 
-    plan: WallPlan
+    scale: PhotoScale
     sheet: Image.Image
     corners: Corners
     """Corners of the sheet in the photograph [pixels]."""
     strokes: JudgedStrokes
     """All that was drawn, of which the plan has the walls."""
+
+    @property
+    def plan(self) -> WallPlan:
+        """The walls to scale."""
+        return WallPlan(self.strokes.walls, self.scale.resolution(self.strokes.walls))
+
+    def keeping(self, kinds: Collection[str]) -> PhotoPlan:
+        """The same with the doubtful strokes of these kinds taken for walls."""
+        return replace(self, strokes=self.strokes.keeping(kinds))
 
     @property
     def walls_width(self) -> float:
@@ -116,11 +139,10 @@ def plan_from_photo(
     corners: Corners | None = None,
     are_rough: bool = False,
     options: StrokeOptions = StrokeOptions(),
-    keep_doubtful: bool = False,
 ) -> PhotoPlan:
     """Finds the walls of a drawing in its photograph. ``paper``: longer side of the sheet by its shorter one. ``corners`` [pixels]: of the sheet;
     None: it is looked for. ``are_rough``: the corners were put by hand, and the sheet's edges are looked for near them.
-    ``keep_doubtful``: whether what may be no wall is taken for one. Raises PhotoError."""
+    What may be no wall is left out; see ``PhotoPlan.keeping``. Raises PhotoError."""
     small = min(1.0, WORKING_WIDTH / photo.width)
     working = photo.resize(
         (round(photo.width * small), round(photo.height * small)), Image.Resampling.LANCZOS
@@ -134,8 +156,7 @@ def plan_from_photo(
         strokes = find_strokes(sheet, options)
     except (SheetNotFound, NoStrokes) as error:
         raise PhotoError(str(error)) from None
-    walls = strokes.walls | strokes.doubtful if keep_doubtful else strokes.walls
-    return PhotoPlan(WallPlan(walls, _resolution(walls, scale)), sheet, _scaled(found, 1 / small), strokes)
+    return PhotoPlan(scale, sheet, _scaled(found, 1 / small), strokes)
 
 
 def whole_picture(photo: Image.Image) -> Corners:
@@ -156,17 +177,6 @@ def _sheet_size(corners: Corners, paper: float) -> tuple[int, int]:
     down = math.dist(a, d) + math.dist(b, c)
     ratio = paper if across >= down else 1 / paper
     return SHEET_PIXELS, round(SHEET_PIXELS / ratio)
-
-
-def _resolution(walls: BoolArray, scale: PhotoScale) -> float:
-    columns = int(walls.shape[1])
-    if scale.walls_width is not None:
-        return scale.walls_width / _walls_columns(walls)
-    if scale.sheet_width is None:
-        raise PhotoError(
-            "The scale is missing: give the width of the sheet in the world (--width), or of the walls (--walls-width)."
-        )
-    return scale.sheet_width / columns
 
 
 def _walls_columns(walls: BoolArray) -> int:

@@ -1,13 +1,14 @@
 """One policy, everywhere: ``python tests/benchmarks/one_policy.py [TASK ...]`` (needs the extra ``learn``).
 
-Trains an agent for each of eleven tasks with all goals that there are, two of them in ``policy_tasks`` beside this file, and lets
+Trains an agent for each of twelve tasks with all goals that there are, two of them in ``policy_tasks`` beside this file, and lets
 it drive the same episodes in four ways: in the batch engine, as ``kit evaluate`` does; in a race; as the node that ``--node``
 writes; and as the program of a package with its parameters in the package's world. One table: of how many episodes the outcome
 is that of the batch engine (reached, collided, timed out), how far the first observation is from there, and in which share of
 all steps the command is what the policy itself chooses for what the program has seen.
 
 Lidars have no noise and nothing is disturbed, since the engines draw it differently. Commands take effect 0.01 s later in the
-simulator, so that ways differ by millimetres, and by more where a policy decides otherwise for that.
+simulator, so that ways differ by millimetres, and by more where a policy decides otherwise for that. What moves by itself has
+moved on for these 0.01 s when a program sees it first: a ray that just passes a cart in one way may just meet it in another.
 
 ``--episodes N`` (100), ``--first SEED`` (1000), ``--agents FOLDER`` where trained agents are kept (a folder for temporary files).
 """

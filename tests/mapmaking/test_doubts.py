@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import pty
+import subprocess
+import sys
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +15,7 @@ from click.testing import CliRunner
 from PIL import Image, ImageDraw
 
 from kit.cli import main
+from kit.mapmaking.doubts import DOUBTS
 from kit.mapmaking.photo import PhotoScale, plan_from_photo, whole_picture
 from kit.mapmaking.strokes import find_strokes
 from tests.mapmaking.judging import judge
@@ -76,11 +82,77 @@ def test_what_else_is_drawn_is_told_and_no_wall(what: str, said: str) -> None:
     if what != "room":  # which is made of walls
         assert int((found.walls & ~plain).sum()) < 0.02 * plain.sum()
         assert found.doubtful.any()
-        assert found.doubtful_boxes()
-    everything = plan_from_photo(
-        image, PhotoScale(5.0), corners=whole_picture(image), keep_doubtful=True
-    ).plan.walls
-    assert everything.sum() > plain.sum()
+        assert all(each.boxes() for each in found.doubts)
+    read = plan_from_photo(image, PhotoScale(5.0), corners=whole_picture(image))
+    assert read.keeping(DOUBTS).plan.walls.sum() > plain.sum()
+    assert read.keeping(DOUBTS).strokes.doubts == ()
+
+
+def sheet_in_doubt(folder: Path) -> Path:
+    """A picture with a fold and a word."""
+    image, draw = drawn()
+    draw.line((0, 720, 1400, 730), fill=(190, 190, 190), width=8)
+    for x in (300, 340, 380):
+        draw.line((x, 400, x + 10, 440), fill="black", width=PEN)
+    image.save(folder / "sheet.png")
+    return folder / "sheet.png"
+
+
+def walls_of(folder: Path) -> int:
+    """How many pixels of wall the map in a workspace has."""
+    with Image.open(next(folder.glob("worlds/hall/map.png"))) as picture:
+        return int((np.asarray(picture) < 128).sum())
+
+
+def test_options_say_which_doubtful_lines_are_walls(tmp_path: Path) -> None:
+    sheet, counts, told = sheet_in_doubt(tmp_path), {}, {}
+    for kinds in ((), ("none",), ("small",), ("all",)):
+        folder = tmp_path / "-".join(("home", *kinds))
+        words = ["maps", "from-photo", str(sheet), "hall", "--corners", "whole", "--width", "5"]
+        chosen = [word for kind in kinds for word in ("--keep", kind)]
+        made = CliRunner().invoke(main, [*words, *chosen, "--workspace", str(folder)])
+        assert made.exit_code == 0, made.output
+        counts[kinds], told[kinds] = walls_of(folder), made.output
+    assert counts[()] == counts[("none",)] < counts[("small",)] < counts[("all",)]
+    assert "--keep pale" in told[()]
+    assert "--keep small" in told[()]
+    assert "--keep pale" in told[("small",)]
+    assert "--keep small" not in told[("small",)]
+    assert "--keep" not in told[("all",)]
+
+
+@pytest.mark.parametrize(("typed", "is_made"), [(b"\n2\n", True), (b"\nq\n", False)])
+def test_a_terminal_asks_of_each_kind(tmp_path: Path, typed: bytes, is_made: bool) -> None:
+    sheet = sheet_in_doubt(tmp_path)
+    words = ["maps", "from-photo", str(sheet), "hall", "--corners", "whole", "--width", "5"]
+    command = [sys.executable, "-m", "kit", *words, "--workspace", str(tmp_path / "home")]
+    leader, follower = pty.openpty()
+    process = subprocess.Popen(
+        command,
+        stdin=follower,
+        stdout=follower,
+        stderr=follower,
+        env={**os.environ, "TERM": "dumb", "COLUMNS": "80"},
+    )
+    os.close(follower)
+    os.write(leader, typed)
+    printed = b""
+    with suppress(OSError):  # the other end is closed
+        while part := os.read(leader, 1 << 16):
+            printed += part
+    os.close(leader)
+    assert (process.wait() == 0) is is_made, printed.decode()
+    assert b"pale lines" in printed
+    assert b"small pieces" in printed
+    if is_made:
+        told = " ".join(printed.decode().split())
+        assert "--keep pale" in told
+        assert "--keep small" not in told
+        image, _ = drawn()
+        assert walls_of(tmp_path / "home") > int(find_strokes(image).walls.sum())
+    else:
+        assert b"No map was made" in printed
+        assert not (tmp_path / "home" / "worlds" / "hall").exists()
 
 
 @pytest.mark.long

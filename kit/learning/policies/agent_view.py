@@ -17,9 +17,10 @@ import numpy as np
 from kit.arrays import Float32Array, FloatArray, IntArray
 from kit.geometry import Pose
 from kit.learning.environment.case_arrays import CaseArrays
-from kit.learning.maps.ray_directions import ranges_in_directions, ray_direction
+from kit.learning.maps.ray_directions import LEFT_RAYS, ranges_in_directions, ray_direction
+from kit.learning.policies.node_goals.goal_count import GoalProgress
 from kit.learning.policies.policy import Policy, PolicyError, PolicyPlayer
-from kit.learning.policies.policy_node import ray_angles
+from kit.learning.policies.policy_node import node_count, node_refusals, ray_angles
 from kit.learning.tasks.actions import ContinuousActions, DiscreteActions
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.observations import MAX_COORDINATE, MAX_TARGET_DISTANCE, ObservationSpec
@@ -29,9 +30,6 @@ from kit.render.scene import ScenePath
 from kit.run.lockstep import Observer
 from kit.sim.simulation import Simulation
 from kit.sim.state import LatestScan
-
-SHOWN_PARTS = ("speeds", "last_action", "own_pose", "target")
-"""Parts of the observation that ``AgentObserver`` can follow in a world."""
 
 ARC_STEP = math.radians(4.0)
 """Between two points of a drawn arc [rad]."""
@@ -220,33 +218,34 @@ class AgentObserver(Observer):
         route: Sequence[tuple[float, float]] = (),
         radius: float = 0.0,
         leader: str | None = None,
+        heading: float = 0.0,
     ) -> None:
         """``models``: the robots that it drives, the left one of two first. ``on_view``: called with every new view.
         ``target``: of the world [m]. ``route``: all targets where there are several, one after the other, each reached within
-        ``radius`` [m]. ``leader``: the model that is the target, where that moves.
+        ``radius`` [m]. ``leader``: the model that is the target, where that moves. ``heading``: asked for at the target [rad].
 
         PolicyError if the policy perceives what a node does not know, or drives another number of robots.
         """
         task = policy.trained_on.resolve()
         policy.check_fits(task)
-        unknown = [part.name for part in task.observation.parts if part.name not in SHOWN_PARTS]
-        unknown += ["target"] * (task.observation.target and target is None)
-        if unknown or task.robots != len(models):
-            raise PolicyError(
-                f"this policy drives {counted(task.robots, 'robot')}"
-                + (f" and gets {', '.join(unknown)}" if unknown else "")
-                + ": what it perceives here cannot be shown."
-            )
+        unknown = list(node_refusals(task))
+        if task.observation.target and target is None:
+            unknown.append("agents see a target, and there is none")
+        if task.robots != len(models):
+            unknown.append(f"this policy drives {counted(task.robots, 'robot')}")
+        if unknown:
+            raise PolicyError(f"what this policy perceives here cannot be shown: {'; '.join(unknown)}.")
         self._policy, self._task, self._models, self._on_view = policy, task, tuple(models), on_view
-        self._target = np.array((math.nan, math.nan) if target is None else target)
-        self._route, self._radius, self._leader = tuple(route), radius, leader
+        self._route = tuple(route) or (() if target is None else (target,))
+        self._radius, self._leader, self._heading = radius, leader, heading
+        self._count = node_count(task)
         self._angles = np.array(ray_angles(task))
         self._lidar_heading = CaseArrays(task).robot.lidar.theta
         self._single, self._sectors = task.observation.ray_tables(task.robots)
         self._restart()
 
     def _restart(self) -> None:
-        self._left = self._route
+        self._progress = GoalProgress(self._count, self._is_inside, self._route, len(self._models))
         self._player = self._policy.make_player(1)
         self._expected = ExpectedReturns(self._policy)
         self._frames: list[Float32Array] = []
@@ -265,20 +264,29 @@ class AgentObserver(Observer):
             self._next_s = now + self._task.step_time
             self._look([scans[model] for model in self._models], simulation)
 
-    def _find_target(self, simulation: Simulation) -> None:
-        """Where the target is now: at the model that it moves with, or the next one of a route."""
+    def _count_goal(self, scans: Sequence[LatestScan], simulation: Simulation) -> None:
+        """Finds where the target is now, and how much of the goal is achieved."""
+        self._simulation = simulation
         if self._leader is not None:
-            self._target = np.array(simulation.pose(self._leader)[:2])
-            return
-        if len(self._left) > 1 and all(
-            simulation.hull_distance(model, self._left[0]) <= self._radius for model in self._models
-        ):
-            self._left = self._left[1:]
-        if self._left:
-            self._target = np.array(self._left[0])
+            self._progress.target = simulation.pose(self._leader)[:2]
+        poses = np.array([simulation.pose(model) for model in self._models])
+        beside = []
+        for scan in scans:
+            ranges = self._known_ranges(scan, math.inf)
+            beside.append([ranges[LEFT_RAYS,].min(), ranges[::-1][LEFT_RAYS,].min()])
+        self._progress.step(poses, np.array(beside))
+
+    def _is_inside(self, robot: int, pose: FloatArray, place: Sequence[float]) -> bool:
+        """Whether a robot has arrived where the simulation has it."""
+        x, y = place
+        away = math.hypot(pose[0] - x, pose[1] - y)
+        if self._task.measured_to != "axle" and math.isfinite(away):
+            away = self._simulation.hull_distance(self._models[robot], (x, y))
+        inside, headings = np.array([[away <= self._radius]]), np.array([self._heading])
+        return bool(self._task.goal.is_arrived(inside, np.array([[pose]]), headings).all())
 
     def _look(self, scans: Sequence[LatestScan], simulation: Simulation) -> None:
-        self._find_target(simulation)
+        self._count_goal(scans, simulation)
         frame = np.concatenate(
             [self._observe(robot, scan, simulation) for robot, scan in enumerate(scans)]
         ).astype(np.float32)
@@ -295,7 +303,7 @@ class AgentObserver(Observer):
     def _observe(self, robot: int, scan: LatestScan, simulation: Simulation) -> FloatArray:
         """One robot's numbers: rays, sector minima, then the parts."""
         seen = self._task.observation
-        ranges = self._known_ranges(scan)
+        ranges = self._known_ranges(scan, seen.clip).clip(0.0, seen.clip)
         minima = [ranges[first:stop].min() for _, first, stop in self._sectors.tolist()]
         numbers = [*(ranges[self._single[robot]] * seen.scale), *(np.array(minima) * seen.scale)]
         for part in seen.parts:
@@ -307,6 +315,8 @@ class AgentObserver(Observer):
         if part == "last_action":
             twist: list[float] = self._last_twists[robot].tolist()
             return twist
+        if part in ("achieved", "arrived"):
+            return self._progress.told(part, robot)
         state = next(each for each in simulation.state().bodies if each.model == self._models[robot])
         pose, scale = state.pose, self._task.observation.scale
         if part == "speeds":
@@ -315,12 +325,13 @@ class AgentObserver(Observer):
         if part == "own_pose":
             place = np.clip((pose.x, pose.y), -MAX_COORDINATE, MAX_COORDINATE) * scale
             return [*place.tolist(), math.cos(pose.theta), math.sin(pose.theta)]
-        at = np.array([[pose.x, pose.y, pose.theta]])
-        distance = min(float(distance_to_target(at, self._target)[0]), MAX_TARGET_DISTANCE)
-        return [distance * scale, float(bearing_of_target(at, self._target)[0]) / math.pi]
+        if part == "target_heading":
+            return [math.cos(self._heading - pose.theta), math.sin(self._heading - pose.theta)]
+        at, target = np.array([[pose.x, pose.y, pose.theta]]), np.array(self._progress.target)
+        distance = min(float(distance_to_target(at, target)[0]), MAX_TARGET_DISTANCE)
+        return [distance * scale, float(bearing_of_target(at, target)[0]) / math.pi]
 
-    def _known_ranges(self, scan: LatestScan) -> FloatArray:
-        """(91,) [m] in the directions that the policy knows; as far as it sees where the lidar does not look."""
-        clip = self._task.observation.clip
+    def _known_ranges(self, scan: LatestScan, beyond: float) -> FloatArray:
+        """(91,) [m] in the directions that the policy knows; ``beyond`` where the lidar does not look or sees nothing."""
         angles = np.arctan2(scan.beams.sin, scan.beams.cos)
-        return ranges_in_directions(self._angles, scan.ranges, angles, clip).clip(0.0, clip)
+        return ranges_in_directions(self._angles, scan.ranges, angles, beyond)

@@ -10,12 +10,14 @@ import math
 import zlib
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from importlib import import_module
 from importlib.resources import files
 from textwrap import wrap
-from typing import NamedTuple
+from typing import Any, NamedTuple, cast
 
 from kit.learning.environment.case_arrays import CaseArrays
 from kit.learning.maps.ray_directions import LEFT_RAYS
+from kit.learning.policies.node_goals.goal_count import NodeCount
 from kit.learning.policies.policy import Policy, PolicyError
 from kit.learning.policies.policy_file import policy_bytes
 from kit.learning.tasks.actions import DiscreteActions
@@ -112,6 +114,23 @@ def _class_text(program: str) -> str:
     return "class " + program.partition("\nclass ")[2].rstrip() + "\n\n\n"
 
 
+def node_count(task: LearningTask) -> NodeCount:
+    """Counts the goal as the node of a policy of this task does. ValueError where none can: see ``node_refusals``."""
+    if not task.observation.achieved:
+        return NodeCount({})
+    goal = task.goal
+    if not _can_count(goal):
+        raise ValueError(f"a node cannot count the goal {goal.kind}")
+    counts = vars(import_module(f"{GOAL_PROGRAMS}.{goal.kind}")).values()
+    kind = next(each for each in counts if isinstance(each, type) and NodeCount in each.__bases__)
+    return cast(NodeCount, kind(_goal_facts(task)))
+
+
+def _goal_facts(task: LearningTask) -> dict[str, Any]:
+    """What a node must know of the goal that it counts."""
+    return {**task.goal.node_facts(CaseArrays(task).goal_cases[0]), "step_time": task.step_time}
+
+
 def _can_count(goal: Goal) -> bool:
     return files(GOAL_PROGRAMS).joinpath(f"{goal.kind}.py").is_file()
 
@@ -182,9 +201,7 @@ def _format_constants(policy: Policy, task: LearningTask) -> str:
         "LEADER_FRAME": leader_frame(task) if seen.target else "",
         "HULL": [] if task.measured_to == "axle" else [[list(c) for c in part] for part in arrays.robot.hull],
         "HEADING_TOLERANCE": math.pi if task.goal.heading_tolerance is None else task.goal.heading_tolerance,
-        "GOAL": {**task.goal.node_facts(arrays.goal_cases[0]), "step_time": task.step_time}
-        if seen.achieved
-        else {},
+        "GOAL": _goal_facts(task) if seen.achieved else {},
         "LEFT_RAYS": list(LEFT_RAYS) if seen.achieved else [],
     }
     lines = [f"{name} = {value!r}" for name, value in values.items()]

@@ -22,7 +22,8 @@ import io
 import json
 import math
 import zlib
-from typing import Any, NamedTuple  # noqa: F401 - what stands below for a goal's count needs it
+from collections.abc import Callable, Sequence  # noqa: F401 - what stands below for a goal's count needs them
+from typing import Any, NamedTuple  # noqa: F401 - likewise
 
 import numpy as np
 import rclpy
@@ -66,7 +67,7 @@ POLICY = ""
 
 # --- how its goal is counted ---
 from kit.learning.policies.node_goals.goal_count import (  # noqa: E402 - its text stands here when a node is written
-    GoalStep,
+    GoalProgress,
     NodeCount,
 )
 
@@ -209,12 +210,8 @@ class PolicyNode(Node):
         self.leader_frame = self.declare_parameter("leader_frame", LEADER_FRAME).value
         target = self.declare_parameter("target", Parameter.Type.DOUBLE_ARRAY).value
         targets = self.declare_parameter("targets", Parameter.Type.DOUBLE_ARRAY).value
-        self.begin_route(np.array(targets or target or TARGETS, dtype=float).reshape(-1, 2).tolist())
-        self.goal_count = COUNT(GOAL)
-        self.count = 0.0
-        self.share = self.told_share = 0.0
-        self.before: np.ndarray | None = None
-        self.inside = [False] * len(TOPICS)
+        route = np.array(targets or target or TARGETS, dtype=float).reshape(-1, 2).tolist()
+        self.progress = GoalProgress(COUNT(GOAL), self.is_inside, route, len(TOPICS))
         self.motion = {part: [[0.0, 0.0] for _ in TOPICS] for part in ("speeds", "last_action")}
         self.poses: dict[int, tuple[float, float, float]] = {}
         self.pose_stamps: dict[int, float] = {}
@@ -232,7 +229,7 @@ class PolicyNode(Node):
             )
             for robot, (_, scans, _) in enumerate(TOPICS)
         ]
-        self.counts_goal = bool({"achieved", "arrived"} & set(PARTS)) or len(self.route) > 1
+        self.counts_goal = bool({"achieved", "arrived"} & set(PARTS)) or len(route) > 1
         self.needs_poses = self.counts_goal or bool({"own_pose", "target", "target_heading"} & set(PARTS))
         if self.needs_poses or "speeds" in PARTS:
             self.odometry = [
@@ -262,10 +259,11 @@ class PolicyNode(Node):
             self.poses.clear()
             self.pose_stamps.clear()
             self.scans.clear()
-            self.before, self.leader_stamp, self.next_step = None, -math.inf, -math.inf
+            self.leader_stamp, self.next_step = -math.inf, -math.inf
             self.forget()
+            self.progress.forget()
             if not self.leader_frame:
-                self.begin_route(self.route)
+                self.progress.begin_route(self.progress.route)
         self.stamps[source] = now
         return now
 
@@ -297,13 +295,13 @@ class PolicyNode(Node):
         self.step_when_known()
 
     def on_goal(self, goal: PoseStamped) -> None:
-        self.begin_route([[goal.pose.position.x, goal.pose.position.y]])
+        self.progress.begin_route([[goal.pose.position.x, goal.pose.position.y]])
         self.target_heading = heading_of(goal.pose.orientation)
 
     def on_transforms(self, message: TFMessage) -> None:
         for each in message.transforms:
             if each.child_frame_id.lstrip("/") == self.leader_frame:
-                self.target = [each.transform.translation.x, each.transform.translation.y]
+                self.progress.target = [each.transform.translation.x, each.transform.translation.y]
                 self.leader_stamp = self.hear("leader", each.header.stamp)
                 self.step_when_known()
 
@@ -331,49 +329,21 @@ class PolicyNode(Node):
         self.scans.clear()
         self.next_step = self.last_stamp + STEP_TIME
 
-    def begin_route(self, route: list[list[float]]) -> None:
-        """Goes to these places, one after the other; to none before one is told."""
-        self.route = self.left = route
-        self.target = route[0] if route else [math.nan, math.nan]
-
     def count_goal(self) -> None:
-        """Counts how much of the goal is achieved, and goes on to the next target of a route that is reached."""
-        if not self.counts_goal:
-            return
-        poses = np.array([self.poses[robot] for robot in range(len(TOPICS))])
-        self.find_arrivals(poses)
-        if self.before is None:
-            self.count = self.goal_count.begin(poses)
-            self.share = self.told_share = self.count / self.needed
-        else:
-            arrived = all(self.inside)
-            step = GoalStep(poses, self.before, arrived, np.array(self.target), self.beside)
-            self.count = self.goal_count.count(self.count, step)
-            earlier, self.share = self.share, self.count / self.needed
-            self.told_share = earlier if self.goal_count.is_told_later else self.share
-            if arrived and len(self.left) > 1:
-                self.left = self.left[1:]
-                self.target = self.left[0]
-                self.find_arrivals(poses)
-        self.before = poses
+        """Counts how much of the goal is achieved, where that is told or a route goes on."""
+        if self.counts_goal:
+            poses = np.array([self.poses[robot] for robot in range(len(TOPICS))])
+            self.progress.step(poses, self.beside)
 
-    @property
-    def needed(self) -> float:
-        """The count at which the goal is reached."""
-        return float(len(self.route)) if len(self.route) > 1 else self.goal_count.needed
-
-    def find_arrivals(self, poses: np.ndarray) -> None:
-        """Notes which robots are in the target."""
-        x, y = self.target
-        self.inside = [
-            hull_distance(pose, x, y) <= self.radius
-            and abs((pose[2] - self.target_heading + math.pi) % (2 * math.pi) - math.pi) <= HEADING_TOLERANCE
-            for pose in poses
-        ]
+    def is_inside(self, robot: int, pose: np.ndarray, place: Sequence[float]) -> bool:
+        """Whether a robot at this pose has arrived."""
+        x, y = place
+        turn = (pose[2] - self.target_heading + math.pi) % (2 * math.pi) - math.pi
+        return hull_distance(pose, x, y) <= self.radius and bool(abs(turn) <= HEADING_TOLERANCE)
 
     def knows_places(self) -> bool:
         """Whether all is known that it is to be told beside scans; says once what is missing."""
-        if "target" in PARTS and not all(map(math.isfinite, self.target)):
+        if "target" in PARTS and not all(map(math.isfinite, self.progress.target)):
             missing = (
                 f"no transform of {self.leader_frame} on /tf"
                 if self.leader_frame
@@ -392,17 +362,15 @@ class PolicyNode(Node):
         """The numbers of one part of what a robot is told beside its scan."""
         if part in self.motion:
             return self.motion[part][robot]
-        if part == "achieved":
-            return [min(self.told_share, 1.0)]
-        if part == "arrived":
-            return [float(self.inside[robot])]
+        if part in ("achieved", "arrived"):
+            return self.progress.told(part, robot)
         x, y, heading = self.poses[robot]
         if part == "own_pose":
             place = (min(max(each, -PLACE_CLIP), PLACE_CLIP) * SCALE for each in (x, y))
             return [*place, math.cos(heading), math.sin(heading)]
         if part == "target_heading":
             return [math.cos(self.target_heading - heading), math.sin(self.target_heading - heading)]
-        ahead, aside = self.target[0] - x, self.target[1] - y
+        ahead, aside = self.progress.target[0] - x, self.progress.target[1] - y
         turn = (math.atan2(aside, ahead) - heading + math.pi) % (2 * math.pi) - math.pi
         return [min(math.hypot(ahead, aside), TARGET_CLIP) * SCALE, turn / math.pi]
 

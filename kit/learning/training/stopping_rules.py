@@ -167,14 +167,18 @@ class TrainUntilGoal:
 class TrainUntilSure:
     """Stop when every single case is sure to be good enough; keep the best policy; go back if one has forgotten.
 
-    An evaluation is a short test. If its worst case is at the goal, a longer one follows, on new episodes, and only that
-    one counts: each case's share must be at least the goal with a confidence that is shared out among the cases and
-    among all such attempts (attempt k gets 1 / (k (k + 1)) of what may go wrong), so that trying often does not help.
+    An evaluation is a short test, before which a look may say that the goal is far. If its worst case is at the goal, a longer
+    one follows, on new episodes, and only that one counts: each case's share must be at least the goal with a confidence that
+    is shared out among the cases and among all such attempts (attempt k gets 1 / (k (k + 1)) of what may go wrong), so that
+    trying often does not help.
     Where the longer test leaves it open, one four times as long follows, up to the longest.
     """
 
     test_interval: int
     goal: float = 0.95
+    first_episodes: int = 0
+    """Episodes of each case in a look before a short test; where more of them fail than may in the whole short test, it is left
+    out. 0: no look."""
     screening_episodes: int = 40
     """Episodes of each case in a short test."""
     confirming_episodes: int = 500
@@ -193,7 +197,7 @@ class TrainUntilSure:
     greedy: bool = True
 
     def evaluate(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
-        counts, episodes = test(self.screening_episodes * test.cases), self.confirming_episodes
+        counts, episodes = self._screen(test), self.confirming_episodes
         while worst_share(counts) >= self.goal:
             counts = test(episodes * test.cases)
             memory = replace(memory, confirmations=memory.confirmations + 1)
@@ -220,6 +224,15 @@ class TrainUntilSure:
                 reason=f"accuracy fell to {success_rate(counts):.2f}: returning to the policy of step {memory.best_steps}",
             )
         return StoppingDecision(counts, remembered, keep)
+
+    def _screen(self, test: PolicyTest) -> CaseCounts:
+        """A short test, or the look before it where that decides."""
+        if self.first_episodes:
+            counts = test(self.first_episodes * test.cases)
+            allowed = round((1 - self.goal) * self.screening_episodes, 9)
+            if any(count.episodes - count.reached > allowed for count in counts.values()):
+                return counts
+        return test(self.screening_episodes * test.cases)
 
     def _confident_share(self, counts: CaseCounts, attempt: int) -> float:
         """Lower bound of every case's share, all together with the wanted confidence."""

@@ -211,6 +211,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
                 route=scenario.targets,
                 radius=0.0 if case is None else case.target_radius,
                 leader=scenario.leader,
+                heading=scenario.target_heading or 0.0,
             )
 
         self.host.observe(make)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.episode_start import EpisodeStart
 from kit.learning.policies.agent_view import AgentObserver, AgentView, ExpectedReturns, build_agent_view
 from kit.learning.policies.policy import ActionSampling, Policy, PolicyError, action_counts, task_interface
 from kit.learning.policies.policy_network import LinearLayer, PolicyNetwork
@@ -18,6 +19,7 @@ from kit.learning.tasks.learning_task import StartVariation
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
+from kit.school.game.task_levels import episode_scenario, find_task_level
 from tests.cases import every_case
 
 
@@ -162,10 +164,50 @@ def test_the_target_of_a_route_and_a_leader_are_followed() -> None:
         with Session(scenario, always_scan=True) as session:
             observer = AgentObserver(policy, scenario.partners, views.append, there, **extra)  # type: ignore[arg-type]
             session.runner.observers.append(observer)
-            session.runner.tick()
-        told[name] = [number for _, number in views[0].readings]
+            for _ in range(round(policy.trained_on.resolve().step_time / session.runner.step_size) + 1):
+                session.runner.tick()
+        assert len(views) == 2
+        told[name] = [number for _, number in views[-1].readings]
     assert told["route"] == told["alone"], "the first target is where it stands: it goes on to the second"
     assert told["leader"] == pytest.approx(told["alone"], abs=1e-3)
+
+
+@pytest.mark.long
+@every_case(
+    "name",
+    [
+        name
+        for name in task_names()
+        if {"achieved", "target_heading", "arrived"}
+        & {part.name for part in find_task(name).observation.parts}
+    ],
+)
+def test_it_is_told_of_the_goal_what_training_tells(name: str) -> None:
+    policy, seed = random_policy(name), 7
+    task = policy.trained_on.resolve()
+    level = find_task_level(name)
+    assert level is not None
+    scenario = episode_scenario(level, EpisodeStart.drawn(task, seed))
+    case = scenario.case
+    assert case is not None
+    seen = BatchEnv(task, 1, seed).reset(seed=seed, cases=np.zeros(1, dtype=np.int64))
+    views: list[AgentView] = []
+    with Session(scenario, always_scan=True) as session:
+        observer = AgentObserver(
+            policy,
+            scenario.partners,
+            views.append,
+            case.target,
+            route=scenario.targets,
+            radius=case.target_radius,
+            leader=scenario.leader,
+            heading=scenario.target_heading or 0.0,
+        )
+        session.runner.observers.append(observer)
+        session.runner.tick()
+    spec = task.observation
+    told = seen[0, -spec.frame_size * task.robots :][spec.scan_size : spec.frame_size]
+    assert [number for _, number in views[0].readings] == pytest.approx(told.tolist(), abs=1e-2)
 
 
 def path_start(batch: BatchEnv) -> np.ndarray:

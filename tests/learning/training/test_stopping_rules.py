@@ -81,6 +81,17 @@ def test_a_good_short_test_is_confirmed_on_new_episodes() -> None:
     assert success_rate(decision.counts) == pytest.approx(0.997)
 
 
+def test_a_look_decides_where_the_goal_is_out_of_reach() -> None:
+    rule = replace(SURE, first_episodes=20)
+    far = Tries((1.0, 0.85))  # three failures of 20, where two of 40 are allowed
+    decision = rule.evaluate(10, StoppingMemory(), far)
+    assert far.sizes == [20]
+    assert success_rate(decision.counts) == pytest.approx(0.925)
+    near = Tries((1.0, 0.9), (1.0, 1.0), (0.998, 0.996))
+    assert rule.evaluate(10, StoppingMemory(), near).stop
+    assert near.sizes == [20, 40, 500], "what is looked at does not count in the test"
+
+
 def test_luck_in_the_short_test_is_not_enough() -> None:
     decision = SURE.evaluate(10, StoppingMemory(), Tries((1.0, 1.0), (0.96, 0.96)))
     assert not decision.stop

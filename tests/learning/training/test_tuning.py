@@ -187,7 +187,7 @@ def test_a_count_has_a_limit(words: tuple[str, ...]) -> None:
 @needs_learner
 def test_a_setting_that_a_preset_leaves_alone_is_listed_as_the_library_has_it() -> None:
     output = kit("train", "turn", "--list")[1]
-    assert re.search(r"^  gamma +0.99 \(the library's\)$", output, re.MULTILINE), output
+    assert re.search(r"^  max_grad_norm +0.5 \(the library's\)$", output, re.MULTILINE), output
 
 
 @pytest.mark.long

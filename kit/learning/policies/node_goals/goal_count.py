@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -49,3 +51,65 @@ class NodeCount:
     def is_within(self, distance: np.ndarray) -> bool:
         """Whether all distances [m] lie between the goal's nearest and farthest."""
         return bool(((distance >= self.facts["nearest"]) & (distance <= self.facts["farthest"])).all())
+
+
+class GoalProgress:
+    """How far the robots have come with their goal: where they are to go next, who is there, what share is achieved."""
+
+    def __init__(
+        self,
+        goal_count: NodeCount,
+        is_inside: Callable[[int, np.ndarray, Sequence[float]], bool],
+        route: Sequence[Sequence[float]],
+        robots: int,
+    ) -> None:
+        """``is_inside``: whether the robot of this number has arrived, at a pose (3,), at a place (2,). ``route``: the places
+        to go to, one after the other."""
+        self.goal_count = goal_count
+        self.is_inside = is_inside
+        self.robots = robots
+        self.begin_route(route)
+        self.forget()
+
+    def begin_route(self, route: Sequence[Sequence[float]]) -> None:
+        """Goes to these places, one after the other; to none before one is told."""
+        self.route = self.left = route
+        self.target: Sequence[float] = route[0] if route else (math.nan, math.nan)
+
+    def forget(self) -> None:
+        """Begins to count again, as at the start of an episode."""
+        self.before: np.ndarray | None = None
+        self.achieved = self.share = self.told_share = 0.0
+        self.inside = [False] * self.robots
+
+    @property
+    def needed(self) -> float:
+        """The count at which the goal is reached."""
+        return float(len(self.route)) if len(self.route) > 1 else self.goal_count.needed
+
+    def step(self, poses: np.ndarray, beside: np.ndarray) -> None:
+        """Counts how much of the goal is achieved with robots at ``poses`` (robots, 3), and goes on to the next target of a
+        route that is reached. ``beside`` (robots, 2): the nearest things to the left and to the right of each lidar [m]."""
+        self.find_arrivals(poses)
+        if self.before is None:
+            self.achieved = self.goal_count.begin(poses)
+            self.share = self.told_share = self.achieved / self.needed
+        else:
+            arrived = all(self.inside)
+            step = GoalStep(poses, self.before, arrived, np.array(self.target), beside)
+            self.achieved = self.goal_count.count(self.achieved, step)
+            earlier, self.share = self.share, self.achieved / self.needed
+            self.told_share = earlier if self.goal_count.is_told_later else self.share
+            if arrived and len(self.left) > 1:
+                self.left = self.left[1:]
+                self.target = self.left[0]
+                self.find_arrivals(poses)
+        self.before = poses
+
+    def find_arrivals(self, poses: np.ndarray) -> None:
+        """Notes which robots are in the target."""
+        self.inside = [self.is_inside(robot, pose, self.target) for robot, pose in enumerate(poses)]
+
+    def told(self, part: str, robot: int) -> list[float]:
+        """The numbers of a part of what agents are told: the share that is ``achieved``, or whether a robot has ``arrived``."""
+        return [min(self.told_share, 1.0) if part == "achieved" else float(self.inside[robot])]
