@@ -199,7 +199,7 @@ def test_what_of_a_file_is_in_memory_is_seen_by_a_later_program_at_every_level(
 
 NO_FILTER = "confinement.seccomp.install = lambda **options: None; "
 NO_LANDLOCK = "confinement.landlock.restrict = lambda *granted: None; "
-NO_LIMITS = "confinement._limit = lambda config: None; "
+NO_LIMITS = "confinement.set_limits = lambda config: None; "
 WITHOUT_DEFENCE: Final[Mapping[str, tuple[str, tuple[str, ...]]]] = MappingProxyType(
     {
         "read": (NO_LANDLOCK, ("read a file outside", "list a folder outside", "read through a link")),
