@@ -31,6 +31,7 @@ from kit.launch.requests import (
     Request,
     ShutdownRequest,
     StartRequest,
+    TimerRequest,
     TransitionRequest,
     WatchRequest,
     WorldRequest,
@@ -206,6 +207,8 @@ class Launch:
         self._events: list[Json] = []
         self._reports_output = False
         self._clock_ns = 0
+        self._settled_ns = 0
+        """When the last of the timers is due that no timer has set."""
         self._seen_ns = graph.now_ns
         self._polled_s = 0.0
         self._launch_file = LaunchFileProcess(
@@ -325,6 +328,8 @@ class Launch:
                 self._transitions.add(request)
             elif isinstance(request, WatchRequest):
                 self._transitions.watch(request.node)
+            elif isinstance(request, TimerRequest):
+                self._settled_ns = max(self._settled_ns, request.due_ns)
             elif isinstance(request, EndRequest):
                 self._end_process(request.number)
             elif isinstance(request, ShutdownRequest):
@@ -401,7 +406,7 @@ class Launch:
 
     def _watched_nodes(self) -> frozenset[str]:
         """Its programs' nodes; none while others are still to be started, which may be the other ends."""
-        if self.has_timers or self._waiting:
+        if self._waiting or (self.has_timers and self._clock_ns < self._settled_ns):
             return frozenset()
         return frozenset[str]().union(*(running.process.node_names for running in self._running.values()))
 
