@@ -21,7 +21,6 @@ from kit.launch.processes import (
     ProcessExit,
     ProcessStartError,
     ProgramUnavailable,
-    suggest_fix,
 )
 from kit.launch.program_lookup import StartContext, is_builtin, start_process
 from kit.launch.requests import (
@@ -370,9 +369,6 @@ class Launch:
         self.failures.append(f"{name}: {reason}")
         if ended.reason:
             self._on_output(LaunchOutputLine(name, ended.reason, "err"))
-        hint = suggest_fix(ended.reason)
-        if hint:
-            self._on_output(LaunchOutputLine(name, hint, "err"))
 
     def _end_process(self, number: int) -> None:
         running = self._running.get(number)
