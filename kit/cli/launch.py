@@ -157,12 +157,11 @@ def _parse_words(words: Sequence[str]) -> tuple[str | None, dict[str, str]]:
 
 def _show_arguments(target: LaunchTarget) -> None:
     from kit.launch.launch_file_process import declared_arguments
-    from kit.launch.processes import explain_failure
 
     try:
         declared = declared_arguments(target.file, target.folder, target.search)
     except StudentCodeError as error:
-        messages.fail(explain_failure(error.failure))
+        messages.fail(str(error.failure))
     click.echo("Arguments (pass arguments as '<name>:=<value>'):")
     for argument in declared:
         choices = "" if argument.choices is None else f" valid choices are: {list(argument.choices)}"
@@ -185,7 +184,7 @@ def _run_plainly(
     from kit.inspection.server import open_inspection_server
     from kit.launch.launch_run import Launch
     from kit.launch.plain_launch import LaunchLimit, run_plain_launch
-    from kit.launch.processes import ProcessStartError, explain_failure
+    from kit.launch.processes import ProcessStartError
 
     name = target.name
     launch = Launch(
@@ -209,7 +208,7 @@ def _run_plainly(
             log=lambda record: click.echo(str(record), err=True),
         )
     except StudentCodeError as error:
-        messages.fail(explain_failure(error.failure))
+        messages.fail(str(error.failure))
     except (ProcessStartError, WorldError) as problem:
         messages.fail(str(problem))
     except OSError as problem:

@@ -77,8 +77,6 @@ class StudentCodeError(Exception):
         self.failure = failure
 
 
-NEARBY = "is near this file"
-"""Stands in what is said of a module that could not be imported though it lies near the program."""
 Budget: TypeAlias = Literal["start", "start wall", "reply", "reply wall", "total"]
 
 

@@ -21,7 +21,6 @@ from kit.launch.processes import (
     ProcessExit,
     ProcessStartError,
     ProgramUnavailable,
-    suggest_fix,
 )
 from kit.launch.program_lookup import StartContext, is_builtin, start_process
 from kit.launch.requests import (
@@ -31,6 +30,7 @@ from kit.launch.requests import (
     Request,
     ShutdownRequest,
     StartRequest,
+    TimerRequest,
     TransitionRequest,
     WatchRequest,
     WorldRequest,
@@ -206,6 +206,8 @@ class Launch:
         self._events: list[Json] = []
         self._reports_output = False
         self._clock_ns = 0
+        self._settled_ns = 0
+        """When the last of the timers is due that no timer has set."""
         self._seen_ns = graph.now_ns
         self._polled_s = 0.0
         self._launch_file = LaunchFileProcess(
@@ -325,6 +327,8 @@ class Launch:
                 self._transitions.add(request)
             elif isinstance(request, WatchRequest):
                 self._transitions.watch(request.node)
+            elif isinstance(request, TimerRequest):
+                self._settled_ns = max(self._settled_ns, request.due_ns)
             elif isinstance(request, EndRequest):
                 self._end_process(request.number)
             elif isinstance(request, ShutdownRequest):
@@ -365,9 +369,6 @@ class Launch:
         self.failures.append(f"{name}: {reason}")
         if ended.reason:
             self._on_output(LaunchOutputLine(name, ended.reason, "err"))
-        hint = suggest_fix(ended.reason)
-        if hint:
-            self._on_output(LaunchOutputLine(name, hint, "err"))
 
     def _end_process(self, number: int) -> None:
         running = self._running.get(number)
@@ -401,7 +402,7 @@ class Launch:
 
     def _watched_nodes(self) -> frozenset[str]:
         """Its programs' nodes; none while others are still to be started, which may be the other ends."""
-        if self.has_timers or self._waiting:
+        if self._waiting or (self.has_timers and self._clock_ns < self._settled_ns):
             return frozenset()
         return frozenset[str]().union(*(running.process.node_names for running in self._running.values()))
 

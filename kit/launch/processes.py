@@ -3,38 +3,17 @@
 from __future__ import annotations
 
 import os
-import re
 import signal
 import subprocess
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Final, Literal, NamedTuple, Protocol
 
-from kit.host.failure import NEARBY, Failure, StudentCodeError
+from kit.host.failure import Failure, StudentCodeError
 from kit.host.node_process import NodeProcess
 from kit.host.wire import printable
 from kit.ros.node.node import Node
-
-_MISSING_MODULE: Final = re.compile(r"No module named '([\w.]+)'")
-_MISSING_NAME: Final = re.compile(r"cannot import name '(\w+)' from '([\w.]+)'")
-
-UNAVAILABLE_ROS_MODULES: Final = frozenset(
-    {
-        "cv_bridge", "image_geometry", "laser_geometry", "nav2_simple_commander", "pcl_ros",
-        "ros2cli", "rclpy_action", "tf2_kdl", "control_msgs", "map_msgs", "nav2_msgs", "xacro",
-    }
-)  # fmt: skip
-"""Modules of ROS 2 that the kit does not have."""
-
-PYPI_NAMES: Final = {
-    "cv2": "opencv-python-headless",
-    "PIL": "pillow",
-    "yaml": "pyyaml",
-    "sklearn": "scikit-learn",
-}
-"""The names in the package index of modules that are called otherwise there."""
 
 
 class ProcessStartError(Exception):
@@ -43,30 +22,6 @@ class ProcessStartError(Exception):
 
 class ProgramUnavailable(ProcessStartError):
     """A program of a kind that the kit does not run: a launch goes on without it."""
-
-
-def explain_failure(failure: Failure) -> str:
-    """The failure as text, with a suggestion on the next line if there is one."""
-    hint = suggest_fix(failure.message)
-    return f"{failure}\n{hint}" if hint else str(failure)
-
-
-def suggest_fix(reason: str) -> str | None:
-    """Suggests a remedy for a failed import, given its error message; None for other errors."""
-    name = _MISSING_NAME.search(reason)
-    if name is not None:
-        return f"The kit's {name[2]} has no {name[1]}: the kit does not have this part of ROS 2."
-    module = _MISSING_MODULE.search(reason)
-    if module is None or NEARBY in reason:
-        return None
-    top = module[1].partition(".")[0]
-    if (
-        top in UNAVAILABLE_ROS_MODULES
-        or top.endswith(("_msgs", "_srvs", "_interfaces"))
-        or top.startswith(("rclpy", "launch"))
-    ):
-        return f"{module[1]} belongs to ROS 2 or to another package, and is not installed here."
-    return f"If {top} is a Python package, install it: {sys.executable} -m pip install {PYPI_NAMES.get(top, top)}"
 
 
 EXIT_TIMEOUT_S: Final = 2.0

@@ -83,6 +83,14 @@ class WatchRequest:
 
 
 @dataclass(frozen=True, slots=True)
+class TimerRequest:
+    """Expect that a timer starts something."""
+
+    due_ns: int
+    """When it is due [ns of the launch's time]."""
+
+
+@dataclass(frozen=True, slots=True)
 class ShutdownRequest:
     """End the launch."""
 
@@ -106,6 +114,7 @@ Request = (
     | EndRequest
     | TransitionRequest
     | WatchRequest
+    | TimerRequest
     | ShutdownRequest
     | DeclaredArgument
 )
@@ -180,6 +189,7 @@ _PARSERS: Final[Mapping[str, Callable[..., Request]]] = MappingProxyType(
         "process": _parse_start_request,
         "watch": lambda node: WatchRequest(text(node, MAX_NAME)),
         "transition": lambda node, number: TransitionRequest(text(node, MAX_NAME), integer(number)),
+        "timer": lambda due_ns: TimerRequest(integer(due_ns, 0, 2**63 - 1)),
         "end": lambda number: EndRequest(integer(number)),
         "shutdown": lambda reason: ShutdownRequest(text(reason)),
         "argument": _parse_argument,

@@ -14,6 +14,7 @@ from kit.launch.processes import PrintedLine, Process, ProcessExit, ProcessStart
 from kit.launch.program_lookup import StartContext, is_builtin, start_process
 from kit.launch.requests import StartRequest
 from kit.ros.graph.graph import Graph
+from kit.run.connection_watch import LOOK_INTERVAL_NS, ConnectionWatch
 from kit.run.episode import run_until, when
 from kit.run.pacing import Schedule
 
@@ -39,13 +40,17 @@ class SingleProgram:
     def run_beside(self, client: InspectionClient, on_output: OutputCallback) -> ProcessExit:
         """Runs it until it ends, in the graph and time of another terminal's world. Raises ProcessStartError, WorldDisconnected."""
         process, graph = self._started(client.graph, client.hold_time), client.graph
+        watch = _watch_connections(graph, process, on_output)
         try:
             while (ended := self._poll(process, on_output)) is None:
                 seen = graph.change_count
                 while process.exchange():
                     self._print(process, on_output)
+                watch.look()
                 if process.poll() is None:
-                    graph.wait(partial(_has_changed, graph, seen), process.wake_ns)
+                    look_ns = graph.now_ns + LOOK_INTERVAL_NS
+                    wake_ns = look_ns if process.wake_ns is None else min(process.wake_ns, look_ns)
+                    graph.wait(partial(_has_changed, graph, seen), wake_ns)
             return ended
         finally:
             self._print(process, on_output)
@@ -58,9 +63,11 @@ class SingleProgram:
             process = self._started(graph_only_run.graph)
             graph_only_run.participants += [process, server]
             ended: ProcessExit | None = None
+            watch = _watch_connections(graph_only_run.graph, process, on_output)
 
             def has_ended() -> bool:
                 nonlocal ended
+                watch.look()
                 ended = self._poll(process, on_output)
                 return ended is not None
 
@@ -108,6 +115,14 @@ class SingleProgram:
         lines: Iterable[PrintedLine] = process.take_lines()
         for line in lines:
             on_output(line)
+
+
+def _watch_connections(graph: Graph, process: Process, on_output: OutputCallback) -> ConnectionWatch:
+    return ConnectionWatch(
+        graph,
+        lambda: process.node_names,
+        lambda text: on_output(PrintedLine(f"[WARN] [kit]: {text}", "err")),
+    )
 
 
 def _has_changed(graph: Graph, since: int) -> bool:

@@ -102,12 +102,12 @@ FAILING = {
     "ros import": (
         "from nav2_msgs.msg import Path\ndef main(): pass\n",
         "No module named 'nav2_msgs'",
-        "belongs to ROS 2",
+        "navigation is C++",
     ),
     "missing name": (
         "from std_msgs.msg import Sting\ndef main(): pass\n",
         "cannot import name 'Sting'",
-        "has no Sting",
+        "Did you mean 'String'?",
     ),
     "syntax": ("def main(:\n    pass\n", "bad/run.py:1: SyntaxError", ""),
     "callback": ("self.create_timer(0.01, lambda: 1 / 0)", "bad/run.py:9: ZeroDivisionError", ""),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from kit.inspection.client import InspectionClient
 from kit.inspection.sockets import running_worlds, sockets_folder
 from tests.launch.conftest import Workshop, kit
+from tests.run.test_connection_watch import DEAF, SAID
 from tests.waiting import wait_until
 
 HELLO = """
@@ -67,6 +69,31 @@ def test_two_programs_in_two_terminals_hear_each_other(tmp_path: Path) -> None:
     assert not list((workspace / ".running").rglob("*.sock"))
 
 
+@pytest.mark.long
+@pytest.mark.parametrize("beside", [True, False])
+def test_a_program_that_hears_nothing_is_told_of(beside: bool, tmp_path: Path) -> None:
+    """Beside a world with what there is, alone that there is nothing; once, and without an end of the program."""
+    workspace = tmp_path / "workspace"
+    (tmp_path / "deaf.py").write_text(DEAF)
+    with ExitStack() as stack:
+        if beside:
+            world = stack.enter_context(
+                kit(workspace, "run", "turtlebot", "--serve", "--steps", "100000", "--speed", "2")
+            )
+            stack.callback(world.send_signal, signal.SIGINT)
+            wait_until(lambda: running_worlds(sockets_folder(workspace)))
+        with kit(workspace, "ros", "run", tmp_path / "deaf.py") as program:
+            assert program.stdout is not None
+            told = [program.stdout.readline() for _ in (SAID if beside else SAID[:1])]
+            program.send_signal(signal.SIGINT)
+            rest, _ = program.communicate(timeout=10)
+    assert program.returncode == 130
+    for line, (named, there_is) in zip(told, SAID, strict=False):
+        assert line.index(named) < line.index("/deaf")
+        assert (f" {there_is} " in line) == beside
+    assert "/deaf" not in rest
+
+
 LEAVES = """
 import rclpy
 from rclpy.node import Node
@@ -119,7 +146,7 @@ def test_a_missing_module_is_explained(tmp_path: Path) -> None:
         said, _ = running.communicate(timeout=60)
     assert running.returncode == 1
     assert "sees.py:1: " in said
-    assert "cv_bridge belongs to ROS 2" in said
+    assert "cv_bridge is not in the kit" in said
 
 
 @pytest.mark.long

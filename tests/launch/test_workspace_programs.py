@@ -10,7 +10,6 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.launch.processes import suggest_fix
 from kit.ros.packages import PackageError, missing_package
 from kit.ros.share_folders import installed_share, with_original_paths
 from tests.launch.conftest import Launched
@@ -205,4 +204,3 @@ def test_pip_is_not_advised_for_what_lies_nearby(source: Path, tmp_path: Path) -
     output = kit("ros", "run", file, workspace=tmp_path / "kit")
     assert "wall_follower" in output
     assert "pip install" not in output
-    assert suggest_fix("No module named 'wall_follower'") is not None

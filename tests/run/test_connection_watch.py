@@ -12,6 +12,7 @@ import pytest
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Trigger
+from kit.msg.tf2_msgs import TFMessage
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node, create_graph_node
 from kit.run.connection_watch import LOOK_INTERVAL_NS, MAX_TOLD, STANDS_NS, ConnectionWatch
@@ -50,6 +51,20 @@ def generate_launch_description():
         ExecuteProcess(cmd=["python3", {program!r}], name="deaf"),
     ])
 """
+REPEATS = """
+from launch.actions import OpaqueFunction, TimerAction
+
+def again(context):
+    return [TimerAction(period=0.3, actions=[OpaqueFunction(function=again)])]
+
+def generate_launch_description_of(described=generate_launch_description):
+    description = described()
+    description.add_action(OpaqueFunction(function=again))
+    return description
+
+generate_launch_description = generate_launch_description_of
+"""
+"""Sets a timer that sets itself again without end, in addition."""
 WORLD = Path(__file__).parents[1] / "ros" / "outside_programs" / "room" / "world.yaml"
 
 
@@ -127,19 +142,37 @@ def test_a_program_of_very_many_mistakes_does_not_fill_the_screen(graph: Graph) 
     assert len(told) == MAX_TOLD
 
 
+@pytest.mark.parametrize("namespace", ["", "/robot"])
+@pytest.mark.parametrize(
+    ("offered", "told_of"), [("tf", []), ("tf_static", []), ("poses", ["tf", "tf_static"])]
+)
+def test_transforms_need_one_of_their_two_topics(
+    graph: Graph, namespace: str, offered: str, told_of: list[str]
+) -> None:
+    """A listener subscribes to both; most robots publish only one of them, or change none."""
+    node = create_graph_node(graph, "mine")
+    create_graph_node(graph, "robot").create_publisher(TFMessage, f"{namespace}/{offered}", 10)
+    for word in ("tf", "tf_static"):
+        node.create_subscription(TFMessage, f"{namespace}/{word}", print, 10)
+    watch, told = watched(graph, node)
+    pass_time(graph, watch, LATER_NS)
+    assert [text.partition(",")[0] for text in told] == [f"{namespace}/{word}" for word in told_of]
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("seconds", ["0.5", "5"])
-@pytest.mark.parametrize("verb", ["run", "launch"])
+@pytest.mark.parametrize("verb", ["run", "launch", "launch with a timer that sets itself again"])
 def test_a_silent_controller_is_told_of_by_every_verb(verb: str, seconds: str, tmp_path: Path) -> None:
     program = tmp_path / "deaf.py"
     program.write_text(DEAF)
     launch = tmp_path / "deaf.launch.py"
-    launch.write_text(LAUNCH.format(world=str(WORLD), program=str(program)))
+    repeats = REPEATS if verb.endswith("again") else ""
+    launch.write_text(LAUNCH.format(world=str(WORLD), program=str(program)) + repeats)
     steps = str(round(float(seconds) * 100))
     words = {
         "run": ("run", str(WORLD), "--controller", str(program), "--steps", steps),
         "launch": ("launch", str(launch), "--until", seconds),
-    }[verb]
+    }[verb.partition(" ")[0]]
     done = subprocess.run(
         [sys.executable, "-m", "kit", *words],
         capture_output=True,

@@ -16,7 +16,7 @@ from kit.host.program_terminal import ProgramTerminal, has_user_terminal
 from kit.inspection.client import InspectionClient, WorldDisconnected
 from kit.inspection.sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
 from kit.launch.launch_file_process import SHARE_FOLDER, LaunchTarget
-from kit.launch.processes import PrintedLine, ProcessExit, ProcessStartError, suggest_fix
+from kit.launch.processes import PrintedLine, ProcessExit, ProcessStartError
 from kit.launch.requests import StartRequest
 from kit.launch.single_program import SingleProgram
 from kit.ros.packages import PackageError, read_package, workspace_folders
@@ -105,9 +105,6 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
         raise SystemExit(EXIT_INTERRUPTED) from None
     if ended.reason:
         click.echo(ended.reason, err=True)
-        hint = suggest_fix(ended.reason)
-        if hint is not None:
-            click.echo(hint, err=True)
     raise SystemExit(ended.code)
 
 

@@ -11,15 +11,14 @@ from contextlib import suppress
 from itertools import islice
 from types import ModuleType, TracebackType
 
-from kit.host.failure import NEARBY, Failure, FailureKind, StudentCodeError
+from kit.host.child.missing_imports import import_way_out, nearest
+from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox import seccomp
 from kit.host.wire import MAX_TEXT
 
 STDERR = 2
 MAX_MESSAGE = 600
 """Characters of an exception's own text."""
-MAX_LEVELS = 6
-"""How many folders above a program's file are searched for what it could not import."""
 ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 
 
@@ -177,24 +176,11 @@ def _way_out(problem: BaseException, program: StudentProgram) -> str:
         and seccomp.is_installed()
     ):
         return f". {_innermost_call(problem.__traceback__)} is refused to a program that is confined."
+    if isinstance(problem, ImportError):
+        return import_way_out(problem, program.file)
     name = getattr(problem, "name", None)
     if not isinstance(name, str):
         return ""
-    if isinstance(problem, ModuleNotFoundError):
-        if str(problem) != f"No module named '{name}'":  # it says more already
-            return ""
-        from pkgutil import iter_modules  # here: only a mistake needs it
-
-        nearby = _module_nearby(name.partition(".")[0], program.file)
-        if nearby is not None:
-            return (
-                f". {nearby} {NEARBY}, but Python does not find it from here: run the program as a part of its "
-                "package, `kit ros run PACKAGE PROGRAM`, or move the file beside that folder."
-            )
-        return (
-            _nearest(name, {*sys.stdlib_module_names, *(found.name for found in iter_modules())})
-            or ". If the name is right, install it in the environment that runs the kit."
-        )
     known: set[str] = set()
     with suppress(Exception):  # a student's class may have a broken __dir__
         if isinstance(problem, AttributeError):
@@ -203,27 +189,7 @@ def _way_out(problem: BaseException, program: StudentProgram) -> str:
             if name in sys.stdlib_module_names:
                 return f". Did you forget `import {name}`?"
             known.update(dir(builtins), *_innermost_names(problem.__traceback__))
-    return _nearest(name, known)
-
-
-def _module_nearby(name: str, file: str) -> str | None:
-    """Returns a folder or a module of this name beside the program's file, or beside one of the folders that hold it."""
-    folder = os.path.dirname(file)
-    for _ in range(MAX_LEVELS):
-        if folder in ("", os.sep):
-            break
-        for found in (os.path.join(folder, name), os.path.join(folder, f"{name}.py")):
-            if os.path.exists(found):
-                return found
-        folder = os.path.dirname(folder)
-    return None
-
-
-def _nearest(name: str, known: set[str]) -> str:
-    from difflib import get_close_matches  # here: only a mistake needs it
-
-    near = get_close_matches(name, sorted(known), 1, 0.75)
-    return f". Did you mean '{near[0]}'?" if near and near[0] != name else ""
+    return nearest(name, known)
 
 
 def _innermost_call(trace: TracebackType | None) -> str:

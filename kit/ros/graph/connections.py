@@ -13,6 +13,8 @@ from kit.ros.graph.graph import Graph
 
 UNHEARD_BY_DESIGN: Final = frozenset({"/rosout", "/parameter_events"})
 """Topics that every node has and that need no other end."""
+TRANSFORMS: Final = frozenset({"tf", "tf_static"})
+"""The last words of the topics of transforms: who offers or reads transforms uses both, and one other end is enough."""
 MAX_MISTAKES: Final = 3
 MAX_NAMES: Final = 6
 MAX_NOTED: Final = 1000
@@ -96,7 +98,7 @@ def _mistakes(directory: Directory, handle: NodeEntry) -> Iterator[str]:
         if name in UNHEARD_BY_DESIGN:
             continue
         published = _topics(directory, publishes=True)
-        types = published.get(name, set())
+        types = _types_of(name, published)
         if not types:
             yield f"{name}, to which {handle.full_name} subscribes, has no publisher; {_offer(name, kind, published)}."
         elif kind not in types:
@@ -111,7 +113,7 @@ def _mistakes(directory: Directory, handle: NodeEntry) -> Iterator[str]:
         if name in UNHEARD_BY_DESIGN:
             continue
         heard = _topics(directory, publishes=False)
-        types = heard.get(name, set())
+        types = _types_of(name, heard)
         if types and kind not in types:
             yield f"{handle.full_name} publishes {kind} on {name}, where {', '.join(sorted(types))} is expected."
         elif not types and (others := _same_type(kind, heard)):
@@ -134,6 +136,13 @@ def _topics(directory: Directory, *, publishes: bool) -> dict[str, set[str]]:
         if types and name not in UNHEARD_BY_DESIGN:
             found[name] = types
     return found
+
+
+def _types_of(name: str, found: Mapping[str, set[str]]) -> set[str]:
+    """The types of a topic's other ends; of transforms, those of the companion topic of the same namespace too."""
+    namespace, _, word = name.rpartition("/")
+    names = [f"{namespace}/{each}" for each in sorted(TRANSFORMS)] if word in TRANSFORMS else [name]
+    return set[str]().union(*(found.get(each, set()) for each in names))
 
 
 def _same_type(kind: str, offered: Mapping[str, set[str]]) -> list[str]:

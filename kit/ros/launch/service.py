@@ -8,6 +8,7 @@ Time and events are passed in; requests are returned, as plain data::
     end        number                             end it
     transition name, number                       request a transition of a lifecycle node
     watch      name                               send an event for every transition of it
+    timer      time [ns]                          a timer is due then that no timer has set
     shutdown   reason                             end everything
 """
 
@@ -60,7 +61,8 @@ class LaunchService:
         """When [ns], a number, what is to be carried out then, and the action that waits, if one does."""
         self._cancelled: set[int] = set()
         self._actions: dict[int, tuple[ExecuteProcess, str]] = {}
-        self._numbers = count(1)
+        self._process_numbers, self._timer_numbers = count(1), count(1)
+        self._is_in_timer = False
         self._now_ns = 0
         self.location: LaunchFileLocation | None = None
         """The line of the launch file that is being carried out."""
@@ -83,10 +85,12 @@ class LaunchService:
         while self._timers and self._timers[0][0] <= now_ns:
             _, number, actions, timer = heappop(self._timers)
             if number not in self._cancelled:
+                self._is_in_timer = True
                 for action in actions:
                     self._visit(action)
                 if timer is not None:
                     self.context.report_complete(timer)
+                self._is_in_timer = False
         return self._finish()
 
     def _finish(self) -> list[Request]:
@@ -137,7 +141,7 @@ class LaunchService:
     def _request(self, kind: str, *content: Any) -> None:
         if kind == "process":
             action, specification = content
-            number = next(self._numbers)
+            number = next(self._process_numbers)
             self._actions[number] = (action, f"{specification['title']}-{number}")
             action.number = number
             action.process_details = {
@@ -158,8 +162,10 @@ class LaunchService:
         actions: Iterable[LaunchDescriptionEntity],
         timer: Visitable | None = None,
     ) -> Callable[[], None]:
-        number = next(self._numbers)
-        heappush(self._timers, (self._now_ns + int(seconds * 1e9), number, tuple(actions), timer))
+        number, due_ns = next(self._timer_numbers), self._now_ns + int(seconds * 1e9)
+        heappush(self._timers, (due_ns, number, tuple(actions), timer))
+        if not self._is_in_timer:  # one that sets itself again would be waited for without end
+            self._requests.append(["timer", due_ns])
         return lambda: self._cancelled.add(number)
 
     # Events

@@ -26,7 +26,7 @@ _SOFTWARE: Final = MappingProxyType(
     {
         r"gazebo\w*|gz|gzserver|gzclient|ign|ros_gz\w*|ros_ign\w*|gz_\w+|ign_\w+|turtlebot3_gazebo": _GAZEBO,
         r"xacro": "xacro makes robot descriptions, which the kit's models do not need",
-        r"robot_state_publisher|joint_state_publisher\w*|urdf\w*": (
+        r"robot_state_publisher|joint_state_publisher\w*|urdf|urdf_\w+": (
             "it publishes transforms from a robot description; the kit's models publish theirs themselves"
         ),
         r"nav2\w*|navigation2|slam_toolbox|cartographer\w*|amcl|robot_localization": _NAVIGATION,

@@ -96,7 +96,7 @@ class LaunchScreen(WatchScreen):
         from kit.host.failure import StudentCodeError
         from kit.launch.launch_run import Launch
         from kit.launch.plain_launch import LaunchSession
-        from kit.launch.processes import ProcessStartError, explain_failure
+        from kit.launch.processes import ProcessStartError
         from kit.ros.graph.graph import Graph
         from kit.world.problems import WorldError
 
@@ -119,7 +119,7 @@ class LaunchScreen(WatchScreen):
                 launch.start_processes()
                 return session
         except StudentCodeError as error:
-            self.refusal = explain_failure(error.failure)
+            self.refusal = str(error.failure)
         except (ProcessStartError, WorldError, OSError) as problem:
             self.refusal = str(problem)
         launch.close()

@@ -235,6 +235,22 @@ def test_timers_go_off_in_the_launch_s_time() -> None:
     assert run.service.wake_ns is None
 
 
+def test_a_timer_is_announced_unless_a_timer_has_set_it_and_takes_no_process_s_number() -> None:
+    """Whoever waits for all timers would wait for one that sets itself again without end."""
+
+    def again(context: Any) -> list[Any]:
+        return [ExecuteProcess(cmd=["x"]), TimerAction(period=1.0, actions=[OpaqueFunction(function=again)])]
+
+    run = Play(OpaqueFunction(function=again), ExecuteProcess(cmd=["y"]))
+    assert run.requests[1] == ["timer", 1_000_000_000]
+    for now in (1.0, 2.0):
+        run.advance(now)
+        assert run.kinds == ["process"]
+    assert run.requests[0][1] == 4
+    run.advance(2.5, ("exited", 1, 10, 0))
+    assert "timer" not in run.kinds
+
+
 def test_functions_return_actions() -> None:
     def choose(context: Any, count: int, *, word: str) -> list[LogInfo]:
         return [LogInfo(msg=context.launch_configurations[word])] * count

@@ -200,7 +200,18 @@ def test_three_languages_ask_for_the_same(suffix: str, text: str, tmp_path: Path
     wanted = requests(tmp_path / "a.launch.py", PYTHON)
     assert requests(tmp_path / f"a.launch.{suffix}", text) == wanted
     kinds = [kind for kind, *_ in wanted]
-    assert kinds == ["log", *["process"] * 3, "log", "process", "log", "process", "log", "log"]
+    assert kinds == [
+        "log",
+        *["process"] * 3,
+        "timer",
+        "log",
+        "process",
+        "log",
+        "process",
+        "timer",
+        "log",
+        "log",
+    ]
     assert [content[1] for kind, *content in wanted if kind == "log"] == [
         "in maze",
         "changed",
@@ -208,7 +219,7 @@ def test_three_languages_ask_for_the_same(suffix: str, text: str, tmp_path: Path
         "sooner",
         "later",
     ]
-    assert [each[2]["environment"] for each in wanted[5:8:2]] == [
+    assert [each[2]["environment"] for each in wanted[6:9:2]] == [
         {"COLOR": "red:blue", "ROS_LOG_DIR": "/logs"},
         {"A": "1"},
     ]
