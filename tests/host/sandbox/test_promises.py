@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Callable, Mapping
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -197,9 +197,14 @@ def test_what_of_a_file_is_in_memory_is_seen_by_a_later_program_at_every_level(
     assert (seen[1] < seen[0]) != find_promise("cache").holds_at(level)
 
 
-NO_FILTER = "confinement.seccomp.install = lambda **options: None; "
-NO_LANDLOCK = "confinement.landlock.restrict = lambda *granted: None; "
-NO_LIMITS = "confinement.set_limits = lambda config: None; "
+def taking_away(name: str, instead: str) -> str:
+    """The statements that replace a function; they fail where it is not, since then nothing would be taken away."""
+    return f"assert callable({name}); {name} = {instead}; "
+
+
+NO_FILTER = taking_away("confinement.seccomp.install", "lambda **options: None")
+NO_LANDLOCK = taking_away("confinement.landlock.restrict", "lambda *granted: None")
+NO_LIMITS = taking_away("confinement.set_limits", "lambda config: None")
 WITHOUT_DEFENCE: Final[Mapping[str, tuple[str, tuple[str, ...]]]] = MappingProxyType(
     {
         "read": (NO_LANDLOCK, ("read a file outside", "list a folder outside", "read through a link")),
@@ -256,6 +261,19 @@ def without(monkeypatch: pytest.MonkeyPatch, taken_away: str) -> None:
     monkeypatch.setattr(process, "_START", process._START.replace("os._exit(", f"{prelude}os._exit("))
 
 
+@LINUX
+@pytest.mark.parametrize(("name", "is_there"), [("set_limits", True), ("moved_elsewhere", False)])
+def test_what_is_not_there_cannot_be_taken_away(
+    student: Student, monkeypatch: pytest.MonkeyPatch, name: str, is_there: bool
+) -> None:
+    """Else a defence that has moved would stay in force, and its test would say nothing of it."""
+    file = student("def f(): return 1\n")
+    without(monkeypatch, taking_away(f"confinement.{name}", "lambda *anything: None"))
+    outcome = nullcontext() if is_there else pytest.raises(StudentCodeError, match=r"exited with os\._exit")
+    with outcome, StudentFunctions(file, limits=QUICK) as functions:
+        assert functions.call_batch("f", [{}]) == [1.0]
+
+
 @pytest.mark.long
 @LINUX
 @pytest.mark.parametrize(
@@ -285,7 +303,7 @@ def test_a_limit_is_exceeded_where_it_is_not_set(
 def test_a_daemon_is_left_behind_where_nobody_ends_it(
     student: Student, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    without(monkeypatch, "supervisor.end_descendants = lambda *processes: None; ")
+    without(monkeypatch, taking_away("supervisor.end_descendants", "lambda *processes: None"))
     before = set(descendants(os.getpid()))
     marker = f"daemon-of-{tmp_path}"
     try:
