@@ -38,6 +38,8 @@ from tests.kit_content import kit_lesson
 from tests.solutions.misconceptions import Misconception, misconceptions
 
 NAMES = lesson_names()
+MISCONCEPTIONS = Path(__file__).with_name("misconceptions")
+"""By lesson and exercise: what the student of each wrong work must be told first."""
 IN_TEXT = re.compile(r"`((?:kit|grader) [^`]+)`")
 GREETING = re.compile(r"^ {4}((?:kit|grader) .+)$", re.MULTILINE)
 NUMBER_IN_TEXT = re.compile(r"\b(?:lessons?|lição|lições)\s+[A-Z]?\d", re.IGNORECASE)
@@ -409,7 +411,7 @@ def test_every_misconception_is_told_what_stands_beside_it(name: str, exercise: 
 
 def told_words(name: str, exercise: str) -> dict[str, str]:
     """By wrong work: words of what its student must be told first, a reply, a hint or a message."""
-    words: dict[str, str] = yaml.safe_load((solutions_folder() / name / exercise / "hints.yaml").read_text())
+    words: dict[str, str] = yaml.safe_load((MISCONCEPTIONS / name / f"{exercise}.yaml").read_text())
     return words
 
 

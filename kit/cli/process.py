@@ -41,7 +41,7 @@ def describe_no_room(error: OSError) -> str:
 
 
 COLLECTED_FROM: Final = 50_000
-"""New objects from which on unreachable ones are looked for. What a command imports is millions of objects, of which none is
+"""New objects from which on unreachable ones are looked for. A command imports about a hundred thousand, of which none is
 unreachable: with Python's 700, looking for them is a sixth of a check's start."""
 
 

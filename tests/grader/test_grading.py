@@ -402,7 +402,7 @@ def test_the_plugin_tells_failed_from_skipped(tmp_path: Path) -> None:
 def test_the_plugin_calls_a_broken_grader_an_error(tmp_path: Path) -> None:
     folder = write_assignment(tmp_path / "q")
     (folder / "conftest.py").write_text(
-        "import dataclasses\nfrom grader.driving import checks as drives\n"
+        "import dataclasses\nfrom grader.driving import check_table\n"
         "def broken(drive, params): raise KeyError('ours')\n"
         "check_table.CHECKS = {k: dataclasses.replace(v, measure=broken) for k, v in check_table.CHECKS.items()}\n"
     )

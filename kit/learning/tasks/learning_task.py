@@ -21,7 +21,7 @@ from kit.learning.tasks.transition import Array, Transition
 from kit.plain_text import quoted, suggestion
 from kit.world.catalogue import MapCard, find_map
 
-PRESET_NAMES = ("turn", "hallway", "hallway-study", "wheelchairs", "continuous")
+PRESET_NAMES = ("turn", "hallway", "wheelchairs", "continuous")
 """What the kit's presets were made for."""
 Ending = Literal["terminated", "truncated", "continues"]
 """What an event means for learning: the world has ended, it was cut short, or the episode goes on."""

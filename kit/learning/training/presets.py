@@ -196,13 +196,6 @@ KIT_PPO_HALLWAY = Preset(
     learning_rate=LinearSchedule(1e-3, 3e-5),  # the end of training is for precision
     activation="relu",  # no worse than tanh in the few seeds compared, and tanh takes a fifth of the time
 )
-KIT_PPO_HALLWAY_STUDY = replace(
-    KIT_PPO_HALLWAY,
-    # On the fifteen hallways half the epochs at twice the rate need no more steps; from the one seed that was tried bay-parking
-    # was not learned like that.
-    settings=replace(_HALLWAY_PARAMS, n_epochs=2),
-    learning_rate=LinearSchedule(2e-3, 3e-5),
-)
 KIT_PPO_WHEELCHAIRS = Preset(
     OnPolicyParams(
         n_steps=64,
@@ -394,7 +387,6 @@ _KIT_PRESETS: Mapping[tuple[str, str], Preset] = MappingProxyType(
     {
         ("ppo", "turn"): KIT_PPO_TURN,
         ("ppo", "hallway"): KIT_PPO_HALLWAY,
-        ("ppo", "hallway-study"): KIT_PPO_HALLWAY_STUDY,
         ("ppo", "wheelchairs"): KIT_PPO_WHEELCHAIRS,
         ("ppo", "continuous"): KIT_PPO_CONTINUOUS,
     }

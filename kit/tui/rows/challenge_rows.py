@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from kit.document.rows import Row, row, side_by_side
+from kit.document.rows import Row, row, row_text, side_by_side
 from kit.plain_text import wrap
 from kit.school.game.board import Board
 from kit.school.game.challenge import Challenge
@@ -20,6 +20,13 @@ from kit.tui.rows.level_rows import MEDAL_SIGNS, MEDAL_STYLES, TITLE_WIDTH
 
 TITLE_COLUMNS: Final = TITLE_WIDTH + 8
 HEADER: Final = f"  {'challenge':<{TITLE_COLUMNS}} medal  lesson"
+LEAST_TEXT: Final = 36
+"""Columns of a puzzle's text beside its board, at least."""
+WIDEST_TEXT: Final = 76
+LEAST_BOARD: Final = 60
+"""Columns of a board that is no drawing."""
+GAP: Final = 2
+LARGEST_SCALE: Final = 5
 NAME_COLUMNS: Final = 14
 
 
@@ -104,13 +111,40 @@ def puzzle_page(
 
 
 def puzzle_beside(
-    challenge: Challenge, board: Board, judgement: Judgement | str, width: int, column: int
+    challenge: Challenge, board: Board, judgement: Judgement | str, width: int, height: int
 ) -> list[Row]:
-    """A puzzle with its board at the left, and the rest from a column on."""
-    story, task, keys = _about_puzzle(challenge, board, width - column)
-    worth, sentence = worth_now(judgement, width - column)
+    """A puzzle with its board at the left, as large as there is room for, and the rest beside it."""
+    drawing = _largest_drawing(board, width - LEAST_TEXT - GAP, height - 1)
+    column = min(max(LEAST_BOARD, drawing + GAP), width - LEAST_TEXT)
+    left = [each for shown in board.rows() for each in _within(shown, column - GAP)]
+    room = min(width - column - 1, WIDEST_TEXT)
+    story, task, keys = _about_puzzle(challenge, board, room)
+    worth, sentence = worth_now(judgement, room)
     text = [row(), *story, row(), *task, row(), *keys, row(), *worth, *sentence]
-    return side_by_side([row(), *board.rows()], text, column)
+    return side_by_side([row(), *left], text, column)
+
+
+def _largest_drawing(board: Board, width: int, height: int) -> int:
+    """Makes the drawing as large as fits; returns how many columns it then has, 0 for one that has no scale."""
+    board.scale = 1
+    usual = {row_text(each) for each in board.rows()}
+    for scale in range(LARGEST_SCALE, 1, -1):
+        board.scale = scale
+        rows = [row_text(each) for each in board.rows()]
+        drawn = max((len(each.rstrip()) for each in rows if each not in usual), default=0)
+        if drawn <= width and len(rows) <= height:
+            return drawn
+    board.scale = 1
+    return 0
+
+
+def _within(shown: Row, width: int) -> list[Row]:
+    """A row that is wider, which is a sentence, goes on below."""
+    text = row_text(shown)
+    if len(text) <= width:
+        return [shown]
+    indent = text[: len(text) - len(text.lstrip())]
+    return [row((line, shown[-1][1])) for line in wrap(text.strip(), width, indent, indent)]
 
 
 def _about_puzzle(challenge: Challenge, board: Board, width: int) -> tuple[list[Row], list[Row], list[Row]]:
@@ -137,15 +171,16 @@ def worth_now(judgement: Judgement | str, width: int) -> tuple[list[Row], list[R
     if comparison is not None and comparison.others[0][1] != comparison.others[-1][1]:
         (first, naive), (last, best) = comparison.others[0], comparison.others[-1]
         share = (comparison.answer - naive) / (best - naive)
-        bar = share_bar(share)
-        rows.append(
-            row(
-                ("        ", ""),
-                (f"{first} {_number(naive)} ", "dim"),
-                (bar, "good" if judgement.medal is not Medal.NONE else "dim"),
-                (f" {last} {_number(best)} {comparison.unit}", "dim"),
-            )
+        parts = (
+            (f"{first} {_number(naive)} ", "dim"),
+            (share_bar(share), "good" if judgement.medal is not Medal.NONE else "dim"),
+            (f" {last} {_number(best)} {comparison.unit}", "dim"),
         )
+        indent = "        "
+        if len(indent) + sum(len(text) for text, _ in parts) <= width:
+            rows.append(row(indent, *parts))
+        else:
+            rows += [row(indent, (text.strip(), style)) for text, style in parts]
     return rows, _wrapped("  ", judgement.text, width, "dim")
 
 

@@ -34,7 +34,7 @@ from kit.school.game.starts import film_scenario
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
 from kit.tui.screens.lesson_drive import ReplayScreen
-from kit.tui.screens.level_pictures import ghost_marks, ghost_paths
+from kit.tui.screens.level_pictures import ghost_marks, ghost_paths, pictures_of
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.workspace import Workspace
@@ -74,6 +74,8 @@ class LeagueScreen(RowsScreen[None]):
         """The number of the chosen one among the entrant's matches; None while an entrant is chosen."""
         self._note = ""
         self._is_running = False
+        self._maps: list[Row] = []
+        """Pictures of what is driven, beside the rules of a league that nobody has entered yet."""
 
     def compose(self) -> ComposeResult:
         for name in ("heading", "body", "note", "keys"):
@@ -85,6 +87,8 @@ class LeagueScreen(RowsScreen[None]):
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show)
+        if self._maps:
+            self._draw_maps()
 
     @work(exclusive=True, group="read")
     async def _read(self) -> None:
@@ -101,6 +105,17 @@ class LeagueScreen(RowsScreen[None]):
             self._match = min(self._match, len(self._matches) - 1) if self._matches else None
         if self.is_attached:
             self._show()
+            if self._standings is not None and not self._standings.places:
+                self._draw_maps()
+
+    @work(exclusive=True, group="maps")
+    async def _draw_maps(self) -> None:
+        if self._standings is None or self.size.width < WIDE:
+            return
+        levels = (*self._standings.programme.races, *self._standings.programme.tag)
+        room = self.size.width - STANDINGS_WIDTH, self.size.height - 5
+        self._maps = await to_thread(pictures_of, levels, *room, self._theme.terminal.glyphs.value)
+        self._show()
 
     # What is shown
 
@@ -153,6 +168,8 @@ class LeagueScreen(RowsScreen[None]):
                 right += list_rows(table, right_width, height - len(right), self._match)
         elif name:
             right.append(row(("   None has been driven yet.", "dim")))
+        else:
+            right = [row(), *self._maps]
         return side_by_side(left, right, left_width) if is_wide else right
 
     # Keys

@@ -1,7 +1,4 @@
-"""Pictures of a level: small, as text for the map of a world; the scene beside the list; the ways of its ghosts.
-
-The scene beside the list of lessons.
-"""
+"""Pictures of levels and lessons: small ones as text, the scene beside a list, the ways and letters of ghosts."""
 
 from __future__ import annotations
 
@@ -12,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from kit.document.rows import Row, row, side_by_side
 from kit.render.encode import ENCODERS
 from kit.render.roles import Role
 from kit.render.scene import Disc, Scene, SceneMark, ScenePath
@@ -24,6 +22,9 @@ from kit.school.game.levels import GameLevel
 from kit.school.game.race import DriverKind
 from kit.school.lessons.records import Lesson
 
+ROOM_FOR_THREE: Final = 100
+"""Columns from which on three pictures stand beside each other."""
+PICTURE_GAP: Final = 4
 WAY: Final = 0.15
 """m between two points of a ghost's way, as it is drawn."""
 GHOST_LOOKS: Final = {
@@ -58,6 +59,21 @@ def picture_of(level: GameLevel, columns: int, rows: int, glyphs: str) -> list[s
         marks=tuple(SceneMark(start.x, start.y, "S") for start in scenario.starts[:1]),
     )
     return scene_rows(scene, columns, rows, ENCODERS[glyphs](False))
+
+
+def pictures_of(levels: Sequence[GameLevel], width: int, height: int, glyphs: str) -> list[Row]:
+    """Small pictures of levels below their titles, two or three beside each other."""
+    across = 3 if width >= ROOM_FOR_THREE else 2
+    columns, rows = width // across, height // math.ceil(len(levels) / across)
+    made: list[Row] = []
+    for start in range(0, len(levels), across):
+        line: list[Row] = [row()] * rows
+        for place, level in enumerate(levels[start : start + across]):
+            picture = picture_of(level, columns - PICTURE_GAP, rows - 2, glyphs)
+            shown = [row((level.title, "bold")), *map(row, picture)]
+            line = side_by_side(line, shown, place * columns) if place else shown
+        made += [*line, row()]
+    return made
 
 
 def first_scene(scenario: Scenario) -> Scene:

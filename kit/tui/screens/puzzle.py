@@ -24,12 +24,6 @@ if TYPE_CHECKING:
 
 WIDE: Final = 118
 """Columns from which on the text stands beside the board."""
-BOARD_COLUMN: Final = 62
-"""Where it then begins."""
-VERY_WIDE, HIGH = 180, 40
-"""Columns and rows from which on a drawing is shown twice as large."""
-LARGE_BOARD_COLUMN: Final = 92
-"""Where the text begins then."""
 
 
 class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
@@ -76,11 +70,10 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
             judgement = self._board.judgement()
         except ChallengeError as error:
             judgement = str(error)
-        self._board.scale = 2 if width >= VERY_WIDE and self.size.height >= HIGH else 1
-        if width >= WIDE:
-            column = BOARD_COLUMN if self._board.scale == 1 else LARGE_BOARD_COLUMN
-            return puzzle_beside(self._challenge, self._board, judgement, width, column)
         height = self.size.height - 2 - len(self._result_rows())
+        if width >= WIDE:
+            return puzzle_beside(self._challenge, self._board, judgement, width, height)
+        self._board.scale = 1
         return puzzle_page(self._challenge, self._board, judgement, width, height)
 
     def _changed(self) -> None:

@@ -343,9 +343,9 @@ def test_connections_without_another_end_are_named_with_what_there_is(mistaken: 
         (publishes, "/cmdvel", "/cmd_vel"),
         (calls, "/movemodel", "/move_model"),
     ):
-        assert told.startswith("/Heartbeat ")
-        assert f" {wrong}, " in told
-        assert told.endswith(f" {there_is}.")
+        assert "/Heartbeat " in told
+        assert told.startswith(f"{wrong}, ")
+        assert f" {there_is}" in told.partition(";")[2]
 
 
 def test_a_callback_that_was_called_instead_of_given_is_named(mistaken: GradedDrive) -> None:

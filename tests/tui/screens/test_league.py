@@ -31,6 +31,22 @@ def test_an_empty_league_says_how_to_enter_and_a_program_enters_by_a_key(tmp_pat
     stage(lambda theme: LeagueScreen(theme, league, workspace), scene)
 
 
+def test_a_wide_screen_shows_what_is_driven_in_a_league_that_nobody_has_entered(tmp_path: Path) -> None:
+    workspace = open_workspace(tmp_path / "home")
+    league = own_league(workspace)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        for level in (*league.programme().races, *league.programme().tag):
+            await until(
+                pilot,
+                lambda level=level: any(level.title in each[68:] for each in text(pilot).splitlines()),
+                level.title,
+            )
+        assert "◎" in text(pilot), "the targets of the maps"
+
+    stage(lambda theme: LeagueScreen(theme, league, workspace), scene, size=(200, 50))
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("size", [(80, 24), (120, 35), (200, 50)])
 def test_from_the_standings_to_a_match_and_its_replay(tmp_path: Path, size: tuple[int, int]) -> None:

@@ -1,0 +1,33 @@
+"""A puzzle beside its text uses the room that there is, and nothing of it is cut."""
+
+from __future__ import annotations
+
+import pytest
+
+from kit.document.rows import row_text
+from kit.school.game.challenge import Challenge, ChallengeError
+from kit.school.game.challenges import all_challenges
+from kit.school.game.judgement import Judgement
+from kit.tui.rows.challenge_rows import puzzle_beside
+
+PLAYED = [each for each in all_challenges() if each.task.board("") is not None]
+
+
+@pytest.mark.parametrize("challenge", PLAYED, ids=lambda each: each.id)
+def test_it_fits_and_is_as_large_as_there_is_room_for(challenge: Challenge) -> None:
+    board = challenge.task.board("")
+    assert board is not None
+    judgement: Judgement | str
+    try:
+        judgement = board.judgement()
+    except ChallengeError as error:
+        judgement = str(error)
+    scales = []
+    for width, height in ((118, 33), (130, 40), (200, 48), (260, 70)):
+        rows = [row_text(each) for each in puzzle_beside(challenge, board, judgement, width, height)]
+        assert max(map(len, rows)) <= width
+        assert len(rows) <= height
+        assert not any("…" in each for each in rows), "nothing is cut"
+        assert all(word in " ".join(rows) for word in challenge.story.split())
+        scales.append(board.scale)
+    assert scales == sorted(scales)
