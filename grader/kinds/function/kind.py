@@ -346,7 +346,8 @@ def failed_record(
     """Returns the evidence of a function that failed; names the call unless the case is secret."""
     if case is not None and not blank.secret and failure.kind is FailureKind.EXCEPTION:
         arguments = ", ".join(f"{key}={format_value(value)}" for key, value in case.items())
-        failure = replace(failure, message=f"{failure.message} It was called as {name}({arguments}).")
+        end = "" if failure.message.endswith((".", "?", "!")) else "."
+        failure = replace(failure, message=f"{failure.message}{end} It was called as {name}({arguments}).")
     return EvidenceRecord(
         failure=failure, label=blank.label, secret=blank.secret, outcome=f"stopped ({failure.kind.value})"
     )

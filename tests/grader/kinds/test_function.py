@@ -13,12 +13,14 @@ from typing import Any
 
 import pytest
 
+from grader.evidence.contract import EvidenceRecord
 from grader.grading import GradingOptions, grade
 from grader.kinds.function.kind import (
     MAX_CASES,
     FunctionsTask,
     _as_json,
     cases_of,
+    failed_record,
     format_value,
     is_close,
     load_reference,
@@ -26,6 +28,7 @@ from grader.kinds.function.kind import (
 from grader.new_assignment import example_of_kind, make_assignment
 from grader.reading import read_assignment
 from grader.submission import Submission, read_submission
+from kit.host.failure import Failure, FailureKind
 from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json
@@ -328,3 +331,13 @@ def test_public_cases_share_a_process_and_secret_ones_another(
     graded(folder, source, GradingOptions(Level.LIMITED, secret=True))
     assert starts == processes
     assert all(each.is_closed for each in opened)
+
+
+def test_the_call_is_a_sentence_of_its_own_after_what_failed() -> None:
+    for message, start in (
+        ("division by zero", "division by zero. "),
+        ("Did you mean x?", "Did you mean x? "),
+    ):
+        failed = failed_record(EvidenceRecord(), Failure(FailureKind.EXCEPTION, message), "f", {"a": 1})
+        assert failed.failure is not None
+        assert failed.failure.message.startswith(f"{start}It was called")
