@@ -16,8 +16,9 @@ from textual.timer import Timer
 from textual.widgets import TextArea
 
 from kit.controllers import ControllerFile, find_controller, kit_controllers
-from kit.document.rows import Row, row
+from kit.document.rows import Row, row, row_text
 from kit.host.failure import Failure
+from kit.plain_text import wrap
 from kit.tui.rows.key_rows import key_row
 from kit.tui.widgets.program_colours import LANGUAGES, coloured_spans
 from kit.tui.widgets.text_field import KitTextArea
@@ -32,6 +33,10 @@ DRAFT_INTERVAL_S: Final = 1.0
 """What has been typed is on the disk after so long, saved or not [s]."""
 
 
+STATE_ROWS: Final = 4
+"""Most rows below the text: what was done with the file, and what is wrong with it."""
+
+
 class ProgramFileError(Exception):
     """The file cannot be edited here; the message says why and what to do instead."""
 
@@ -44,6 +49,8 @@ class ProgramFile:
         self._known = self._read()
         self.draft = self._read_draft()
         """What was typed the last time and never saved; None where there is nothing of the kind."""
+        self.is_draft_older = self.draft is not None and self._was_saved_after_draft()
+        """Whether somebody has saved the file after the draft was typed."""
 
     @property
     def text(self) -> str:
@@ -94,9 +101,15 @@ class ProgramFile:
 
     def drop_draft(self) -> None:
         """Forgets the draft."""
-        self.draft = None
+        self.draft, self.is_draft_older = None, False
         with suppress(OSError):
             self.draft_file.unlink(missing_ok=True)
+
+    def _was_saved_after_draft(self) -> bool:
+        try:
+            return self.file.stat().st_mtime_ns > self.draft_file.stat().st_mtime_ns
+        except OSError:
+            return False
 
     def _read_draft(self) -> str | None:
         try:
@@ -234,6 +247,8 @@ class ProgramEditor(Vertical):
         super().__init__()
         self._program = program
         self._notice: Row = ()
+        self._failure: Row = ()
+        """What is wrong with the program as it was last run."""
         self._may_overwrite = False
         self.area = ProgramTextArea()
         self._draft_timer: Timer | None = None
@@ -259,12 +274,16 @@ class ProgramEditor(Vertical):
         """Edits another program; what is not saved of the one before is kept beside its file."""
         if program is not self._program:
             self.keep_draft()
-        self._program, self._may_overwrite = program, False
+        self._program, self._may_overwrite, self._failure = program, False, ()
         text = program.text if program.draft is None else program.draft
         self.area.show_text(text, LANGUAGES.get(program.file.suffix))
-        self._notice = (
-            () if program.draft is None else row(("as you left it, not saved: ^S saves it", "warn"))
-        )
+        left = "as you left it, not saved"
+        if program.draft is None:
+            self._notice = ()
+        elif program.is_draft_older:
+            self._notice = row((f"{left}; the file was saved since: ^S twice overwrites it", "warn"))
+        else:
+            self._notice = row((f"{left}: ^S saves it", "warn"))
         self._show()
 
     def keep_draft(self) -> str:
@@ -281,7 +300,8 @@ class ProgramEditor(Vertical):
 
     def save(self) -> None:
         """Saves; if somebody else has saved the file meanwhile, only when asked twice."""
-        if self._program.newer_text() is not None and not self._may_overwrite:
+        is_newer = self._program.is_draft_older or self._program.newer_text() is not None
+        if is_newer and not self._may_overwrite:
             self._may_overwrite = True
             self._notice = row(("changed elsewhere meanwhile: ^S again overwrites that", "warn"))
             self._show()
@@ -297,7 +317,14 @@ class ProgramEditor(Vertical):
 
     def follow_file(self) -> None:
         """Shows what somebody else has saved, unless something here is not saved."""
-        if self.is_saved and (text := self._program.newer_text()) is not None:
+        text = self._program.newer_text()
+        if text is None:
+            return
+        if not self.is_saved:
+            self._may_overwrite = False
+            self._notice = row(("changed elsewhere meanwhile: ^S twice overwrites that", "warn"))
+            self._show()
+        else:
             self._program.accept(text)
             place = self.area.cursor_location
             self.area.load_text(text)
@@ -317,7 +344,8 @@ class ProgramEditor(Vertical):
         """Marks a line, from 1, as the one that is wrong, and says what is. An empty message: nothing is."""
         self.area.mark_line(line if self.is_saved else None)
         place = f"line {line}: " if line else ""
-        self._show(row((f"{place}{message}".partition("\n")[0], "bad")) if message else ())
+        self._failure = row((f"{place}{message}".partition("\n")[0], "bad")) if message else ()
+        self._show()
 
     def go_to_line(self, number: int) -> None:
         """Puts the cursor at a line, from 1, and brings it into sight."""
@@ -346,11 +374,23 @@ class ProgramEditor(Vertical):
     def on_descendant_blur(self) -> None:
         self._show()
 
-    def _show(self, failure: Row = ()) -> None:
+    def on_resize(self) -> None:
+        self.call_after_refresh(self._show)
+
+    def _show(self) -> None:
         if not self.is_mounted:
             return
         changed = "" if self.is_saved else "  not saved"
         name, state = self.query_one("#editor-name", TextRows), self.query_one("#editor-state", TextRows)
         name.show([row((self._program.file.name, "bold"), (changed, "warn"))])
         keys = row() if self.area.has_focus else key_row(("^E", "edit"))
-        state.show([failure or self._notice or keys])
+        width = max(20, self.size.width - 1)
+        said = [
+            row((line, each[-1][1]))
+            for each in (self._notice, self._failure)
+            if each
+            for line in wrap(row_text(each), width)
+        ]
+        lines = said[:STATE_ROWS] or [keys]
+        state.styles.height = len(lines)
+        state.show(lines)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
 import pytest
 from textual import _text_area_theme
+from textual.app import ComposeResult
 from textual.pilot import Pilot
 from textual.screen import Screen
 from textual.widgets import TextArea
@@ -116,6 +118,36 @@ def test_a_draft_outlives_the_editor_and_saving_ends_it(tmp_path: Path) -> None:
     assert not again.draft_file.exists()
     again.keep_draft("two\n")  # the same as is saved: no draft
     assert not again.draft_file.exists()
+
+
+def test_a_file_that_was_saved_after_a_draft_is_overwritten_only_when_asked_twice(tmp_path: Path) -> None:
+    file = tmp_path / "driver.py"
+    file.write_text("one\n")
+    ProgramFile(file).keep_draft("two\n")
+    os.utime(ProgramFile(file).draft_file, (1, 1))
+    file.write_text("newer\n")
+
+    class EditorScreen(Screen[None]):
+        def compose(self) -> ComposeResult:
+            yield ProgramEditor(ProgramFile(file))
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "the file was saved")
+        editor = pilot.app.screen.query_one(ProgramEditor)
+        assert editor.area.text == "two\n"
+        editor.save()
+        assert file.read_text() == "newer\n"
+        await seen(pilot, "^S again")
+        editor.save()
+        assert file.read_text() == "two\n"
+        editor.area.load_text("three\n")
+        file.write_text("elsewhere\n")
+        editor.follow_file()
+        await seen(pilot, "^S twice")
+        assert file.read_text() == "elsewhere\n"
+        assert editor.area.text == "three\n"
+
+    stage(lambda theme: EditorScreen(), scene)
 
 
 def test_what_somebody_else_saves_is_noticed(tmp_path: Path) -> None:
