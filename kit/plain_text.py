@@ -158,8 +158,8 @@ def wrap(text: str, width: int, first: str = "", rest: str = "", *, most: int | 
     """Wraps a text to lines of at most ``width`` characters, which begin with ``first`` and ``rest``; at least one line.
 
     It breaks at blanks alone, so that an option or a file name is never parted, and between backticks only what is longer than
-    a line; a word that is longer than a line is broken behind a slash, a comma or a low line where it has one. A first word that fits on a later line alone begins there.
-    Where there are more than ``most`` lines, the last one ends with dots.
+    a line; a word that is longer than a line is broken behind a slash, a comma or an underscore where it has one. A first word
+    that fits on a later line alone begins there. Where there are more than ``most`` lines, the last one ends with dots.
 
     >>> wrap("see runs/turn-1/log.csv --set gamma", 12)
     ['see', 'runs/turn-1/', 'log.csv', '--set gamma']

@@ -31,8 +31,6 @@ MAX_BYTES: Final = 1_000_000
 """A file larger than this is no program that anybody types."""
 DRAFT_INTERVAL_S: Final = 1.0
 """What has been typed is on the disk after so long, saved or not [s]."""
-
-
 STATE_ROWS: Final = 4
 """Most rows below the text: what was done with the file, and what is wrong with it."""
 
@@ -321,9 +319,9 @@ class ProgramEditor(Vertical):
         if text is None:
             return
         if not self.is_saved:
-            self._may_overwrite = False
-            self._notice = row(("changed elsewhere meanwhile: ^S twice overwrites that", "warn"))
-            self._show()
+            if not self._may_overwrite:  # else it has been asked already
+                self._notice = row(("changed elsewhere meanwhile: ^S twice overwrites that", "warn"))
+                self._show()
         else:
             self._program.accept(text)
             place = self.area.cursor_location
