@@ -141,14 +141,14 @@ POLLED: Final = [name for name, wait in WAITS.items() if "reads += 1" in wait]
 
 
 @pytest.mark.sampled(6)
-@pytest.mark.parametrize("name", POLLED)
-def test_a_loop_takes_as_many_readings_on_every_machine(student: Student, name: str) -> None:
+@pytest.mark.parametrize(("name", "use"), [(name, use) for name in POLLED for use in USES])
+def test_a_loop_takes_as_many_readings_on_every_machine(student: Student, name: str, use: str) -> None:
     """As many as the steps of a second take, not as the machine makes in a second: also where each takes longer."""
     slow = WAITS[name].replace("reads += 1", "reads += 1; sum(range(2_000))")
     counts = []
     for wait in (WAITS[name], slow):
         body = "\n".join(f"    {line}" for line in wait.splitlines())
-        (said,) = run(student(PROGRAM.format(wait=body, use=USES["in a callback"])), 2.5)
+        (said,) = run(student(PROGRAM.format(wait=body, use=USES[use])), 2.5)
         counts.append(int(said.split()[2]))
     assert counts[0] == counts[1]
     most = MAX_READS + READS_PER_STEP * (1e9 / TICK_NS + 4)

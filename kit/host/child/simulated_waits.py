@@ -63,10 +63,9 @@ class SimulatedWaits:
         self._ended: WeakSet[threading.Thread] = WeakSet()
         self._start_code = threading.Thread.start.__code__
         self.clock = WaitingClock(graph)
-        asking = str(
-            Path(__file__).with_name("simulated_polls.py")
-        )  # stands between the program and those modules
-        prefixes = (asking, *(library + name for name in WAITING_MODULES))
+        asking = str(Path(__file__).with_name("simulated_polls.py"))
+        between = (__file__, asking)  # they stand between the program and those modules
+        prefixes = (*between, *(library + name for name in WAITING_MODULES))
 
         @cache
         def is_waiting_code(file: str) -> bool:
@@ -85,7 +84,10 @@ class SimulatedWaits:
             if frame.f_code is self._start_code:  # the new thread begins at once
                 return False
             if frame.f_back is None:
-                return threading.current_thread() not in self._graph.pool_threads
+                thread = threading._active.get(threading.get_ident())  # type: ignore[attr-defined]
+                return (
+                    thread is not None and thread not in self._graph.pool_threads
+                )  # None: it is just starting
             frame = frame.f_back
         return self._is_own_code(frame.f_code.co_filename)
 
@@ -95,7 +97,7 @@ class SimulatedWaits:
             self._graph.count_read()
 
     def count_lock(self) -> None:
-        """Counts, by ``LOCK_WEIGHT``, that the program itself has acquired a lock."""
+        """Counts, by ``LOCK_WEIGHT``, that the program itself has acquired and released a lock."""
         frame: FrameType | None = sys._getframe(2)
         while frame is not None and frame.f_code.co_filename in (__file__, threading.__file__):
             frame = frame.f_back
@@ -147,7 +149,6 @@ class SimulatedWaits:
 
             def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
                 if self._real.acquire(False):
-                    waits.count_lock()
                     return True
                 if not blocking and timeout == -1:
                     waits.count_failure()
@@ -169,6 +170,11 @@ class SimulatedWaits:
                 self._real.release()
                 if self._waiting:
                     graph.notify()
+                waits.count_lock()  # not before: who lets time pass with a lock held keeps others from ever getting it
+
+            def _is_owned(self) -> bool:
+                """What a Condition asks before it waits; without this it would try to acquire the lock, which is counted."""
+                return bool(self._real.locked())
 
             def locked(self) -> bool:
                 waits.count_failure()
