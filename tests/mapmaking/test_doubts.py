@@ -41,6 +41,24 @@ def test_a_plain_drawing_is_not_doubted() -> None:
     assert not found.doubtful.any()
 
 
+def test_what_lies_beyond_a_break_in_a_stroke_is_a_wall() -> None:
+    image, draw = drawn()
+    for corners in ((100, 100, 1300, 100, 1300, 900, 100, 900, 100, 100), (700, 100, 700, 600)):
+        draw.line(corners, fill="black", width=2 * PEN)
+    draw.line((1000, 300, 1000, 500), fill="black", width=2 * PEN)
+    draw.line((1000, 521, 1000, 560), fill="black", width=2 * PEN)
+    found = find_strokes(image)
+    assert found.remarks == ()
+    assert not found.doubtful.any()
+
+
+def test_the_lesson_s_photograph_is_not_doubted() -> None:
+    """Its strokes are of two widths, as a hand draws them, and lie half in a shadow."""
+    photo = Path(__file__).parents[2] / "lessons" / "35-photo-to-map" / "sheet" / "starter" / "plan.jpg"
+    with Image.open(photo) as image:
+        assert plan_from_photo(image.convert("RGB"), PhotoScale(sheet_width=5.0)).strokes.remarks == ()
+
+
 @pytest.mark.parametrize(
     ("what", "said"),
     [
