@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from PIL import Image, ImageDraw
 
 from kit.cli import main
-from kit.mapmaking.doubts import DOUBTS
+from kit.mapmaking.doubts import DOUBTS, judge_strokes
 from kit.mapmaking.photo import PhotoScale, plan_from_photo, whole_picture
 from kit.mapmaking.strokes import find_strokes
 from tests.mapmaking.judging import judge
@@ -41,15 +41,16 @@ def test_a_plain_drawing_is_not_doubted() -> None:
     assert not found.doubtful.any()
 
 
-def test_what_lies_beyond_a_break_in_a_stroke_is_a_wall() -> None:
-    image, draw = drawn()
-    for corners in ((100, 100, 1300, 100, 1300, 900, 100, 900, 100, 100), (700, 100, 700, 600)):
-        draw.line(corners, fill="black", width=2 * PEN)
-    draw.line((1000, 300, 1000, 500), fill="black", width=2 * PEN)
-    draw.line((1000, 521, 1000, 560), fill="black", width=2 * PEN)
-    found = find_strokes(image)
-    assert found.remarks == ()
-    assert not found.doubtful.any()
+@pytest.mark.parametrize(("gap", "is_wall"), [(9, True), (60, False)])
+def test_what_lies_beyond_a_short_break_in_a_stroke_is_a_wall(gap: int, is_wall: bool) -> None:
+    strokes = np.zeros((700, 1000), dtype=np.bool_)
+    strokes[50:650, 50:950] = True
+    strokes[66:634, 66:934] = False
+    strokes[66:150, 500:516] = True
+    strokes[150 + gap : 185 + gap, 500:516] = True
+    judged = judge_strokes(strokes, strokes)
+    assert (judged.remarks == ()) == is_wall
+    assert bool(judged.walls[160 + gap, 508]) == is_wall
 
 
 def test_the_lesson_s_photograph_is_not_doubted() -> None:
