@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.render.curve import Axes, ChartPart, Curve, StackedCounts, draw_curves, draw_stacked_chart
+from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import ENCODERS, AsciiEncoder, BrailleEncoder, Frame
 from kit.render.roles import CURVE_ROLES, Role
+from kit.render.stacked_chart import ChartPart, StackedCounts, draw_stacked_chart
 
 
 def curve(values: list[float], name: str = "return", step: float = 100.0) -> Curve:

@@ -24,7 +24,9 @@ from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.challenge_rows import answers_needed_rows, challenge_page, judged
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.lesson_rows import checking
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, TextScreen, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.text_screen import TextScreen
 from kit.tui.suspend import edit_aside
 from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace

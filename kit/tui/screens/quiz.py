@@ -25,8 +25,10 @@ from kit.school.quiz.quiz_session import (
 )
 from kit.school.quiz.quiz_text import scores_blocks, today_line
 from kit.school.quiz.schedule import build_schedule
-from kit.tui.screens.dialogs import MessageDialog, Picker, PickerItem, TextScreen, wrapped
+from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.dialogue import DialogueScreen
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.text_screen import TextScreen
 from kit.world.problems import WorldError
 
 TWELVE, TODAY, SCORES = "twelve", "today", "scores"

@@ -19,16 +19,10 @@ from kit.document.rows import row, spread
 from kit.plain_text import counted, format_size
 from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.dialogs import (
-    HelpDialog,
-    MessageDialog,
-    NameDialog,
-    Picker,
-    PickerItem,
-    TextScreen,
-    wrapped,
-)
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, NameDialog, wrapped
 from kit.tui.screens.new_training import SWEEPS, NewTrainingScreen
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.text_screen import TextScreen
 from kit.tui.screens.training import TrainingScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowsScreen, TextRows

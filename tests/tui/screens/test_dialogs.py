@@ -14,11 +14,13 @@ from textual.widgets import OptionList
 from kit.document.rows import row
 from kit.render.roles import COLOR_SCHEMES, Role
 from kit.tui.app import KitApp
-from kit.tui.screens.dialogs import LINE, MessageDialog, Picker, PickerItem, TextScreen
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.lessons import LessonsScreen
 from kit.tui.screens.new_training import NewTrainingScreen
+from kit.tui.screens.picker import LINE, Picker, PickerItem
 from kit.tui.screens.play import PlayScreen
+from kit.tui.screens.text_screen import TextScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from tests.tui.lesson_stage import rows, seen, stage, text, until
 from tests.tui.screens.test_start import House
