@@ -76,7 +76,7 @@ class Goal(ABC):
     kind: ClassVar[str]
     """Its name in files."""
     case_targets: ClassVar[CaseTargets] = CaseTargets.NONE
-    is_told_later: ClassVar[bool] = False
+    is_observation_delayed: ClassVar[bool] = False
     """Whether agents that see ``achieved`` are told it one step later: where the newest scan is what is counted."""
     least_robots: ClassVar[int] = 1
     """How many robots it needs."""
@@ -112,7 +112,7 @@ class Goal(ABC):
         """What the program of a node must know to count it in a case, JSON-able: see ``kit/learning/policies/node_goals``."""
         settings = {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]  # a dataclass
         needed = float(self.make_count([case], 1, 1.0).needed[0])
-        return {**settings, "needed": needed, "is_told_later": self.is_told_later}
+        return {**settings, "needed": needed, "is_observation_delayed": self.is_observation_delayed}
 
     @property
     def needs_target(self) -> bool:

@@ -186,7 +186,7 @@ def test_a_node_counts_it_as_training_does_or_is_refused(kind: str, tmp_path: Pa
     count = getattr(module, f"{kind.title()}Count")(
         json.loads(json.dumps({**goal.node_facts(cases[0]), "step_time": read.task.step_time}))
     )
-    assert count.is_told_later == goal.is_told_later
+    assert count.is_observation_delayed == goal.is_observation_delayed
     steps = drive(read.task, 1)
     told = count.begin(steps[0].previous_pose[0])
     assert told == steps[0].before.count[0]
