@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from enum import Enum, auto
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 import numpy as np
 
@@ -21,6 +21,15 @@ from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
     from kit.learning.maps.batch_map import BatchMap
+
+
+KNOWN_IN_RACE: Final = frozenset(
+    {
+        "case", "step", "pose", "hit", "in_target", "target", "target_heading", "obstacle_distance", "count", "achieved",
+    }
+)  # fmt: skip
+"""The fields of a state that a race knows as a training does, beside ``ranges`` where a goal ``reads_lidar``: a goal counts by
+these alone, so that it can be raced. ``hit`` is never True there: a bump ends no race."""
 
 
 class CaseTargets(Enum):
@@ -66,8 +75,11 @@ class GoalCount(ABC):
 
     @abstractmethod
     def count(self, transition: Transition) -> FloatArray:
-        """(n,) the counts after a step; before it they were ``transition.before.count``, and no count falls unless robots
-        can leave a target."""
+        """(n,) the counts after a step; before it they were ``transition.before.count``.
+
+        Of the states only fields ``KNOWN_IN_RACE`` are read. No count falls unless robots can leave a target: what holds for
+        a while, such as a distance that is kept, is counted as the seconds or the metres during which it has held.
+        """
 
 
 class Goal(ABC):
