@@ -26,14 +26,8 @@ from kit.learning.training.crosstable import (
 from kit.learning.training.run_check import check_run_config
 from kit.learning.training.run_config import PresetName, RunConfig
 from kit.learning.training.run_folders import NAME_PATTERN
-from kit.learning.training.training_sweep import (
-    TrainingSweep,
-    combine,
-    problems,
-    sweep_rows,
-    sweep_table,
-    sweep_table_csv,
-)
+from kit.learning.training.sweep_table import problems, sweep_rows, sweep_table, sweep_table_csv
+from kit.learning.training.training_sweep import TrainingSweep, combine
 from kit.learning.training.tuning import SettingRange, check_ranges, require_optuna, tune
 from kit.study.printed_tables import printed_means
 from kit.workspace import write_atomically

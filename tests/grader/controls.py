@@ -232,14 +232,14 @@ CONTROLS: Final = (
     ),
     Control(
         "a repository whose settings name a program",
-        "kit/study/study_runs.py",
+        "kit/study/kit_commit.py",
         '"-c", "core.fsmonitor=false", ',
         "",
         "study/test_kit_commit.py::test_a_repositorys_settings_run_nothing",
     ),
     Control(
         "a repository above the kit",
-        "kit/study/study_runs.py",
+        "kit/study/kit_commit.py",
         '"GIT_CEILING_DIRECTORIES": str(folder.parent), ',
         "",
         "study/test_kit_commit.py::test_a_repository_of_anybodys_is_not_asked",

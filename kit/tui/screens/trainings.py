@@ -378,7 +378,8 @@ def _sweep_items(folder: Path) -> list[PickerItem]:
 
 def _sweep_table(folder: Path, columns: int) -> list[str]:
     from kit.document.layout import Page, lines_of, text_blocks
-    from kit.learning.training.training_sweep import TrainingSweep, problems, sweep_rows, sweep_table
+    from kit.learning.training.sweep_table import problems, sweep_rows, sweep_table
+    from kit.learning.training.training_sweep import TrainingSweep
 
     sweep = TrainingSweep(folder)
     return lines_of(
