@@ -96,7 +96,7 @@ def release(
     except (ValueError, OSError) as error:
         options.fail(f"{error}.")
     try:
-        _write(files, target)
+        _write_handout(files, target)
     except OSError as error:
         options.fail(f"Cannot write {target}: {error.strerror or error}.")
     click.echo(f"{target}: {counted(len(files), 'file')} for students")
@@ -137,7 +137,7 @@ def repository_files(
     return files
 
 
-def _write(files: Mapping[str, bytes], target: Path) -> None:
+def _write_handout(files: Mapping[str, bytes], target: Path) -> None:
     """Writes the files below the folder ``target``, or into the archive of this name; a folder all or not at all."""
     if target.suffix == ".zip":
         packed = io.BytesIO()

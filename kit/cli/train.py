@@ -362,7 +362,7 @@ def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None)
         run.send_command("go")
         click.echo(f"{run.name} is training; if it was paused, it continues.")
         if terminal is not None:
-            _show(run, terminal)
+            _show_training(run, terminal)
         return
     if summary.state == "finished":
         raise RunError(
@@ -381,13 +381,13 @@ def _start(run: TrainingRun, terminal: TerminalDecision | None) -> None:
         click.echo(f"`kit watch {run.name}` shows its progress.")
         return
     try:
-        _show(run, terminal, reader)
+        _show_training(run, terminal, reader)
     finally:
         if not run.is_active:
             process.wait()
 
 
-def _show(run: TrainingRun, terminal: TerminalDecision, reader: EventReader | None = None) -> None:
+def _show_training(run: TrainingRun, terminal: TerminalDecision, reader: EventReader | None = None) -> None:
 
     if terminal.plain.value:
         follow(run, reader=reader)

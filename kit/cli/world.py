@@ -44,7 +44,7 @@ def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bo
 
     Exit code: 0 the world is valid; 1 it has errors; 2 there is no such world.
     """
-    file, own_root = _find(world)
+    file, own_root = _find_world(world)
     try:
         loaded = load_world(
             file,
@@ -66,7 +66,7 @@ def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bo
     )
 
 
-def _find(world: str) -> tuple[Path, Path | None]:
+def _find_world(world: str) -> tuple[Path, Path | None]:
     """The world file meant, and the folder it may use if that is not its own."""
     path = Path(world)
     try:
