@@ -34,13 +34,6 @@ from kit.world.problems import WorldError
 TWELVE, TODAY, SCORES = "twelve", "today", "scores"
 
 
-async def ask_of_lesson(screen: Screen[Any], journal: ProgressJournal, lesson: str) -> None:
-    """Asks a lesson's questions, and comes back. To be called in a worker."""
-    bank = await _bank(screen)
-    if bank is not None:
-        await _ask(screen, journal, bank, lesson_plan(bank, lesson))
-
-
 async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> None:
     """Has the student choose what to be asked, and asks it. To be called in a worker."""
     bank = await _bank(screen)
