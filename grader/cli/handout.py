@@ -23,7 +23,7 @@ from grader.new_assignment import CARD
 from grader.sheet_reference import SheetKey, documented_attributes, sheet_keys
 from grader.student_version import ReleaseRefused, StudentVersion, missing_for_practice, student_version
 from grader.teacher_tests import reading as teacher_tests
-from kit.cli.options import ExistingPath
+from kit.cli.existing_path import ExistingPath
 from kit.document.blocks import Block, Code, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.plain_text import counted, join_names

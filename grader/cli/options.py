@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import click
 
+from kit.cli.existing_path import ExistingPath
 from kit.cli.messages import on_terminal
-from kit.cli.options import ExistingPath
 
 if TYPE_CHECKING:
     from grader.assignment import Assignment

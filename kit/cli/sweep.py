@@ -13,6 +13,7 @@ from pathlib import Path
 import click
 
 from kit.cli import learning_options, messages, options
+from kit.cli.executor_options import executor_options
 from kit.document.layout import lines_of
 from kit.host.job_executors import ExecutorUnavailable
 from kit.host.job_folder import JobExecutor
@@ -123,7 +124,7 @@ def _read_ranges(
     type=click.FloatRange(0, 1),
     help="Success rate in its worst case at which a seed has learned (default: the task's, else 0.9).",
 )
-@options.executor_options("Trainings in parallel", "Where trainings run; none only shows the results so far.")
+@executor_options("Trainings in parallel", "Where trainings run; none only shows the results so far.")
 @click.option(
     "--csv",
     "csv_file",

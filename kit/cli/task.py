@@ -10,6 +10,7 @@ from pathlib import Path
 import click
 
 from kit.cli import learning_options, messages, options
+from kit.cli.existing_path import ExistingPath
 from kit.document.blocks import Text, labelled_table
 from kit.document.layout import Page, lines_of
 from kit.learning.authoring.new_task import NewTaskError, new_task_file
@@ -129,7 +130,7 @@ def pack(task: str, archive: Path | None) -> None:
 
 
 @command.command()
-@click.argument("archive", type=options.ExistingPath(dir_okay=False, path_type=Path))
+@click.argument("archive", type=ExistingPath(dir_okay=False, path_type=Path))
 @click.option(
     "--dest",
     type=click.Path(file_okay=False, path_type=Path),

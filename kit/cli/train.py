@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from kit.cli import learning_options, messages, options
+from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen
 from kit.cli.shared_game import join_shared_game
 from kit.document.layout import lines_of
@@ -174,7 +175,7 @@ def _suggest_race(run: TrainingRun) -> None:
 @click.option(
     "--reward",
     "reward_file",
-    type=options.ExistingPath(dir_okay=False, path_type=Path),
+    type=ExistingPath(dir_okay=False, path_type=Path),
     help="Your own reward: a Python file with reward(); each function metric_NAME() in it only adds a curve.",
 )
 @click.option("--algorithm-reward", "reward", help="Use another of the kit's rewards, by name.")

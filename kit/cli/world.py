@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from kit.cli import options
+from kit.cli.existing_path import ExistingPath
 from kit.plain_files import near_file
 from kit.plain_text import counted
 from kit.sim.plugins import plugin_readers, world_plugin_readers
@@ -26,7 +27,7 @@ def command() -> None:
 @click.argument("world", metavar="FILE_OR_MAP")
 @click.option(
     "--root",
-    type=options.ExistingPath(file_okay=False, path_type=Path),
+    type=ExistingPath(file_okay=False, path_type=Path),
     help="Folder that the world file may read.  [default: its own]",
 )
 @click.option(

@@ -23,10 +23,7 @@ from kit.study.printed_tables import (
     PrintedTable,
     printed_table,
 )
-from kit.study.recorded_results import (
-    RecordedPath,
-    RecordedResult,
-)
+from kit.study.recorded_results import RecordedPath, RecordedResult
 from kit.study.study_report import paths_title
 
 PATH_INTERVAL_S: Final = 0.5

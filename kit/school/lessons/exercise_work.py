@@ -16,8 +16,41 @@ from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import Exercise
 from kit.school.lessons.training_curves import DriveLoop, TestDrive, TrainingCurves
 
+RESCAN_S: Final = 1.0
+"""Between two looks for files that are new."""
 TO_WRITE: Final = ("TODO", "# write this")
 """What a starter says of a line that is to be written."""
+MOST_FILES: Final = 200
+"""No exercise has more; a folder that was unpacked there by mistake may."""
+
+
+class FolderWatch:
+    """Notices when any file of an exercise has been saved. One that is new counts from its next save on: editors
+    make files for a moment."""
+
+    def __init__(self, file: Path) -> None:
+        self._folder = file.parent
+        self._watches = {file: FileWatcher(file)}
+        self._scan()
+
+    def has_changed(self) -> bool:
+        """Whether something was saved since the last time this was true. Call it often."""
+        if time.monotonic() - self._scanned >= RESCAN_S:
+            self._scan()
+        changed = [watch.has_changed() for watch in self._watches.values()]
+        return any(changed)
+
+    def _scan(self) -> None:
+        self._scanned = time.monotonic()
+        try:
+            for file in sorted(self._folder.rglob("*")):
+                parts = file.relative_to(self._folder).parts
+                if any(part.startswith((".", "__")) for part in parts) or file.name.endswith("~"):
+                    continue
+                if file not in self._watches and len(self._watches) < MOST_FILES and file.is_file():
+                    self._watches[file] = FileWatcher(file)
+        except OSError:  # a network drive that is away comes back
+            return
 
 
 class ExerciseAttempt:

@@ -26,8 +26,8 @@ from kit.plain_text import format_size, wrap
 from kit.render.curve import Axes, Curve
 from kit.render.roles import Role
 from kit.render.stacked_chart import ChartPart, StackedCounts
+from kit.tui.rows.agent_rows import agent_panel
 from kit.tui.rows.key_rows import footer
-from kit.tui.rows.readout_rows import agent_panel
 
 if TYPE_CHECKING:
     from kit.learning.tasks.learning_task import LearningTask

@@ -15,7 +15,8 @@ from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
 from kit.document.rows import row
 from kit.render.scene import Scene
-from kit.tui.rows import readout_rows, training_rows
+from kit.tui.rows import training_rows
+from kit.tui.rows.agent_rows import AGENT_WIDTH
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.picker import Picker, PickerItem
@@ -84,7 +85,7 @@ class TrainingScreen(RowsScreen[None]):
     TrainingScreen StackedChartView {{ height: 9fr; }}
     TrainingScreen #scene {{ height: 1fr; }}
     TrainingScreen #agent_over {{ height: 1fr; display: none; }}
-    TrainingScreen #agent_beside {{ width: {readout_rows.AGENT_WIDTH}; padding: 0 0 0 1; display: none; }}
+    TrainingScreen #agent_beside {{ width: {AGENT_WIDTH}; padding: 0 0 0 1; display: none; }}
     TrainingScreen.-agent.-roomy #agent_beside, TrainingScreen.-agent.-wide #agent_beside {{ display: block; }}
     TrainingScreen.-agent.-narrow #agent_over, TrainingScreen.-agent.-usual #agent_over {{ display: block; }}
     TrainingScreen.-agent.-narrow CurveView, TrainingScreen.-agent.-usual CurveView {{ display: none; }}
