@@ -570,8 +570,8 @@ def open_grading(
     level = level_for_untrusted(assignment, options.level)
     if options.secret and level < assignment.level:
         raise LevelTooLow(
-            f"{assignment.title} uses its secret seeds at confinement level {int(assignment.level)} or higher, "
-            f"not at {int(level)}. `kit doctor` says what this machine can do."
+            f"{assignment.title} uses its secret.yaml at confinement level {int(assignment.level)} or higher, not at "
+            f"{int(level)}: that is the `level` of its assignment.yaml. `kit doctor` says what this machine can do."
         )
     may_lower_level = options.may_lower_level and options.level is None and not options.secret
     available = _available_level(assignment, level, secret=options.secret, may_lower_level=may_lower_level)
@@ -606,7 +606,7 @@ def level_unavailable_text(assignment: Assignment, level: Level, *, secret: bool
     """Says that this machine does not reach a level, and how to grade at the one that it has."""
     text, available = LEVEL_NOT_REACHED.format(int(level)), highest_level_up_to(level)
     if secret and available < assignment.level:
-        return text  # secret seeds are never used below the assignment's level
+        return text  # its secret file is never used below the assignment's level
     if available is Level.LIMITED:
         return f"{text} To grade without it, use --level 0: a submitted program can then read and change anything that you can."
     return f"{text} To grade at level {int(available)}, use --level {int(available)}."

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeGuard
 import click
 
 from grader.cli import options
-from kit.cli.options import ExistingPath
+from kit.cli.existing_path import ExistingPath
 
 if TYPE_CHECKING:
     from grader.driving.drive_record import GradedDrive

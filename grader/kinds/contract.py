@@ -53,7 +53,7 @@ class KindSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class SubmissionKind:
     """One kind of assignment."""
 
     endings: tuple[str, ...]
@@ -79,13 +79,13 @@ def kind_names() -> tuple[str, ...]:
     return (*_own_kinds(), *extensions("kinds", _own_kinds()))
 
 
-def find_kind(kind: str) -> Kind:
+def find_kind(kind: str) -> SubmissionKind:
     """Returns a kind's record, ``KIND`` of the module ``kind`` in its folder, with the checks that admitted packages add to
     it; imports its module on first use. Raises ExtensionError if a package's part cannot be used."""
     if kind in _own_kinds():
-        found: Kind = import_module(f"{KINDS_PACKAGE}.{kind}.kind").KIND
+        found: SubmissionKind = import_module(f"{KINDS_PACKAGE}.{kind}.kind").KIND
     else:
-        found = _loaded(extensions("kinds")[kind], Kind)
+        found = _loaded(extensions("kinds")[kind], SubmissionKind)
     prefix = f"{kind}."
     own = [f"{prefix}{name}" for name in found.checks]
     added = {
@@ -118,7 +118,7 @@ def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed
 def collect_once(
     collect_evidence: Callable[[Assignment, Path, EvidenceOptions], EvidenceRecord],
 ) -> Callable[..., AbstractContextManager[EvidenceCollector]]:
-    """Makes a ``Kind.collect`` for a kind with one piece of evidence. Where that is made with a secret seed, the
+    """Makes a ``SubmissionKind.collect`` for a kind with one piece of evidence. Where that is made with a secret seed, the
     public counterpart is collected too when somebody asks for it."""
 
     def collect(

@@ -23,7 +23,7 @@ from typing import Final
 from grader.assignment import Assignment
 from grader.check import check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, read_submitted_yaml
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind, read_submitted_yaml
 from kit.host.failure import Failure
 from kit.plain_text import quoted, suggestion
 from kit.world.yaml_section import Section
@@ -212,4 +212,4 @@ def _normalized(word: str) -> str:
     return " ".join(word.split()).casefold()
 
 
-KIND: Final = Kind((".yaml", ".yml"), {answers.name: answers}, read_settings, collect)
+KIND: Final = SubmissionKind((".yaml", ".yml"), {answers.name: answers}, read_settings, collect)

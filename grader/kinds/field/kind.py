@@ -33,7 +33,7 @@ from grader.evidence.contract import (
     EvidenceRecord,
 )
 from grader.evidence.submission_clock import SubmissionClock
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.kinds.controller.kind import read_settings as read_trials
 from grader.submitted_files import reading_submission
 from kit.fields import adjacency
@@ -318,4 +318,4 @@ def collect(
     return nullcontext(EpisodeCollector(assignment, options, run))
 
 
-KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect)
+KIND: Final = SubmissionKind((".yaml", ".yml"), CHECKS, read_settings, collect)

@@ -43,7 +43,7 @@ from grader.evidence.contract import (
     EvidenceOptions,
     EvidenceRecord,
 )
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.seeds import SeedSet, counterpart_seed, read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.student_functions import StudentFunctions
@@ -405,4 +405,4 @@ def collect(
     return FunctionCollector(assignment, file, options)
 
 
-KIND: Final = Kind((".py",), {agrees.name: agrees}, read_settings, collect)
+KIND: Final = SubmissionKind((".py",), {agrees.name: agrees}, read_settings, collect)

@@ -28,7 +28,7 @@ from grader.assignment import Assignment
 from grader.check import Check, NoParams, check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, SingleEvidence
 from grader.evidence.training_results import PosedTaskPlan
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.kinds.task.task_process import PosedTaskProcess
 from grader.seeds import read_seed
 from grader.submitted_files import reading_submission
@@ -225,4 +225,4 @@ def _explain(posed: PosedTaskProcess, name: str, params: object) -> str:
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (sound, places, way, returns, loops, learns, arrives, quick)}
 )
-KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect, tells_secret_runs=True)
+KIND: Final = SubmissionKind((".yaml", ".yml"), CHECKS, read_settings, collect, tells_secret_runs=True)

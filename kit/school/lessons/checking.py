@@ -375,7 +375,7 @@ def check_exercise(exercise: Exercise, file: Path, *, recording: Path | None = N
 
 def submission_path(exercise: Exercise, file: Path) -> Path:
     """The path to submit: the file, or its folder where the starter is a folder."""
-    return file.parent if (exercise.folder / "starter").is_dir() else file
+    return file.parent if has_other_files(exercise) else file
 
 
 def _without_result(problem: str, verdict: GradingVerdict) -> CheckReport:

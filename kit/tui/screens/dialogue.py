@@ -18,7 +18,9 @@ from kit.document.blocks import Tone
 from kit.document.layout import Page, place, rows_of
 from kit.document.rows import MARGIN, Row, row, side_by_side, spread, text_width, window
 from kit.tui.rows.key_rows import footer
-from kit.tui.screens.dialogs import HelpDialog, Picker, PickerItem, TextScreen
+from kit.tui.screens.dialogs import HelpDialog
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.text_screen import TextScreen
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 
 if TYPE_CHECKING:
