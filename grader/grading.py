@@ -313,12 +313,14 @@ class Grading:
             status = status_of_failure(worst.failure)
         check = self._checks[criterion.check]
         rationale = "" if full else self._rationale(criterion, shown, worst)
+        hints = () if full else self._hints(criterion, rationale, worst)
         return replace(
             blank,
             status=status,
             points=round(criterion.points * share, 6),
             rationale=rationale,
-            hints=() if full else self._hints(criterion, rationale, worst),
+            hints=hints,
+            knows_mistake=bool(hints) and hints[0] not in criterion.hints,
             expected=check.format(criterion.anchors.full),
             actual=""
             if worst is None or worst.measure is None

@@ -95,6 +95,8 @@ class CriterionResult:
     """The reason for lost points, in one or two sentences."""
     hints: tuple[str, ...] = ()
     """Steps of help, from the vaguest to the most specific."""
+    knows_mistake: bool = False
+    """Whether the first of them is for the very mistake that was made."""
     expected: str = ""
     actual: str = ""
     metrics: Mapping[str, float] = field(default_factory=dict)

@@ -21,7 +21,7 @@ from kit.school.lessons.defence_dialogue import DefenceDialogue
 from kit.school.lessons.exercise_work import ExerciseAttempt
 from kit.school.lessons.glossary import glossary_action
 from kit.school.lessons.graph_playback import graph_rows
-from kit.school.lessons.lesson_session import LessonSession
+from kit.school.lessons.lesson_session import LessonHint, LessonSession
 from kit.school.lessons.lesson_text import (
     command_blocks,
     ending_blocks,
@@ -136,6 +136,10 @@ class LessonDialogue(Dialogue):
         """Commands of somebody else's lesson that the student has seen and let run."""
         self._looks_at = ""
         """What was just said: ``answer``, ``verdict``, ``hint`` or ``film``."""
+        self._newest_hint: LessonHint | None = None
+        """The one that was opened last."""
+        self.is_writing = False
+        """Whether keys are letters of the program, in an editor beside the lesson. The face says so."""
         self._film: OwnAgentFilm | None = None
         """The film of the student's own agent, in the step that shows it."""
         self._drive_follows = False
@@ -242,9 +246,10 @@ class LessonDialogue(Dialogue):
     def look(self) -> Block | None:
         said = self.said()
         match self._looks_at:
-            case "hint":
-                hints = [each for each in said if isinstance(each, Text) and each.lead.startswith("Hint ")]
-                return hints[-1] if hints else None
+            case "hint" if (newest := self._newest_hint) is not None:
+                lead = f"Hint {newest.number} of "
+                hints = (each for each in said if isinstance(each, Text) and each.lead.startswith(lead))
+                return next((each for each in hints if each.text == newest.text), None)
             case "verdict":
                 lost = (
                     each
@@ -262,7 +267,14 @@ class LessonDialogue(Dialogue):
             return Text(self._problem, Tone.BAD)
         if self.work is None or self.has_ended:
             return None
-        return status_text(self.report, self.session.lesson_progress, self.work.exercise)
+        session, exercise = self.session, self.work.exercise
+        return status_text(
+            self.report,
+            session.lesson_progress,
+            exercise,
+            has_hint=session.has_closed_hints(exercise),
+            is_writing=self.is_writing,
+        )
 
     def opening(self) -> Sequence[Block]:
         lesson, progress = self.session.lesson, self.session.lesson_progress
@@ -594,9 +606,7 @@ class LessonDialogue(Dialogue):
 
     def hint(self) -> Effect:
         self._looks_at = "hint"
-        exercise = self._work.exercise
-        if self.session.next_hint(exercise) is None:
-            return Remark("You have seen all hints for this criterion.")
+        self._newest_hint = self.session.next_hint(self._work.exercise)
         return None
 
     def drive(self) -> Effect:
@@ -713,8 +723,10 @@ class LessonDialogue(Dialogue):
         report = self.report
         if report is None:
             return "Check first (c): hints are for criteria that you missed."
-        if any(each.hints for each in report.lost_criteria):
+        if self.session.has_closed_hints(self.work.exercise):
             return True
+        if self.session.opened_hints(self.work.exercise):
+            return "You have seen all hints; they stand below what was missed."
         return "Nothing was missed." if report.is_passed else "There is no hint for this."
 
     def can_drive(self) -> bool:

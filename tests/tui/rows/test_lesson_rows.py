@@ -78,7 +78,7 @@ def widest(rows: list[Row]) -> int:
 @pytest.mark.parametrize("width", [60, 80, 200])
 def test_nothing_is_wider_than_the_screen(lesson: Lesson, stand: LessonProgress, width: int) -> None:
     predict, *_, make = lesson.steps
-    hints = (LessonHint(LOST, 1, LOST.hints[0], 2), LessonHint(LOST, 2, LOST.hints[1], 1))
+    hints = (LessonHint(LOST, 1, LOST.hints[0]), LessonHint(LOST, 2, LOST.hints[1]))
     assert (
         widest(
             [
@@ -142,7 +142,7 @@ def test_the_kits_titles_are_whole_on_80_columns() -> None:
 
 
 def test_a_verdict_names_points_and_what_was_wanted() -> None:
-    told = "\n".join(map(row_text, shown(verdict_blocks(REPORT, (LessonHint(LOST, 1, "Go.", 2),)))))
+    told = "\n".join(map(row_text, shown(verdict_blocks(REPORT, (LessonHint(LOST, 1, "Go."),)))))
     assert "[ok] It runs: 1 of 1" in told
     assert "[no] It comes near" in told
     assert "0.5 of 3" in told

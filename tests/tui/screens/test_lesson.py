@@ -614,6 +614,53 @@ def test_the_editor_follows_the_file_and_overwrites_nothing_unasked(student: Stu
 
 
 @pytest.mark.long
+def test_in_the_editor_only_keys_that_work_there_are_named(student: Student) -> None:
+    student.goes_to(COLOUR)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await opened_editor(pilot)
+        assert "press c" not in text(pilot)
+        assert "^S saves and checks" in text(pilot)
+        await pilot.press("end", "space", "x", "ctrl+s")
+        await seen(pilot, "[no] The colour")
+        assert "Esc, then h" in text(pilot)
+        await pilot.press("escape")
+        await seen(pilot, "Press h for a hint")
+        await pilot.press("h")
+        await seen(pilot, "Hint 1 of 3")
+
+    stage(student.screen, scene)
+
+
+@pytest.mark.long
+def test_what_was_typed_can_be_undone_after_the_file_was_read_again_and_the_editor_closed(
+    student: Student,
+) -> None:
+    student.goes_to(COLOUR)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        editor = await opened_editor(pilot)
+        first = editor.area.text
+        await pilot.press("end", "space", "a", "ctrl+s")
+        typed = editor.area.text
+        await until(pilot, lambda: editor.is_saved, "the saved text")
+        student.file.write_text("colour: blue\n")
+        await seen(pilot, "read again: it was saved elsewhere")
+        await pilot.press("ctrl+z")
+        assert editor.area.text == typed
+        await pilot.press("ctrl+y")
+        assert editor.area.text == "colour: blue\n"
+        await pilot.press("ctrl+e")
+        await seen(pilot, "^E write")
+        await pilot.press("ctrl+e")
+        await seen(pilot, "^S save and check")
+        await pilot.press(*["ctrl+z"] * 5)
+        assert editor.area.text == first
+
+    stage(student.screen, scene)
+
+
+@pytest.mark.long
 def test_a_huge_paste_is_refused_and_a_large_one_is_not_coloured(student: Student) -> None:
     student.goes_to(CORNER)
 
