@@ -17,6 +17,7 @@ from grader.evidence.contract import EvidenceCollector, EvidenceOptions, Evidenc
 from grader.submitted_files import reading_submission
 from kit.extensions import Extension, ExtensionError, extensions, load
 from kit.host.failure import Failure, FailureKind
+from kit.host.sandbox.limits import GRADER_LIMITS, Limits
 from kit.host.wire import printable
 from kit.world.documents import open_document
 from kit.world.problems import WorldError
@@ -67,6 +68,8 @@ class Kind:
     tells_secret_runs: bool = False
     """Whether a student's own check at level 0 says what it found with secret seeds where no public run shows the same:
     trainings, of which no program of the student's is a part, and whose curves were shown while they ran."""
+    limits: Limits = GRADER_LIMITS
+    """Limits of each of its processes, where the assignment's budget sets no others."""
 
 
 def _own_kinds() -> tuple[str, ...]:
