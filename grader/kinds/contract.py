@@ -14,11 +14,11 @@ from typing import Any, Final, TypeVar
 from grader.assignment import Assignment, Trial
 from grader.check import Check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, SingleEvidence
+from grader.problem_text import problems_text
 from grader.submitted_files import reading_submission
 from kit.extensions import Extension, ExtensionError, extensions, load
 from kit.host.failure import Failure, FailureKind
 from kit.host.sandbox.limits import GRADER_LIMITS, Limits
-from kit.host.wire import printable
 from kit.world.documents import open_document
 from kit.world.problems import WorldError
 from kit.world.yaml_section import Section
@@ -114,8 +114,7 @@ def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed
         with reading_submission(file.name, WorldError, OSError), open_document(file) as section:
             return make(section)
     except (WorldError, OSError) as error:
-        # The path of the temporary copy means nothing to the student.
-        return Failure(FailureKind.IMPORT, printable(str(error).replace(f"{file.parent}/", "")))
+        return Failure(FailureKind.IMPORT, problems_text(error, file.parent))
 
 
 def collect_once(

@@ -592,12 +592,29 @@ class LessonDialogue(Dialogue):
         return None
 
     def edit(self) -> Effect:
-        work = self._work
-        return Show(Edit(work.edited_file, work.line_to_edit), self._edited)
+        return self._choose_file(Edit)
 
     def edit_here(self) -> Effect:
+        return self._choose_file(EditHere)
+
+    def _choose_file(self, request: type[Edit | EditHere]) -> Effect:
+        """Asks which of several files is to be opened."""
         work = self._work
-        return Show(EditHere(work.edited_file, work.line_to_edit), self._edited)
+        files = work.files(self.step.text) if work.has_others else []
+        if len(files) < 2:
+            return self._open_file(request, work, work.edited_file)
+        options = [Option(each.relative_to(work.file.parent).as_posix()) for each in files]
+        suggested = work.suggested_file(self.step.text)
+        return Choose(
+            "Which file?",
+            options,
+            lambda index: None if index is None else self._open_file(request, work, files[index]),
+            files.index(suggested) if suggested in files else 0,
+        )
+
+    def _open_file(self, request: type[Edit | EditHere], work: ExerciseAttempt, file: Path) -> Effect:
+        work.choose(file)
+        return Show(request(file, work.line_to_edit), self._edited)
 
     def _edited(self, problem: str) -> Effect:
         if problem:

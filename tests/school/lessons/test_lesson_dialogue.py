@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from kit.dialogue.dialogue import Turn
-from kit.dialogue.effects import Effect, Remark
-from kit.school.lessons.lesson_dialogue import LessonDialogue
+from kit.dialogue.effects import Choose, Effect, Remark, Show
+from kit.school.lessons.lesson_dialogue import EditHere, LessonDialogue
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
 from kit.school.lessons.stage import NoStage
@@ -134,3 +134,24 @@ def test_no_key_stands_twice_on_the_page_of_help(
         keys = [key for each in dialogue.actions if each not in hidden for key in each.keys.key_names]
         assert sorted(set(keys)) == sorted(keys)
         assert not [each.id for each in turn.possible() if each in hidden]
+
+
+def test_of_several_files_one_is_chosen_and_then_stays_the_one_that_is_shown(
+    journal: ProgressJournal, workspace: Workspace
+) -> None:
+    session = LessonSession(read_lesson(lessons_folder() / "41-capstone"), journal, workspace)
+    dialogue = LessonDialogue(session)
+    dialogue.begin(NoStage())
+    dialogue.go_to("3")
+    asked = dialogue.edit_here()
+    assert isinstance(asked, Choose)
+    assert [each.name for each in asked.options] == ["course.txt", "task.yaml"]
+    assert asked.selected == 0
+    assert asked.then(None) is None
+    opened = asked.then(1)
+    assert isinstance(opened, Show)
+    assert isinstance(opened.request, EditHere)
+    assert opened.request.file.name == "task.yaml"
+    assert dialogue.work is not None
+    assert dialogue.work.edited_file == opened.request.file
+    dialogue.close()
