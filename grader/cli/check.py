@@ -84,7 +84,11 @@ def check(
     format_name = "json" if as_json else format_name
     if format_name not in FORMATS:
         options.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")
-    with _own_starts(file, level, for_student=for_student):
+    with (
+        shown_progress(progress_descriptor) as show_progress,
+        _own_starts(file, level, for_student=for_student),
+    ):
+        show_progress("reading the exercise")
         assignment = options.load_assignment(folder)
         options.warn_of_unused_secrets(assignment, secret=secret)
         grading_level = options.level_for_untrusted(assignment, level, secret=secret)
@@ -92,16 +96,15 @@ def check(
             submission = read_submission(file, assignment.submit)
             if submission.note:
                 options.warn(f"Note: {submission.note}")
-            with shown_progress(progress_descriptor) as show_progress:
-                is_for_student = for_student or FORMATS[format_name].is_for_students
-                grading_options = GradingOptions(
-                    grading_level, secret, secret and is_for_student, show_progress=show_progress
-                )
-                with open_grading(assignment, submission, grading_options) as grading:
-                    result = grading.result()
-                    picture = _worst_picture(grading, replay)
-                    if not picture and replay is not None:
-                        picture = _keep_passed_run(grading, replay)
+            is_for_student = for_student or FORMATS[format_name].is_for_students
+            grading_options = GradingOptions(
+                grading_level, secret, secret and is_for_student, show_progress=show_progress
+            )
+            with open_grading(assignment, submission, grading_options) as grading:
+                result = grading.result()
+                picture = _worst_picture(grading, replay)
+                if not picture and replay is not None:
+                    picture = _keep_passed_run(grading, replay)
         except (SubmissionRefused, LevelTooLow) as error:
             options.fail(str(error))
     if for_student:

@@ -266,7 +266,11 @@ class LessonDialogue(Dialogue):
         if self._problem:
             return Text(self._problem, Tone.BAD)
         if self.work is None or self.has_ended:
-            return None
+            told = (
+                f"Step {each.number} is being checked: {self._progress_of(each)}"
+                for each in self.checked_elsewhere
+            )
+            return next((Text(each, Tone.DIM) for each in told), None)
         session, exercise = self.session, self.work.exercise
         return status_text(
             self.report,
@@ -365,9 +369,14 @@ class LessonDialogue(Dialogue):
     def polls(self) -> bool:
         """Whether time brings something: a check that runs, or a file that may be saved anew. A drive by hand is not."""
         is_edited = self.work is not None and not self.work.by_hand
-        return bool(self.busy or self._checked_elsewhere()) or is_edited
+        return bool(self.busy or self.checked_elsewhere) or is_edited
 
-    def _checked_elsewhere(self) -> list[LessonStep]:
+    def _progress_of(self, step: LessonStep) -> str:
+        assert step.exercise is not None
+        return self._works[step.exercise.name].progress or "it has begun"
+
+    @property
+    def checked_elsewhere(self) -> list[LessonStep]:
         """The steps, besides this one, whose exercise is being checked."""
         return [
             step
@@ -379,7 +388,7 @@ class LessonDialogue(Dialogue):
         ]
 
     def poll(self) -> Effect:
-        said = [text for step in self._checked_elsewhere() if (text := self._poll_elsewhere(step))]
+        said = [text for step in self.checked_elsewhere if (text := self._poll_elsewhere(step))]
         effect = self._poll_here()
         return Remark(" ".join(said), Tone.DIM) if effect is None and said else effect
 
@@ -802,7 +811,7 @@ class LessonDialogue(Dialogue):
         return "next lesson" if self.has_ended else "next"
 
     def back_word(self) -> str:
-        return "back, which ends the check" if self.busy or self._checked_elsewhere() else "back"
+        return "back, which ends the check" if self.busy or self.checked_elsewhere else "back"
 
     def predict_keys(self) -> str:
         return f"1-{len(self.step.options)}"

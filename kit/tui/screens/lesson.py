@@ -366,12 +366,13 @@ class LessonScreen(DialogueScreen, DriveScreen):
         if not self.dialogue.polls or not (self.is_active or is_checking):
             return
         is_read_anew = work is not None and work.reads_anew()
+        is_checked_elsewhere = bool(self.dialogue.checked_elsewhere)
         super()._poll()
         if is_checking and not self.dialogue.busy and work is not None and work is self.dialogue.work:
             self._celebrate(work)
         if self._editor is not None and self._is_editing:
             self._editor.follow_file()
-        if is_read_anew:
+        if is_read_anew or is_checked_elsewhere:
             self.show()
 
     def _celebrate(self, work: ExerciseAttempt) -> None:

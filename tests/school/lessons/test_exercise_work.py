@@ -98,6 +98,7 @@ def test_the_public_verdict_is_told_before_the_secret_cases(
         while check.poll() is None:
             seen.add(check.progress)
         written = os.pread(check._progress.fileno(), 1 << 16, 0).decode().splitlines()
+    assert "reading" in written[0], "said before anything is run, and before what runs it is imported"
     [at] = [number for number, line in enumerate(written) if line.startswith(PUBLIC_CASES)]
     assert verdict in written[at]
     assert not any("secret" in line for line in written[:at])

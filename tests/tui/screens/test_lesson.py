@@ -279,10 +279,12 @@ def test_a_check_goes_on_while_another_step_is_looked_at(student: Student, play:
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "controller.py")
         await pilot.press("c")
-        await seen(pilot, "Checking ...")
-        await pilot.press("b")
-        assert "step 4 of 5" in rows(pilot)[0]
-        await pilot.press("n")
+        assert "Checking ..." in text(pilot), "at once, and not when the check says its first word"
+        await pilot.press("b", "b")
+        assert "step 3 of 5" in rows(pilot)[0]
+        assert "Step 5 is being checked" in text(pilot)
+        await seen(pilot, "The check of step 5 has ended: not yet passed.")
+        await pilot.press("n", "n")
         await seen(pilot, "It reaches the target: 0 of 3")
 
     play(scene)
