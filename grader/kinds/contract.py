@@ -65,9 +65,8 @@ class Kind:
     """Notes mistakes in the sections; need not finish these."""
     collect: Callable[[Assignment, Path, EvidenceOptions], AbstractContextManager[EvidenceCollector]]
     """(assignment, the main submitted file, options) -> the collector of its evidence."""
-    tells_secret_runs: bool = False
-    """Whether a student's own check at level 0 says what it found with secret seeds where no public run shows the same:
-    trainings, of which no program of the student's is a part, and whose curves were shown while they ran."""
+    seed_decides: str = ""
+    """A sentence on what differs between seeds: for a student whose work is right with the public ones alone."""
     limits: Limits = GRADER_LIMITS
     """Limits of each of its processes, where the assignment's budget sets no others."""
 

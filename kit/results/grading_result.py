@@ -107,7 +107,8 @@ class CriterionResult:
     replay: str = ""
     """The worst public episode as a picture in characters; may be empty."""
     uses_secrets: bool = False
-    """Whether secret evidence counts in the points. All texts but ``teacher_note`` are made from public evidence."""
+    """Whether secret evidence counts in the points. All texts but ``teacher_note`` are made from public evidence, but in a
+    student's own check where that shows no mistake."""
     teacher_note: str = ""
     """What went wrong with secret evidence; no student sees it."""
     is_withheld: bool = False

@@ -336,7 +336,7 @@ class FunctionCollector(CachingCollector):
             self._close()
             return failed_record(blank, clock.explain(error.failure), spec.name, case)
         found = FunctionComparison(spec.name, len(cases), tuple(differences))
-        explanation = "" if blank.secret else found.explain_first()
+        explanation = found.explain_first()
         return EvidenceRecord(
             found,
             None,
@@ -413,4 +413,11 @@ def collect(
     return FunctionCollector(assignment, file, options)
 
 
-KIND: Final = Kind((".py",), {agrees.name: agrees}, read_settings, collect, limits=CALL_LIMITS)
+KIND: Final = Kind(
+    (".py",),
+    {agrees.name: agrees},
+    read_settings,
+    collect,
+    seed_decides="A seed decides with which values it is called.",
+    limits=CALL_LIMITS,
+)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import array
 import ctypes
+import gc
 import json
 import os
 import signal
@@ -26,6 +27,7 @@ CLONE_PARENT: Final = 0x8000
 def serve(clone_call: int) -> NoReturn:
     """Answers requests until the process that asks has gone. ``clone_call``: the number of the system call."""
     del sys.modules[__name__]  # it is none that a program needs
+    gc.freeze()  # no collection in what is forked looks through it, which would copy its memory
     requests = socket.socket(fileno=0)
     room = socket.CMSG_SPACE(3 * array.array("i").itemsize)
     while True:

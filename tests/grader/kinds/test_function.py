@@ -362,6 +362,18 @@ def test_in_a_students_own_check_a_function_that_failed_is_not_called_with_secre
         assert "1 of 2" in verdict
 
 
+def test_a_mistake_that_only_a_secret_case_shows_is_shown_in_ones_own_check(folder: Path) -> None:
+    case = cases_of(load_reference(folder / "reference.py"), "nearest", 77)[-1]
+    source = f"{NEAREST.replace('nearest', 'right')}def nearest(ranges):\n    return 7.0 if ranges == {case['ranges']!r} else right(ranges)\n{HALVES}"
+    own = graded(folder, source, GradingOptions(Level.LIMITED, secret=True, examples=True)).tests[0]
+    assert own.status is not CriterionStatus.PASS
+    assert "and is 7" in own.rationale
+    assert "the secret one" in own.rationale
+    others = graded(folder, source, GradingOptions(Level.LIMITED, secret=True)).tests[0]
+    assert "and is 7" not in others.rationale
+    assert "and is 7" in others.teacher_note
+
+
 def test_a_call_has_less_time_than_an_episodes_reply_unless_the_sheet_says_otherwise(folder: Path) -> None:
     sheet = folder / "assignment.yaml"
     assert read_assignment(folder).limits.reply_s == 1.0
