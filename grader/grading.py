@@ -326,7 +326,7 @@ class Grading:
             knows_mistake=bool(hints) and hints[0] not in criterion.hints,
             expected=check.format(criterion.anchors.full),
             actual=""
-            if worst is None or worst.measure is None
+            if worst is None or worst.measure is None or check.is_explained
             else check.format(worst.measure, beside=criterion.anchors.full),
             metrics={"share": round(share, 6)},
             episodes=tuple(map(_summary, scored)),
@@ -479,6 +479,8 @@ class Grading:
             count=len(shown),
         )
         explanation = evidence.explain(criterion.check, criterion.params)
+        if check.is_explained and explanation:
+            text = ""
         if evidence.secret:
             return " ".join(filter(None, (text, explanation, self._what_differs(criterion, shown))))
         if self._shown_before(criterion, explanation):

@@ -9,6 +9,7 @@ from typing import Final
 
 from kit.document.blocks import Block, Choice, Choices, Code, Text, Tone
 from kit.plain_text import join_names
+from kit.results.grading_result import CriterionStatus
 from kit.results.result_blocks import criterion_blocks, points_text
 from kit.school.game.levels import GameLevel, opened_levels_text
 from kit.school.lessons.catalogue import LessonProgress
@@ -73,7 +74,10 @@ def verdict_blocks(report: CheckReport, hints: Sequence[LessonHint]) -> list[Blo
     blocks: list[Block] = []
     if report.problem:
         blocks.append(Text(report.problem, Tone.WARN if report.is_broken else Tone.BAD))
+    skipped = {each.id for each in report.criteria if each.status is CriterionStatus.SKIPPED}
     for each in report.criteria:
+        if each.id in skipped and each.depends_on in skipped:  # what comes first has been said of that one
+            each = replace(each, rationale="")
         first, *others = criterion_blocks(each, hints=sum(hint.criterion.id == each.id for hint in hints))
         blocks += [first if blocks else replace(first, is_tight=False), *others]
     return blocks

@@ -197,3 +197,18 @@ def test_what_has_passed_moves_from_left_to_right_once() -> None:
     assert stars[0] == 0
     assert stars[-1] == stars[-2] == lesson_rows.PASSED_CELLS
     assert all(line.startswith("  Passed: ") and line.endswith(">") and line.isascii() for line in lines)
+
+
+def test_that_a_criterion_was_not_graded_is_said_of_the_first_of_a_chain_alone() -> None:
+    def skipped(name: str, after: str) -> CriterionResult:
+        told = f"Not graded: pass {after} first."
+        return CriterionResult(
+            name, name, CriterionStatus.SKIPPED, 0.0, 1.0, rationale=told, depends_on=after
+        )
+
+    chain = (LOST, skipped("b", LOST.id), skipped("c", "b"), skipped("d", "c"))
+    told = "\n".join(
+        map(row_text, shown(verdict_blocks(replace(REPORT, result=replace(REPORT.result, tests=chain)), ())))
+    )
+    assert told.count("Not graded") == 1
+    assert told.index("[--] b") < told.index("Not graded") < told.index("[--] c") < told.index("[--] d")
