@@ -14,10 +14,11 @@ from typing import Any, Final, TypeVar
 from grader.assignment import Assignment, Trial
 from grader.check import Check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, SingleEvidence
+from grader.problem_text import problems_text
 from grader.submitted_files import reading_submission
 from kit.extensions import Extension, ExtensionError, extensions, load
 from kit.host.failure import Failure, FailureKind
-from kit.host.wire import printable
+from kit.host.sandbox.limits import GRADER_LIMITS, Limits
 from kit.world.documents import open_document
 from kit.world.problems import WorldError
 from kit.world.yaml_section import Section
@@ -64,9 +65,10 @@ class SubmissionKind:
     """Notes mistakes in the sections; need not finish these."""
     collect: Callable[[Assignment, Path, EvidenceOptions], AbstractContextManager[EvidenceCollector]]
     """(assignment, the main submitted file, options) -> the collector of its evidence."""
-    tells_secret_runs: bool = False
-    """Whether a student's own check at level 0 says what it found with secret seeds where no public run shows the same:
-    trainings, of which no program of the student's is a part, and whose curves were shown while they ran."""
+    seed_decides: str = ""
+    """A sentence on what differs between seeds: for a student whose work is right with the public ones alone."""
+    limits: Limits = GRADER_LIMITS
+    """Limits of each of its processes, where the assignment's budget sets no others."""
 
 
 def _own_kinds() -> tuple[str, ...]:
@@ -111,8 +113,7 @@ def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed
         with reading_submission(file.name, WorldError, OSError), open_document(file) as section:
             return make(section)
     except (WorldError, OSError) as error:
-        # The path of the temporary copy means nothing to the student.
-        return Failure(FailureKind.IMPORT, printable(str(error).replace(f"{file.parent}/", "")))
+        return Failure(FailureKind.IMPORT, problems_text(error, file.parent))
 
 
 def collect_once(

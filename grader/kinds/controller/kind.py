@@ -147,4 +147,10 @@ def read_scenario(section: Section, folder: Path) -> Scenario | None:
     return replace(scenario, case=target_case)
 
 
-KIND: Final = SubmissionKind((".py",), CHECKS, read_settings, collect)
+KIND: Final = SubmissionKind(
+    (".py",),
+    CHECKS,
+    read_settings,
+    collect,
+    seed_decides="A seed decides where the robot starts, the noise of its sensors, and the random numbers that a program draws.",
+)

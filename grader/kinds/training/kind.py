@@ -255,6 +255,4 @@ def _schedule(section: Section, key: str, default: tuple[float, float]) -> Linea
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (succeeds, every_case, remembers, reliable, honest, steps_used)}
 )
-KIND: Final = SubmissionKind(
-    (".yaml", ".yml"), CHECKS, read_settings, collect_once(collect_evidence), tells_secret_runs=True
-)
+KIND: Final = SubmissionKind((".yaml", ".yml"), CHECKS, read_settings, collect_once(collect_evidence))

@@ -287,10 +287,20 @@ class DialogueScreen(RowsScreen[None]):
                 self.show()
                 self._carry_out(effect)
 
+    @property
+    def help_notes(self) -> Sequence[Sequence[tuple[str, str]]]:
+        """Blocks of keys, signs or terms, and what they mean, below the dialogue's keys."""
+        return self.dialogue.help_notes
+
     def _show_help(self) -> None:
-        # What does nothing yet is on the page all the same: it says what there is.
+        # What does nothing yet is on the page all the same: it says what there is. But no key is there twice.
         self.app.push_screen(
-            HelpDialog(self.dialogue.help_title, self.screen_actions, *self.dialogue.help_notes)
+            HelpDialog(
+                self.dialogue.help_title,
+                self.screen_actions,
+                *self.help_notes,
+                without=[each.id for each in self.turn.hidden_by_others()],
+            )
         )
 
     @work
