@@ -31,8 +31,6 @@ class Board(ABC):
 
     keys: ClassVar[str]
     """What the keys do, in one sentence."""
-    scale: int = 1
-    """How many times larger than usual a drawing is shown."""
 
     @property
     @abstractmethod
@@ -40,8 +38,8 @@ class Board(ABC):
         """The answer as its file holds it."""
 
     @abstractmethod
-    def rows(self) -> list[Row]:
-        """The board with its cursor, and what is to be counted."""
+    def rows(self, scale: int = 1) -> list[Row]:
+        """The board with its cursor, and what is to be counted. ``scale``: how many times larger than usual a drawing is."""
 
     @abstractmethod
     def judgement(self) -> Judgement:

@@ -559,6 +559,7 @@ def search_pursuit(level: GameLevel, seconds: float) -> ReferenceDrive | None:
             random.uniform(0.0, 1.5),
         )
         slow_angle, least = random.uniform(0.3, 1.5), random.uniform(0.0, 0.6)
+        distance = random.uniform(0.3, 0.7)
         if not level.leader and clearance not in fields:
             fields[clearance] = compute_distance_field.__wrapped__(
                 SimpleNamespace(walls=walls), scenario.case.target, clearance, 8.0
@@ -573,7 +574,7 @@ def search_pursuit(level: GameLevel, seconds: float) -> ReferenceDrive | None:
             if level.leader:
                 leader = simulation.pose(level.leader)
                 x, y, top = leader.x, leader.y, math.dist(leader[:2], pose[:2])
-                top = max(-1.0, min(1.0, gain * (top - 0.3 - 0.5 * lookahead)))
+                top = max(-1.0, min(1.0, gain * (top - distance)))
             else:
                 x, y = aim_point(fields[clearance], scenario.case.target, pose[0], pose[1], lookahead)
                 top = 1.0

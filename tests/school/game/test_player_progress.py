@@ -20,7 +20,8 @@ from kit.school.game.race import DriverKind, RaceFinish, judge_recording, run_ra
 from kit.school.game.references import drive_reference, load_drives, reference_seconds
 from kit.school.lessons.reading import lesson_names
 from tests.kit_content import kit_levels
-from tests.school.game.measured_drivers import judged, keys_drive, tape_drives, targets_of
+from tests.school.game.measured_drivers import judged, keys_drive, tape_drives
+from tests.school.game.ordinary import targets_of
 from tests.school.game.tidy import TidyDriver
 
 LEVELS = kit_levels()
