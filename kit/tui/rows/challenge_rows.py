@@ -28,6 +28,9 @@ LEAST_BOARD: Final = 60
 GAP: Final = 2
 LARGEST_SCALE: Final = 5
 NAME_COLUMNS: Final = 14
+LIST_COLUMNS: Final = 56
+"""Of the list, where a picture stands beside it."""
+ROOM_FOR_PICTURE: Final = LIST_COLUMNS + 50
 
 
 def first_shown(count: int, chosen: int, room: int) -> int:
@@ -70,6 +73,16 @@ def about_challenge(challenge: Challenge, medal: Medal, width: int) -> list[Row]
             (f"   lesson {lesson_number(challenge.lesson)} teaches it", "dim"),
         ),
     ]
+
+
+def challenge_picture(challenge: Challenge, width: int, height: int) -> list[Row]:
+    """What a challenge looks like before anybody has begun, as large as fits: its board, or the drawing of one that has none."""
+    board = challenge.task.board("")
+    if board is None:
+        shown = [row((line, "code")) for line in challenge.task.lines()]
+    else:
+        shown = board.rows(largest_drawing(board, width, height)[0])
+    return [part for each in shown for part in _within(each, width)][:height]
 
 
 def challenge_page(challenge: Challenge, file: Path | None, width: int) -> list[Row]:

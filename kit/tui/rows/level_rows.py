@@ -113,8 +113,13 @@ def _player(name: str, is_mine: bool) -> ToneText:
 
 
 def _driven(entry: LeaderboardEntry) -> str:
-    """Who drove, and whether it was on another kind of machine than this one, where a drive is the same but not to the bit."""
-    return entry.driver.phrase if entry.is_same_platform else f"{entry.driver.phrase}, another machine"
+    """Who drove, whether it was on another kind of machine than this one, where a drive is the same but not to the bit, and who
+    had the same drive before."""
+    remarks = [
+        *([] if entry.is_same_platform else ["another machine"]),
+        *([f"as {entry.copy_of} before"] if entry.copy_of else []),
+    ]
+    return ", ".join([entry.driver.phrase, *remarks])
 
 
 def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:

@@ -18,7 +18,7 @@ from textual.widgets.option_list import Option
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction
-from kit.document.rows import Row, broken, row, side_by_side
+from kit.document.rows import Row, broken, row, row_width, side_by_side
 from kit.plain_text import wrap
 from kit.render.roles import COLOR_SCHEMES
 from kit.tui.input.drive_keys import base_key
@@ -168,7 +168,10 @@ class NameDialog(Dialog[str | None]):
 
 
 COLUMN: Final = 80
-"""Columns of the left one of two texts beside each other."""
+"""Columns of the left one of two texts beside each other, where there is room for two of them."""
+COLUMNS_BETWEEN: Final = 2
+LEAST_BESIDE: Final = 54
+"""Columns of what stands beside the rest, at least."""
 
 
 class TextScreen(ActivePaintScreen[None]):
@@ -206,8 +209,10 @@ class TextScreen(ActivePaintScreen[None]):
         room = max(1, self.size.height - 2 - self._rows_below)
         if self.size.width != self._width:
             self._width = self.size.width
-            if self._width >= 2 * COLUMN:
-                together = side_by_side(self._rows, self._beside, COLUMN)
+            column = self._column
+            if column:
+                right = [each for parts in self._beside for each in broken(parts, self._width - column)]
+                together = side_by_side(self._rows, right, column)
             else:
                 together = [*self._rows, *self._beside]
             self._shown = [each for parts in together for each in broken(parts, self._width)]
@@ -217,6 +222,14 @@ class TextScreen(ActivePaintScreen[None]):
         self.query_one("#heading", TextRows).show([row((self._title, "bold"), (where, "dim"))])
         self.query_one("#body", TextRows).show(self._shown[self._top : last])
         self.query_one("#keys", TextRows).show([self._keys()])
+
+    @property
+    def _column(self) -> int:
+        """The column of what stands beside the rest; 0 where there is no room, or nothing."""
+        if not self._beside or self._width >= 2 * COLUMN:
+            return COLUMN if self._beside else 0
+        column = max(map(row_width, self._rows), default=0) + COLUMNS_BETWEEN
+        return column if column + LEAST_BESIDE <= self._width else 0
 
     @property
     def _rows_below(self) -> int:

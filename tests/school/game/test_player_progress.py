@@ -73,10 +73,12 @@ def test_a_tape_of_the_reference_drive_earns_bronze_at_most(level: GameLevel) ->
 
 
 @pytest.mark.sampled(4)
-@pytest.mark.parametrize("level", [pytest.param(each, id=each.id) for each in TIDY_LEVELS])
-def test_ordinary_skill_at_the_keys_is_no_master_anywhere(level: GameLevel) -> None:
+@pytest.mark.parametrize("level", [pytest.param(each, id=each.id) for each in LEVELS])
+def test_ordinary_skill_at_the_keys_has_a_rung_in_reach_and_is_no_master(level: GameLevel) -> None:
+    """But for a leader that is to be followed for a given time, which everybody needs who keeps with it."""
     _, medal = judged(level, DriverKind.KEYS, [keys_drive(level)])
-    assert medal < Medal.MASTER
+    assert medal >= Medal.BRONZE
+    assert medal < Medal.MASTER or level.leader
 
 
 NEEDS_MORE_THAN_TIDINESS = (
