@@ -68,7 +68,9 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         judgement: Judgement | str
         try:
             judgement = self._board.judgement()
-        except ChallengeError as error:  # which says how an answer is written: nobody writes who has not begun
+        except (
+            ChallengeError
+        ) as error:  # which says how an answer is written: nobody writes who has not begun
             judgement = str(error) if self._board.answer.strip() else ""
         height = self.size.height - 2 - len(self._result_rows())
         if width >= WIDE:

@@ -28,9 +28,10 @@ from kit.tui.screens.dialogs import (
     TextScreen,
     wrapped,
 )
-from kit.tui.screens.new_training import SWEEPS, NewTrainingScreen
+from kit.tui.screens.new_training import SWEEPS, NewTrainingScreen, TrainingChoices
 from kit.tui.screens.training import TrainingScreen
 from kit.tui.theme import Theme
+from kit.tui.widgets.task_preview import TaskPreview
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.tui.widgets.training_preview import TrainingPreview
 
@@ -74,12 +75,15 @@ class TrainingsScreen(RowsScreen[None]):
     TrainingsScreen #middle { height: 1fr; }
     TrainingsScreen #body { width: 1fr; }
     TrainingsScreen #preview { width: 1fr; padding: 0 0 0 2; display: none; }
-    TrainingsScreen.-roomy #body { width: 68; }
-    TrainingsScreen.-roomy #preview { display: block; }
+    TrainingsScreen.-roomy #body, TrainingsScreen.-wide #body { width: 68; }
+    TrainingsScreen.-roomy #preview, TrainingsScreen.-wide #preview { display: block; }
+    TrainingsScreen TaskPreview { display: none; width: 1fr; }
     TrainingsScreen.-empty #body { width: 1fr; }
     TrainingsScreen.-empty #preview { display: none; }
+    TrainingsScreen.-empty.-wide #body { width: 112; }
+    TrainingsScreen.-empty.-wide TaskPreview { display: block; }
     """
-    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-roomy")]  # noqa: RUF012 - Textual's own
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-roomy"), (160, "-wide")]  # noqa: RUF012 - Textual's own
 
     def __init__(self, theme: Theme, runs: Path) -> None:
         super().__init__()
@@ -94,6 +98,8 @@ class TrainingsScreen(RowsScreen[None]):
         self._marked: set[str] = set()
         self._note = ""
         self._preview = TrainingPreview(theme, id="preview")
+        self._first_task = TaskPreview(theme, runs)
+        """What a first training would learn, unless another task is chosen."""
         self.add_class("-empty")
 
     def compose(self) -> ComposeResult:
@@ -101,6 +107,7 @@ class TrainingsScreen(RowsScreen[None]):
         with Horizontal(id="middle"):
             yield TextRows(id="body")
             yield self._preview
+            yield self._first_task
         yield TextRows(id="note")
         yield TextRows(id="keys")
 
@@ -153,6 +160,8 @@ class TrainingsScreen(RowsScreen[None]):
                 else training_rows.no_trainings(self._tasks, columns, room)
             )
         chosen = self._chosen_run
+        if self._first_task.display:
+            self._first_task.tell(TrainingChoices())
         if self.is_active:
             self._preview.follow(chosen.run if chosen is not None and self._preview.display else None)
         total = sum(each.disk_bytes for each in runs or ())

@@ -261,7 +261,10 @@ class OrdinaryDriver(TidyDriver):
         """Whether it can go that way, and then stand for a while, without a cart coming near."""
         places = [*way, *[way[-1]] * 6]
         times = np.concatenate(
-            [np.linspace(0.0, GOING_S, len(way)), np.linspace(0.1, STANDING_S, 6) + (GOING_S if len(way) > 1 else 0.0)]
+            [
+                np.linspace(0.0, GOING_S, len(way)),
+                np.linspace(0.1, STANDING_S, 6) + (GOING_S if len(way) > 1 else 0.0),
+            ]
         )
         return all(
             np.hypot(*(self._carts_in(at) - place).T).min() >= CART_DISTANCE
@@ -272,12 +275,15 @@ class OrdinaryDriver(TidyDriver):
         """The least distance from a cart on a way [m]."""
         times = np.linspace(0.0, GOING_S, len(way))
         return min(
-            float(np.hypot(*(self._carts_in(at) - place).T).min()) for at, place in zip(times, way, strict=True)
+            float(np.hypot(*(self._carts_in(at) - place).T).min())
+            for at, place in zip(times, way, strict=True)
         )
 
     def _carts_in(self, seconds: float) -> np.ndarray:
         """Where the carts will be (k, 2) [m]: they go to and fro, and whoever has watched them for a while knows."""
-        return self._cart_ways[min(self._session.runner.simulation.tick + round(100.0 * seconds), len(self._cart_ways) - 1)]
+        return self._cart_ways[
+            min(self._session.runner.simulation.tick + round(100.0 * seconds), len(self._cart_ways) - 1)
+        ]
 
     def _watched_carts(self) -> np.ndarray:
         """Where the carts are at every tick (ticks, k, 2) [m]."""

@@ -656,9 +656,9 @@ def main(names: list[str]) -> None:
 def save_drives(drives: dict[str, ReferenceDrive]) -> None:
     """Writes the file of all reference drives, one line each."""
     rows = []
-    for name, drive in sorted(drives.items()):
-        commands = [[each.ticks, round(each.speed, 4), round(each.turn, 4)] for each in drive.commands]
-        rows.append(f"  {json.dumps(name)}: {json.dumps({'seconds': drive.seconds, 'commands': commands})}")
+    for name, each in sorted(drives.items()):
+        commands = [[each.ticks, round(each.speed, 4), round(each.turn, 4)] for each in each.commands]
+        rows.append(f"  {json.dumps(name)}: {json.dumps({'seconds': each.seconds, 'commands': commands})}")
     drives_file().write_text("{\n" + ",\n".join(rows) + "\n}\n")
 
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 
 from kit.geometry import Pose, wrap_angle
@@ -14,7 +15,7 @@ from kit.msg.nav_msgs import Odometry
 from kit.ros.node.node import create_graph_node
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel, all_worlds, find_level
-from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time
+from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time, rung_in_reach
 from kit.school.game.player_progress import BELTS, LevelProgress, belt_of
 from kit.school.game.race import DriverKind, RaceFinish, judge_recording, run_race
 from kit.school.game.references import drive_reference, load_drives, reference_seconds
@@ -53,6 +54,15 @@ def test_every_level_has_a_reference_a_world_and_a_lesson() -> None:
         for text in (level.story, level.skill, level.hint):
             assert text
             assert len(text) <= 78
+
+
+@pytest.mark.parametrize("driver", DriverKind)
+def test_the_rung_in_reach_is_what_a_drive_earns_that_ends_now(driver: DriverKind) -> None:
+    for seconds in np.arange(9.0, 25.0, 0.37):
+        for collisions in (0, 1):
+            finish = RaceFinish(True, float(seconds), collisions)
+            earned = medal_of(finish, 10.0, driver)
+            assert (rung_in_reach(driver, 10.0, float(seconds), collisions) or Medal.NONE) is earned
 
 
 @pytest.mark.sampled(8)

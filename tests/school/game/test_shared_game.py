@@ -269,7 +269,9 @@ def test_frames_come_back_as_they_were() -> None:
     assert parse_from_host(encode_offer(offer)) == offer
     assert parse_from_guest(encode_rematch_request()) == RematchRequest()
     assert parse_from_host(encode_state(STATE)) == STATE
-    asked = replace(STATE, asks_again=True, names=("\N{GRINNING FACE}" * MAX_PLAYER_NAME,) * 2, watching=("Eve",))
+    asked = replace(
+        STATE, asks_again=True, names=("\N{GRINNING FACE}" * MAX_PLAYER_NAME,) * 2, watching=("Eve",)
+    )
     assert parse_from_host(encode_state(asked)) == asked
     many = replace(asked, watching=asked.names[:1] * 2 * MAX_WATCHING)
     assert len(encode(encode_state(many))) < MAX_FRAME
@@ -312,7 +314,18 @@ def test_a_host_can_say_nothing_else(frame: Json) -> None:
 
 def test_numbers_and_names_of_frames_go_up_to_their_limits() -> None:
     def state(seconds: float, x: float, score: float, name: str) -> Json:
-        return ["state", "running", seconds, [[0, 0, 0], [x, 0, 0]], [0, score], None, None, [name, "b"], False, []]
+        return [
+            "state",
+            "running",
+            seconds,
+            [[0, 0, 0], [x, 0, 0]],
+            [0, score],
+            None,
+            None,
+            [name, "b"],
+            False,
+            [],
+        ]
 
     most = (MAX_SECONDS, -MAX_COORDINATE, MAX_SECONDS, "n" * MAX_PLAYER_NAME)
     found = parse_from_host(state(*most))
