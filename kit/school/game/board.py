@@ -32,6 +32,16 @@ class Board(ABC):
     keys: ClassVar[str]
     """What the keys do, in one sentence."""
 
+    @classmethod
+    def marks(cls) -> bool:
+        """Whether the space bar does something."""
+        return cls.mark is not Board.mark
+
+    @classmethod
+    def switches(cls) -> bool:
+        """Whether the tabulator does something."""
+        return cls.switch is not Board.switch
+
     @property
     @abstractmethod
     def answer(self) -> str:

@@ -159,7 +159,7 @@ def times_to_beat(found: Sequence[LevelProgress]) -> Table:
         for each in found
         if (reference := reference_seconds(each.level)) is not None
     )
-    drivers = (Column(f"you, {driver.phrase}") for driver in DriverKind)
+    drivers = (Column(f"you {driver.phrase}") for driver in DriverKind)
     return Table("to-beat", "", (Column("", CellStyle.TEXT), Column("the kit"), *drivers), rows)
 
 

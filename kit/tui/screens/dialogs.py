@@ -171,12 +171,13 @@ COLUMN: Final = 80
 """Columns of the left one of two texts beside each other, where there is room for two of them."""
 COLUMNS_BETWEEN: Final = 2
 LEAST_BESIDE: Final = 54
-"""Columns of what stands beside the rest, at least."""
 
 
 class TextScreen(ActivePaintScreen[None]):
     """Shows rows as they are; one that is too long goes on below."""
 
+    least_beside: ClassVar[int] = LEAST_BESIDE
+    """Columns without which nothing stands beside the rest."""
     AUTO_FOCUS = ""
     screen_actions = ScreenActions("text", ("scroll", "back"), ("close",))
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
@@ -229,7 +230,7 @@ class TextScreen(ActivePaintScreen[None]):
         if not self._beside or self._width >= 2 * COLUMN:
             return COLUMN if self._beside else 0
         column = max(map(row_width, self._rows), default=0) + COLUMNS_BETWEEN
-        return column if column + LEAST_BESIDE <= self._width else 0
+        return column if column + self.least_beside <= self._width else 0
 
     @property
     def _rows_below(self) -> int:

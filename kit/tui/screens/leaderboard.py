@@ -29,6 +29,7 @@ from kit.world.problems import WorldError
 class LeaderboardScreen(TextScreen, inherit_bindings=False):
     """Shows all who have joined."""
 
+    least_beside = COLUMN  # a table is not broken
     screen_actions = ScreenActions(
         "leaderboard",
         ("scroll", "join", "back"),

@@ -271,10 +271,10 @@ class LevelsScreen(RowsScreen[None]):
             *self._world_heading([medals.get(each.id, Medal.NONE) for each in self._challenges]),
             *challenge_rows.challenge_list(self._challenges, medals, chosen.id, self._challenge_room),
         ]
-        medal, room = medals.get(chosen.id, Medal.NONE), self._rows("map").size
-        if room.width >= challenge_rows.ROOM_FOR_PICTURE:
-            column = challenge_rows.LIST_COLUMNS
-            picture = challenge_rows.challenge_picture(chosen, room.width - column - 1, room.height - 1)
+        medal, width = medals.get(chosen.id, Medal.NONE), self.size.width  # the list has all of it, soon
+        if width >= challenge_rows.ROOM_FOR_PICTURE:
+            column, height = challenge_rows.LIST_COLUMNS, self._rows("map").size.height
+            picture = challenge_rows.challenge_picture(chosen, width - column - 1, height - 1)
             listed = side_by_side(listed, [row(), *picture], column)
         return listed, challenge_rows.about_challenge(chosen, medal, self.size.width)
 

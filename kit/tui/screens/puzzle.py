@@ -77,6 +77,14 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
             return puzzle_beside(self._challenge, self._board, judgement, width, height)
         return puzzle_page(self._challenge, self._board, judgement, width, height)
 
+    def _without(self) -> list[str]:
+        board = self._board
+        return [
+            *super()._without(),
+            *([] if board.marks() else ["mark_cell"]),
+            *([] if board.switches() else ["switch_robot"]),
+        ]
+
     def _changed(self) -> None:
         self._result = []
         self._renew()
