@@ -80,7 +80,7 @@ class TrainingsScreen(RowsScreen[None]):
     TrainingsScreen TaskPreview { display: none; width: 1fr; }
     TrainingsScreen.-empty #body { width: 1fr; }
     TrainingsScreen.-empty #preview { display: none; }
-    TrainingsScreen.-empty.-wide #body { width: 112; }
+    TrainingsScreen.-empty.-wide #body { width: 118; }
     TrainingsScreen.-empty.-wide TaskPreview { display: block; }
     """
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-roomy"), (160, "-wide")]  # noqa: RUF012 - Textual's own
