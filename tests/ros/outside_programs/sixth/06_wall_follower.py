@@ -39,10 +39,11 @@ class WallFollower(Node):
         if front < 0.45:
             t.angular.z = -self.side * 1.0
         else:
-            e = min(wall, 1.0) - self.want
             t.linear.x = 0.12
-            t.angular.z = self.side * max(-0.9, min(0.9, 2.0 * e + 4.0 * (e - self.last)))
-            self.last = e
+            if wall < 1.0:
+                e = wall - self.want
+                t.angular.z = self.side * max(-0.9, min(0.9, 2.0 * e + 4.0 * (e - self.last)))
+                self.last = e
         self.pub.publish(t)
 
     def tell(self):
