@@ -14,6 +14,7 @@ import click
 
 from kit.cli import messages, options
 from kit.cli.dialogue import run_dialogue
+from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen
 from kit.cli.process import ScreenClosed
 from kit.document.blocks import Block, Picture, Table, Text, labelled_table
@@ -275,7 +276,7 @@ def _draw(
 
 
 @command.command(name="from-photo")
-@click.argument("picture", type=options.ExistingPath(dir_okay=False, path_type=Path))
+@click.argument("picture", type=ExistingPath(dir_okay=False, path_type=Path))
 @click.argument("name", required=False)
 @click.option("--width", type=click.FloatRange(0.5, 200.0), help="Width of the whole sheet in the world [m].")
 @click.option(

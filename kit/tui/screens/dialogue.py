@@ -18,7 +18,9 @@ from kit.document.blocks import Tone
 from kit.document.layout import Page, place, rows_of
 from kit.document.rows import MARGIN, Row, row, side_by_side, spread, text_width, window
 from kit.tui.rows.key_rows import footer
-from kit.tui.screens.dialogs import HelpDialog, Picker, PickerItem, TextScreen
+from kit.tui.screens.dialogs import HelpDialog
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.text_screen import TextScreen
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 
 if TYPE_CHECKING:
@@ -285,10 +287,20 @@ class DialogueScreen(RowsScreen[None]):
                 self.show()
                 self._carry_out(effect)
 
+    @property
+    def help_notes(self) -> Sequence[Sequence[tuple[str, str]]]:
+        """Blocks of keys, signs or terms, and what they mean, below the dialogue's keys."""
+        return self.dialogue.help_notes
+
     def _show_help(self) -> None:
-        # What does nothing yet is on the page all the same: it says what there is.
+        # What does nothing yet is on the page all the same: it says what there is. But no key is there twice.
         self.app.push_screen(
-            HelpDialog(self.dialogue.help_title, self.screen_actions, *self.dialogue.help_notes)
+            HelpDialog(
+                self.dialogue.help_title,
+                self.screen_actions,
+                *self.help_notes,
+                without=[each.id for each in self.turn.hidden_by_others()],
+            )
         )
 
     @work

@@ -18,7 +18,8 @@ from kit.school.game.drive_records import join_leaderboard
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.dialogs import COLUMN, MessageDialog, TextScreen, wrapped
+from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.text_screen import COLUMN, TextScreen
 from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
 

@@ -346,9 +346,9 @@ class LevelDrive(WatchScreen):
             splits,
             self._finishes,
         )
-        self.app.push_screen(DriveResultScreen(self._theme, result, self._workspace), self._act_on)
+        self.app.push_screen(DriveResultScreen(self._theme, result, self._workspace), self._do_choice)
 
-    def _act_on(self, wish: Wish | None) -> None:
+    def _do_choice(self, wish: Wish | None) -> None:
         """Does what the player chose in the dialog."""
         if wish == "restart":
             self.action_restart()

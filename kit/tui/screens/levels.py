@@ -43,13 +43,15 @@ from kit.school.game.references import reference_recording, reference_seconds
 from kit.school.game.starts import film_scenario
 from kit.school.news import take_news
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
-from kit.tui.rows import challenge_rows, drive_end_rows, level_rows
+from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_card_rows import COLUMN, best_splits, stars_and_sectors
 from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
+from kit.tui.rows.progress_marks import share_bar
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_pictures import ghost_paths, picture_of, scene_of
+from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows
 from kit.tui.widgets.world_view import WorldView
@@ -284,7 +286,7 @@ class LevelsScreen(RowsScreen[None]):
 
     def _doing_row(self) -> Row:
         share = self._prepared.get(self._doing_level, 0.0)
-        return row((f"{self._doing}  ", "bold"), drive_end_rows.share_bar(share), f" {share:4.0%}")
+        return row((f"{self._doing}  ", "bold"), share_bar(share), f" {share:4.0%}")
 
     def _map_places(self) -> tuple[LevelPlace, ...]:
         """Where the levels of the chosen world stand below the list; none where the screen is too small."""

@@ -19,16 +19,10 @@ from kit.document.rows import row, spread
 from kit.plain_text import counted, format_size
 from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.dialogs import (
-    HelpDialog,
-    MessageDialog,
-    NameDialog,
-    Picker,
-    PickerItem,
-    TextScreen,
-    wrapped,
-)
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, NameDialog, wrapped
 from kit.tui.screens.new_training import SWEEPS, NewTrainingScreen
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.text_screen import TextScreen
 from kit.tui.screens.training import TrainingScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
@@ -384,7 +378,8 @@ def _sweep_items(folder: Path) -> list[PickerItem]:
 
 def _sweep_table(folder: Path, columns: int) -> list[str]:
     from kit.document.layout import Page, lines_of, text_blocks
-    from kit.learning.training.training_sweep import TrainingSweep, problems, sweep_rows, sweep_table
+    from kit.learning.training.sweep_table import problems, sweep_rows, sweep_table
+    from kit.learning.training.training_sweep import TrainingSweep
 
     sweep = TrainingSweep(folder)
     return lines_of(

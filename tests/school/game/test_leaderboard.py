@@ -27,7 +27,7 @@ from kit.school.game.leaderboard import (
 from kit.school.game.medal import Medal
 from kit.school.game.race import DriverKind
 from kit.school.game.references import drive_reference
-from kit.school.game.shared_drives import MAX_FILE_BYTES, platform_name, share_drives
+from kit.school.game.shared_drives import MAX_FILE_BYTES, platform_key, share_drives
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import open_workspace
 from tests.kit_content import kit_levels
@@ -268,7 +268,7 @@ def test_a_drive_from_another_platform_is_judged_and_marked(tmp_path: Path) -> N
     board = join(tmp_path / "board", by_hand())
 
     def elsewhere(content: dict[str, Any]) -> None:
-        content["platform"] = f"not {platform_name()}"
+        content["platform"] = f"not {platform_key()}"
         content["drives"][0]["digest"] = "its last digits were others"
 
     change(own_file(board), elsewhere)

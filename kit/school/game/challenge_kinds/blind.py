@@ -19,7 +19,7 @@ from kit.school.game.board import (
     shortest_way,
     step,
 )
-from kit.school.game.challenge import ChallengeTask, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.school.game.moves_board import MovesBoard, read_moves
@@ -53,8 +53,8 @@ class BlindTask(ChallengeTask):
     def board(self, answer: str) -> Board:
         return BlindBoard(self, answer)
 
-    def judge(self, handed_in: HandedIn) -> Judgement:
-        moves = read_moves(handed_in.answer, MAX_MOVES)
+    def judge(self, submission: AnswerSubmission) -> Judgement:
+        moves = read_moves(submission.answer, MAX_MOVES)
         belief = believed(self, moves)
         goal = find_cell(self.grid, "G")
         if belief != {goal}:

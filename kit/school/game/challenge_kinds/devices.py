@@ -11,7 +11,7 @@ from typing import Final, Self
 from kit.document.rows import Row, row
 from kit.layers.cover import minimum_cover
 from kit.school.game.board import WALL, Board, Cell, History, free_cells, grid_rows
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
@@ -44,9 +44,9 @@ class DevicesTask(ChallengeTask):
     def board(self, answer: str) -> Board:
         return DevicesBoard(self, answer)
 
-    def judge(self, handed_in: HandedIn) -> Judgement:
+    def judge(self, submission: AnswerSubmission) -> Judgement:
         """Judges by what is not seen, then by the number of lasers against the fewest and the naive plan's."""
-        lasers = read_lasers(self, handed_in.answer)
+        lasers = read_lasers(self, submission.answer)
         missed = sorted(set(self.places) - self.seen_from(lasers))
         if missed:
             return Judgement(Medal.NONE, f"Nothing sees {', '.join(missed)}.")
@@ -101,7 +101,7 @@ class DevicesBoard(Board):
         return "".join(f"{row},{column}\n" for row, column in self._lasers)
 
     def judgement(self) -> Judgement:
-        return self._task.judge(HandedIn(self.answer, Path()))
+        return self._task.judge(AnswerSubmission(self.answer, Path()))
 
     def move(self, columns: int, rows: int) -> None:
         """To the next square of the floor in that direction; walls are passed over."""

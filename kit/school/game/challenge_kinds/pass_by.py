@@ -13,7 +13,7 @@ from typing import Final, Self
 from kit.document.rows import Row, row
 from kit.plain_text import quoted
 from kit.school.game.board import MOVES, Board, Cell, find_cell, grid_rows, letters_of, shortest_way, step
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
@@ -48,8 +48,8 @@ class PassByTask(ChallengeTask):
     def board(self, answer: str) -> Board:
         return PassByBoard(self, answer)
 
-    def judge(self, handed_in: HandedIn) -> Judgement:
-        moves = read_two(handed_in.answer)
+    def judge(self, submission: AnswerSubmission) -> Judgement:
+        moves = read_two(submission.answer)
         ticks = max(map(len, moves))
         if meeting := first_meeting(self, moves):
             return Judgement(Medal.NONE, f"The robots meet at tick {meeting}.")
@@ -147,7 +147,7 @@ class PassByBoard(Board):
         return "\n".join(own or WAIT for own in self._moves) + "\n"
 
     def judgement(self) -> Judgement:
-        return self._task.judge(HandedIn(self.answer, Path()))
+        return self._task.judge(AnswerSubmission(self.answer, Path()))
 
     def move(self, columns: int, rows: int) -> None:
         self._add(letters_of(columns, rows))

@@ -27,7 +27,7 @@ from kit.school.game.board import (
     grid_rows,
     step,
 )
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn, judge_share
+from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask, judge_share
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.world.yaml_section import Section
 
@@ -90,8 +90,8 @@ class PolicyTask(ChallengeTask):
     def board(self, answer: str) -> Board:
         return PolicyBoard(self, answer)
 
-    def judge(self, handed_in: HandedIn) -> Judgement:
-        value = value_of(self, read_policy(self, handed_in.answer))
+    def judge(self, submission: AnswerSubmission) -> Judgement:
+        value = value_of(self, read_policy(self, submission.answer))
         naive, best = value_of(self, naive_policy(self)), value_of(self, best_policy(self))
         comparison = AnswerComparison(
             "return", value, (("naive answer", naive), ("best answer", best)), more_is_better=True
@@ -243,7 +243,7 @@ class PolicyBoard(Board):
         return format_policy(self._task, self._policy)
 
     def judgement(self) -> Judgement:
-        return self._task.judge(HandedIn(self.answer, Path()))
+        return self._task.judge(AnswerSubmission(self.answer, Path()))
 
     def move(self, columns: int, rows: int) -> None:
         there = self._cursor[0] + rows, self._cursor[1] + columns
