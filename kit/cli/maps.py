@@ -127,6 +127,7 @@ def _own_card_of(name: str, own_card: Any, world_file: str) -> MapCard | None:
 def _show_card(card: MapCard, glyphs: str | None, paths: tuple[ScenePath, ...] = ()) -> None:
     from kit.render.encode import ENCODERS
     from kit.render.world_text import scene_rows
+    from kit.run.command_limits import describe_limits
     from kit.run.session import Session
     from kit.run.view import ViewBuilder
 
@@ -134,6 +135,7 @@ def _show_card(card: MapCard, glyphs: str | None, paths: tuple[ScenePath, ...] =
     columns, rows = shutil.get_terminal_size()
     with Session(scenario_on_map(card)) as session:
         scene = ViewBuilder(session).build().scene
+        limits = tuple(describe_limits(session.runner.simulation, session.scenario.partners))
     scene = replace(scene, paths=(*scene.paths, *paths))
     click.echo(f"{card.title}: {card.summary}")
     click.echo("\n".join(scene_rows(scene, columns - 1, max(10, rows - 6), ENCODERS[chosen](True))))
@@ -143,6 +145,8 @@ def _show_card(card: MapCard, glyphs: str | None, paths: tuple[ScenePath, ...] =
             f"{case.name}: from ({x:g}, {y:g}, {theta:g} rad) to within {case.target_radius:g} m of "
             f"({case.target[0]:g}, {case.target[1]:g})"
         )
+    for line in limits:
+        messages.say(line)
 
 
 @command.command()

@@ -135,11 +135,13 @@ class Session:
         self.switcher.load(controller)
 
     def watch_connections(self) -> ConnectionWatch:
-        """Warns from now on of what the controller's nodes connect to that has no other end.
+        """Warns from now on of what the controller's nodes connect to that has no other end, and ask for that is too much.
 
         The kit's own controllers need not hear all that they can: of one of them that is told while the robot stands still.
         """
-        watch = ConnectionWatch(self.graph, self._watched_nodes, self._warn)
+        watch = ConnectionWatch(
+            self.graph, self._watched_nodes, self._warn, commanders=lambda: self.switcher.node_names
+        )
         self.runner.observers.append(watch)
         return watch
 
