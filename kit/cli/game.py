@@ -202,10 +202,10 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
     """Solve challenges without driving. Break a reward, beat a layer plan, train within a budget, mount the fewest
     lasers, or repair a launch file against the clock.
 
-    Without NAME, list them; with NAME, show one. ANSWER depends on the challenge: moves, a file, or the name of a
-    training run. A better answer earns a better medal.
+    Without NAME, list them; with NAME, show one. ANSWER depends on the challenge: its file, what the file would hold
+    (moves, numbers), or the name of a training run. A better answer earns a better medal.
     """
-    from kit.school.game.challenge import ChallengeError, HandedIn
+    from kit.school.game.challenge import AnswerSubmission, ChallengeError
     from kit.school.game.challenges import (
         all_challenges,
         answers_folder,
@@ -234,7 +234,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                 file, seconds = prepare_answer(journal, chosen, answers_folder(opened_workspace))
             if answer is None:
                 click.echo(
-                    f"{chosen.title}. {chosen.story}\n{chosen.task_text}\nLesson {lesson_number(chosen.lesson)} prepares you for it."
+                    f"{chosen.title}. {chosen.story}\n{chosen.written_task}\nLesson {lesson_number(chosen.lesson)} prepares you for it."
                 )
                 for line in chosen.task.lines():
                     click.echo(line)
@@ -244,7 +244,8 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                     )
                 click.echo(f"To hand in: kit game challenge {chosen.id} ANSWER")
                 return
-            judgement = chosen.task.judge(HandedIn(answer, opened_workspace.runs, seconds))
+            answer = chosen.task.parse_answer(answer)
+            judgement = chosen.task.judge(AnswerSubmission(answer, opened_workspace.runs, seconds))
         except (LookupError, ChallengeError, OSError) as error:
             messages.fail(messages.describe_error(error))
         record_judgement(journal, chosen, judgement)

@@ -23,10 +23,11 @@ from kit.learning.training.measures import (
     is_value_too_large,
 )
 from kit.plain_text import format_size, wrap
-from kit.render.curve import Axes, ChartPart, Curve, StackedCounts
+from kit.render.curve import Axes, Curve
 from kit.render.roles import Role
+from kit.render.stacked_chart import ChartPart, StackedCounts
+from kit.tui.rows.agent_rows import agent_panel
 from kit.tui.rows.key_rows import footer
-from kit.tui.rows.readout_rows import agent_panel
 
 if TYPE_CHECKING:
     from kit.learning.tasks.learning_task import LearningTask

@@ -279,6 +279,10 @@ class LevelDrive(WatchScreen):
             if self._behind is not None:
                 right += [(f"{self._behind:+.2f}", "good" if self._behind <= 0.0 else "warn"), " to R  "]
             right.append(f"bumps {referee.finish.collisions}  ")
+            reference = reference_seconds(self._level) if self._level.has_medals else None
+            if reference is not None and not self._is_over:
+                reach = level_rows.still_in_reach(self._driver, reference, time_s, referee.finish.collisions)
+                left.append((f"  {reach}", "dim"))
         return spread(row(*left), row(*right, (format_clock(time_s), "bold")), self.size.width)
 
     def _end(self, session: Session) -> None:
@@ -346,9 +350,9 @@ class LevelDrive(WatchScreen):
             splits,
             self._finishes,
         )
-        self.app.push_screen(DriveResultScreen(self._theme, result, self._workspace), self._act_on)
+        self.app.push_screen(DriveResultScreen(self._theme, result, self._workspace), self._do_choice)
 
-    def _act_on(self, wish: Wish | None) -> None:
+    def _do_choice(self, wish: Wish | None) -> None:
         """Does what the player chose in the dialog."""
         if wish == "restart":
             self.action_restart()

@@ -34,6 +34,7 @@ from kit.school.game.starts import film_scenario
 from kit.school.lessons.shell_lines import shell_path
 from kit.tui.rows import drive_end_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.medal_rows import medal_drawing
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.lesson_drive import RecordingScreen
 from kit.tui.screens.level_pictures import ghost_paths, scene_of
@@ -187,7 +188,7 @@ class DriveResultScreen(ModalScreen[Wish]):
     def _medal(self) -> list[Row]:
         """The medal as a drawing, where there is room for it."""
         has_room = self.app.size.height >= HIGH and self._result.record.medal is not Medal.NONE
-        return drive_end_rows.medal_drawing(self._result.record.medal, self._spark) if has_room else []
+        return medal_drawing(self._result.record.medal, self._spark) if has_room else []
 
     @property
     def _revealed(self) -> list[Row]:

@@ -13,7 +13,9 @@ from kit.document.rows import Row
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from kit.run.view import LASER_DIRECTIONS, View, ViewBuilder
-from kit.tui.rows.readout_rows import CHART_ROWS, SpeedHistory, instruments, laser_chart, readout, time_chart
+from kit.tui.rows.chart_rows import CHART_ROWS, laser_chart, time_chart
+from kit.tui.rows.instrument_rows import SpeedHistory, instruments
+from kit.tui.rows.readout_rows import readout
 from tests.cases import every_case
 from tests.tui.lesson_stage import row_text
 
