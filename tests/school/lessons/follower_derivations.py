@@ -147,8 +147,10 @@ def one_ray_settings(words: str, step: LessonStep, folder: Path) -> str:
         f"It drives along a wall at {start_of('doorway') - wall:.1g} m",
         f"behind it the next wall is {jump:g} m further away",
         "After two metres comes a door",
-        f"The error jumps by {jump:g} m in {SCAN_S:g} s: a change of {-jump / SCAN_S:g} m/s. "
-        f"This one turns at {gain:.1f} times the change",
+        (
+            f"The error jumps by {jump:g} m in {SCAN_S:g} s: a change of {-jump / SCAN_S:g} m/s. "
+            f"This one turns at {gain:.1f} times the change"
+        ),
     )
     assert aim == DISTANCE
     return next((each for each in texts if each[:9] == words[:9]), texts[0])
