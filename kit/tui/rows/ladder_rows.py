@@ -10,8 +10,10 @@ from kit.document.rows import Row, row
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time, next_rung
 from kit.school.game.race import DriverKind, RaceFinish
-from kit.tui.rows.level_rows import MEDAL_SIGNS, RESULT_BAR
+from kit.tui.rows.medal_signs import MEDAL_SIGNS
 
+LIST_BAR, ABOUT_BAR, RESULT_BAR = 13, 34, 40
+"""Columns of a ladder in the list of levels, below it, and at the end of a drive."""
 HERE: Final = "\u25cf"
 """Where a drive stands on a ladder."""
 

@@ -14,26 +14,10 @@ from kit.school.game.medal import RUNGS, Medal, medal_time, rung_in_reach
 from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.starts import SEEDS
-from kit.tui.rows.ladder_rows import ladder_bar, ladder_words
+from kit.tui.rows.ladder_rows import ABOUT_BAR, LIST_BAR, ladder_bar, ladder_words
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, SHUT, STAR
 
 TITLE_WIDTH: Final = 24
-STAR, NO_STAR, SHUT = "*", ".", "-"
-MEDAL_SIGNS: Final = {
-    Medal.NONE: NO_STAR,
-    Medal.BRONZE: "B",
-    Medal.SILVER: "S",
-    Medal.GOLD: "G",
-    Medal.MASTER: "M",
-    Medal.RECORD: "R",
-}
-MEDAL_STYLES: Final = {
-    Medal.NONE: "dim",
-    Medal.BRONZE: "",
-    Medal.SILVER: "bold",
-    Medal.GOLD: "warn",
-    Medal.MASTER: "good",
-    Medal.RECORD: "good",
-}
 HEADER: Final = "  level" + " " * (TITLE_WIDTH - 4) + "hand  program  agent  stars    best   ladder"
 BAR: Final = 12
 """Columns of the longest sector's bar."""
@@ -145,10 +129,6 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
             )
         )
     return rows
-
-
-LIST_BAR, ABOUT_BAR, RESULT_BAR = 13, 34, 40
-"""Columns of a ladder in the list of levels, below it, and at the end of a drive."""
 
 
 def other_start(number: int, seconds: float) -> Row:
