@@ -266,7 +266,8 @@ def short_names(names: Sequence[str]) -> list[str]:
 def _terms(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
     """The reward per episode by named term."""
     total = "" if status.reward is None else f" {status.reward:.2f}"
-    title = row((f"reward per episode{total}, {RECENTLY}"[:width], "dim"))
+    told = f"reward per episode{total}, {RECENTLY}"
+    title = row((told if len(told) <= width else f"reward{total}, {RECENTLY}"[:width], "dim"))
     per_row = max(1, width // 28)
     cell = width // per_row
     cells = [
