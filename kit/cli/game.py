@@ -234,7 +234,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                 file, seconds = prepare_answer(journal, chosen, answers_folder(opened_workspace))
             if answer is None:
                 click.echo(
-                    f"{chosen.title}. {chosen.story}\n{chosen.task_text}\nLesson {lesson_number(chosen.lesson)} prepares you for it."
+                    f"{chosen.title}. {chosen.story}\n{chosen.written_task}\nLesson {lesson_number(chosen.lesson)} prepares you for it."
                 )
                 for line in chosen.task.lines():
                     click.echo(line)

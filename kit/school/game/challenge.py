@@ -146,5 +146,12 @@ class Challenge:
     title: str
     story: str
     task_text: str
+    form: str
+    """How an answer is written down, where that is not how it is found; may be empty."""
     lesson: str
     task: ChallengeTask
+
+    @property
+    def written_task(self) -> str:
+        """The task of whoever writes the answer down."""
+        return f"{self.task_text} {self.form}".rstrip()

@@ -16,9 +16,10 @@ from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost
 from kit.school.game.leaderboard import LeaderboardEntry, PlayerStanding
 from kit.school.game.levels import GameLevel, GameWorld, all_levels
-from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time, next_rung
+from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time, next_rung, rung_in_reach
 from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of
 from kit.school.game.race import DriverKind, RaceFinish
+from kit.school.game.references import reference_seconds
 from kit.school.game.starts import SEEDS
 
 TITLE_WIDTH: Final = 24
@@ -113,8 +114,13 @@ def _player(name: str, is_mine: bool) -> ToneText:
 
 
 def _driven(entry: LeaderboardEntry) -> str:
-    """Who drove, and whether it was on another kind of machine than this one, where a drive is the same but not to the bit."""
-    return entry.driver.phrase if entry.is_same_platform else f"{entry.driver.phrase}, another machine"
+    """Who drove, whether it was on another kind of machine than this one, where a drive is the same but not to the bit, and who
+    had the same drive before."""
+    remarks = [
+        *([] if entry.is_same_platform else ["another machine"]),
+        *([f"as {entry.copy_of} before"] if entry.copy_of else []),
+    ]
+    return ", ".join([entry.driver.phrase, *remarks])
 
 
 def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
@@ -129,6 +135,32 @@ def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
     )
     columns = (Column("", CellStyle.TEXT), Column("", CellStyle.TEXT), Column(""), Column("", CellStyle.TEXT))
     return Table("times", "", columns, rows, grouped=True)
+
+
+def still_in_reach(driver: DriverKind, reference: float, seconds: float, collisions: int) -> str:
+    """The medal that is still in reach while one drives, and until when."""
+    medal = rung_in_reach(driver, reference, seconds, collisions)
+    if medal is None:
+        return "no medal any more"
+    return f"{medal.title} until {medal_time(medal, reference, driver):.2f} s"
+
+
+def times_to_beat(found: Sequence[LevelProgress]) -> Table:
+    """The reference drive's time of each level and the player's best ones, for a board on which nobody stands yet."""
+    rows = tuple(
+        (
+            each.level.title,
+            f"{reference:.2f} s",
+            *(
+                f"{each.best_times[driver]:.2f} s" if driver in each.best_times else ToneText("-", Tone.DIM)
+                for driver in DriverKind
+            ),
+        )
+        for each in found
+        if (reference := reference_seconds(each.level)) is not None
+    )
+    drivers = (Column(f"you {driver.phrase}") for driver in DriverKind)
+    return Table("to-beat", "", (Column("", CellStyle.TEXT), Column("the kit"), *drivers), rows)
 
 
 def world_levels(

@@ -119,12 +119,15 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             return [checking(time.monotonic() - self._started_at, self._doing)]
         return self._result
 
-    def _keys(self) -> Row:
-        without = [
+    def _without(self) -> list[str]:
+        """Actions that do nothing here."""
+        return [
             *(["edit_file"] if self._file is None else []),
             *(["next"] if self._following is None else []),
         ]
-        return footer(self.screen_actions, self.size.width, without=without)
+
+    def _keys(self) -> Row:
+        return footer(self.screen_actions, self.size.width, without=self._without())
 
     # The check
 

@@ -137,7 +137,7 @@ class DialogueScreen(RowsScreen[None]):
         self._show_field()
         body, self._top = window(self._body(), self._top, room)
         if beside := self._beside():
-            body = side_by_side(body, beside[:room], self._widest)
+            body = side_by_side(body, beside[:room], self._widest + MARGIN)
         body = centred(body, width, room, self._whole)
         height = len(body) if self._field is not None and self._field.display else "1fr"
         if height != self._body_height:  # setting a style lays out and paints the whole screen
@@ -157,13 +157,13 @@ class DialogueScreen(RowsScreen[None]):
     def _whole(self) -> int:
         """Columns of the question and of what stands beside it."""
         has_room = self.room.width >= LEAST_BESIDE + BESIDE and self.dialogue.beside()
-        return self._widest + BESIDE if has_room else self._widest
+        return self._widest + MARGIN + BESIDE if has_room else self._widest
 
     @property
     def _widest(self) -> int:
         """Columns of the question."""
         if self.room.width >= LEAST_BESIDE + BESIDE and self.dialogue.beside():
-            return min(WIDEST, self.room.width - BESIDE)
+            return min(WIDEST, self.room.width - MARGIN - BESIDE)
         return WIDEST
 
     @property

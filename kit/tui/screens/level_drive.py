@@ -279,6 +279,10 @@ class LevelDrive(WatchScreen):
             if self._behind is not None:
                 right += [(f"{self._behind:+.2f}", "good" if self._behind <= 0.0 else "warn"), " to R  "]
             right.append(f"bumps {referee.finish.collisions}  ")
+            reference = reference_seconds(self._level) if self._level.has_medals else None
+            if reference is not None and not self._is_over:
+                reach = level_rows.still_in_reach(self._driver, reference, time_s, referee.finish.collisions)
+                left.append((f"  {reach}", "dim"))
         return spread(row(*left), row(*right, (format_clock(time_s), "bold")), self.size.width)
 
     def _end(self, session: Session) -> None:

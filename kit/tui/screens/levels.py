@@ -267,16 +267,16 @@ class LevelsScreen(RowsScreen[None]):
         return self._rows("map").size.height - ROWS_ABOVE_LEVELS - len(levels) - 1
 
     def _challenge_rows(self, chosen: Challenge) -> tuple[list[Row], list[Row]]:
-        """The list of challenges, below it the chosen one's drawing where there is room, and what is said of it."""
+        """The list of challenges, beside it the chosen one's picture where there is room, and what is said of it."""
         medals = self._challenge_medals
-        listed = [
-            *self._world_heading([medals.get(each.id, Medal.NONE) for each in self._challenges]),
-            *challenge_rows.challenge_list(self._challenges, medals, chosen.id, self._challenge_room),
-        ]
-        drawing = [row(), *(row((f"  {line}", "code")) for line in chosen.task.lines())]
-        if len(listed) + len(drawing) <= self._rows("map").size.height:
-            listed += drawing
-        medal = medals.get(chosen.id, Medal.NONE)
+        heading = self._world_heading([medals.get(each.id, Medal.NONE) for each in self._challenges])
+        listed = challenge_rows.challenge_list(self._challenges, medals, chosen.id, self._challenge_room)
+        medal, width = medals.get(chosen.id, Medal.NONE), self.size.width  # the list has all of it, soon
+        if width >= challenge_rows.ROOM_FOR_PICTURE:
+            column, height = challenge_rows.LIST_COLUMNS, self._rows("map").size.height - len(heading)
+            picture = challenge_rows.challenge_picture(chosen, width - column - 1, height)
+            listed = side_by_side(listed, picture, column)
+        listed = [*heading, *listed]
         return listed, challenge_rows.about_challenge(chosen, medal, self.size.width)
 
     @property

@@ -10,7 +10,7 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 
 from kit.dialogue.actions import ScreenActions
-from kit.document.rows import Row, broken, row, side_by_side
+from kit.document.rows import Row, broken, row, row_width, side_by_side
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import TextRows
@@ -20,12 +20,16 @@ if TYPE_CHECKING:
 
 
 COLUMN: Final = 80
-"""Columns of the left one of two texts beside each other."""
+"""Columns of the left one of two texts beside each other, where there is room for two of them."""
+COLUMNS_BETWEEN: Final = 2
+LEAST_BESIDE: Final = 54
 
 
 class TextScreen(ActivePaintScreen[None]):
     """Shows rows as they are; one that is too long goes on below."""
 
+    least_beside: ClassVar[int] = LEAST_BESIDE
+    """Columns without which nothing stands beside the rest."""
     AUTO_FOCUS = ""
     screen_actions = ScreenActions("text", ("scroll", "back"), ("close",))
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
@@ -58,8 +62,10 @@ class TextScreen(ActivePaintScreen[None]):
         room = max(1, self.size.height - 2 - self._rows_below)
         if self.size.width != self._width:
             self._width = self.size.width
-            if self._width >= 2 * COLUMN:
-                together = side_by_side(self._rows, self._beside, COLUMN)
+            column = self._column
+            if column:
+                right = [each for parts in self._beside for each in broken(parts, self._width - column)]
+                together = side_by_side(self._rows, right, column)
             else:
                 together = [*self._rows, *self._beside]
             self._shown = [each for parts in together for each in broken(parts, self._width)]
@@ -69,6 +75,14 @@ class TextScreen(ActivePaintScreen[None]):
         self.query_one("#heading", TextRows).show([row((self._title, "bold"), (where, "dim"))])
         self.query_one("#body", TextRows).show(self._shown[self._top : last])
         self.query_one("#keys", TextRows).show([self._keys()])
+
+    @property
+    def _column(self) -> int:
+        """The column of what stands beside the rest; 0 where there is no room, or nothing."""
+        if not self._beside or self._width >= 2 * COLUMN:
+            return COLUMN if self._beside else 0
+        column = max(map(row_width, self._rows), default=0) + COLUMNS_BETWEEN
+        return column if column + self.least_beside <= self._width else 0
 
     @property
     def _rows_below(self) -> int:

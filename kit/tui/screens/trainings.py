@@ -20,11 +20,12 @@ from kit.plain_text import counted, format_size
 from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, NameDialog, wrapped
-from kit.tui.screens.new_training import SWEEPS, NewTrainingScreen
+from kit.tui.screens.new_training import SWEEPS, NewTrainingScreen, TrainingChoices
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.screens.training import TrainingScreen
 from kit.tui.theme import Theme
+from kit.tui.widgets.task_preview import TaskPreview
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.tui.widgets.training_preview import TrainingPreview
 
@@ -68,12 +69,15 @@ class TrainingsScreen(RowsScreen[None]):
     TrainingsScreen #middle { height: 1fr; }
     TrainingsScreen #body { width: 1fr; }
     TrainingsScreen #preview { width: 1fr; padding: 0 0 0 2; display: none; }
-    TrainingsScreen.-roomy #body { width: 68; }
-    TrainingsScreen.-roomy #preview { display: block; }
+    TrainingsScreen.-roomy #body, TrainingsScreen.-wide #body { width: 68; }
+    TrainingsScreen.-roomy #preview, TrainingsScreen.-wide #preview { display: block; }
+    TrainingsScreen TaskPreview { display: none; width: 1fr; }
     TrainingsScreen.-empty #body { width: 1fr; }
     TrainingsScreen.-empty #preview { display: none; }
+    TrainingsScreen.-empty.-wide #body { width: 118; }
+    TrainingsScreen.-empty.-wide TaskPreview { display: block; }
     """
-    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-roomy")]  # noqa: RUF012 - Textual's own
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-roomy"), (160, "-wide")]  # noqa: RUF012 - Textual's own
 
     def __init__(self, theme: Theme, runs: Path) -> None:
         super().__init__()
@@ -88,6 +92,8 @@ class TrainingsScreen(RowsScreen[None]):
         self._marked: set[str] = set()
         self._note = ""
         self._preview = TrainingPreview(theme, id="preview")
+        self._first_task = TaskPreview(theme, runs)
+        """What a first training would learn, unless another task is chosen."""
         self.add_class("-empty")
 
     def compose(self) -> ComposeResult:
@@ -95,6 +101,7 @@ class TrainingsScreen(RowsScreen[None]):
         with Horizontal(id="middle"):
             yield TextRows(id="body")
             yield self._preview
+            yield self._first_task
         yield TextRows(id="note")
         yield TextRows(id="keys")
 
@@ -147,6 +154,8 @@ class TrainingsScreen(RowsScreen[None]):
                 else training_rows.no_trainings(self._tasks, columns, room)
             )
         chosen = self._chosen_run
+        if self._first_task.display:
+            self._first_task.tell(TrainingChoices())
         if self.is_active:
             self._preview.follow(chosen.run if chosen is not None and self._preview.display else None)
         total = sum(each.disk_bytes for each in runs or ())

@@ -119,7 +119,7 @@ class BlindBoard(MovesBoard):
         super().__init__(task, answer, MAX_MOVES)
         self._blind = task
 
-    def rows(self) -> list[Row]:
+    def rows(self, scale: int = 1) -> list[Row]:
         task = self._blind
         belief = believed(task, self.moves)
         counts = Counter(belief)
@@ -127,7 +127,7 @@ class BlindBoard(MovesBoard):
         goal = find_cell(task.grid, "G")
         signs[goal] = ("@", "good") if goal in belief else ("G", "bold")
         return [
-            *grid_rows(task.grid, signs, self.scale),
+            *grid_rows(task.grid, signs, scale),
             row(),
             row((f"  moves {len(self.moves)}", "bold"), f"   the robot may be in {len(belief)} places"),
         ]

@@ -123,19 +123,19 @@ class DevicesBoard(Board):
     def undo(self) -> None:
         self._lasers = self._history.take(self._lasers)
 
-    def rows(self) -> list[Row]:
+    def rows(self, scale: int = 1) -> list[Row]:
         task, seen = self._task, self._task.seen_from(self._lasers)
+        lit = {square for laser in self._lasers for square in _lit(task, laser)}
         signs: dict[Cell, tuple[str, str]] = {}
         for square in task.floor:
-            is_lit = any(task.sees(laser, square) for laser in self._lasers)
-            signs[square] = ("·", "warn") if is_lit else (" ", "")
+            signs[square] = ("·", "warn") if square in lit else (" ", "")
         for name, square in task.places.items():
             signs[square] = (name.upper(), "good") if name in seen else (name, "bold")
         signs |= dict.fromkeys(self._lasers, ("*", "warn"))
         under = signs[self._cursor][0]
         signs[self._cursor] = ("+" if under in " ·" else under, "chosen")
         return [
-            *grid_rows(task.grid, signs, self.scale),
+            *grid_rows(task.grid, signs, scale),
             row(),
             row(
                 (f"  lasers {len(self._lasers)}", "bold"),
@@ -161,6 +161,12 @@ def _visible(task: DevicesTask) -> dict[Cell, frozenset[str]]:
         square: frozenset(name for name, place in places.items() if task.sees(square, place))
         for square in task.floor
     }
+
+
+@cache
+def _lit(task: DevicesTask, laser: Cell) -> frozenset[Cell]:
+    """Computes which squares of the floor are seen from one of them."""
+    return frozenset(square for square in task.floor if task.sees(laser, square))
 
 
 @cache

@@ -126,7 +126,7 @@ class LayersBoard(Board):
         self._layers = self._history.take(self._layers)
         self._column = min(self._column, len(self._layers))
 
-    def rows(self) -> list[Row]:
+    def rows(self, scale: int = 1) -> list[Row]:
         width = max(len(name) for name in self._names) + 2
         columns = min(len(self._layers) + 1, MAX_LAYERS)
         wrong = find_breaches(self._case, self._plan)

@@ -165,7 +165,7 @@ class PassByBoard(Board):
     def undo(self) -> None:
         self._moves[self._active] = self._moves[self._active][:-1]
 
-    def rows(self) -> list[Row]:
+    def rows(self, scale: int = 1) -> list[Row]:
         task, tick = self._task, len(self._moves[self._active])
         signs = {goal: (name, "good") for name, goal in zip("ab", task.goals, strict=True)}
         signs |= dict.fromkeys(task.starts, (" ", ""))
@@ -182,7 +182,7 @@ class PassByBoard(Board):
         state = f"they meet at tick {meeting}" if meeting else "they do not meet"
         ticks = max(map(len, self._moves))
         return [
-            *grid_rows(task.grid, signs, self.scale),
+            *grid_rows(task.grid, signs, scale),
             row(),
             *plans,
             row((f"  ticks {ticks}", "bold"), f"   shown: after tick {tick}   {state}"),

@@ -264,7 +264,7 @@ class PolicyBoard(Board):
     def undo(self) -> None:
         self._policy = self._history.take(self._policy)
 
-    def rows(self) -> list[Row]:
+    def rows(self, scale: int = 1) -> list[Row]:
         task, start = self._task, find_cell(self._task.grid, START)
         look = task.look(self._cursor) if self._cursor in self._policy else None
         signs = {
@@ -281,7 +281,7 @@ class PolicyBoard(Board):
         signs[self._cursor] = (signs[self._cursor][0], "chosen")
         worth = f"  worth {value_of(task, self._policy):.3f} from S, at {start[0]},{start[1]}"
         return [
-            *grid_rows(task.grid, signs, self.scale),
+            *grid_rows(task.grid, signs, scale),
             row(),
             row((worth, "bold")),
             row((f"  {task.prices}", "dim")),

@@ -117,7 +117,7 @@ class RoundBoard(MovesBoard):
         super().__init__(task, answer, MAX_MOVES)
         self._round = task
 
-    def rows(self) -> list[Row]:
+    def rows(self, scale: int = 1) -> list[Row]:
         task = self._round
         cell, left = walked(task, self.moves)
         signs = {
@@ -127,7 +127,7 @@ class RoundBoard(MovesBoard):
         signs[cell] = ("@", "chosen")
         visited = len(task.places) - len(left)
         return [
-            *grid_rows(task.grid, signs, self.scale),
+            *grid_rows(task.grid, signs, scale),
             row(),
             row(
                 (f"  moves {len(self.moves)}", "bold"),

@@ -195,7 +195,7 @@ class TuningBoard(Board):
     def undo(self) -> None:
         self._numbers = self._history.take(self._numbers)
 
-    def rows(self) -> list[Row]:
+    def rows(self, scale: int = 1) -> list[Row]:
         learned = learn(self._task, tuple(self._numbers.values()))
         rows = []
         for number, (name, values) in enumerate(CHOICES.items()):
