@@ -269,7 +269,7 @@ class Executor:
                     or not context.ok()
                 )
 
-            was_changed = graph.wait(is_changed, until, what="spinning")
+            was_changed = graph.wait(is_changed, until, what="spinning", settles=until != next_due)
             self._is_woken = False
             if not context.ok() and context.ended_from_outside:
                 raise ExternalShutdownException
