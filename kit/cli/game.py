@@ -306,7 +306,7 @@ def replay(workspace: Path | None, level: str, driver: str | None) -> None:
 def leaderboard(workspace: Path | None) -> None:
     """Show the leaderboard of this machine: medals, then best times. Every drive on it is run again and judged here."""
     from kit.school.game.leaderboard import has_joined, leaderboard_folder, read_entries, standings
-    from kit.tui.rows.level_rows import leaderboard_standings, leaderboard_times
+    from kit.tui.rows.leaderboard_rows import leaderboard_standings, leaderboard_times
 
     with _open_journal(workspace) as (_progress, _):
         found = read_entries(leaderboard_folder())
@@ -447,7 +447,8 @@ def _record_drive(
     from kit.school.game.drive_records import record_drive
     from kit.school.game.player_progress import BY_HAND
     from kit.school.game.references import reference_seconds
-    from kit.tui.rows.level_rows import ladder_rows, starts_rows
+    from kit.tui.rows.ladder_rows import ladder_rows
+    from kit.tui.rows.level_rows import starts_rows
 
     record = record_drive(journal, opened_workspace, level, driver, drives, facts or BY_HAND)
     finishes = [each for each, _ in drives]

@@ -18,7 +18,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any, Final
 
@@ -99,6 +99,8 @@ class WarmInterpreter:
         return self
 
     def __exit__(self, *_: object) -> None:
+        with suppress(OSError):  # it has ended
+            self._requests.shutdown(socket.SHUT_RDWR)  # a fork of this process may hold it open
         self._requests.close()
         self._process.wait()
 
@@ -127,7 +129,7 @@ class WarmInterpreter:
             answer = b""
         os.close(out[1])
         os.close(err[1])
-        if not answer:  # the interpreter has ended: where a process may be forked beside another is not told by the kernel's version
+        if not answer:  # the interpreter has ended: not every kernel of such a version lets it fork
             os.close(out[0])
             os.close(err[0])
             return process.start_cold(command, stdin=stdin, cwd=cwd, env=env, pass_fds=pass_fds, **options)

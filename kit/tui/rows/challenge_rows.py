@@ -16,8 +16,9 @@ from kit.school.game.needed import Bin
 from kit.school.lessons.reading import lesson_number
 from kit.school.lessons.shell_lines import shell_path
 from kit.tui.rows.drive_end_rows import needed_rows
-from kit.tui.rows.level_rows import MEDAL_SIGNS, MEDAL_STYLES, TITLE_WIDTH
+from kit.tui.rows.level_rows import TITLE_WIDTH
 from kit.tui.rows.medal_rows import medal_row
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES
 from kit.tui.rows.progress_marks import share_bar
 
 TITLE_COLUMNS: Final = TITLE_WIDTH + 8

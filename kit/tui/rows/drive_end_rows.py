@@ -11,8 +11,9 @@ from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.levels import GameLevel, all_worlds
 from kit.school.game.needed import Bin
 from kit.school.game.race import DriverKind, RaceFinish
-from kit.tui.rows.level_rows import BAR, NO_STAR, STAR
+from kit.tui.rows.level_rows import BAR
 from kit.tui.rows.medal_rows import medal_row
+from kit.tui.rows.medal_signs import NO_STAR, STAR
 
 
 def finish_sentence(finish: RaceFinish) -> str:

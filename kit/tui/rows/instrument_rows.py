@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 from kit.document.rows import Row, row
 from kit.tui.rows.chart_rows import laser_chart, time_chart
-from kit.tui.rows.readout_rows import message_row, readout
+from kit.tui.rows.readout_rows import message_rows, readout
 from kit.tui.rows.ruled_title import ruled_title
 
 if TYPE_CHECKING:
@@ -79,7 +79,10 @@ def instruments(
     left = height - len(rows)
     if view.messages and left > 2:
         shown = view.messages[-max(1, min(len(view.messages), 8, left - 1)) :]
-        rows += [ruled_title("messages", width), *(message_row(record, width) for record in shown)]
+        rows += [
+            ruled_title("messages", width),
+            *(each for record in shown for each in message_rows(record, width)),
+        ]
     left = height - len(rows)
     if program and left > 3:
         rows += [

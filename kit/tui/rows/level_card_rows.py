@@ -14,14 +14,8 @@ from kit.school.game.medal import RUNGS, medal_time
 from kit.school.game.player_progress import ExtraRule
 from kit.school.game.race import DriverKind
 from kit.tui.rows.drive_end_rows import sector_rows
-from kit.tui.rows.level_rows import (
-    MEDAL_SIGNS,
-    MEDAL_STYLES,
-    NO_STAR,
-    RESULT_BAR,
-    STAR,
-    ladder_bar,
-)
+from kit.tui.rows.ladder_rows import RESULT_BAR, ladder_bar
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, STAR
 from kit.tui.rows.ruled_title import ruled_title
 
 COLUMN: Final = 54

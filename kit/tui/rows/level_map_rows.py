@@ -10,18 +10,8 @@ from typing import Final
 from kit.document.rows import Row
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import LevelProgress
-from kit.tui.rows.level_rows import (
-    DOWN,
-    LEAST_COLUMNS,
-    LEAST_ROWS,
-    LEFT,
-    MEDAL_SIGNS,
-    MOST_COLUMNS,
-    MOST_ROWS,
-    RIGHT,
-    SHUT,
-    UP,
-)
+from kit.tui.rows.level_rows import DOWN, LEAST_COLUMNS, LEAST_ROWS, LEFT, MOST_COLUMNS, MOST_ROWS, RIGHT, UP
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, SHUT
 
 GAP: Final = 4
 """Columns between two pictures, for the lines."""

@@ -6,7 +6,7 @@ from typing import Final
 
 from kit.document.rows import Row, row
 from kit.school.game.medal import Medal
-from kit.tui.rows.level_rows import MEDAL_SIGNS, MEDAL_STYLES
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES
 
 
 def medal_row(medal: Medal, *, is_new: bool) -> Row:

@@ -97,14 +97,20 @@ def failure_or_messages(view: View, rows: int, width: int) -> tuple[Row, ...]:
     if view.failure is not None:
         lines = wrap(str(view.failure), width, most=rows)
         return tuple(row((line, "bad")) for line in lines)
-    return tuple(message_row(record, width) for record in view.messages[-rows:])
+    shown: tuple[Row, ...] = ()
+    for record in reversed(view.messages[-rows:]):  # the newest one has as many rows as it needs
+        if len(shown) < rows:
+            shown = (*message_rows(record, width, rows - len(shown)), *shown)
+    return shown
 
 
-def message_row(record: LogRecord, width: int) -> Row:
-    """A message in one row: its time, who says it, its first line as far as it fits."""
-    head = f"{format_clock(record.time_ns / 1e9):>7} {record.name}: "
-    text: StyledText = (
-        record.text.partition("\n")[0][: max(0, width - len(head))],
-        _LOUD.get(record.severity.name, ""),
-    )
-    return row((head, "dim"), text)
+def message_rows(record: LogRecord, width: int, most: int = 1) -> list[Row]:
+    """A message in at most so many rows: its time, who says it, its first line; dots stand for what does not fit."""
+    clock = f"{format_clock(record.time_ns / 1e9):>7} "
+    head = f"{clock}{record.name}: "
+    text = record.text.partition("\n")[0]
+    style = _LOUD.get(record.severity.name, "")
+    fits = len(head) + len(text) <= width
+    lines = [head + text] if fits else wrap(text, width, head, " " * len(clock), most=most)
+    first: StyledText = (lines[0][len(head) :], style)
+    return [row((lines[0][: len(head)], "dim"), first), *(row((line, style)) for line in lines[1:])]

@@ -18,8 +18,8 @@ from kit.school.game.drive_records import join_leaderboard
 from kit.school.game.levels import all_levels
 from kit.school.game.player_progress import LevelProgress, level_progress
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
-from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.leaderboard_rows import leaderboard_standings, leaderboard_times, times_to_beat
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.text_screen import COLUMN, TextScreen
 from kit.tui.widgets.text_rows import TextRows
@@ -62,10 +62,10 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         self._has_joined = leaderboard.has_joined(self._folder)
         entries = await to_thread(leaderboard.read_entries, self._folder)
         own = () if entries else await to_thread(self._own_progress)
-        standings = level_rows.leaderboard_standings(leaderboard.standings(entries), self._offer)
+        standings = leaderboard_standings(leaderboard.standings(entries), self._offer)
         page = Page(width=COLUMN - 4, margin=2)
         self._rows = (row(), *rows_of(standings, page))
-        times = level_rows.leaderboard_times(entries) if entries else level_rows.times_to_beat(own)
+        times = leaderboard_times(entries) if entries else times_to_beat(own)
         self._beside = (row(), *rows_of([times], page))
         self._width = 0
         if self.query(TextRows):  # not where the screen was left meanwhile

@@ -43,6 +43,7 @@ from kit.tui.input.drive_keys import drive_key, named
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_card_rows import level_card
+from kit.tui.rows.medal_signs import MEDAL_STYLES
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.level_pictures import GHOST_LOOKS, ghost_marks, ghost_paths
 from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish
@@ -330,7 +331,7 @@ class LevelDrive(WatchScreen):
             self._behind = finish.seconds - reference  # as the result says it
             self._rows("heading").show([self._heading(finish.seconds)])
         medal = medal_of(finish, reference, self._driver)
-        earned = (f" {medal.title}", level_rows.MEDAL_STYLES[medal]) if self._level.has_medals else ""
+        earned = (f" {medal.title}", MEDAL_STYLES[medal]) if self._level.has_medals else ""
         self._result_row = row(earned, "  r restarts, Esc goes back to the levels.")
         track = recording.track(self._scenario.partners[0])
         has_splits = finish.reached and self._reference is not None

@@ -34,6 +34,7 @@ from kit.school.game.starts import film_scenario
 from kit.school.lessons.shell_lines import shell_path
 from kit.tui.rows import drive_end_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.ladder_rows import ladder_of_drive
 from kit.tui.rows.medal_rows import medal_drawing
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.lesson_drive import RecordingScreen
@@ -119,7 +120,7 @@ class DriveResultScreen(ModalScreen[Wish]):
         ]
         self._before_finish = [
             *drive_end_rows.earned(result.level, finish, record),
-            *level_rows.ladder_of_drive(finish, record, result.driver, result.reference),
+            *ladder_of_drive(finish, record, result.driver, result.reference),
             *level_rows.starts_rows(result.finishes, record.counts),
             *drive_end_rows.compared(finish, record, result.reference, result.ghosts),
             *drive_end_rows.sector_rows(result.splits),

@@ -17,8 +17,8 @@ from kit.dialogue.screen_action import ScreenAction, letter
 from kit.document.blocks import Block, Text
 from kit.document.rows import row, spread
 from kit.plain_text import counted, format_size
-from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.training_list_rows import about_run, no_trainings, training_list
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, NameDialog, wrapped
 from kit.tui.screens.new_training import SWEEPS, NewTrainingScreen, TrainingChoices
 from kit.tui.screens.picker import Picker, PickerItem
@@ -149,9 +149,9 @@ class TrainingsScreen(RowsScreen[None]):
         else:
             room, columns = max(2, self.size.height - 3), self._rows("body").size.width or width
             self._rows("body").show(
-                training_rows.training_list(runs, self._chosen, self._marked, columns, room)
+                training_list(runs, self._chosen, self._marked, columns, room)
                 if runs
-                else training_rows.no_trainings(self._tasks, columns, room)
+                else no_trainings(self._tasks, columns, room)
             )
         chosen = self._chosen_run
         if self._first_task.display:
@@ -159,7 +159,7 @@ class TrainingsScreen(RowsScreen[None]):
         if self.is_active:
             self._preview.follow(chosen.run if chosen is not None and self._preview.display else None)
         total = sum(each.disk_bytes for each in runs or ())
-        about = training_rows.about_run(self._chosen_run, total, width)
+        about = about_run(self._chosen_run, total, width)
         self._rows("note").show([row((self._note[:width], "warn")) if self._note else about])
         unusable = (
             ()

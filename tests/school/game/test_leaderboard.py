@@ -33,7 +33,7 @@ from kit.school.game.references import drive_reference
 from kit.school.game.shared_drives import MAX_FILE_BYTES, platform_key, share_drives
 from kit.school.game.starts import OWN_SEED
 from kit.school.progress import EventKind, ProgressJournal
-from kit.tui.rows.level_rows import leaderboard_times
+from kit.tui.rows.leaderboard_rows import leaderboard_times
 from kit.workspace import open_workspace
 from tests.kit_content import kit_levels
 from tests.school.game.measured_drivers import LASER_PROGRAM, drive, keys_drive, tape_drives
