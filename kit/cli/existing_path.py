@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from kit.plain_files import near_file
-
-if TYPE_CHECKING:
-    pass
 
 
 class ExistingPath(click.Path):

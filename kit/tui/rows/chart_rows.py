@@ -5,13 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from kit.document.rows import Row, row
-
-if TYPE_CHECKING:
-    pass
-
 
 CHART_ROWS: Final = 5
 

@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from kit.document.rows import Row, row
-
-if TYPE_CHECKING:
-    pass
 
 
 def ruled_title(name: str, width: int, note: str = "") -> Row:

@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from kit.document.rows import Row, row
 from kit.plain_text import wrap
-
-if TYPE_CHECKING:
-    pass
 
 
 def _end_of(value: str, room: int) -> str:

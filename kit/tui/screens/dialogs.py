@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import ClassVar, Final
 
 from textual import events
 from textual.app import ComposeResult
@@ -18,10 +18,6 @@ from kit.tui.input.drive_keys import base_key
 from kit.tui.rows.key_rows import help_page
 from kit.tui.screens.dialog import Dialog
 from kit.tui.widgets.text_rows import TextRows
-
-if TYPE_CHECKING:
-    pass
-
 
 WIDTH: Final = 74
 BORDER_ROWS: Final = 2

@@ -7,7 +7,7 @@ import os
 from asyncio import to_thread
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Final, Literal, TypeAlias
+from typing import ClassVar, Final, Literal, TypeAlias
 
 import numpy as np
 from textual import events, work
@@ -43,10 +43,6 @@ from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import WorldView
 from kit.workspace import Workspace
-
-if TYPE_CHECKING:
-    pass
-
 
 REVEAL_INTERVAL: Final = 0.3
 """Between two rows that appear [s]."""

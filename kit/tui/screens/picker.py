@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import ClassVar, Final
 
 from rich.text import Text
 from textual import events
@@ -19,10 +19,6 @@ from kit.dialogue.screen_action import ScreenAction
 from kit.plain_text import wrap
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.dialog import Dialog
-
-if TYPE_CHECKING:
-    pass
-
 
 LIST_WIDTH: Final = 76
 HIGHEST: Final = 22

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import ClassVar, Final
 
 from textual import events
 from textual.app import ComposeResult
@@ -14,10 +14,6 @@ from kit.document.rows import Row, broken, row, row_width, side_by_side, spread
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import TextRows
-
-if TYPE_CHECKING:
-    pass
-
 
 COLUMN: Final = 80
 """Columns of the left one of two texts beside each other, where there is room for two of them."""
