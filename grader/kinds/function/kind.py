@@ -334,7 +334,7 @@ class FunctionCollector(CachingCollector):
             printed = tuple(printable(line.text) for line in functions.take_output().lines)
         except StudentCodeError as error:
             self._close()
-            return failed_record(blank, clock.explain(error.failure), spec.name, case)
+            return failed_record(blank, clock.explain(error.failure), case)
         found = FunctionComparison(spec.name, len(cases), tuple(differences))
         explanation = found.explain_first()
         return EvidenceRecord(
@@ -348,14 +348,12 @@ class FunctionCollector(CachingCollector):
         )
 
 
-def failed_record(
-    blank: EvidenceRecord, failure: Failure, name: str, case: Mapping[str, Json] | None
-) -> EvidenceRecord:
-    """Returns the evidence of a function that failed; names the call unless the case is secret."""
+def failed_record(blank: EvidenceRecord, failure: Failure, case: Mapping[str, Json] | None) -> EvidenceRecord:
+    """Returns the evidence of a function that failed; tells its arguments unless the case is secret."""
     if case is not None and not blank.secret and failure.kind is FailureKind.EXCEPTION:
-        arguments = ", ".join(f"{key}={format_value(value)}" for key, value in case.items())
+        arguments = ", ".join(f"{key}={format_value(value)}" for key, value in case.items()) or "nothing"
         end = "" if failure.message.endswith((".", "?", "!")) else "."
-        failure = replace(failure, message=f"{failure.message}{end} It was called as {name}({arguments}).")
+        failure = replace(failure, message=f"{failure.message}{end} It was called with {arguments}.")
     return EvidenceRecord(
         failure=failure, label=blank.label, secret=blank.secret, outcome=f"stopped ({failure.kind.value})"
     )
@@ -390,7 +388,7 @@ def format_value(value: Json) -> str:
         more = f", ... {len(value)} in all" if len(value) > MAX_SHOWN else ""
         return f"[{shown}{more}]"
     if type(value) is float:
-        return f"{value:.6g}"
+        return f"{value + 0.0:.6g}"  # without the sign of a zero
     return printable(repr(value)[:200])
 
 

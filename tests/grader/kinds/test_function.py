@@ -228,6 +228,7 @@ def test_what_is_the_same(expected: object, actual: object, same: bool) -> None:
 
 def test_long_lists_are_shortened() -> None:
     assert format_value([0.5] * 91) == "[0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, ... 91 in all]"
+    assert format_value([-0.0, -0.25]) == "[0, -0.25]"
 
 
 def test_a_number_that_is_none_reaches_the_student_wherever_it_stands(tmp_path: Path) -> None:
