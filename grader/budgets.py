@@ -36,15 +36,15 @@ class BudgetKey:
     factor: int = 1
     """What one unit of it is in the field's unit."""
 
-    def default(self) -> float:
-        """Returns the grader's own limit, in the unit of the key."""
-        return float(getattr(GRADER_LIMITS, self.limit)) / self.factor
+    def default(self, limits: Limits = GRADER_LIMITS) -> float:
+        """Returns the limit among these, in the unit of the key."""
+        return float(getattr(limits, self.limit)) / self.factor
 
-    def read(self, section: Section) -> Any:
-        """Reads the field's value from the section; the grader's own limit where the key is missing."""
+    def read(self, section: Section, limits: Limits) -> Any:
+        """Reads the field's value from the section; that of ``limits`` where the key is missing."""
         if self.minimum is None:
-            return section.number(self.name, self.default(), above=0, maximum=self.maximum)
-        default = int(self.default())
+            return section.number(self.name, self.default(limits), above=0, maximum=self.maximum)
+        default = int(self.default(limits))
         return self.factor * section.integer(self.name, default, minimum=self.minimum, maximum=self.maximum)
 
 
@@ -61,11 +61,14 @@ BUDGET_KEYS: Final = (
 """Every key but ``submission``, in the order in which they are listed for teachers."""
 
 
-def read_budget(section: Section | None, trials: tuple[Trial, ...]) -> tuple[Limits, float]:
-    """Reads the limits of each process, and the wall clock of the whole submission [s]."""
+def read_budget(
+    section: Section | None, trials: tuple[Trial, ...], usual: Limits = GRADER_LIMITS
+) -> tuple[Limits, float]:
+    """Reads the limits of each process, and the wall clock of the whole submission [s]. ``usual``: those of the assignment's
+    kind, which hold where the section sets no others."""
     if section is None:
-        return GRADER_LIMITS, default_submission_limit_s(trials, GRADER_LIMITS)
-    limits = replace(GRADER_LIMITS, **{key.limit: key.read(section) for key in BUDGET_KEYS})
+        return usual, default_submission_limit_s(trials, usual)
+    limits = replace(usual, **{key.limit: key.read(section, usual) for key in BUDGET_KEYS})
     default = default_submission_limit_s(trials, limits)
     limit_s = section.number(SUBMISSION_KEY, default, above=0, maximum=MAX_SUBMISSION_LIMIT_S)
     section.finish()
@@ -89,7 +92,7 @@ def default_submission_limit_s(trials: tuple[Trial, ...], limits: Limits) -> flo
 def budget_lines() -> Iterator[tuple[str, str]]:
     """Yields each key with what it means and its default, for teachers."""
     for key in BUDGET_KEYS:
-        yield key.name, f"{key.meaning}; {key.default():g} unless it is set"
+        yield key.name, f"{key.meaning}; {key.default():g} unless it or the kind sets another"
     longest = f"{DEFAULT_SUBMISSION_LIMIT_S:g}"
     meaning = (
         f"seconds of wall clock of the whole submission; by default what its episodes take, at most {longest}"

@@ -39,6 +39,8 @@ class Check:
     """For a measure that is 0 or 1: the words for both."""
     faults: Faults | None = None
     """None where the feedback says all."""
+    is_explained: bool = False
+    """Whether what the evidence explains says all: a student then reads no measure beside it."""
 
     def format(self, measure: float, *, beside: float = 1.0) -> str:
         """Formats a measure in words, or as a number with its unit. A share reads unlike ``beside``, that it is compared with,
@@ -63,6 +65,7 @@ def check(
     params: type[Any] = NoParams,
     words: tuple[str, str] | None = None,
     faults: Faults | None = None,
+    is_explained: bool = False,
 ) -> Callable[[Callable[[Any, Any], float]], Check]:
     """Makes a check of a function; its docstring is the feedback."""
 
@@ -77,6 +80,7 @@ def check(
             feedback=" ".join(text.split()),
             words=words,
             faults=faults,
+            is_explained=is_explained,
         )
 
     return make

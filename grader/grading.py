@@ -42,7 +42,7 @@ from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.probe import highest_level_up_to
 from kit.host.sandbox.process_control import shield_this_process
 from kit.host.sandbox.sandbox_config import Level
-from kit.plain_text import holds_text
+from kit.plain_text import counted, holds_text
 from kit.results.grading_result import (
     PUBLIC_CASES,
     PUBLIC_SEEDS,
@@ -149,10 +149,12 @@ class Grading:
         """Whether everything public was run. Nothing secret is run before: what a program says after that is not shown."""
         with admitting(assignment.packages):
             kind = find_kind(assignment.kind)
-        self._checks, self._tells_secret_runs = kind.checks, kind.tells_secret_runs
+        self._checks, self._seed_decides = kind.checks, kind.seed_decides
         self._scored: dict[str, tuple[_ScoredEvidence, ...]] = {}
         self._tests: dict[str, CriterionResult] = {}
         self._counterexamples: dict[str, _ScoredEvidence | None] = {}
+        self._tried_counts: dict[str, int] = {}
+        """By criterion: the counterparts that were looked at."""
         self.has_given_secrets = False
         """Whether ``evidence`` has returned any secret evidence."""
         self._first_shown: dict[str, Criterion] = {}
@@ -264,16 +266,17 @@ class Grading:
         return _public_failure(failed[0]) if failed else None
 
     def worst_evidence(self) -> Evidence | None:
-        """Returns the public evidence that lost the most points; None if nothing lost any."""
+        """Returns the public evidence that lost the most points; in a student's own check, where that lost none, the secret; None
+        if nothing lost any."""
         shares: dict[int, tuple[float, Evidence]] = {}
         examples = [(each,) for each in self._counterexamples.values() if each is not None]
         for scored in (*self._scored.values(), *examples):
             for each in scored:
-                if not each.evidence.secret:
+                if not each.evidence.secret or self._looks_afterwards:
                     before = shares.get(id(each.evidence), (0.0, each.evidence))[0]
                     shares[id(each.evidence)] = before + 1.0 - each.share, each.evidence
-        lost, evidence = max(shares.values(), key=lambda each: each[0], default=(0.0, None))
-        return evidence if lost > 0 else None
+        lost = [each for each in shares.values() if each[0] > 0]
+        return max(lost, key=lambda each: (not each[1].secret, each[0]), default=(0.0, None))[1]
 
     def first_public_evidence(self) -> Evidence | None:
         """Returns what the first criterion saw first, secret evidence aside: the run to show where nothing was lost."""
@@ -313,19 +316,21 @@ class Grading:
             status = status_of_failure(worst.failure)
         check = self._checks[criterion.check]
         rationale = "" if full else self._rationale(criterion, shown, worst)
+        hints = () if full else self._hints(criterion, rationale, worst)
         return replace(
             blank,
             status=status,
             points=round(criterion.points * share, 6),
             rationale=rationale,
-            hints=() if full else self._hints(criterion, rationale, worst),
+            hints=hints,
+            knows_mistake=bool(hints) and hints[0] not in criterion.hints,
             expected=check.format(criterion.anchors.full),
             actual=""
-            if worst is None or worst.measure is None
+            if worst is None or worst.measure is None or check.is_explained
             else check.format(worst.measure, beside=criterion.anchors.full),
             metrics={"share": round(share, 6)},
             episodes=tuple(map(_summary, scored)),
-            log="" if worst is None else "\n".join(worst.evidence.printed),
+            log="" if worst is None or worst.evidence.secret else "\n".join(worst.evidence.printed),
             replay="" if full or worst is None else worst.evidence.picture(criterion.check),
             uses_secrets=any(each.evidence.secret for each in scored),
             teacher_note="" if full else self._teacher_note(criterion, scored),
@@ -335,15 +340,14 @@ class Grading:
         self, criterion: Criterion, scored: Sequence[_ScoredEvidence], *, full: bool
     ) -> Sequence[_ScoredEvidence]:
         """Returns the evidence that a student is told of: the public, or where only secret evidence lost points, a
-        counterpart that loses points too; else the secret itself, where the kind tells of it. Empty if none of these was
-        found."""
+        counterpart that loses points too; else, in a student's own check, the secret itself. Empty if none of these was found."""
         public = [each for each in scored if not each.evidence.secret]
         if full or any(each.share < 1.0 for each in public):
             return public
         if self._looks_afterwards and criterion.id not in self._counterexamples:
             self._counterexamples[criterion.id] = self._find_counterexample(criterion)
         found = self._counterexamples.get(criterion.id)
-        if found is None and self._looks_afterwards and self._tells_secret_runs:
+        if found is None and self._looks_afterwards:
             return scored
         return [] if found is None else [found]
 
@@ -395,7 +399,8 @@ class Grading:
 
     def _find_counterexample(self, criterion: Criterion) -> _ScoredEvidence | None:
         """Returns the first public counterpart that loses points; None if all that the collector makes earn everything."""
-        for evidence in self._collector.counterparts(criterion):
+        for number, evidence in enumerate(self._collector.counterparts(criterion), 1):
+            self._tried_counts[criterion.id] = number
             scored = self._score_counterpart(criterion, evidence)
             if scored.share < 1.0:
                 return scored
@@ -455,7 +460,8 @@ class Grading:
         evidence, failure = worst.evidence, worst.failure
         if failure is not None:
             if evidence.secret:
-                return f"{COARSE_RATIONALES[status_of_failure(failure)]} ({evidence.label})."
+                text = f"{COARSE_RATIONALES[status_of_failure(failure)]} ({evidence.label})."
+                return f"{text} {self._what_differs(criterion, shown)}".strip()
             # That a file cannot be read has nothing to do with where it would have been used.
             is_unread = failure.kind in (FailureKind.SYNTAX, FailureKind.IMPORT)
             text = f"{failure}" if is_unread else f"{failure} ({evidence.label})"
@@ -473,9 +479,26 @@ class Grading:
             count=len(shown),
         )
         explanation = evidence.explain(criterion.check, criterion.params)
-        if not evidence.secret and self._shown_before(criterion, explanation):
+        if check.is_explained and explanation:
+            text = ""
+        if evidence.secret:
+            return " ".join(filter(None, (text, explanation, self._what_differs(criterion, shown))))
+        if self._shown_before(criterion, explanation):
             return text
         return f"{text} {explanation}".strip()
+
+    def _what_differs(self, criterion: Criterion, shown: Sequence[_ScoredEvidence]) -> str:
+        """Says of points that secret evidence alone has lost, which is shown, what may be the reason; once, and not to a teacher."""
+        secret = [each for each in shown if each.evidence.secret]
+        if len(secret) == len(shown) or not self._looks_afterwards:
+            return ""
+        lost = sum(each.share < 1.0 for each in secret)
+        tried = self._tried_counts.get(criterion.id, 0)
+        more = f" and with {counted(tried, 'further seed')} that were tried" if tried else ""
+        lost_seeds = "the secret one" if len(secret) == 1 else f"{lost} of {len(secret)} secret ones"
+        counts = f"It is met with all public seeds{more}, but not with {lost_seeds}."
+        text = f"{counts} {self._seed_decides}".strip()
+        return "" if self._shown_before(criterion, text) else text
 
     def _hints(self, criterion: Criterion, rationale: str, worst: _ScoredEvidence | None) -> tuple[str, ...]:
         """Returns the criterion's hints, that for the mistake that was made first; none where a file with data cannot be
@@ -570,8 +593,8 @@ def open_grading(
     level = level_for_untrusted(assignment, options.level)
     if options.secret and level < assignment.level:
         raise LevelTooLow(
-            f"{assignment.title} uses its secret seeds at confinement level {int(assignment.level)} or higher, "
-            f"not at {int(level)}. `kit doctor` says what this machine can do."
+            f"{assignment.title} uses its secret.yaml at confinement level {int(assignment.level)} or higher, not at "
+            f"{int(level)}: that is the `level` of its assignment.yaml. `kit doctor` says what this machine can do."
         )
     may_lower_level = options.may_lower_level and options.level is None and not options.secret
     available = _available_level(assignment, level, secret=options.secret, may_lower_level=may_lower_level)
@@ -606,7 +629,7 @@ def level_unavailable_text(assignment: Assignment, level: Level, *, secret: bool
     """Says that this machine does not reach a level, and how to grade at the one that it has."""
     text, available = LEVEL_NOT_REACHED.format(int(level)), highest_level_up_to(level)
     if secret and available < assignment.level:
-        return text  # secret seeds are never used below the assignment's level
+        return text  # its secret file is never used below the assignment's level
     if available is Level.LIMITED:
         return f"{text} To grade without it, use --level 0: a submitted program can then read and change anything that you can."
     return f"{text} To grade at level {int(available)}, use --level {int(available)}."

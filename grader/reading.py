@@ -78,7 +78,7 @@ def read_sheet(
     kind_record = find_kind(kind)
     teacher_test_files = tuple(_teacher_test_files(section, folder))
     task = kind_record.read_settings(AssignmentFiles(folder, section, secrets))
-    limits, submission_limit_s = read_budget(section.section("budget", None), task.trials)
+    limits, submission_limit_s = read_budget(section.section("budget", None), task.trials, kind_record.limits)
     if secrets is not None:
         secrets.finish()
     criteria = tuple(_criteria(section, kind_record.checks, task.trials))

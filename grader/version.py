@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Final
@@ -26,21 +27,30 @@ def grader_version() -> str:
     """
     digest = hashlib.sha256()
     for name, file in _source_files():
-        content = file.read_bytes()
+        content = Path(file).read_bytes()
         digest.update(repr((name, len(content))).encode())
         digest.update(content)
     return f"{_package_version()}+{digest.hexdigest()[:12]}"
 
 
-def _source_files() -> Iterator[tuple[str, Path]]:
-    for package in (grader, kit):
-        folder = Path(package.__path__[0])
-        for file in sorted(folder.rglob("*.py")):
-            name = file.relative_to(folder)
-            if package is grader or name.parts[0] not in UNUSED_PARTS:
-                yield f"{package.__name__}/{name.as_posix()}", file
-    for file in sorted(path for path in maps_folder().rglob("*") if path.is_file()):
-        yield f"maps/{file.relative_to(maps_folder()).as_posix()}", file
+def _source_files() -> Iterator[tuple[str, str]]:
+    """Yields name and path of each file, sorted by name. With ``os``: a thousand paths of pathlib's take a tenth of a check."""
+    for package, parts in ((grader, ()), (kit, UNUSED_PARTS)):
+        for name, file in _files_below(package.__path__[0], parts):
+            if name.endswith(".py"):
+                yield f"{package.__name__}/{name}", file
+    for name, file in _files_below(str(maps_folder()), ()):
+        yield f"maps/{name}", file
+
+
+def _files_below(folder: str, without: Sequence[str]) -> list[tuple[str, str]]:
+    """Returns all files of a folder by their names in it, but for those of some of its own folders."""
+    found = []
+    for place, folders, names in os.walk(folder):
+        inside = place[len(folder) :].replace(os.sep, "/").strip("/")
+        folders[:] = [each for each in folders if each != "__pycache__" and (inside or each not in without)]
+        found += [(f"{inside}/{name}" if inside else name, f"{place}/{name}") for name in names]
+    return sorted(found)
 
 
 def _package_version() -> str:

@@ -26,7 +26,7 @@ OBJECTS: Final[Mapping[str, str]] = MappingProxyType(
     {
         "devices": "a PluginType or WorldPluginType, under its type's name",
         "checks": "a grader's Check, under KIND.CHECK",
-        "kinds": "a grader's Kind, under the kind's name",
+        "kinds": "a grader's SubmissionKind, under the kind's name",
         "dialogues": "a function of a Workspace that makes a Dialogue, under the verb that opens it",
         "verbs": "a click command, under its name",
     }

@@ -17,8 +17,9 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
+from kit.host.process import start_cold, started_by
+from kit.host.warm_start import warm_starts
 from tests.file_selection import may_select, shares
-from tests.warm_start import cold_starts, is_possible, warm_starts
 
 # The same examples on every run; and how long one takes says more about the machine than about the code.
 settings.register_profile("kit", deadline=None, derandomize=True)
@@ -162,7 +163,7 @@ def _own_workspace(
 @pytest.fixture(scope="session", autouse=True)
 def _warm_starts() -> Iterator[None]:
     """Students' processes are forked from a warm interpreter, unless ``KIT_TESTS_COLD`` is set."""
-    if os.environ.get("KIT_TESTS_COLD") or not is_possible():
+    if os.environ.get("KIT_TESTS_COLD"):
         yield
         return
     with warm_starts():
@@ -172,5 +173,5 @@ def _warm_starts() -> Iterator[None]:
 @pytest.fixture
 def cold_start() -> Iterator[None]:
     """For tests that look at how a student's process is started, or at all that it holds from its start."""
-    with cold_starts():
+    with started_by(start_cold):
         yield

@@ -28,8 +28,8 @@ from grader.new_assignment import example_of_exercise, example_of_kind, make_ass
 from grader.reading import SECRET_FILE
 from grader.reports.cleaning import plain
 from grader.self_test import SUCCESS_RATES, try_works, unfair_fail_odds, works_of
+from kit.cli.existing_path import ExistingPath
 from kit.cli.messages import describe_os_error
-from kit.cli.options import ExistingPath
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.plain_text import counted, quoted, suggestion

@@ -22,8 +22,9 @@ from grader.cohort.queue import (
 )
 from grader.grading import GradingOptions
 from grader.reports.cleaning import clean_line, spreadsheet_cell
+from kit.cli.executor_options import executor_options
+from kit.cli.existing_path import ExistingPath
 from kit.cli.messages import describe_error
-from kit.cli.options import ExistingPath, executor_options
 from kit.document.blocks import CellStyle, Column, Table
 from kit.document.layout import lines_of
 from kit.host.job_executors import ExecutorUnavailable, read_shard

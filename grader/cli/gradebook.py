@@ -20,8 +20,8 @@ from grader.cohort.queue import Queue, QueueError
 from grader.cohort.roster import read_roster
 from grader.cohort.statistics import class_document
 from grader.cohort.submission_times import read_submission_times
+from kit.cli.existing_path import ExistingPath
 from kit.cli.messages import describe_error
-from kit.cli.options import ExistingPath
 from kit.document.layout import document_lines, lines_of
 from kit.plain_text import counted
 from kit.workspace import write_atomically

@@ -23,7 +23,7 @@ from grader.new_assignment import CARD
 from grader.sheet_reference import SheetKey, documented_attributes, sheet_keys
 from grader.student_version import ReleaseRefused, StudentVersion, missing_for_practice, student_version
 from grader.teacher_tests import reading as teacher_tests
-from kit.cli.options import ExistingPath
+from kit.cli.existing_path import ExistingPath
 from kit.document.blocks import Block, Code, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.plain_text import counted, join_names
@@ -96,7 +96,7 @@ def release(
     except (ValueError, OSError) as error:
         options.fail(f"{error}.")
     try:
-        _write(files, target)
+        _write_handout(files, target)
     except OSError as error:
         options.fail(f"Cannot write {target}: {error.strerror or error}.")
     click.echo(f"{target}: {counted(len(files), 'file')} for students")
@@ -137,7 +137,7 @@ def repository_files(
     return files
 
 
-def _write(files: Mapping[str, bytes], target: Path) -> None:
+def _write_handout(files: Mapping[str, bytes], target: Path) -> None:
     """Writes the files below the folder ``target``, or into the archive of this name; a folder all or not at all."""
     if target.suffix == ".zip":
         packed = io.BytesIO()

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 import click
 
+from kit.cli.existing_path import ExistingPath
 from kit.cli.messages import on_terminal
-from kit.cli.options import ExistingPath
 
 if TYPE_CHECKING:
     from grader.assignment import Assignment
@@ -49,7 +49,9 @@ level: Decorator = click.option(
     help="Confinement level of programs, exactly that; highest: the highest of this machine.",
 )
 secret: Decorator = click.option(
-    "--secret", is_flag=True, help="Also use the secret seeds: for the grade, on the teacher's machine."
+    "--secret",
+    is_flag=True,
+    help="Also use secret.yaml, its seeds or answers: for the grade, on the teacher's machine.",
 )
 
 
@@ -66,12 +68,12 @@ def load_assignment(folder: Path) -> Assignment:
 
 NO_SECRETS_WARNING: Final = (
     "WARNING: this assignment has a secret.yaml, but --secret was not given. This is not the final grade: what only the "
-    "secret seeds can show is not graded and costs no points. For the grade, run it again with --secret."
+    "secret file can show is not graded and costs no points. For the grade, run it again with --secret."
 )
 
 
 def warn_of_unused_secrets(assignment: Assignment, *, secret: bool) -> None:
-    """Prints a warning on standard error where there are secret seeds that are not used."""
+    """Prints a warning on standard error where there is a secret file that is not used."""
     if assignment.has_secrets and not secret:
         click.echo(NO_SECRETS_WARNING, err=True)
 

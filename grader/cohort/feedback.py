@@ -43,13 +43,13 @@ def write_feedback(queue: Queue, table: Sequence[GradebookRow], folder: Path) ->
         result = None if key is None else queue.result(key)
         name = _page_name(row, pages)
         pages[name] = row.name
-        _write(folder, name, student_document(assignment, row, result))
-    _write(folder, CLASS_PAGE, class_document(assignment, table))
+        _write_feedback(folder, name, student_document(assignment, row, result))
+    _write_feedback(folder, CLASS_PAGE, class_document(assignment, table))
     write_atomically(folder / INDEX, (json.dumps(pages, indent=1, ensure_ascii=False) + "\n").encode())
     return len(pages)
 
 
-def _write(folder: Path, name: str, document: Document) -> None:
+def _write_feedback(folder: Path, name: str, document: Document) -> None:
     for ending, writer in WRITERS:
         write_atomically(folder / f"{name}{ending}", writer(document).encode())
 

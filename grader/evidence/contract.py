@@ -235,13 +235,16 @@ class CachingCollector:
         """
         if key not in self._evidence:
             if (refusal := self._clock.refusal()) is not None:
-                return self._evidence.setdefault(
-                    key, EvidenceRecord(failure=refusal, label=label, secret=secret, outcome="not run")
-                )
+                return self._skip(key, refusal, label, secret=secret)
             self._clock.show_progress(progress or label)
             self._evidence[key] = evidence = run()
             self._clock.note(evidence.failure)
         return self._evidence[key]
+
+    def _skip(self, key: Hashable, failure: Failure, label: str, *, secret: bool) -> Evidence:
+        """Returns the evidence of this key; where there is none yet, a record of why it was not run."""
+        record = EvidenceRecord(failure=failure, label=label, secret=secret, outcome="not run")
+        return self._evidence.setdefault(key, record)
 
     def _collect_counterparts(
         self, runs: Iterable[tuple[Hashable, str, Callable[[], Evidence]]]
@@ -256,8 +259,8 @@ class CachingCollector:
             yield self._counterparts[key]
 
 
-DEATHS: Final = frozenset((FailureKind.EXCEPTION, FailureKind.EXIT))
-"""Failures that end a program by its own doing."""
+DEATHS: Final = frozenset((FailureKind.EXCEPTION, FailureKind.EXIT, FailureKind.TIMEOUT))
+"""Failures that end a program by its own doing, or since it would not end."""
 
 
 class EpisodeCollector(CachingCollector):
@@ -297,21 +300,19 @@ class EpisodeCollector(CachingCollector):
 
     def _evidence_of(self, spec: EpisodeSpec) -> Evidence:
         number = len(self._evidence) + 1
+        key = (spec.trial.name, spec.secret, spec.seed)
+        if self._death is not None:
+            return self._skip(key, self._death, spec.label, secret=spec.secret)
         evidence = self._collect(
-            (spec.trial.name, spec.secret, spec.seed),
-            lambda: self._run_unless_dead(spec),
+            key,
+            lambda: self._run(spec),
             spec.label,
             secret=spec.secret,
             progress=f"episode {number} of {self._episode_count}: {spec.label}",
         )
         if self._stops_at_death and evidence.failure is not None and evidence.failure.kind in DEATHS:
-            self._death = self._death or evidence.failure
+            self._death = evidence.failure
         return evidence
-
-    def _run_unless_dead(self, spec: EpisodeSpec) -> Evidence:
-        if self._death is None:
-            return self._run(spec)
-        return EvidenceRecord(failure=self._death, label=spec.label, secret=spec.secret, outcome="not run")
 
     @cached_property
     def _episode_count(self) -> int:

@@ -14,10 +14,11 @@ from typing import Any, Final, TypeVar
 from grader.assignment import Assignment, Trial
 from grader.check import Check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, SingleEvidence
+from grader.problem_text import problems_text
 from grader.submitted_files import reading_submission
 from kit.extensions import Extension, ExtensionError, extensions, load
 from kit.host.failure import Failure, FailureKind
-from kit.host.wire import printable
+from kit.host.sandbox.limits import GRADER_LIMITS, Limits
 from kit.world.documents import open_document
 from kit.world.problems import WorldError
 from kit.world.yaml_section import Section
@@ -53,7 +54,7 @@ class KindSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class SubmissionKind:
     """One kind of assignment."""
 
     endings: tuple[str, ...]
@@ -64,9 +65,10 @@ class Kind:
     """Notes mistakes in the sections; need not finish these."""
     collect: Callable[[Assignment, Path, EvidenceOptions], AbstractContextManager[EvidenceCollector]]
     """(assignment, the main submitted file, options) -> the collector of its evidence."""
-    tells_secret_runs: bool = False
-    """Whether a student's own check at level 0 says what it found with secret seeds where no public run shows the same:
-    trainings, of which no program of the student's is a part, and whose curves were shown while they ran."""
+    seed_decides: str = ""
+    """A sentence on what differs between seeds: for a student whose work is right with the public ones alone."""
+    limits: Limits = GRADER_LIMITS
+    """Limits of each of its processes, where the assignment's budget sets no others."""
 
 
 def _own_kinds() -> tuple[str, ...]:
@@ -79,13 +81,13 @@ def kind_names() -> tuple[str, ...]:
     return (*_own_kinds(), *extensions("kinds", _own_kinds()))
 
 
-def find_kind(kind: str) -> Kind:
+def find_kind(kind: str) -> SubmissionKind:
     """Returns a kind's record, ``KIND`` of the module ``kind`` in its folder, with the checks that admitted packages add to
     it; imports its module on first use. Raises ExtensionError if a package's part cannot be used."""
     if kind in _own_kinds():
-        found: Kind = import_module(f"{KINDS_PACKAGE}.{kind}.kind").KIND
+        found: SubmissionKind = import_module(f"{KINDS_PACKAGE}.{kind}.kind").KIND
     else:
-        found = _loaded(extensions("kinds")[kind], Kind)
+        found = _loaded(extensions("kinds")[kind], SubmissionKind)
     prefix = f"{kind}."
     own = [f"{prefix}{name}" for name in found.checks]
     added = {
@@ -111,14 +113,13 @@ def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed
         with reading_submission(file.name, WorldError, OSError), open_document(file) as section:
             return make(section)
     except (WorldError, OSError) as error:
-        # The path of the temporary copy means nothing to the student.
-        return Failure(FailureKind.IMPORT, printable(str(error).replace(f"{file.parent}/", "")))
+        return Failure(FailureKind.IMPORT, problems_text(error, file.parent))
 
 
 def collect_once(
     collect_evidence: Callable[[Assignment, Path, EvidenceOptions], EvidenceRecord],
 ) -> Callable[..., AbstractContextManager[EvidenceCollector]]:
-    """Makes a ``Kind.collect`` for a kind with one piece of evidence. Where that is made with a secret seed, the
+    """Makes a ``SubmissionKind.collect`` for a kind with one piece of evidence. Where that is made with a secret seed, the
     public counterpart is collected too when somebody asks for it."""
 
     def collect(

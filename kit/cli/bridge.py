@@ -231,7 +231,7 @@ def zenoh(request: BridgeRequest, connect: tuple[str, ...], listen: tuple[str, .
     address = ZenohAddress(connect or (DEFAULT_ENDPOINT,), listen, domain)
     verb = "listening at" if listen else "by the router at"
     where = f"{verb} {', '.join(address.listen or address.connect)}, domain {domain}"
-    _run(request, where, lambda: ZenohWire(address, f"/{NODE_NAME}"))
+    _run_bridge(request, where, lambda: ZenohWire(address, f"/{NODE_NAME}"))
 
 
 @command.command("dds")
@@ -267,10 +267,10 @@ def dds(request: BridgeRequest, domain: int, interface: str | None, peer: tuple[
     wheels off the ground.
     """
     address = DdsAddress(domain, interface, peer)
-    _run(request, f"by DDS in domain {domain}", lambda: DdsWire(address))
+    _run_bridge(request, f"by DDS in domain {domain}", lambda: DdsWire(address))
 
 
-def _run(request: BridgeRequest, where: str, open_wire: Callable[[], Wire]) -> None:
+def _run_bridge(request: BridgeRequest, where: str, open_wire: Callable[[], Wire]) -> None:
     with ShutdownDeadline(partial(click.echo, err=True)) as deadline:
         if request.is_listing:
             _list_endpoints(open_wire)

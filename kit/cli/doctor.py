@@ -29,7 +29,7 @@ from kit.installation import (
     overwritten_text,
     requirements,
 )
-from kit.kernels.shared_cache import kept_files, shared_folders, why_not_shared
+from kit.kernels.shared_cache import kept_files, shared_folders, unshared_reason
 from kit.plain_text import counted
 from kit.tui.input.protocol import ask_keyboard
 from kit.tui.terminal import TerminalDecision, TerminalFacts, decide_terminal
@@ -193,7 +193,7 @@ def _kernels() -> Finding:
         return Finding(
             section, name, "none", f"Each account compiles for itself. To have them for all: {made}"
         )
-    if problem := why_not_shared(folder):
+    if problem := unshared_reason(folder):
         return Finding(section, name, "not used", f"{problem}. To make them anew: {made}")
     return Finding(section, name, str(folder), "Accounts without kernels of their own use them.")
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from kit.cli import messages, options
+from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import show_screen
 from kit.controllers import find_controller, prepare_workspace
 from kit.run.scenario import Scenario, case_names, find_scenario
@@ -34,7 +35,7 @@ BOTH: Final = ("fields", "abreast")
 
 _CHARGES = click.option(
     "--charges",
-    type=options.ExistingPath(dir_okay=False, path_type=Path),
+    type=ExistingPath(dir_okay=False, path_type=Path),
     help="Use this charge file instead of the map's own.",
 )
 _RUNS = click.option(

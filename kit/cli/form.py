@@ -58,7 +58,7 @@ def command(
             chosen = SurveyPhase(phase) if phase else current_phase(form, journal)
             session = FormSession(form, chosen, journal, again=again)
             if show:
-                _show(form, session.answers, [SurveyPhase(phase)] if phase else list(SurveyPhase))
+                _print_answers(form, session.answers, [SurveyPhase(phase)] if phase else list(SurveyPhase))
             elif terminal.plain.value and session.question is None:
                 again_command = f"kit form {chosen.value} --again"
                 click.echo(
@@ -70,7 +70,7 @@ def command(
                 show_dialogue(FormDialogue(session), terminal)
 
 
-def _show(form: SurveyForm, answers: FormAnswers, phases: list[SurveyPhase]) -> None:
+def _print_answers(form: SurveyForm, answers: FormAnswers, phases: list[SurveyPhase]) -> None:
     """Prints the answers, phase by phase."""
     blocks: list[Block] = []
     for phase in phases:

@@ -202,10 +202,10 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
     """Solve challenges without driving. Break a reward, beat a layer plan, train within a budget, mount the fewest
     lasers, or repair a launch file against the clock.
 
-    Without NAME, list them; with NAME, show one. ANSWER depends on the challenge: moves, a file, or the name of a
-    training run. A better answer earns a better medal.
+    Without NAME, list them; with NAME, show one. ANSWER depends on the challenge: its file, what the file would hold
+    (moves, numbers), or the name of a training run. A better answer earns a better medal.
     """
-    from kit.school.game.challenge import ChallengeError, HandedIn
+    from kit.school.game.challenge import AnswerSubmission, ChallengeError
     from kit.school.game.challenges import (
         all_challenges,
         answers_folder,
@@ -234,7 +234,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                 file, seconds = prepare_answer(journal, chosen, answers_folder(opened_workspace))
             if answer is None:
                 click.echo(
-                    f"{chosen.title}. {chosen.story}\n{chosen.task_text}\nLesson {lesson_number(chosen.lesson)} prepares you for it."
+                    f"{chosen.title}. {chosen.story}\n{chosen.written_task}\nLesson {lesson_number(chosen.lesson)} prepares you for it."
                 )
                 for line in chosen.task.lines():
                     click.echo(line)
@@ -244,7 +244,8 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                     )
                 click.echo(f"To hand in: kit game challenge {chosen.id} ANSWER")
                 return
-            judgement = chosen.task.judge(HandedIn(answer, opened_workspace.runs, seconds))
+            answer = chosen.task.parse_answer(answer)
+            judgement = chosen.task.judge(AnswerSubmission(answer, opened_workspace.runs, seconds))
         except (LookupError, ChallengeError, OSError) as error:
             messages.fail(messages.describe_error(error))
         record_judgement(journal, chosen, judgement)
@@ -305,7 +306,7 @@ def replay(workspace: Path | None, level: str, driver: str | None) -> None:
 def leaderboard(workspace: Path | None) -> None:
     """Show the leaderboard of this machine: medals, then best times. Every drive on it is run again and judged here."""
     from kit.school.game.leaderboard import has_joined, leaderboard_folder, read_entries, standings
-    from kit.tui.rows.level_rows import leaderboard_standings, leaderboard_times
+    from kit.tui.rows.leaderboard_rows import leaderboard_standings, leaderboard_times
 
     with _open_journal(workspace) as (_progress, _):
         found = read_entries(leaderboard_folder())
@@ -446,7 +447,8 @@ def _record_drive(
     from kit.school.game.drive_records import record_drive
     from kit.school.game.player_progress import BY_HAND
     from kit.school.game.references import reference_seconds
-    from kit.tui.rows.level_rows import ladder_rows, starts_rows
+    from kit.tui.rows.ladder_rows import ladder_rows
+    from kit.tui.rows.level_rows import starts_rows
 
     record = record_drive(journal, opened_workspace, level, driver, drives, facts or BY_HAND)
     finishes = [each for each, _ in drives]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from kit.cli import messages, options
+from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen
 from kit.host.failure import StudentCodeError
 from kit.inspection.sockets import sockets_folder, world_name
@@ -227,7 +228,7 @@ where = click.option(
     "--in",
     "folders",
     multiple=True,
-    type=options.ExistingPath(file_okay=False, path_type=Path),
+    type=ExistingPath(file_okay=False, path_type=Path),
     help="Folder to search (default: this one, src, and the workspace's packages).",
 )
 

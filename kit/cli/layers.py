@@ -304,7 +304,7 @@ def explain(
         )
         found, _ = solve_task(task, time_limit=reading.time_limit)
         echo_lines(["", "THE FEWEST LAYERS", ""])
-        echo_lines(words.plan_text(found))
+        echo_lines(words.layer_count_text(found))
         echo_lines(["", *lines_of(assignment_tables(task.case, found.assignment)), ""])
         echo_lines(words.proof_text(found, every_pair=len(found.certificate.conflicting) <= 10))
         echo_lines(words.comparison_text(run, found))
@@ -370,7 +370,7 @@ def show_plan(case: LayerCase, found: LayerPlan, world_plan: WorldPlan | None, t
     """Prints the plan as tables, its proof, the slides' method beside it, and relaxations where it is too large."""
     if world_plan is None:
         echo_lines(words.paragraph(case.title))
-        echo_lines(words.plan_text(found))
+        echo_lines(words.layer_count_text(found))
         assignment, kept = found.assignment, 0
     else:
         echo_lines(words.world_plan_text(world_plan))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from kit.cli import messages, options
+from kit.cli.executor_options import executor_options
 from kit.cli.full_screen import show_screen
 from kit.controllers import find_controller, prepare_workspace
 from kit.document.layout import lines_of
@@ -157,7 +158,7 @@ def withdraw(context: click.Context, name: str) -> None:
     type=click.Choice(["0", "1", "2", "3"]),
     help="How far programs are confined from now on (`kit doctor` lists what this machine has).",
 )
-@options.executor_options("Processes", "Where matches are driven.", may_have_none=False)
+@executor_options("Processes", "Where matches are driven.", may_have_none=False)
 @click.pass_context
 def run(context: click.Context, level: str | None, executor: JobExecutor) -> None:
     """Drive the matches that are missing. What is interrupted goes on where it was.

@@ -12,6 +12,7 @@ import click
 
 from kit.cli import VERBS, messages, options
 from kit.cli.dialogue import Way, run_dialogue
+from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import show_lesson, show_lessons
 from kit.cli.input_lines import InputBuffer
 from kit.cli.plain import HEIGHT, WIDTH, PlainSession, run_plain_session
@@ -63,14 +64,14 @@ TRAIL_POINTS = 100
     "--from",
     "folder",
     metavar="FOLDER",
-    type=options.ExistingPath(file_okay=False, path_type=Path),
+    type=ExistingPath(file_okay=False, path_type=Path),
     help="Use someone else's lessons: texts are Markdown, programs run confined.",
 )
 @click.option(
     "--check",
     "contract_folder",
     metavar="FOLDER",
-    type=options.ExistingPath(file_okay=False, path_type=Path),
+    type=ExistingPath(file_okay=False, path_type=Path),
     help="Check that your own lessons work with --from.",
 )
 @click.option(

@@ -14,6 +14,7 @@ import click
 
 from kit.cli import messages, options
 from kit.cli.dialogue import run_dialogue
+from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen
 from kit.cli.process import ScreenClosed
 from kit.document.blocks import Block, Picture, Table, Text, labelled_table
@@ -126,6 +127,7 @@ def _own_card_of(name: str, own_card: Any, world_file: str) -> MapCard | None:
 def _show_card(card: MapCard, glyphs: str | None, paths: tuple[ScenePath, ...] = ()) -> None:
     from kit.render.encode import ENCODERS
     from kit.render.world_text import scene_rows
+    from kit.run.command_limits import describe_limits
     from kit.run.session import Session
     from kit.run.view import ViewBuilder
 
@@ -133,6 +135,7 @@ def _show_card(card: MapCard, glyphs: str | None, paths: tuple[ScenePath, ...] =
     columns, rows = shutil.get_terminal_size()
     with Session(scenario_on_map(card)) as session:
         scene = ViewBuilder(session).build().scene
+        limits = tuple(describe_limits(session.runner.simulation, session.scenario.partners))
     scene = replace(scene, paths=(*scene.paths, *paths))
     click.echo(f"{card.title}: {card.summary}")
     click.echo("\n".join(scene_rows(scene, columns - 1, max(10, rows - 6), ENCODERS[chosen](True))))
@@ -142,6 +145,8 @@ def _show_card(card: MapCard, glyphs: str | None, paths: tuple[ScenePath, ...] =
             f"{case.name}: from ({x:g}, {y:g}, {theta:g} rad) to within {case.target_radius:g} m of "
             f"({case.target[0]:g}, {case.target[1]:g})"
         )
+    for line in limits:
+        messages.say(line)
 
 
 @command.command()
@@ -271,7 +276,7 @@ def _draw(
 
 
 @command.command(name="from-photo")
-@click.argument("picture", type=options.ExistingPath(dir_okay=False, path_type=Path))
+@click.argument("picture", type=ExistingPath(dir_okay=False, path_type=Path))
 @click.argument("name", required=False)
 @click.option("--width", type=click.FloatRange(0.5, 200.0), help="Width of the whole sheet in the world [m].")
 @click.option(

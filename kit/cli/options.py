@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from functools import reduce, wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from kit.plain_files import near_file
+from kit.cli.existing_path import ExistingPath
 from kit.plain_text import escape_controls
 from kit.tui.terminal import (
     COLOUR_CHOICES,
@@ -25,8 +24,6 @@ from kit.tui.terminal import (
 from kit.workspace import Workspace, WorkspaceError, open_workspace
 
 if TYPE_CHECKING:
-    from kit.host.job_executors import SlurmResources
-    from kit.host.job_folder import ExecutorName
     from kit.run.recording_file import RecordingFile
     from kit.school.progress import ProgressJournal
 from kit.cli.messages import describe_os_error, fail, say
@@ -121,56 +118,6 @@ def controller_option(default: str) -> Decorator:
     )
 
 
-def _read_slurm_resources(
-    context: click.Context, parameter: click.Parameter, given: tuple[str, ...]
-) -> SlurmResources:
-    from kit.host.job_executors import SlurmResources  # what few verbs need
-
-    try:
-        return SlurmResources.read(given)
-    except ValueError as error:
-        raise click.BadParameter(str(error)) from None
-
-
-def executor_options(jobs: str, executor: str, *, may_have_none: bool = True) -> Decorator:
-    """The options ``--jobs``, ``--executor``, ``--cluster`` and ``--slurm``: how many side by side, and where; the verb gets all
-    of it as ``executor``. Both texts are helps."""
-    names = ("local", "slurm", "dask", *(("none",) if may_have_none else ()))
-    options = (
-        click.option(
-            "--jobs",
-            type=click.IntRange(1),
-            default=os.cpu_count() or 1,
-            show_default=True,
-            help=f"{jobs}, or tasks in an array job.",
-        ),
-        click.option(
-            "--executor", type=click.Choice(names), default="local", show_default=True, help=executor
-        ),
-        click.option("--cluster", default="", metavar="ADDRESS", help="Address of the Dask scheduler."),
-        click.option(
-            "--slurm",
-            multiple=True,
-            metavar="NAME=VALUE",
-            callback=_read_slurm_resources,
-            help="What a task asks SLURM for: account, partition, qos, time (04:00:00) or memory (4G); repeat for more.",
-        ),
-    )
-
-    def decorate(function: Callable[..., Any]) -> Callable[..., Any]:
-        @wraps(function)
-        def verb(
-            *args: Any, executor: ExecutorName, jobs: int, cluster: str, slurm: SlurmResources, **given: Any
-        ) -> Any:
-            from kit.host.job_folder import JobExecutor  # what few verbs need
-
-            return function(*args, executor=JobExecutor(executor, jobs, cluster, slurm), **given)
-
-        return reduce(lambda made, option: option(made), reversed(options), verb)
-
-    return decorate
-
-
 controller: Decorator = controller_option("random_walk")
 case: Decorator = click.option(
     "--case", help="Start and target, for a map with several; `kit maps MAP` lists them."
@@ -199,22 +146,6 @@ def color(function: Callable[..., Any]) -> Callable[..., Any]:
         "--color", type=click.Choice(COLOUR_CHOICES), help="Number of colours; NO_COLOR is respected."
     )
     return count(theme(function))
-
-
-class ExistingPath(click.Path):
-    """The path of a file or a folder that is there; for another one, the name that is near is told."""
-
-    def __init__(self, *, file_okay: bool = True, dir_okay: bool = True, path_type: type = Path) -> None:
-        super().__init__(exists=True, file_okay=file_okay, dir_okay=dir_okay, path_type=path_type)
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        try:
-            return super().convert(value, param, ctx)
-        except click.BadParameter as problem:
-            near = near_file(os.fspath(value), is_folder=not self.file_okay)
-            if not near or Path(value).exists():
-                raise
-            raise click.BadParameter(f"{problem.message} Did you mean {near}?", ctx, param) from None
 
 
 root: Decorator = click.option(

@@ -7,6 +7,7 @@ import gc
 import os
 import signal
 import sys
+import threading
 from contextlib import suppress
 from errno import EACCES, EDQUOT, EFBIG, EIO, EMFILE, ENAMETOOLONG, ENFILE, ENOSPC, EPERM, EROFS
 from typing import Final, NoReturn
@@ -21,8 +22,6 @@ FAILED: Final = 1
 """Exit code where what was asked for is not so, or not possible."""
 BAD_INPUT: Final = 2
 """Exit code where an argument is wrong, or something cannot be read or written."""
-SIGNALLED: Final = 128
-"""Exit codes of what a signal has ended are above this, as shells have them."""
 NO_ROOM: Final = frozenset((ENOSPC, EDQUOT, EFBIG))
 REFUSED: Final = frozenset((EACCES, EPERM, EROFS, EIO, ENAMETOOLONG, EMFILE, ENFILE))
 
@@ -71,9 +70,9 @@ def run_as_process(command: click.Command, name: str) -> NoReturn:
     SIGTERM and SIGHUP end it as Ctrl-C does. Where the disk is full, or the folder another user's, one sentence says so in
     place of a traceback; exit code 2.
 
-    After a full screen Python does not take apart what was imported, which takes longer than to leave the screen: the
-    process ends once its output is written. The screen has given the terminal back and removed what it made; the exit
-    handlers of libraries do not run, which would take compiled code away from threads that are still in it.
+    Python does not take apart what was imported, which takes as long as a third of a short check: the process ends once its
+    output is written. After a full screen, which has given the terminal back and removed what it made, the exit handlers of
+    libraries do not run either: they would take compiled code away from threads that are still in it.
     """
     gc.set_threshold(COLLECTED_FROM)
     if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # for the imports; see ``kit.program``
@@ -95,9 +94,10 @@ def run_as_process(command: click.Command, name: str) -> NoReturn:
         write_out()
         os._exit(closed.code if isinstance(closed.code, int) else 0)
     except SystemExit as stop:
-        if not isinstance(stop.code, int) or stop.code <= SIGNALLED:
+        if not isinstance(stop.code, int):
             raise
-        # Python would kill itself by SIGINT, whatever the code, if an `exec` of a library's was interrupted on the way.
+        # Python would also kill itself by SIGINT, whatever the code, if an `exec` of a library's was interrupted on the way.
+        threading._shutdown()  # type: ignore[attr-defined] # it waits for threads, as Python does at its end
         atexit._run_exitfuncs()
         write_out()
         os._exit(stop.code)

@@ -48,7 +48,7 @@ def command(context: click.Context, workspace: Path | None) -> None:
     context.obj = workspace
     if context.invoked_subcommand is None:
         with _open_journal(workspace) as journal:
-            _show(journal)
+            _print_progress(journal)
 
 
 @command.command("export")
@@ -84,7 +84,7 @@ def name_yourself(workspace: Path | None, name: str) -> None:
         click.echo(f"Your name is {shown}.")
 
 
-def _show(journal: ProgressJournal) -> None:
+def _print_progress(journal: ProgressJournal) -> None:
     from kit.tui.rows.level_rows import game_progress
 
     events = journal.events()

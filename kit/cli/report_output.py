@@ -124,7 +124,7 @@ def write_outputs(made: Document, outputs: ReportOutputs, *, printed: Document |
     for folder in (outputs.svg_folder, outputs.csv_folder):
         if folder is not None:
             folder.mkdir(parents=True, exist_ok=True)
-    _write(files)
+    _write_reports(files)
     if to_terminal:
         click.echo(document_to_json(made).encode(), nl=False)
     else:
@@ -136,7 +136,7 @@ def write_outputs(made: Document, outputs: ReportOutputs, *, printed: Document |
         click.echo(messages.replace_unencodable("\n".join(document_lines(printed or made, chosen))))
 
 
-def _write(files: Mapping[Path, str]) -> None:
+def _write_reports(files: Mapping[Path, str]) -> None:
     """Writes each file whole or not at all, and prints which."""
     for file, text in files.items():
         write_atomically(file, text.encode("utf-8", errors="replace"))

@@ -9,6 +9,7 @@ from typing import Final
 import click
 
 from kit.cli import learning_options, messages, options, report_output
+from kit.cli.executor_options import executor_options
 from kit.cli.sweep import run_sweep
 from kit.document.blocks import Document
 from kit.host.job_executors import ExecutorUnavailable
@@ -51,7 +52,7 @@ from kit.workspace import Workspace
     type=click.IntRange(1),
     help="With --again: most steps per training (default: the preset's); the log records it.",
 )
-@options.executor_options(
+@executor_options(
     "With --again: trainings in parallel", "With --again: where trainings run.", may_have_none=False
 )
 @report_output.output_options

@@ -13,6 +13,7 @@ from pathlib import Path
 import click
 
 from kit.cli import learning_options, messages, options
+from kit.cli.executor_options import executor_options
 from kit.document.layout import lines_of
 from kit.host.job_executors import ExecutorUnavailable
 from kit.host.job_folder import JobExecutor
@@ -26,14 +27,8 @@ from kit.learning.training.crosstable import (
 from kit.learning.training.run_check import check_run_config
 from kit.learning.training.run_config import PresetName, RunConfig
 from kit.learning.training.run_folders import NAME_PATTERN
-from kit.learning.training.training_sweep import (
-    TrainingSweep,
-    combine,
-    problems,
-    sweep_rows,
-    sweep_table,
-    sweep_table_csv,
-)
+from kit.learning.training.sweep_table import problems, sweep_rows, sweep_table, sweep_table_csv
+from kit.learning.training.training_sweep import TrainingSweep, combine
 from kit.learning.training.tuning import SettingRange, check_ranges, require_optuna, tune
 from kit.study.printed_tables import printed_means
 from kit.workspace import write_atomically
@@ -129,7 +124,7 @@ def _read_ranges(
     type=click.FloatRange(0, 1),
     help="Success rate in its worst case at which a seed has learned (default: the task's, else 0.9).",
 )
-@options.executor_options("Trainings in parallel", "Where trainings run; none only shows the results so far.")
+@executor_options("Trainings in parallel", "Where trainings run; none only shows the results so far.")
 @click.option(
     "--csv",
     "csv_file",

@@ -10,6 +10,7 @@ from pathlib import Path
 import click
 
 from kit.cli import learning_options, messages, options
+from kit.cli.existing_path import ExistingPath
 from kit.document.blocks import Text, labelled_table
 from kit.document.layout import Page, lines_of
 from kit.learning.authoring.new_task import NewTaskError, new_task_file
@@ -31,7 +32,7 @@ from kit.learning.training.run_check import check_reward
 from kit.plain_text import counted, wrap
 from kit.render.encode import ENCODERS
 from kit.render.world_text import scene_rows
-from kit.school.game.task_levels import race_refusals
+from kit.school.game.task_levels import race_command, race_refusals
 
 
 @click.group()
@@ -78,7 +79,7 @@ def new(name: str, source: str) -> None:
         found_by_name = file.parent.name == name or (own is not None and own.samefile(file))
         shown = name if found_by_name else file
         messages.say(f"{file}: edit it; `kit task check {shown}` checks it, `kit train {shown}` trains it.")
-        _say_what_is_not_possible(read.task)
+        _say_whether_it_can_be_raced(read.task)
 
 
 @command.command()
@@ -102,7 +103,7 @@ def check(task: str) -> None:
         cases = len(found.map_cases())
         place = shown if shown != task else found.file
         click.echo(f"{place}: valid, version {found.version}; {counted(cases, 'case')}")
-        _say_what_is_not_possible(found)
+        _say_whether_it_can_be_raced(found)
 
 
 @command.command()
@@ -129,7 +130,7 @@ def pack(task: str, archive: Path | None) -> None:
 
 
 @command.command()
-@click.argument("archive", type=options.ExistingPath(dir_okay=False, path_type=Path))
+@click.argument("archive", type=ExistingPath(dir_okay=False, path_type=Path))
 @click.option(
     "--dest",
     type=click.Path(file_okay=False, path_type=Path),
@@ -182,8 +183,10 @@ def list_tasks() -> None:
     click.echo("\n".join(lines_of([*tables, Text(ways)])))
 
 
-def _say_what_is_not_possible(task: LearningTask) -> None:
-    """Prints what a trained agent of a task will not be able to do, before anybody trains one."""
+def _say_whether_it_can_be_raced(task: LearningTask) -> None:
+    """Prints how a trained agent of a task is raced, or why it cannot be, before anybody trains one."""
+    if race := race_command(task, "RUN"):
+        messages.say(f"`{race}` races an agent that has learned it.")
     for reason in race_refusals(task):
         messages.say(f"It cannot be raced: a level of the game cannot have {reason}.")
     for reason in node_refusals(task):

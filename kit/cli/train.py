@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -12,11 +13,14 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from kit.cli import learning_options, messages, options
+from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen
 from kit.cli.shared_game import join_shared_game
 from kit.document.layout import lines_of
+from kit.learning.maps.batch_map import UnsupportedWorld
 from kit.learning.tasks.catalogue import all_tasks
 from kit.learning.tasks.disturbances import UniformRange
+from kit.learning.tasks.learning_task import UnknownTask
 from kit.learning.tasks.rewards import REWARDS
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithm_settings import LEARNING_RATE
@@ -34,7 +38,9 @@ from kit.learning.training.training import resolve_preset
 from kit.learning.training.worker import start_worker
 from kit.plain_text import format_size
 from kit.school.game.shared_sockets import SharedGameError, find_game, games_folder
+from kit.school.game.task_levels import race_command
 from kit.tui.terminal import TerminalDecision
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
     from kit.tui.app import KitApp
@@ -97,6 +103,8 @@ def open_training_screen(run: TrainingRun, terminal: TerminalDecision) -> None:
     if screen.state == "interrupted" and run.last_log_line:
         click.echo(run.last_log_line)
     click.echo(screen.farewell)
+    if screen.state == "finished":
+        _suggest_race(run)
     if code or screen.state == "failed":
         raise SystemExit(code or 1)
 
@@ -137,6 +145,14 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
         raise SystemExit(1)
     elif not once:
         click.echo(f"`kit evaluate {run.name}` tests the best policy.")
+        _suggest_race(run)
+
+
+def _suggest_race(run: TrainingRun) -> None:
+    """Prints how the agent is raced, where it can be and its task is still there."""
+    with suppress(RunError, UnknownTask, UnsupportedWorld, WorldError):
+        if race := race_command(run.config().choice.resolve(), run.name):
+            click.echo(f"`{race}` races it.")
 
 
 @click.command()
@@ -159,7 +175,7 @@ def follow(run: TrainingRun, *, once: bool = False, reader: EventReader | None =
 @click.option(
     "--reward",
     "reward_file",
-    type=options.ExistingPath(dir_okay=False, path_type=Path),
+    type=ExistingPath(dir_okay=False, path_type=Path),
     help="Your own reward: a Python file with reward(); each function metric_NAME() in it only adds a curve.",
 )
 @click.option("--algorithm-reward", "reward", help="Use another of the kit's rewards, by name.")
@@ -347,7 +363,7 @@ def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None)
         run.send_command("go")
         click.echo(f"{run.name} is training; if it was paused, it continues.")
         if terminal is not None:
-            _show(run, terminal)
+            _show_training(run, terminal)
         return
     if summary.state == "finished":
         raise RunError(
@@ -366,13 +382,13 @@ def _start(run: TrainingRun, terminal: TerminalDecision | None) -> None:
         click.echo(f"`kit watch {run.name}` shows its progress.")
         return
     try:
-        _show(run, terminal, reader)
+        _show_training(run, terminal, reader)
     finally:
         if not run.is_active:
             process.wait()
 
 
-def _show(run: TrainingRun, terminal: TerminalDecision, reader: EventReader | None = None) -> None:
+def _show_training(run: TrainingRun, terminal: TerminalDecision, reader: EventReader | None = None) -> None:
 
     if terminal.plain.value:
         follow(run, reader=reader)

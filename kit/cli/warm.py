@@ -13,7 +13,7 @@ import click
 from kit.cli import messages
 from kit.controllers import find_controller
 from kit.kernels.compilation_progress import PROGRESS
-from kit.kernels.shared_cache import let_all_read, make_ready, shared_folders, why_not_shared
+from kit.kernels.shared_cache import let_all_read, make_ready, shared_folders, unshared_reason
 from kit.plain_text import counted
 from kit.run.headless import run_headless
 from kit.run.scenario import find_scenario
@@ -108,7 +108,7 @@ def _close_installation() -> None:
     except OSError as error:
         messages.fail(f"--shared: {error.filename}: {error.strerror}")
     for folder in shared_folders():
-        if problem := why_not_shared(folder):
+        if problem := unshared_reason(folder):
             messages.fail(f"--shared: {problem}.")
     messages.say(
         f"{size / MIB:.1f} MB for all accounts in {shared_folders()[0]}, which only their owner may write."

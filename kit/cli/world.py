@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from kit.cli import options
+from kit.cli.existing_path import ExistingPath
 from kit.plain_files import near_file
 from kit.plain_text import counted
 from kit.sim.plugins import plugin_readers, world_plugin_readers
@@ -26,7 +27,7 @@ def command() -> None:
 @click.argument("world", metavar="FILE_OR_MAP")
 @click.option(
     "--root",
-    type=options.ExistingPath(file_okay=False, path_type=Path),
+    type=ExistingPath(file_okay=False, path_type=Path),
     help="Folder that the world file may read.  [default: its own]",
 )
 @click.option(
@@ -44,7 +45,7 @@ def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bo
 
     Exit code: 0 the world is valid; 1 it has errors; 2 there is no such world.
     """
-    file, own_root = _find(world)
+    file, own_root = _find_world(world)
     try:
         loaded = load_world(
             file,
@@ -66,7 +67,7 @@ def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bo
     )
 
 
-def _find(world: str) -> tuple[Path, Path | None]:
+def _find_world(world: str) -> tuple[Path, Path | None]:
     """The world file meant, and the folder it may use if that is not its own."""
     path = Path(world)
     try:

@@ -241,6 +241,14 @@ class Turn:
         ]
         return min(candidates, key=lambda each: _rank(self.allowed(each[0])), default=None)
 
+    def hidden_by_others(self) -> list[DialogueAction[Any]]:
+        """The actions all of whose keys now mean another one."""
+        meant = [found[0] for key in self._keys() if (found := self.find(key)) is not None]
+        return [each for each in self.dialogue.actions if each.keys.key_names and each not in meant]
+
+    def _keys(self) -> set[str]:
+        return {key for each in self.dialogue.actions for key in each.keys.key_names}
+
     def enter(self, line: str) -> tuple[Effect, str]:
         """Does what a line means: a key, an action's word, perhaps with more behind it, or a text that is typed.
 

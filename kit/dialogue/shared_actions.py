@@ -47,7 +47,7 @@ _SHARED: Final = (
     ScreenAction("glossary", ",", "glossary", "open the glossary, which explains the terms", (("comma", "app.glossary"),)),
     letter("restart", "r", "restart", "start the scene, the drive or the world again"),
     letter("check", "c", "check", "check the exercise; saving the file checks it too"),
-    letter("hint", "h", "hint", "show a hint for the first criterion you missed"),
+    letter("hint", "h", "hint", "show the next hint for a criterion you missed"),
     letter("solution", "s", "solution", "show the reference solution, once yours passes"),
     letter("replay", "w", "replay", "replay the run of the last check, or a drive"),
     letter("pause", "p", "pause", "pause or continue"),

@@ -20,7 +20,7 @@ from kit.host.proxy_nodes import GraphDiff, NameScope, ProxyClient, ProxyNodes
 from kit.host.waiter import AllThreadsWaiter, TickSource
 from kit.host.wire import Json, ProtocolError, integer, items, kept_size
 from kit.msg.message import Message, is_request_or_response
-from kit.ros.graph.directory import GraphNode
+from kit.ros.graph.directory import Excess, GraphNode
 from kit.ros.graph.graph import Graph, Waiter
 from kit.ros.node.publisher import Publisher
 from kit.ros.node.service import Call, Service
@@ -158,6 +158,16 @@ class ParentBridge(GraphBridge):
         """Sizes of the messages that each publisher keeps."""
         self._counted_ns = graph.now_ns
         self._message_count = 0
+        self._sent_excesses: set[tuple[str, str, str]] = set()
+
+    def take_changes(self) -> list[Json]:
+        """Returns also what nodes have asked for that is more than is carried out: only the world's side knows that."""
+        if not self.has_pending:
+            return []
+        events, excesses = super().take_changes(), self.graph.directory.excesses
+        events += [["excess", *key, *excesses[key]] for key in excesses if key not in self._sent_excesses]
+        self._sent_excesses.update(excesses)
+        return events
 
     def apply_events(self, events: Sequence[GraphEvent]) -> None:
         """Applies what has happened in the child. Raises ProtocolError, MessageLimitError, KeptLimitError,
@@ -277,6 +287,7 @@ class ChildBridge(GraphBridge):
         self.has_ticked = False
         """Whether a tick has come since the start."""
         self.graph.add_message_listener(self._record_message)
+        self._handlers["excess"] = self._apply_excess
 
     def next_tick(self, wake_ns: int | None) -> None:
         """Answers that the program waits, until ``wake_ns`` at the latest, and applies the next tick."""
@@ -355,6 +366,10 @@ class ChildBridge(GraphBridge):
         subscription: Any = self._diff.endpoints.get(number)
         if subscription is not None:  # it may have been destroyed since
             subscription.enqueue(self._codec.unpack(subscription.msg_type, content))
+
+    def _apply_excess(self, fields: list[Json]) -> None:
+        node, topic, field, *excess = map(str, fields)
+        self.graph.directory.note_excess(node, topic, field, Excess(*excess))
 
     def _apply_request(self, fields: list[Json]) -> None:
         identity, number, content = fields

@@ -3,8 +3,8 @@
 There are no threads: the child runs only while it owes an answer, and the caller that waits for the answer also reads
 what the child prints. Every way out ends the child and every process that it has started.
 
-Every process is a cold start, 0.09 s of processor time. None is kept warm and forked: that would save 0.07 s, the import of
-``kit.ros``, ``kit.msg`` and ``kit.host``, for a process more that could hold what no student may read.
+A process is a cold start, 0.09 s of processor time, unless the caller has it forked (``kit.host.warm_start``): the check of
+one's own program does. Where other people's programs are run, no process is kept warm that could hold what they may not read.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ import stat
 import subprocess
 import sys
 import time
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import Final, Literal, NoReturn, Self, TypeAlias
+from typing import IO, Final, Literal, NoReturn, Protocol, Self, TypeAlias
 
 from kit.host.failure import (
     Budget,
@@ -129,6 +129,47 @@ def child_seed(seed: int) -> int:
     return int.from_bytes(digest[:8], "big") >> 1
 
 
+class StartedProcess(Protocol):
+    """What is used of a ``subprocess.Popen``."""
+
+    @property
+    def pid(self) -> int: ...
+
+    @property
+    def stdout(self) -> IO[bytes] | None: ...
+
+    @property
+    def stderr(self) -> IO[bytes] | None: ...
+
+    def wait(self, timeout: float | None = None) -> int: ...
+
+    def kill(self) -> None: ...
+
+
+StartProcess: TypeAlias = Callable[..., StartedProcess]
+"""Takes what ``subprocess.Popen`` does."""
+
+
+def start_cold(command: list[str], **options: object) -> StartedProcess:
+    """Starts an interpreter anew."""
+    process: subprocess.Popen[bytes] = subprocess.Popen(command, **options)  # type: ignore[call-overload] # as they came
+    return process
+
+
+_STARTS: Final[list[StartProcess]] = [start_cold]
+"""The last one starts students' processes."""
+
+
+@contextmanager
+def started_by(start: StartProcess) -> Iterator[None]:
+    """Has all students' processes of this one be started so."""
+    _STARTS.append(start)
+    try:
+        yield
+    finally:
+        _STARTS.pop()
+
+
 class StudentProcess:
     """Runs one student's file in a process of its own. Use it as a context manager, or ``close`` it.
 
@@ -194,7 +235,7 @@ class StudentProcess:
         # Duplicates, since the numbers 0 to 2 are replaced in the child before it is told the others.
         inherited = [None if each is None else os.dup(each) for each in descriptors]
         try:
-            self._process = subprocess.Popen(
+            self._process = _STARTS[-1](
                 _command(config),
                 stdin=theirs.fileno(),
                 stdout=subprocess.PIPE,

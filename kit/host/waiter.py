@@ -40,6 +40,10 @@ class SingleThreadWaiter:
     def __init__(self, ticks: TickSource) -> None:
         self._ticks = ticks
 
+    def is_alone(self, graph: Graph) -> bool:
+        """Always."""
+        return True
+
     def wait(self, graph: Graph, until_ns: int | None) -> None:
         """Called by that thread when it waits."""
         self._ticks.next_tick(until_ns)
@@ -65,10 +69,23 @@ class AllThreadsWaiter:
         self._substitute: threading.Thread | None = None
         """The thread that answers ticks while the others wait for the user."""
 
+    def is_alone(self, graph: Graph) -> bool:
+        """Whether the program has no other thread: what others are doing at the moment differs from machine to machine."""
+        return threading.active_count() == 1
+
     def wait(self, graph: Graph, until_ns: int | None) -> None:
         """Called by the first thread that waits. Returns when there may be something to do."""
         with graph.lock:
             if not (self._wait_for_other_threads(graph) and self._wait_for_real_time(graph)):
+                return
+            if graph.settling:
+                started = [
+                    thread.ident for thread in threading.enumerate()
+                ]  # in the order in which they started
+                graph.settling.discard(
+                    next((each for each in started if each in graph.settling), min(graph.settling))
+                )
+                graph.count_change()
                 return
             wakes = [
                 thread.until_ns for thread in graph.waiting_threads.values() if thread.until_ns is not None

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from kit.kernels.compilation_progress import PROGRESS
-from kit.kernels.shared_cache import why_not_shared
+from kit.kernels.shared_cache import unshared_reason
 
 NUMBA_SETTINGS = Path(".numba_config.yaml")
 """numba reads it in the current folder, at its import and whenever it compiles. It names the cache, whose files can run code,
@@ -75,7 +75,7 @@ _UNTYPED: Any = numba.core
 @cache
 def _is_shared(folder: Path) -> bool:
     """Whether a folder holds kernels for all accounts: its hundred files are looked at once, not for each kernel."""
-    return not why_not_shared(folder)
+    return not unshared_reason(folder)
 
 
 def _locator(name: str) -> Any:

@@ -31,7 +31,7 @@ def kept_files(folder: Path) -> Iterator[Path]:
     return (entry for entry in sorted(folder.iterdir()) if entry.suffix in SUFFIXES)
 
 
-def why_not_shared(folder: Path) -> str:
+def unshared_reason(folder: Path) -> str:
     """Says why an account that has not made it does not read what a folder holds; empty if it does."""
     if sys.platform == "win32":
         return "Windows has no owners and rights of this kind"
@@ -58,7 +58,7 @@ def make_ready(folder: Path) -> None:
     if folder.parent.stat().st_mode & OTHERS_WRITE:
         raise PermissionError(EPERM, "others than its owner may write there: chmod go-w", str(folder.parent))
     folder.mkdir(exist_ok=True)
-    if why_not_shared(folder):
+    if unshared_reason(folder):
         for path in kept_files(folder):
             path.unlink()
     folder.chmod(0o755)

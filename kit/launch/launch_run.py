@@ -210,6 +210,8 @@ class Launch:
         """When the last of the timers is due that no timer has set."""
         self._seen_ns = graph.now_ns
         self._polled_s = 0.0
+        self._has_sent = False
+        """Whether a program sent something in the last exchange, which others may not have received yet."""
         self._launch_file = LaunchFileProcess(
             target.file, target.folder, target.search, arguments or {}, bounds
         )
@@ -251,16 +253,22 @@ class Launch:
         """Exchanges messages with all programs, and polls the processes at most once per tick. True if any sent
         something."""
         now = self.graph.now_ns
-        if now != self._seen_ns or time.monotonic() - self._polled_s > POLL_INTERVAL_S:
+        is_late = not self._has_sent and time.monotonic() - self._polled_s > POLL_INTERVAL_S
+        if now != self._seen_ns or is_late:
             self._clock_ns += max(0, now - self._seen_ns)
             self._seen_ns = now
             self._poll_processes()
-        has_sent = False
+        had_sent, self._has_sent = self._has_sent, False
         for running in list(self._running.values()):
-            has_sent |= running.process.exchange()
-        if has_sent and any(running.process.poll() is not None for running in self._running.values()):
-            self._poll_processes()  # in the tick in which it ends, however long that takes
-        return has_sent
+            self._has_sent |= running.process.exchange()
+        if self._has_sent or not had_sent:
+            return self._has_sent
+        # All have received what a program has sent before it ended: its end counts in the tick in which it comes, however
+        # long that takes.
+        has_ended = any(running.process.poll() is not None for running in self._running.values())
+        if has_ended:
+            self._poll_processes()
+        return has_ended
 
     def interrupt(self, reason: str) -> None:
         """Ends the launch for the user: the launch file may react, then all processes are ended."""

@@ -59,9 +59,9 @@ def create_package(name: str, destination: Path, *, node: str = "driver", map_na
     with new_package_folder(name, destination, node) as folder:
         write_package_frame(folder, frame)
         text = Template((TEMPLATES / "launch.py.template").read_text(encoding="utf-8"))
-        _write(folder / "launch" / f"{name}.launch.py", text.substitute(name=name, node=node))
+        _write_new_file(folder / "launch" / f"{name}.launch.py", text.substitute(name=name, node=node))
         program = (CONTROLLERS / "random_walk.py").read_text(encoding="utf-8")
-        _write(
+        _write_new_file(
             folder / name / f"{node}.py",
             program.replace('super().__init__("random_walk")', f'super().__init__("{node}")'),
         )
@@ -116,12 +116,12 @@ def write_package_frame(folder: Path, frame: PackageFrame) -> None:
     }
     for file in ("package.xml", "setup.py", "setup.cfg"):
         text = Template((TEMPLATES / f"{file}.template").read_text(encoding="utf-8")).substitute(words)
-        _write(folder / file, text)
-    _write(folder / "resource" / frame.name, "")
-    _write(folder / frame.name / "__init__.py", "")
+        _write_new_file(folder / file, text)
+    _write_new_file(folder / "resource" / frame.name, "")
+    _write_new_file(folder / frame.name / "__init__.py", "")
 
 
-def _write(file: Path, text: str) -> None:
+def _write_new_file(file: Path, text: str) -> None:
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(text, encoding="utf-8")
 

@@ -134,7 +134,7 @@ def laser_step_text(case: LayerCase, step: LaserStep, *, width: int = WIDTH) -> 
 # The optimum and its proof
 
 
-def plan_text(plan: LayerPlan, *, width: int = WIDTH) -> list[str]:
+def layer_count_text(plan: LayerPlan, *, width: int = WIDTH) -> list[str]:
     """Describes the number of layers, and whether it is proved minimal."""
     say = partial(paragraph, width=width)
     if plan.is_optimal:

@@ -132,7 +132,7 @@ def plan_pages(
     size = len(assignment.layers)
     overview = (
         *([] if world_plan is None else _current_layers(world_plan, width)),
-        *words.plan_text(plan, width=width),
+        *words.layer_count_text(plan, width=width),
         *words.comparison_text(run, plan, width=width),
         "",
         *layer_listing(case, assignment, width),

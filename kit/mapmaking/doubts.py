@@ -27,6 +27,8 @@ LOW: Final = 0.05
 """And one whose box is lower or narrower than this, and holds more strokes than a line along it: a word."""
 CROWDED: Final = 1.3
 """How many times the length of its box the strokes of a word are long."""
+SOLID: Final = 0.7
+"""And how many times a piece of a wall's stroke is at least, drawn with the walls' pen."""
 LEAST: Final = 0.02
 """Less than this share of the sheet's width is no reason to doubt."""
 ENCLOSED: Final = 0.002
@@ -181,19 +183,28 @@ def _doubtful_parts(
 ) -> Iterator[tuple[int, str]]:
     width = parts.shape[1]
     near_outside = grown(outside, 3)
+    small = {number for number, box in boxes.items() if _is_small(box, width, pen)}
+    near_strokes = grown(
+        np.isin(parts, [number for number in boxes if number not in small]), 2 * round(pen) + 1
+    )
     for number, box in boxes.items():
         if number == main:
             continue
-        length = box.pixels / pen
         own = box.pixels / max(1.0, box.diagonal)
+        is_rest = SOLID * pen < own < CROWDED * pen and near_strokes[parts == number].any()
         if near_outside[box.row, box.column]:
             yield number, "outside"
-        elif box.diagonal < SMALL * width or (
-            min(box.width, box.height) < LOW * width and length > CROWDED * box.diagonal
-        ):
-            yield number, "small"
+        elif number in small:
+            if not is_rest:  # of a stroke, beyond a break that is shorter than the pen is wide
+                yield number, "small"
         elif _has_arrows(parts, number, box, pen) or (own < THIN * pen and pen - own > 1.0):
             yield number, "thin"
+
+
+def _is_small(box: _Box, width: int, pen: float) -> bool:
+    """Whether a part is a short one, or a word."""
+    is_crowded = box.pixels / pen > CROWDED * box.diagonal
+    return box.diagonal < SMALL * width or (min(box.width, box.height) < LOW * width and is_crowded)
 
 
 def _has_arrows(parts: np.ndarray, number: int, box: _Box, pen: float) -> bool:
@@ -236,8 +247,8 @@ def _beyond(walls: BoolArray, pen: float) -> BoolArray:
 
 
 def _thin_bits(walls: BoolArray, pen: float) -> BoolArray:
-    """Parts of strokes that a pen of little more than half the walls' width would not pass."""
-    size = _odd(0.6 * pen)
+    """Parts of strokes in which a pen of less than ``THIN`` of the walls' width would not fit."""
+    size = 2 * int((THIN * pen - 1.0) / 2.0) + 1
     if size < 5:  # a hand's own unevenness
         return np.zeros_like(walls)
     opened = grown(~grown(~walls, size), size)

@@ -1,10 +1,6 @@
 """Learning curves in characters: lines of dots, their scale on the left, their length below.
 
 The scale keeps to round numbers, so it moves seldom: a curve grows to the right instead of shrinking.
-
-A stacked chart of shares over steps, such as how the episodes of each batch ended.
-
-The horizontal scale is that of curves (``kit.render.curve``), so that one stands below the other.
 """
 
 from __future__ import annotations
@@ -16,9 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kit.arrays import FloatArray, IntArray
+from kit.arrays import FloatArray
 from kit.render import raster
-from kit.render.encode import BLANK, UNICODE_GLYPHS, Encoder, Frame, GlyphSet
+from kit.render.encode import Encoder, Frame, GlyphSet
+from kit.render.frame_text import paste_frame, write_text
 from kit.render.roles import CURVE_ROLES, LINE_DASHES, LineStyle, Role
 
 
@@ -107,7 +104,7 @@ def draw_curves(curves: Sequence[Curve], axes: Axes, columns: int, rows: int, en
     )
     paste_frame(frame, plot, top, left)
     if left:
-        _draw_value_axis(frame, range(top, bottom), labels, left, encoder.symbols)
+        draw_value_axis(frame, range(top, bottom), labels, left, encoder.symbols)
         if bottom < rows:
             *_, corner, level = encoder.symbols.axes
             write_text(frame, bottom, left - 1, corner + level * (columns - left))
@@ -247,7 +244,7 @@ def _format_count(value: float) -> str:
     return f"{value:,.0f}".replace(",", " ") if value >= 1 else f"{value:.4g}"
 
 
-def _draw_value_axis(
+def draw_value_axis(
     frame: Frame, rows: Iterable[int], labels: Mapping[int, str], left: int, symbols: GlyphSet
 ) -> None:
     """The upright axis in the last of ``left`` columns, and its labels by row."""
@@ -264,94 +261,4 @@ def _write_names(frame: Frame, curves: Sequence[Curve], column: int, *, is_ascii
         key = f"{style.ascii_mark if is_ascii else style.mark}{number + 1} " if len(curves) > 1 else ""
         text = f"{key}{curve.name}{newest}"
         write_text(frame, 0, column, text, CURVE_ROLES[number % len(CURVE_ROLES)])
-        column += len(text) + 1
-
-
-def write_text(frame: Frame, row: int, column: int, text: str, role: Role = Role.WALL) -> None:
-    """Writes a text into a frame; what does not fit is cut off."""
-    rows, columns = frame.shape
-    if not 0 <= row < rows:
-        return
-    for at, glyph in enumerate(text[: max(0, columns - column)], column):
-        frame.glyphs[row, at] = ord(glyph)
-        frame.fg[row, at] = Role.EMPTY if glyph == chr(BLANK) else role
-        frame.bg[row, at] = Role.EMPTY
-
-
-def paste_frame(frame: Frame, part: Frame, top: int, left: int) -> None:
-    """Copies a frame into another, its corner at ``top`` and ``left``; what does not fit is cut off."""
-    rows, columns = part.shape
-    for whole, piece in ((frame.glyphs, part.glyphs), (frame.fg, part.fg), (frame.bg, part.bg)):
-        room = whole[top : top + rows, left : left + columns]
-        room[:] = piece[: room.shape[0], : room.shape[1]]
-
-
-@dataclass(frozen=True, slots=True)
-class ChartPart:
-    """One part of the whole: its name, and what it is drawn with."""
-
-    name: str
-    role: Role
-    glyph: str
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class StackedCounts:
-    """Counts per part, batch by batch."""
-
-    x: FloatArray
-    """(n,), rising: where each batch ends; the first begins at 0."""
-    counts: IntArray
-    """(n, parts); no batch is empty."""
-
-
-def draw_stacked_chart(
-    counts: StackedCounts,
-    parts: Sequence[ChartPart],
-    columns: int,
-    rows: int,
-    margin: int = 0,
-    symbols: GlyphSet = UNICODE_GLYPHS,
-) -> Frame:
-    """A frame of ``columns`` x ``rows`` characters: the parts' names and newest percentages on top, below them a
-    column for each stretch of steps, the first part at the bottom."""
-    frame = Frame.empty(columns, rows)
-    top = int(rows >= 3)
-    if top:
-        _write_part_names(frame, counts, parts)
-    left = max(margin, 5) if columns >= MIN_COLUMNS_WITH_MARGIN else 0
-    height = rows - top
-    if left and height >= 2:
-        _draw_value_axis(frame, range(top, rows), {top: "100%", rows - 1: "0%"}, left, symbols)
-    if len(counts.x) and columns > left:
-        levels = np.round(np.cumsum(_column_shares(counts, columns - left), axis=1) * height).astype(np.intp)
-        above = np.arange(height, 0, -1)[:, None] - 1  # how many cells lie below each row
-        for part in reversed(range(len(parts))):
-            covered = above < levels[:, part]
-            at = frame.glyphs[top:, left : left + len(levels)], frame.fg[top:, left : left + len(levels)]
-            at[0][covered], at[1][covered] = ord(parts[part].glyph), parts[part].role
-    return frame
-
-
-def _column_shares(stacked: StackedCounts, width: int) -> FloatArray:
-    """(used columns, parts) shares that add up to 1: of all batches that end in a column, else of the one that goes
-    on through it."""
-    right = nice_ceiling(float(stacked.x[-1]))
-    used = max(1, int(np.ceil(stacked.x[-1] / right * width)))
-    edges = np.arange(used + 1) / width * right
-    first = np.searchsorted(stacked.x, edges[:-1], side="right")
-    stop = np.searchsorted(stacked.x, edges[1:], side="right")
-    first = np.minimum(first, len(stacked.x) - 1)
-    total = np.concatenate((np.zeros((1, stacked.counts.shape[1])), np.cumsum(stacked.counts, axis=0)))
-    counts = total[np.maximum(stop, first + 1)] - total[first]
-    divided: FloatArray = counts / counts.sum(axis=1, keepdims=True)
-    return divided
-
-
-def _write_part_names(frame: Frame, stacked: StackedCounts, parts: Sequence[ChartPart]) -> None:
-    newest = stacked.counts[-1] / stacked.counts[-1].sum() if len(stacked.x) else np.full(len(parts), np.nan)
-    column = 0
-    for part, share in zip(parts, newest.tolist(), strict=True):
-        text = f"{part.glyph}{part.name}" + ("" if np.isnan(share) else f" {100 * share:.0f}%")
-        write_text(frame, 0, column, text, part.role)
         column += len(text) + 1

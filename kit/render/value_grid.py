@@ -13,8 +13,8 @@ from typing import Final
 import numpy as np
 
 from kit.arrays import FloatArray, IntArray
-from kit.render.curve import write_text
 from kit.render.encode import Encoder, Frame
+from kit.render.frame_text import write_text
 from kit.render.roles import Role
 
 GRID_GAP: Final = 2

@@ -95,6 +95,8 @@ class CriterionResult:
     """The reason for lost points, in one or two sentences."""
     hints: tuple[str, ...] = ()
     """Steps of help, from the vaguest to the most specific."""
+    knows_mistake: bool = False
+    """Whether the first of them is for the very mistake that was made."""
     expected: str = ""
     actual: str = ""
     metrics: Mapping[str, float] = field(default_factory=dict)
@@ -105,7 +107,8 @@ class CriterionResult:
     replay: str = ""
     """The worst public episode as a picture in characters; may be empty."""
     uses_secrets: bool = False
-    """Whether secret evidence counts in the points. All texts but ``teacher_note`` are made from public evidence."""
+    """Whether secret evidence counts in the points. All texts but ``teacher_note`` are made from public evidence, but in a
+    student's own check where that shows no mistake."""
     teacher_note: str = ""
     """What went wrong with secret evidence; no student sees it."""
     is_withheld: bool = False

@@ -70,7 +70,7 @@ def criterion_blocks(
     if criterion.is_passed:
         return blocks
     blocks.append(_paragraph(_shortened(criterion.rationale, MAX_RATIONALE)))
-    if criterion.actual:
+    if any(map(str.isdigit, criterion.actual)):  # words alone say no more than the title
         is_said = criterion.actual in criterion.rationale
         values = (("expected:", criterion.expected), ("actual:  ", criterion.actual))
         blocks += [

@@ -31,6 +31,9 @@ MAX_VALUE_SIZE: Final = 100_000
 MAX_MANIFEST_BYTES: Final = 1 << 20
 """Size of each of the files that describe a package."""
 
+SOURCE_FOLDERS: Final = ("src", "packages")
+"""The folders of a workspace in which its packages lie: of colcon's, and of the kit's own."""
+
 SEARCH_VARIABLE: Final = "KIT_PACKAGE_PATH"
 """Environment variable with the folders in which packages are searched."""
 
@@ -188,13 +191,17 @@ def find_packages(folders: Iterable[Path]) -> dict[str, Path]:
 def workspace_folders(file: Path) -> tuple[Path, ...]:
     """The folders in which the packages lie that a program's file sees when its workspace is sourced: its own package first.
 
-    None for a file that is in no package: then it has no workspace.
+    A file in no package sees the packages of the workspace in which it lies: those of the nearest folder above it that
+    has some in ``src`` or ``packages``, or, of its own folder, beside it. None if there are none.
     """
     package = next((each for each in file.parents[:MAX_NESTING] if (each / "package.xml").is_file()), None)
-    if package is None:
-        return ()
-    source = next((each for each in package.parents[:MAX_DEPTH] if each.name == "src"), package.parent)
-    return (package, source)
+    if package is not None:
+        source = next((each for each in package.parents[:MAX_DEPTH] if each.name == "src"), package.parent)
+        return (package, source)
+    if any(file.parent.glob("*/package.xml")):
+        return (file.parent,)
+    above = (each / name for each in file.parents[:MAX_NESTING] for name in SOURCE_FOLDERS)
+    return next(((each,) for each in above if any(True for _ in _package_folders(each, MAX_DEPTH))), ())
 
 
 def import_folders(packages: Iterable[Path]) -> tuple[Path, ...]:

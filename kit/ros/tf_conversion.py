@@ -60,16 +60,18 @@ class ConvertRegistration:
         self._convert[key] = callback
 
     def get_from_msg(self, key: type[Any]) -> Callable[[Any], Any]:
-        return _find(self._from_msg, key, key)
+        return _find_conversion(self._from_msg, key, key)
 
     def get_to_msg(self, key: type[Any]) -> Callable[[Any], Any]:
-        return _find(self._to_msg, key, key)
+        return _find_conversion(self._to_msg, key, key)
 
     def get_convert(self, key: tuple[type[Any], type[Any]]) -> Callable[[Any], Any]:
-        return _find(self._convert, key, key[1])
+        return _find_conversion(self._convert, key, key[1])
 
 
-def _find(table: dict[Any, Callable[[Any], Any]], key: Any, kind: type[Any]) -> Callable[[Any], Any]:
+def _find_conversion(
+    table: dict[Any, Callable[[Any], Any]], key: Any, kind: type[Any]
+) -> Callable[[Any], Any]:
     """Raises TypeException."""
     if key not in table:
         raise TypeException(f"Type {kind.__name__} is not loaded or supported")

@@ -1,11 +1,12 @@
-"""Tells which connections of some nodes have no other end while a world runs: why a program hears nothing, or nobody hears it."""
+"""Tells why a program hears nothing, or nobody hears it, or not all of it is done, while a world runs: what some nodes connect
+to that has no other end, and what they ask for that is more than the robot can."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Set
 from typing import TYPE_CHECKING, Final
 
-from kit.ros.graph.connections import find_mistakes
+from kit.ros.graph.connections import find_excesses, find_mistakes
 from kit.ros.graph.graph import Graph
 from kit.run.lockstep import Observer
 
@@ -20,14 +21,25 @@ LOOK_INTERVAL_NS: Final = 500_000_000
 
 
 class ConnectionWatch(Observer):
-    """Tells about each connection without another end, once, when it has stood for a while.
+    """Tells about each connection without another end, once, when it has stood for a while, and of each excess, once.
 
     Nodes start one after the other: what has found its other end by then is not told.
     """
 
-    def __init__(self, graph: Graph, names: Callable[[], Set[str]], tell: Callable[[str], object]) -> None:
-        """``names``: the full names of the nodes that are watched now; ``tell`` receives a sentence."""
+    def __init__(
+        self,
+        graph: Graph,
+        names: Callable[[], Set[str]],
+        tell: Callable[[str], object],
+        *,
+        commanders: Callable[[], Set[str]] | None = None,
+    ) -> None:
+        """``names``: the full names of the nodes that are watched now; ``tell`` receives a sentence.
+
+        ``commanders``: those of whose commands too large ones are told, by default the same.
+        """
         self._graph, self._names, self._tell = graph, names, tell
+        self._commanders = names if commanders is None else commanders
         self._since_ns: dict[str, int] = {}
         self._told: set[str] = set()
         self._looked_ns = graph.now_ns
@@ -44,10 +56,12 @@ class ConnectionWatch(Observer):
         mistakes = find_mistakes(self._graph, self._names())
         self._since_ns = {each: min(now, self._since_ns.get(each, now)) for each in mistakes}
         self._tell_each(each for each, since in self._since_ns.items() if now - since >= STANDS_NS)
+        self._tell_each(find_excesses(self._graph, self._commanders()))
 
     def tell_all(self) -> None:
         """Tells also what has stood for a shorter time: at the end of a run."""
         self._tell_each(find_mistakes(self._graph, self._names()))
+        self._tell_each(find_excesses(self._graph, self._commanders()))
 
     def _tell_each(self, mistakes: Iterable[str]) -> None:
         for mistake in mistakes:

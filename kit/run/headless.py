@@ -115,7 +115,7 @@ def run_headless(
             session.drive_with(controller)
             session.wait_until_driven()
             start = time.perf_counter()
-            interrupted = _run(
+            interrupted = _run_session(
                 session,
                 fingerprint,
                 steps,
@@ -147,7 +147,7 @@ def run_headless(
         )
 
 
-def _run(
+def _run_session(
     session: Session,
     fingerprint: Fingerprint,
     steps: int,

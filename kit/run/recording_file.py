@@ -136,7 +136,7 @@ def _restore(part: Path, wanted: Path | None) -> str:
     try:
         with lock_part(part, file) as lines:
             lines.seek(0)
-            recording = _read(lines)
+            recording = _read_recording(lines)
             if recording is None and part.stat().st_size:  # somebody else's
                 return ""
             if recording is None or not recording.ticks:
@@ -153,7 +153,7 @@ def _restore(part: Path, wanted: Path | None) -> str:
     return f"{restored}: restored from a run that was killed; its first {kept_s:.1f} s are there."
 
 
-def _read(lines: BinaryIO) -> Recording | None:
+def _read_recording(lines: BinaryIO) -> Recording | None:
     """What was recorded, to the last line that is whole; None where it is no recording."""
     header: dict[str, Any] | None = None
     poses, counts = [np.empty((0, 3))], [np.empty(0, np.int64)]

@@ -18,6 +18,7 @@ from kit.ros.execution.task import Future
 from kit.ros.graph.directory import WORLD_NODE_NAME
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node, create_graph_node
+from kit.run.command_limits import CommandLimits
 from kit.run.lockstep import Observer, Participant, exchange_until_idle
 from kit.sim.plugin import OutgoingMessage, TopicEndpoint
 from kit.sim.simulation import Simulation, SimulationError, call_service
@@ -62,6 +63,7 @@ class Runner:
         graph.reserved_names.add(self._node.handle.full_name)
         self._endpoints: dict[TopicEndpoint, Callable[[], object]] = {}  # what destroys each again
         self._publishers: dict[str, Callable[[Any], None]] = {}
+        self._limits = CommandLimits(graph)
         WorldServices(self._node, self, HIDDEN_NAMESPACE if is_hidden else "")
         self._connect_devices()
         for remark in simulation.world.remarks:
@@ -164,6 +166,7 @@ class Runner:
             accept = partial(self.accept, endpoint.topic)
             subscription = self._node.create_subscription(endpoint.type, endpoint.topic, accept, 10)
             self._endpoints[endpoint] = partial(self._node.destroy_subscription, subscription)
+            self._limits.add(endpoint)
             if endpoint.type is geometry_msgs.Twist:
                 topic = self.graph.directory.topics[subscription.topic_name]
                 topic.on_other_type = partial(self._accept_stamped, endpoint)
@@ -188,6 +191,7 @@ class Runner:
 
     def _disconnect(self, endpoint: TopicEndpoint) -> None:
         self._endpoints.pop(endpoint)()
+        self._limits.discard(endpoint)
 
     def accept(self, topic: str, message: Any) -> None:
         """Hands a message to the devices that subscribe to the topic."""

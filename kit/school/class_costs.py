@@ -110,7 +110,7 @@ def wait_for_picture(written: dict[int, int], processes: Sequence[subprocess.Pop
     while min(written.values()) < FIRST_PICTURE:
         if time.monotonic() > deadline or any(each.poll() is not None for each in processes):
             raise NotMeasured("`kit play maze` does not start here: try it")
-        _read(written, KEY_INTERVAL_S)
+        _measure_reading(written, KEY_INTERVAL_S)
 
 
 def press_keys(written: dict[int, int], seconds: float) -> None:
@@ -120,10 +120,10 @@ def press_keys(written: dict[int, int], seconds: float) -> None:
         for terminal in written:
             with suppress(OSError):
                 os.write(terminal, key)
-        _read(written, KEY_INTERVAL_S)
+        _measure_reading(written, KEY_INTERVAL_S)
 
 
-def _read(written: dict[int, int], seconds: float) -> None:
+def _measure_reading(written: dict[int, int], seconds: float) -> None:
     until = time.monotonic() + seconds
     while (left := until - time.monotonic()) > 0:
         for terminal in select.select(list(written), [], [], left)[0]:

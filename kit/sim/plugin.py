@@ -21,6 +21,16 @@ from kit.world.yaml_section import Section
 
 
 @dataclass(frozen=True, slots=True)
+class CommandLimit:
+    """The largest value, in either direction, of a field of a command that a plugin carries out."""
+
+    field: str
+    """Its path in the message: ``linear.x``."""
+    largest: float
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
 class TopicEndpoint:
     """A topic that a plugin publishes or subscribes, by its absolute name, and its message class."""
 
@@ -29,6 +39,8 @@ class TopicEndpoint:
     type: type[Any]
     is_ground_truth: bool = field(default=False, compare=False)
     """Whether its messages are the true state of the world, which no sensor could measure."""
+    limits: tuple[CommandLimit, ...] = field(default=(), compare=False)
+    """Of the commands that arrive on it; none: whatever is asked for is carried out."""
 
 
 class OutgoingMessage(NamedTuple):
@@ -81,8 +93,12 @@ class PluginContext:
         """Creates a publisher for a topic as the model file names it: under the model's namespace, unless it starts with /."""
         return PluginPublisher(self.model.topic(topic), message_type, self.has_subscribers, is_ground_truth)
 
-    def subscription(self, topic: str, message_type: type[Any]) -> TopicEndpoint:
-        return TopicEndpoint("subscribe", self.model.topic(topic), message_type)
+    def subscription(
+        self, topic: str, message_type: type[Any], limits: Iterable[CommandLimit] = ()
+    ) -> TopicEndpoint:
+        """``limits``: of what is carried out; those of 0 are none."""
+        some = tuple(limit for limit in limits if limit.largest > 0.0)
+        return TopicEndpoint("subscribe", self.model.topic(topic), message_type, limits=some)
 
 
 @dataclass(frozen=True, slots=True)

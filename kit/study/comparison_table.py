@@ -15,9 +15,7 @@ from kit.study.printed_tables import (
     STEPS,
     PrintedTable,
 )
-from kit.study.recorded_results import (
-    RecordedCell,
-)
+from kit.study.recorded_results import RecordedCell
 from kit.study.study_variants import VARIANT_NAMES, StudyVariant
 
 RecordedCells = Mapping[tuple[str, str], RecordedCell]

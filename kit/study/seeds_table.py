@@ -16,13 +16,8 @@ from kit.study.printed_tables import (
     ADJACENCY_BY_POSES,
     PrintedTable,
 )
-from kit.study.recorded_results import (
-    RecordedResult,
-    RecordedTest,
-    Results,
-    TrainedSeeds,
-    pooled_cell,
-)
+from kit.study.recorded_results import RecordedResult, RecordedTest, Results, pooled_cell
+from kit.study.trained_seeds import TrainedSeeds
 
 
 def seeds_table(table: PrintedTable, results: Results) -> Table:

@@ -262,7 +262,7 @@ def _figure_paths(figure: PrintedFigure, recorded: RecordedResult | None, *, wit
         return [Text(f"{paths_title(figure, case, some)}.") for case, some in ways.items() if some]
     if not any(ways.values()):
         return []
-    from kit.study.study_runs import path_plots  # brings environments along
+    from kit.study.study_paths import path_plots  # brings environments along
 
     choice = FIRST_RUN if figure.group == POTENTIAL_FIELDS else CHOSEN_EPISODES
     return [*path_plots(figure, recorded), Text(f"{PATHS_LEGEND} {choice}")]

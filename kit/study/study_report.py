@@ -31,13 +31,7 @@ from kit.study.printed_tables import (
     PrintedTable,
     StudyChapter,
 )
-from kit.study.recorded_results import (
-    RecordedPath,
-    RecordedResult,
-    RecordedTest,
-    Results,
-    TrainingSession,
-)
+from kit.study.recorded_results import RecordedPath, RecordedResult, RecordedTest, Results, TrainingSession
 from kit.study.result_logs import log_name
 from kit.study.seed_spread import cells_below, spread_table
 from kit.study.seeds_table import seeds_table

@@ -1,12 +1,10 @@
-"""Trains and tests again the agents of a printed table, runs its controllers, and records the ways that they drive."""
+"""Trains and tests again the agents of a printed table, runs its controllers, and records what came of it."""
 
 from __future__ import annotations
 
 import math
-import os
-import subprocess
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -14,15 +12,8 @@ from typing import Final
 import numpy as np
 
 from kit.controllers import find_controller
-from kit.document.blocks import ScenePlot
-from kit.learning.environment.episode_stats import EpisodeOutcome
-from kit.learning.policies.episode_paths import EpisodePath, record_paths
 from kit.learning.policies.evaluation import EpisodeShare, Evaluator
-from kit.learning.policies.paths_picture import build_paths_scene
-from kit.learning.policies.policy import Policy
 from kit.learning.policies.seeds import derive_seed
-from kit.learning.tasks.catalogue import find_task
-from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.training.events import Evaluated, EventReader
 from kit.learning.training.learn_extra import versions
 from kit.learning.training.measures import VALUE_MAX
@@ -30,9 +21,9 @@ from kit.learning.training.run_config import PresetName, RunConfig, RunError, fo
 from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_sweep import SweepEntry, TrainingSweep, combine
-from kit.render.scene import Scene
 from kit.run.scenario import find_scenario
-from kit.study.pairs import SAMPLE_S, PairRunResult, run_once, shift_start_poses
+from kit.study.kit_commit import kit_commit
+from kit.study.pairs import PairRunResult, run_once, shift_start_poses
 from kit.study.printed_tables import (
     FIGURE,
     POTENTIAL_FIELDS,
@@ -52,115 +43,15 @@ from kit.study.recorded_results import (
     TrainingSession,
 )
 from kit.study.result_logs import (
-    SHIPPED_FOLDER,
     append_event,
     log_name,
     read_recorded_result,
     recorded_result_file,
     source_number,
 )
-from kit.study.study_report import paths_title
+from kit.study.study_paths import agent_paths, controller_path, missing_paths
 from kit.study.study_variants import CONTROLLERS, VARIANT_OPTIONS, StudyVariant
 from kit.workspace import Workspace
-
-PATH_INTERVAL_S: Final = 0.5
-"""Between two places of a way that is kept."""
-DRIVEN_EPISODES: Final = 20
-"""Episodes per case, from which the recorded ones are chosen."""
-
-
-def agent_paths(
-    figure: PrintedFigure, policy: Policy, task: LearningTask, seed: int, episodes_seed: int
-) -> tuple[RecordedPath, ...]:
-    """The ways of a trained agent in each case of a figure: the first that reached the target and the first that did not,
-    where there are both; then the next ones. PolicyError if the policy does not fit the task.
-    """
-    ways = record_paths(policy, task, DRIVEN_EPISODES, episodes_seed)
-    found: list[RecordedPath] = []
-    for _, case in figure.paths:
-        chosen = _one_of_each([way for way in ways if way.case == case])
-        found += [_recorded(figure.group, seed, way) for way in chosen[: figure.episodes]]
-    return tuple(found)
-
-
-def _one_of_each(ways: list[EpisodePath]) -> list[EpisodePath]:
-    """Sorts paths: the first success and the first failure come first."""
-    firsts: dict[bool, EpisodePath] = {}
-    for way in ways:
-        firsts.setdefault(way.outcome is EpisodeOutcome.REACHED, way)
-    first = [firsts[reached] for reached in (True, False) if reached in firsts]
-    return [*first, *(way for way in ways if all(way is not each for each in first))]
-
-
-def controller_path(case: str, target: tuple[float, float], outcome: PairRunResult) -> RecordedPath:
-    """The way of a run by potential fields. RunError if nothing was driven."""
-    if not outcome.poses:
-        raise RunError(f"{case}: {outcome.why or 'nothing was driven'} The same command goes on.")
-    ended = {"reached": EpisodeOutcome.REACHED, "collided": EpisodeOutcome.COLLIDED}
-    way = EpisodePath(
-        case, ended.get(outcome.end, EpisodeOutcome.TIMED_OUT), np.array(outcome.poses), target, SAMPLE_S
-    )
-    return _recorded(POTENTIAL_FIELDS, 0, way)
-
-
-def _recorded(group: str, seed: int, way: EpisodePath) -> RecordedPath:
-    """A way with fewer places, to the centimetre."""
-    every = max(1, round(PATH_INTERVAL_S / way.interval))
-    kept = way.poses[::every, :, :2]
-    if (len(way.poses) - 1) % every:
-        kept = np.concatenate((kept, way.poses[-1:, :, :2]))
-    places = tuple(
-        tuple((round(x, 2), round(y, 2)) for x, y in kept[:, robot].tolist())
-        for robot in range(kept.shape[1])
-    )
-    x, y = way.target
-    return RecordedPath(
-        group,
-        seed,
-        way.case,
-        way.outcome.value,
-        (round(x, 2), round(y, 2)),
-        round(every * way.interval, 3),
-        places,
-    )
-
-
-def path_plots(figure: PrintedFigure, recorded: RecordedResult | None) -> tuple[ScenePlot, ...]:
-    """The picture of each case of a figure whose ways have been recorded."""
-    table = printed_table(figure.results_of)
-    found = []
-    for _, case in figure.paths if recorded is not None else ():
-        assert recorded is not None
-        ways = recorded.paths_of(figure.group, case)
-        if ways:
-            name = f"figure-{figure.id.replace('.', '-')}-{case.replace('_', '-')}"
-            found.append(ScenePlot(name, paths_title(figure, case, ways), _scene(table, case, ways)))
-    return tuple(found)
-
-
-def _scene(table: PrintedTable, case: str, ways: tuple[RecordedPath, ...]) -> Scene:
-    task = find_task(table.repeat_task)
-    card, task_case = next(each for each in task.map_cases() if each[1].name == case)
-    return build_paths_scene(task, card, task_case, tuple(map(_episode_path, ways)))
-
-
-def _episode_path(way: RecordedPath) -> EpisodePath:
-    """Converts a recorded path to an episode's; headings, which are not kept, are 0."""
-    places = np.array(way.places).transpose(1, 0, 2)
-    poses = np.concatenate((places, np.zeros((*places.shape[:2], 1))), axis=2)
-    return EpisodePath(way.case, EpisodeOutcome(way.outcome), poses, way.target, way.interval)
-
-
-def missing_paths(
-    figures: Iterable[PrintedFigure], recorded: RecordedResult | None
-) -> tuple[PrintedFigure, ...]:
-    """The figures of which a case has no recorded way."""
-    return tuple(
-        figure
-        for figure in figures
-        if recorded is None or not all(recorded.paths_of(figure.group, case) for _, case in figure.paths)
-    )
-
 
 MEASURED_RATES: Final = {("boltzmann-dqn", "seed"): 800.0, ("ppo", "seed"): 700.0, ("ppo", "kit"): 25_000.0}
 """Steps per second of one training by algorithm and preset, on a busy core of a virtual machine. Used until this workspace has
@@ -474,45 +365,6 @@ def _printed_steps(table: PrintedTable) -> float:
     rows = list(printed.rows)[: len(printed.row_groups) or printed.attempts]
     total = sum(printed.cell(row, column) for row in rows for column in columns)
     return total / printed.attempts
-
-
-def kit_commit() -> str:
-    """The commit of the kit's source, with a plus sign where files differ from it; empty where there is no repository.
-
-    Recorded results, which recording itself changes, do not count.
-    """
-    results = f":!{SHIPPED_FOLDER.relative_to(Path(__file__).parents[2])}"
-    try:
-        commit = _git("describe", "--always", "--abbrev=12", "--exclude=*")
-        return commit + ("+" if _git("status", "--porcelain", "-uno", "--", "kit", results) else "")
-    except (OSError, subprocess.SubprocessError):
-        return ""
-
-
-def _git(*words: str) -> str:
-    """Asks the repository that the folder of the kit's source is, and has git run none of the programs that it names.
-
-    A repository above an installed kit, or one that the user's variables name, may be anybody's.
-    """
-    folder = Path(__file__).resolve().parents[2]
-    environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
-    environment |= {"GIT_CEILING_DIRECTORIES": str(folder.parent), "GIT_OPTIONAL_LOCKS": "0"}
-
-    def run(*command: str, check: bool) -> str:
-        found = subprocess.run(
-            ["git", "-c", "core.fsmonitor=false", "-c", "core.hooksPath=/dev/null", *command],
-            cwd=folder,
-            env=environment,
-            capture_output=True,
-            text=True,
-            timeout=20,
-            check=check,
-        )
-        return found.stdout.strip()
-
-    filters = run("config", "--name-only", "--get-regexp", r"^filter\..*\.(clean|process)$", check=False)
-    without = [word for name in filters.splitlines() for word in ("-c", f"{name}=")]
-    return run(*without, *words, check=True)
 
 
 def _test_agent(group: str, sweep: TrainingSweep, entry: SweepEntry, episodes: int) -> RecordedTest:

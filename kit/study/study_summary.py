@@ -25,9 +25,10 @@ from kit.study.printed_tables import (
     PrintedTable,
     printed_table,
 )
-from kit.study.recorded_results import RecordedResult, TrainedSeeds
+from kit.study.recorded_results import RecordedResult
 from kit.study.result_logs import find_recorded_results
 from kit.study.seed_spread import seed_means
+from kit.study.trained_seeds import TrainedSeeds
 
 
 def summary_chapter() -> Chapter:

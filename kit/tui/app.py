@@ -69,7 +69,7 @@ class KitApp(App[None]):
     @work(exclusive=True, group="palette")
     async def action_palette(self) -> None:
         """Opens the command palette over any screen."""
-        from kit.tui.screens.dialogs import open_palette  # of no use to the first frame
+        from kit.tui.screens.palette import open_palette  # of no use to the first frame
 
         await open_palette(self, self.switch_theme)
 
@@ -82,7 +82,7 @@ class KitApp(App[None]):
         from kit.document.layout import Page, rows_of
         from kit.document.rows import MARGIN, TEXT_WIDTH, row
         from kit.school.lessons.glossary import glossary_blocks, read_glossary  # of no use to the first frame
-        from kit.tui.screens.dialogs import TextScreen
+        from kit.tui.screens.text_screen import TextScreen
 
         terms, page = read_glossary(), Page(TEXT_WIDTH, MARGIN)
         half = (len(terms) + 1) // 2

@@ -10,9 +10,8 @@ On an idle machine the median of 14 controllers was 1.68 s of processor time, an
 0.5 s, but for slips in tasks to learn: 0.56 to 0.60 s. Since these load no numba and no simulator either, they cost what
 slips in trainings do.
 
-Every check is a cold start: no process is kept warm for the next one. A warm one could hold ``kit.ros``, ``kit.msg`` and
-``kit.host`` alone, which is 0.07 of the 0.09 s of processor time that a student's process takes to start; the limits are
-met without it.
+Every check is a cold start: no process is kept for the next one. Within a check, the programs of its episodes are forked from
+one interpreter (``kit.host.warm_start``).
 """
 
 from __future__ import annotations

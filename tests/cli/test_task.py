@@ -17,6 +17,7 @@ from kit.learning.tasks.transition import TRANSITION_FIELDS
 from kit.mapmaking.map_drawing import read_drawing
 from kit.mapmaking.new_map import write_map
 from kit.run.scenario import case_names
+from kit.school.game.daily import find_playable_level
 from kit.workspace import open_workspace
 from kit.world.catalogue import maps_folder
 from tests.cases import every_case
@@ -150,12 +151,23 @@ def test_the_errors_of_a_file_come_with_their_places() -> None:
 QUICK = ("--algo", "q-learning", "--steps", "4000", "--keep-training", "--name", "mine")
 
 
+@pytest.mark.parametrize("source", ["turn", "night-watch", "wheelchairs"])
+def test_how_an_agent_is_raced_is_told_and_is_right(source: str) -> None:
+    for verb in (("new", "mine", "--from", source), ("check", "mine")):
+        told = re.search(r"`kit game race (\S+) --agent RUN`", kit("task", *verb).output)
+        assert told is not None
+        level = find_playable_level(told[1])
+        assert level.goal == find_task("mine").goal
+        level.find_scenario()
+
+
 @pytest.mark.long
 def test_a_task_of_ones_own_from_file_to_table(tmp_path: Path) -> None:
     kit("task", "new", "mine")
     task = Path("mine/task.yaml")
     text = task.read_text()
     kit("train", "mine", *QUICK)
+    assert "`kit game race mine/task.yaml --agent mine`" in kit("watch", "mine").output
     run = tmp_path / "workspace" / "runs" / "mine"
     assert (run / "task.yaml").read_text() == text
     assert load_policy(run / "best.npz").trained_on.name == "mine"

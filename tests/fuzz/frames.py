@@ -16,7 +16,6 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from types import SimpleNamespace
 from typing import IO, Any, Final
 from unittest.mock import patch
 
@@ -160,8 +159,7 @@ def _pipe() -> tuple[IO[bytes], int]:
 def scripted(script: Sequence[bytes | None]) -> Iterator[None]:
     """Has the next process be played by a script instead of being started."""
     played = type("_Played", (ScriptedProcess,), {"script": script})
-    stand_in = SimpleNamespace(Popen=played, PIPE=subprocess.PIPE, TimeoutExpired=subprocess.TimeoutExpired)
-    with patch.object(process, "subprocess", stand_in):
+    with process.started_by(played):
         yield
 
 

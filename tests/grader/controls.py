@@ -169,7 +169,7 @@ CONTROLS: Final = (
     ),
     Control(
         "a checkpoint that unpacks to far more",
-        "kit/learning/training/runs.py",
+        "kit/learning/training/checkpoint_file.py",
         "            check_stored(archive, size)\n",
         "",
         "learning/training/test_runs.py::test_a_checkpoint_of_somebody_elses_unpacks_to_no_more_than_it_is",
@@ -246,14 +246,14 @@ CONTROLS: Final = (
     ),
     Control(
         "a repository whose settings name a program",
-        "kit/study/study_runs.py",
+        "kit/study/kit_commit.py",
         '"-c", "core.fsmonitor=false", ',
         "",
         "study/test_kit_commit.py::test_a_repositorys_settings_run_nothing",
     ),
     Control(
         "a repository above the kit",
-        "kit/study/study_runs.py",
+        "kit/study/kit_commit.py",
         '"GIT_CEILING_DIRECTORIES": str(folder.parent), ',
         "",
         "study/test_kit_commit.py::test_a_repository_of_anybodys_is_not_asked",
@@ -310,7 +310,7 @@ CONTROLS: Final = (
     Control(
         "threads of root that nobody counts",
         "kit/host/sandbox/control_groups.py",
-        '                _write(f"{folder}/pids.max", processes)\n',
+        '                _write_group_file(f"{folder}/pids.max", processes)\n',
         "                pass\n",
         "host/sandbox/test_control_groups.py::test_threads_of_root_are_counted",
     ),

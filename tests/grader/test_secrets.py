@@ -168,6 +168,36 @@ def test_how_a_program_fails_on_secrets_is_the_teachers_to_know(function_assignm
     assert "“agrees” is not met with the secret seeds" in results[0].tests[0].rationale
 
 
+@pytest.mark.parametrize("level", [Level.LIMITED, Level.FILTERED])
+def test_where_secret_runs_alone_lose_points_ones_own_check_says_what_was_seen(
+    function_assignment: Assignment, monkeypatch: pytest.MonkeyPatch, level: Level
+) -> None:
+    monkeypatch.setattr(MeasuredOnly, "level", level)
+    monkeypatch.setattr(
+        MeasuredOnly, "counterparts", lambda *_: iter([comparison(0, label="another seed")] * 3), raising=True
+    )
+    found = MeasuredOnly(comparison(0, label="nearest()"), secret_comparison(2000), secret_comparison(0))
+    submission = Submission("ada", "scans.py", {"scans.py": b""})
+    grading = Grading(
+        function_assignment, submission, found, secret=True, clock=SubmissionClock(), examples=True
+    )
+    [test] = grading.result().tests
+    worst = grading.worst_evidence()
+    assert "printed 2000" not in test.log
+    if level is Level.LIMITED:
+        assert "80 %" in test.rationale
+        assert "explained 2000" in test.rationale
+        assert "all public seeds" in test.rationale
+        assert "3 further seeds" in test.rationale
+        assert "1 of 2 secret ones" in test.rationale
+        assert "A seed decides" in test.rationale
+        assert test.replay == "drawn 2000", "the picture is of the run that the verdict is about"
+        assert worst is found.evidence(function_assignment.criteria[0])[1]
+    else:
+        assert "2000" not in f"{test.rationale}{test.replay}"
+        assert worst is None
+
+
 def test_a_broken_grader_tells_students_no_secret(function_assignment: Assignment) -> None:
     failure = Failure(FailureKind.CONFINEMENT, f"seed {SECRET_SEED}")
     result = measured(function_assignment, EvidenceRecord(failure=failure, label="it", secret=True))
@@ -229,7 +259,19 @@ def test_a_test_that_is_shown_later_is_blank_everywhere(visibility: Visibility) 
             log="why",
             depends_on="x" if status is CriterionStatus.SKIPPED else None,
         )
-        result = GradingResult("reach", "v1", "abc", "0.1", "public", 1, "linux", (seen, later))
+        result = GradingResult(
+            "reach",
+            "v1",
+            "abc",
+            "0.1",
+            "public",
+            1,
+            "linux",
+            (seen, later),
+            timing=GradingTiming(
+                "2026-01-01T00:00:00+00:00", 1.0
+            ),  # else one format takes the present second
+        )
         shown = result.for_student()
         assert (shown.points, shown.max_points, shown.verdict.value) == (1.0, 1.0, "pass")
         all_reports.append(student_reports(result))

@@ -887,6 +887,83 @@ def test_callbacks_in_threads_answer_within_the_tick(harness: GraphHarness, stud
     assert process.wake_ns is None, "idle threads of a pool are not waited for, and need no ticks"
 
 
+def test_callbacks_without_a_free_thread_are_not_waited_for(harness: GraphHarness, student: Student) -> None:
+    """More callbacks than threads, which all wait for simulated time: the next tick is that of the first of them."""
+    file = student(
+        """
+        import time, rclpy
+        from rclpy.callback_groups import ReentrantCallbackGroup
+        from rclpy.executors import MultiThreadedExecutor
+        from std_msgs.msg import String
+
+        def main():
+            rclpy.init()
+            node = rclpy.create_node("many")
+            out = node.create_publisher(String, "answers", 10)
+            group = ReentrantCallbackGroup()
+
+            def on_question(message):
+                time.sleep(0.5)
+                out.publish(message)
+
+            node.create_subscription(String, "questions", on_question, 10, callback_group=group)
+            executor = MultiThreadedExecutor(2)
+            executor.add_node(node)
+            executor.spin()
+        """
+    )
+    answers = harness.subscribe(String, "/answers")
+    process = harness.start(file)
+    harness.tick()
+    begin_ns = harness.graph.now_ns
+    for text in "abcde":
+        harness.publish("/questions", String(data=text))
+    for rounds in (1, 2, 3):
+        assert process.failure is None
+        due_ns = begin_ns + rounds * 500_000_000
+        assert process.wake_ns == due_ns
+        while process.wake_ns == due_ns:
+            harness.tick()
+        assert len(answers) == min(2 * rounds, 5)
+    assert sorted(texts(answers)) == list("abcde")
+    assert process.wake_ns is None
+
+
+def test_a_thread_that_slept_finds_what_others_do_at_that_instant_done(
+    harness: GraphHarness, student: Student
+) -> None:
+    """However long the other threads take: both wake up in the same tick."""
+    file = student(
+        """
+        import threading, time, rclpy
+        from std_msgs.msg import String
+
+        def main():
+            rclpy.init()
+            node = rclpy.create_node("sleeper")
+            out = node.create_publisher(String, "answers", 10)
+            done = []
+
+            def on_timer():
+                sum(range(300_000))
+                done.append(node.get_clock().now())
+
+            node.create_timer(0.1, on_timer)
+            threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+            rate = node.create_rate(10)
+            for number in range(1, 7):
+                rate.sleep() if number < 4 else time.sleep(0.1)
+                out.publish(String(data=f"{number} {len(done)}"))
+            time.sleep(1.0)
+        """
+    )
+    answers = harness.subscribe(String, "/answers")
+    harness.start(file)
+    for _ in range(80):
+        harness.tick()
+    assert texts(answers) == [f"{number} {number}" for number in range(1, 7)]
+
+
 def test_a_thread_that_never_waits_here_is_tolerated(harness: GraphHarness, student: Student) -> None:
     """As in the dissertation: one thread learns and blocks until the next scan, another one spins."""
     file = student(

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from kit.kernels import shared_cache
-from kit.kernels.shared_cache import kept_files, let_all_read, make_ready, why_not_shared
+from kit.kernels.shared_cache import kept_files, let_all_read, make_ready, unshared_reason
 
 STRANGER = 54_321
 
@@ -28,7 +28,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_a_folder_that_only_its_owner_writes_is_shared(folder: Path) -> None:
-    assert why_not_shared(folder) == ""
+    assert unshared_reason(folder) == ""
 
 
 def _link(folder: Path) -> None:
@@ -50,13 +50,13 @@ def test_it_is_refused_with_a_reason_where_others_may_write(
     folder: Path, spoil: Callable[[Path], object]
 ) -> None:
     spoil(folder)
-    assert str(folder) in why_not_shared(folder)
+    assert str(folder) in unshared_reason(folder)
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root gives a file to another account")
 def test_a_file_of_another_account_is_refused_and_removed(folder: Path) -> None:
     os.chown(folder / "a.nbi", STRANGER, STRANGER)
-    assert "a.nbi" in why_not_shared(folder)
+    assert "a.nbi" in unshared_reason(folder)
     make_ready(folder)
     assert list(kept_files(folder)) == []
 
@@ -68,7 +68,7 @@ def test_what_others_may_have_written_is_removed_and_the_rest_stays(folder: Path
     make_ready(folder)
     assert list(kept_files(folder)) == []
     assert (folder / "other.pyc").exists()
-    assert why_not_shared(folder) == ""
+    assert unshared_reason(folder) == ""
 
 
 def test_no_folder_is_made_where_others_may_replace_it(folder: Path) -> None:

@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.ros.packages import PackageError, missing_package
+from kit.ros.packages import PackageError, missing_package, workspace_folders
 from kit.ros.share_folders import installed_share, with_original_paths
 from tests.launch.conftest import Launched
 
@@ -83,6 +83,26 @@ def test_a_controller_sees_its_workspace(source: Path, name: str, tmp_path: Path
     file = source / "my_pkg" / "my_pkg" / f"{name}.py"
     output = kit("run", "maze", "--controller", file, "--steps", "5", workspace=tmp_path / "kit")
     assert "SEES my_pkg other_pkg 2.0" in output
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("place", ["ws", "ws/scripts/deep", "ws/src", "robot-kit/controllers"])
+def test_a_controller_in_no_package_sees_the_workspace_in_which_it_lies(
+    source: Path, place: str, tmp_path: Path
+) -> None:
+    if place.startswith("robot-kit"):
+        (tmp_path / "robot-kit").mkdir()
+        source.rename(tmp_path / "robot-kit" / "packages")
+    file = tmp_path / place / "drive.py"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(PROGRAM.format(more=""))
+    output = kit("run", "maze", "--controller", file, "--steps", "5", workspace=tmp_path / "kit")
+    assert "SEES my_pkg other_pkg 2.0" in output
+
+
+def test_a_file_far_from_any_package_has_no_workspace(tmp_path: Path) -> None:
+    (tmp_path / "ws" / "src" / "empty").mkdir(parents=True)
+    assert workspace_folders(tmp_path / "ws" / "drive.py") == ()
 
 
 @pytest.mark.sampled(2)

@@ -28,7 +28,7 @@ def test_an_example_explained_fits_a_terminal_and_names_every_layer(name: str) -
     run, plan = run_greedy(EXAMPLES[name]), solve_layers(EXAMPLES[name])
     lines = [
         *words.greedy_text(run),
-        *words.plan_text(plan),
+        *words.layer_count_text(plan),
         *words.proof_text(plan, every_pair=True),
         *words.comparison_text(run, plan),
         *words.case_text(EXAMPLES[name]),
@@ -81,7 +81,7 @@ def test_a_proof_by_search_alone_says_so() -> None:
 
 def test_an_unfinished_plan_says_what_is_proved() -> None:
     plan = solve_layers(random_graph(random.Random(1), 45, 0.5), time_limit=0.2)
-    text = " ".join(" ".join(words.plan_text(plan)).split())
+    text = " ".join(" ".join(words.layer_count_text(plan)).split())
     assert f"at least {plan.bound}" in text
     assert f"up to {plan.gap} fewer" in text
 

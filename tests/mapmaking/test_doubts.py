@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from PIL import Image, ImageDraw
 
 from kit.cli import main
-from kit.mapmaking.doubts import DOUBTS
+from kit.mapmaking.doubts import DOUBTS, judge_strokes
 from kit.mapmaking.photo import PhotoScale, plan_from_photo, whole_picture
 from kit.mapmaking.strokes import find_strokes
 from tests.mapmaking.judging import judge
@@ -39,6 +39,25 @@ def test_a_plain_drawing_is_not_doubted() -> None:
     found = find_strokes(image)
     assert found.remarks == ()
     assert not found.doubtful.any()
+
+
+@pytest.mark.parametrize(("gap", "is_wall"), [(9, True), (60, False)])
+def test_what_lies_beyond_a_short_break_in_a_stroke_is_a_wall(gap: int, is_wall: bool) -> None:
+    strokes = np.zeros((700, 1000), dtype=np.bool_)
+    strokes[50:650, 50:950] = True
+    strokes[66:634, 66:934] = False
+    strokes[66:150, 500:516] = True
+    strokes[150 + gap : 185 + gap, 500:516] = True
+    judged = judge_strokes(strokes, strokes)
+    assert (judged.remarks == ()) == is_wall
+    assert bool(judged.walls[160 + gap, 508]) == is_wall
+
+
+def test_the_lesson_s_photograph_is_not_doubted() -> None:
+    """Its strokes are of two widths, as a hand draws them, and lie half in a shadow."""
+    photo = Path(__file__).parents[2] / "lessons" / "35-photo-to-map" / "sheet" / "starter" / "plan.jpg"
+    with Image.open(photo) as image:
+        assert plan_from_photo(image.convert("RGB"), PhotoScale(sheet_width=5.0)).strokes.remarks == ()
 
 
 @pytest.mark.parametrize(

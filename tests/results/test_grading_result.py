@@ -167,8 +167,15 @@ def test_what_a_program_printed_is_kept_up_to_a_limit() -> None:
     assert len(judged(CriterionStatus.FAIL, log="x" * 100_000).log) == MAX_LOG_LENGTH
 
 
+def test_values_in_words_say_no_more_than_the_title() -> None:
+    text = "\n".join(
+        shown(judged(CriterionStatus.FAIL, 0.0, rationale="Why.", expected="sound", actual="not sound"))
+    )
+    assert "sound" not in text
+
+
 def test_long_rationales_and_values_are_shortened() -> None:
-    told = {"rationale": "why " * 400, "expected": "more " * 300, "actual": "less " * 300}
+    told = {"rationale": "why " * 400, "expected": "3 more " * 300, "actual": "2 less " * 300}
     text = " ".join(line.strip() for line in shown(judged(CriterionStatus.FAIL, 0.0, **told)))
     assert text.count("(shortened)") == 3
     assert text.count("why") <= MAX_RATIONALE / 4

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.study import study_runs
+from kit.study import kit_commit
 
 PROGRAMS = ("core.fsmonitor", "filter.a.clean", "filter.a.process", "core.hooksPath")
 """Settings of a repository that name a program, or a folder of programs."""
@@ -26,10 +26,10 @@ def source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder in which the kit might lie, below one that is anybody's."""
     folder = tmp_path / "anybodys" / "source"
     (folder / "kit" / "study").mkdir(parents=True)
-    module = folder / "kit" / "study" / "study_runs.py"
+    module = folder / "kit" / "study" / "kit_commit.py"
     module.write_text("")
-    monkeypatch.setattr(study_runs, "__file__", str(module))
-    monkeypatch.setattr(study_runs, "SHIPPED_FOLDER", folder / "kit" / "study" / "results")
+    monkeypatch.setattr(kit_commit, "__file__", str(module))
+    monkeypatch.setattr(kit_commit, "SHIPPED_FOLDER", folder / "kit" / "study" / "results")
     return folder
 
 
@@ -53,7 +53,7 @@ def make_repository(folder: Path, marker: Path, setting: str) -> None:
 def test_a_repositorys_settings_run_nothing(source: Path, tmp_path: Path, setting: str) -> None:
     marker = tmp_path / "was run"
     make_repository(source, marker, setting)
-    commit = study_runs.kit_commit()
+    commit = kit_commit.kit_commit()
     assert commit == f"{git(source, 'rev-parse', '--short=12', 'HEAD')}+"
     assert not marker.exists()
     git(source, "status", "--porcelain")
@@ -68,5 +68,5 @@ def test_a_repository_of_anybodys_is_not_asked(
     (tmp_path / "was run").unlink(missing_ok=True)
     if by_variable:
         monkeypatch.setenv("GIT_DIR", str(source.parent / ".git"))
-    assert study_runs.kit_commit() == ""
+    assert kit_commit.kit_commit() == ""
     assert not (tmp_path / "was run").exists()

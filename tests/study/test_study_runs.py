@@ -21,11 +21,11 @@ from kit.study.recorded_results import (
     RecordedSettings,
     RecordedTest,
     SideShare,
-    TrainedSeeds,
     TrainingSession,
 )
 from kit.study.result_logs import append_event, read_recorded_result, recorded_result_file
 from kit.study.study_runs import StudyRun
+from kit.study.trained_seeds import TrainedSeeds
 from kit.workspace import Workspace
 
 SETTINGS = RecordedSettings("3.5", "hallway-seed", "boltzmann-dqn", "seed", 100, None, {"numpy": "2"})

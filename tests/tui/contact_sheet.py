@@ -34,6 +34,8 @@ FONTS: Final = (
     "/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf",
     "LiberationMono-Regular.ttf",
 )
+FAINT: Final = 0.6
+"""How much of its colour faint text keeps."""
 BACKGROUNDS: Final = {"dark": ((18, 18, 22), (208, 208, 208)), "light": ((252, 251, 247), (40, 40, 44))}
 """Background and foreground of the terminal."""
 ANSI: Final = {
@@ -112,11 +114,27 @@ VISITS: Final = {
 }
 
 
+class FaintScreen(pyte.Screen):
+    """Keeps faint text, which pyte drops, as struck out: the kit strikes nothing out."""
+
+    def select_graphic_rendition(self, *attrs: int, **kwargs: bool) -> None:
+        told, waiting = [], list(reversed(attrs))
+        while waiting:
+            attr = waiting.pop()
+            told.append(attr)
+            if attr in (38, 48) and waiting:
+                kind = waiting.pop()
+                told += [kind, *(waiting.pop() for _ in range(min(len(waiting), 3 if kind == 2 else 1)))]
+            elif attr in (2, 22):
+                told.append(9 if attr == 2 else 29)
+        super().select_graphic_rendition(*told, **kwargs)
+
+
 def picture_of(
     visit: ScreenVisit, columns: int, rows: int, color: str, theme: str | None, home: Path
 ) -> pyte.Screen:
     """The kit's screen after the visit's keys, as pyte holds it."""
-    screen = pyte.Screen(columns, rows)
+    screen = FaintScreen(columns, rows)
     stream = pyte.ByteStream(screen)
     arguments = [sys.executable, "-m", "kit", *visit.arguments]
     pid, terminal = pty.fork()
@@ -190,6 +208,8 @@ def draw(screen: pyte.Screen, background: str) -> Image.Image:
         for x in range(screen.columns):
             cell = screen.buffer[y][x]
             fg, bg = _rgb(cell.fg, ink), _rgb(cell.bg, paper)
+            if cell.strikethrough:
+                fg = tuple(round(FAINT * a + (1.0 - FAINT) * b) for a, b in zip(fg, bg, strict=True))
             if cell.reverse:
                 fg, bg = bg, fg
             left, top = x * CELL_WIDTH, y * CELL_HEIGHT

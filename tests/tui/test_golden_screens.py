@@ -34,6 +34,7 @@ from kit.tui.screens.start import StartScreen
 from kit.tui.screens.trainings import TrainingsScreen
 from kit.tui.student_store import StudentStore
 from kit.tui.theme import Theme
+from kit.tui.widgets.task_preview import TaskPreview
 from tests.tui.lesson_folder import write_lessons
 from tests.tui.lesson_stage import ROBOT, rows, seen, stage, until
 
@@ -106,6 +107,8 @@ def open_trainings(theme: Theme, workspace: Workspace, progress: ProgressJournal
 
 async def list_is_read(pilot: Pilot[None], screen: Screen[Any]) -> None:
     await seen(pilot, "No trainings yet")
+    if screen.query_one(TaskPreview).display:  # which reads its task in a thread
+        await seen(pilot, "earns the sum of these terms")
 
 
 VISITS: Final[dict[str, tuple[Make, Ready]]] = {

@@ -41,7 +41,7 @@ def test_a_race_is_seen_by_three_and_goes_on_when_one_is_killed(kit: Open, tmp_p
     for terminal in (host, guest, spectator):
         shows(terminal, "0 targets")  # it has begun
     shows(host, "Ada against Ben")
-    shows(host, "2 spectators")
+    shows(host, " watch ")
     before = robots(spectator)
     assert len(before) >= 2
     guest.send(b"\x1b[1;1:1A")  # Up, and held

@@ -49,15 +49,15 @@ def write(works: Sequence[GradedWork], kit: GitSource, runner: CiRunner) -> byte
             ("setup.sh", SETUP.format(clone=kit.clone)),
             ("run_autograder", RUN.format(secret=secret)),
         ):
-            _add(archive, name, text.encode(), 0o755)
+            _add_to_archive(archive, name, text.encode(), 0o755)
         for file in sorted(path for path in folder.rglob("*") if path.is_file()):
             inside = file.relative_to(folder)
             if not any(part.startswith((".", "__")) for part in inside.parts):
-                _add(archive, f"assignment/{inside.as_posix()}", file.read_bytes(), 0o644)
+                _add_to_archive(archive, f"assignment/{inside.as_posix()}", file.read_bytes(), 0o644)
     return packed.getvalue()
 
 
-def _add(archive: zipfile.ZipFile, name: str, data: bytes, mode: int) -> None:
+def _add_to_archive(archive: zipfile.ZipFile, name: str, data: bytes, mode: int) -> None:
     entry = zipfile.ZipInfo(name)  # without a time: equal contents give equal bytes
     entry.compress_type = zipfile.ZIP_DEFLATED
     entry.external_attr = mode << 16

@@ -151,11 +151,11 @@ def profiles(drive: GradedDrive, params: ProfilesParams) -> float:
     """Of the asked publishers and subscriptions {actual} are there with the asked quality of service, and with no other
     ({where})."""
     found = [f"{line} " for line in drive.connections.profiles]
-    asked = [_has_profile(found, end) for end in params.ends]
+    asked = [_has_qos_profile(found, end) for end in params.ends]
     return sum(asked) / len(asked) if asked else math.nan
 
 
-def _has_profile(found: Sequence[str], end: str) -> bool:
+def _has_qos_profile(found: Sequence[str], end: str) -> bool:
     place = " ".join(end.split()[:3])
     lines = [line for line in found if line.startswith(f"{place} ")]
     return bool(lines) and all(line.startswith(f"{end} ") for line in lines)

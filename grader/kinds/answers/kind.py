@@ -23,9 +23,9 @@ from typing import Final
 from grader.assignment import Assignment
 from grader.check import check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, read_submitted_yaml
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind, read_submitted_yaml
 from kit.host.failure import Failure
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import counted, quoted, suggestion
 from kit.world.yaml_section import Section
 
 MAX_ANSWER: Final = 200
@@ -79,6 +79,13 @@ class SubmittedAnswers:
             return sorted(map(_normalized, given)) == sorted(map(_normalized, key.right))
         return len(given) == 1 and any(_is_same(given[0], right, key.within) for right in key.right)
 
+    def explain(self, names: Sequence[str]) -> str:
+        """Returns feedback: of several questions how many have a right answer, and on the first that has none."""
+        wrong = self.first_wrong(names)
+        if not wrong or len(names) == 1:
+            return wrong
+        return f"{sum(map(self.is_right, names))} of {counted(len(names), 'answer')} are right. {wrong}"
+
     def first_wrong(self, names: Sequence[str]) -> str:
         """Returns feedback on the first question without a right answer; empty if there is none."""
         for question in self.task.questions:
@@ -111,7 +118,7 @@ class AnswerKeysParams:
     keys: tuple[str, ...] = ()
 
 
-@check(none=0, full=1, unit="%", params=AnswerKeysParams)
+@check(none=0, full=1, unit="%", params=AnswerKeysParams, is_explained=True)
 def answers(evidence: EvidenceRecord, params: AnswerKeysParams) -> float:
     """Of these questions {actual} are answered rightly."""
     submitted: SubmittedAnswers = evidence.content
@@ -168,7 +175,7 @@ def _read_answers(task: AnswersTask, file: Path) -> EvidenceRecord:
     if isinstance(found, Failure):
         return EvidenceRecord(failure=found)
     return EvidenceRecord(
-        found, explain_with=lambda check, params: found.first_wrong(params.keys or tuple(task.keys))
+        found, explain_with=lambda check, params: found.explain(params.keys or tuple(task.keys))
     )
 
 
@@ -212,4 +219,4 @@ def _normalized(word: str) -> str:
     return " ".join(word.split()).casefold()
 
 
-KIND: Final = Kind((".yaml", ".yml"), {answers.name: answers}, read_settings, collect)
+KIND: Final = SubmissionKind((".yaml", ".yml"), {answers.name: answers}, read_settings, collect)

@@ -18,7 +18,7 @@ from grader.evidence.contract import (
     EvidenceCollector,
     EvidenceOptions,
 )
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.seeds import read_seeds
 from kit.geometry import Pose
 from kit.plain_text import quoted, suggestion
@@ -147,4 +147,10 @@ def read_scenario(section: Section, folder: Path) -> Scenario | None:
     return replace(scenario, case=target_case)
 
 
-KIND: Final = Kind((".py",), CHECKS, read_settings, collect)
+KIND: Final = SubmissionKind(
+    (".py",),
+    CHECKS,
+    read_settings,
+    collect,
+    seed_decides="A seed decides where the robot starts, the noise of its sensors, and the random numbers that a program draws.",
+)

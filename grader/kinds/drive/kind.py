@@ -31,7 +31,7 @@ from grader.evidence.contract import (
     FixedEvidence,
 )
 from grader.evidence.submission_clock import SubmissionClock
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.kinds.controller.kind import read_scenario
 from grader.submitted_files import reading_submission
 from kit.array_archives import READ_ERRORS, check_arrays
@@ -315,4 +315,6 @@ def _cut(recording: Recording, poses: np.ndarray[Any, np.dtype[np.float64]], fir
     )
 
 
-KIND: Final = Kind((".npz",), MappingProxyType({**CHECKS, genuine.name: genuine}), read_settings, collect)
+KIND: Final = SubmissionKind(
+    (".npz",), MappingProxyType({**CHECKS, genuine.name: genuine}), read_settings, collect
+)

@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, Final
 
 from grader.assignment import Assignment
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind, collect_once
 from grader.kinds.controller.kind import read_scenario
 from grader.kinds.environment.checks import CHECKS, first_complaint
 from grader.kinds.environment.examination import (
@@ -173,4 +173,4 @@ def _missing_environment(record: EnvironmentRecord, task: EnvironmentTask, file:
     return ""
 
 
-KIND: Final = Kind((".py",), CHECKS, read_settings, collect_once(collect_evidence))
+KIND: Final = SubmissionKind((".py",), CHECKS, read_settings, collect_once(collect_evidence))

@@ -33,8 +33,9 @@ from grader.evidence.contract import (
     EvidenceRecord,
 )
 from grader.evidence.submission_clock import SubmissionClock
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.kinds.controller.kind import read_settings as read_trials
+from grader.problem_text import problems_text
 from grader.submitted_files import reading_submission
 from kit.fields import adjacency
 from kit.fields.charge_derivation import derive_charges
@@ -45,7 +46,6 @@ from kit.fields.minima import ForceFlow
 from kit.fields.trajectory import control_step
 from kit.geometry import Pose
 from kit.host.failure import Failure, FailureKind
-from kit.host.wire import printable
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.plain_text import counted, format_percent
 from kit.ros.graph.graph import Graph
@@ -311,11 +311,10 @@ def collect(
         try:
             return run_field_drive(spec, file, options.clock)
         except (WorldError, LookupError, ValueError, OSError) as error:
-            message = printable(str(error).replace(f"{file.parent}/", ""))
-            failure = Failure(FailureKind.IMPORT, message)
+            failure = Failure(FailureKind.IMPORT, problems_text(error, file.parent))
             return EvidenceRecord(failure=failure, label=spec.label, secret=spec.secret)
 
     return nullcontext(EpisodeCollector(assignment, options, run))
 
 
-KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect)
+KIND: Final = SubmissionKind((".yaml", ".yml"), CHECKS, read_settings, collect)

@@ -43,9 +43,10 @@ from grader.evidence.contract import (
     EvidenceOptions,
     EvidenceRecord,
 )
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.seeds import SeedSet, counterpart_seed, read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
+from kit.host.sandbox.limits import GRADER_LIMITS
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json, printable
 from kit.plain_text import counted, quoted, suggestion
@@ -57,6 +58,8 @@ CASES_SUFFIX: Final = "_cases"
 MAX_CASES: Final = 500
 REFERENCE_LIMIT_S: Final = 60.0
 """Wall clock of the reference for all cases of a submission."""
+CALL_LIMITS: Final = replace(GRADER_LIMITS, reply_s=2.0)
+"""A call gets plain data and computes from it: what takes longer has no end, most likely."""
 MAX_SHOWN: Final = 9
 """The most entries of a list that feedback shows."""
 
@@ -205,13 +208,15 @@ def _answers_of(module: ModuleType, name: str, seed: int) -> Json:
 
 class FunctionCollector(CachingCollector):
     """Calls each function when a criterion first needs it: all of them in one process with the public cases, then in another
-    with the secret ones. After a failure the next function gets a new one, so that an error in one costs no other."""
+    with the secret ones. After a failure the next function gets a new one, so that an error in one costs no other; in a
+    student's own check the one that failed is not called with secret cases."""
 
     def __init__(self, assignment: Assignment, file: Path, options: EvidenceOptions) -> None:
         super().__init__(options)
         self._task: FunctionsTask = assignment.task
         self._assignment = assignment
         self._file = file
+        self._stops_at_death = options.stops_at_death
         self._secret = options.secret and self._task.secret_seed is not None
         self._known: dict[tuple[str, int], Json] = {}
         """By function and seed: each case with the right answer, or why there are none."""
@@ -281,8 +286,11 @@ class FunctionCollector(CachingCollector):
         label = f"{spec.name}()" + (" on secret cases" if secret else "")
         seed = self._task.secret_seed if secret else self._task.seed
         assert seed is not None  # without one, no secret evidence is collected
+        key = (spec.name, secret)
+        if secret and self._stops_at_death and (failure := self._record(spec, False).failure) is not None:
+            return self._skip(key, failure, label, secret=True)
         run = partial(self._compare, spec, seed, EvidenceRecord(label=label, secret=secret))
-        return self._collect((spec.name, secret), run, label, secret=secret)
+        return self._collect(key, run, label, secret=secret)
 
     def _cases(self, name: str, seed: int) -> Sequence[tuple[Mapping[str, Json], Json]]:
         """Returns the cases of a function for this seed, each with the right answer. Raises AuthorCodeError."""
@@ -328,7 +336,7 @@ class FunctionCollector(CachingCollector):
             self._close()
             return failed_record(blank, clock.explain(error.failure), spec.name, case)
         found = FunctionComparison(spec.name, len(cases), tuple(differences))
-        explanation = "" if blank.secret else found.explain_first()
+        explanation = found.explain_first()
         return EvidenceRecord(
             found,
             None,
@@ -405,4 +413,11 @@ def collect(
     return FunctionCollector(assignment, file, options)
 
 
-KIND: Final = Kind((".py",), {agrees.name: agrees}, read_settings, collect)
+KIND: Final = SubmissionKind(
+    (".py",),
+    {agrees.name: agrees},
+    read_settings,
+    collect,
+    seed_decides="A seed decides with which values it is called.",
+    limits=CALL_LIMITS,
+)

@@ -23,7 +23,7 @@ from typing import Any, Final
 from grader.assignment import Assignment, Criterion
 from grader.check import Check, check
 from grader.evidence.contract import CachingCollector, Evidence, EvidenceCollector, EvidenceOptions
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.kinds.launch.launch_record import (
     LaunchCase,
     LaunchRecord,
@@ -313,4 +313,4 @@ CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (starts, nodes, arguments, parameters, wired, drives)}
 )
 
-KIND: Final = Kind((".py",), CHECKS, read_settings, collect)
+KIND: Final = SubmissionKind((".py",), CHECKS, read_settings, collect)

@@ -23,7 +23,13 @@ from typing import Final
 from grader.assignment import Assignment
 from grader.check import NoParams, check
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once, read_submitted_yaml
+from grader.kinds.contract import (
+    AssignmentFiles,
+    KindSettings,
+    SubmissionKind,
+    collect_once,
+    read_submitted_yaml,
+)
 from kit.host.failure import Failure
 from kit.layers.assignment import LayerAssignment as Plan
 from kit.layers.assignment import NamedLayer, RequirementBreach, find_breaches
@@ -181,6 +187,6 @@ def _requirement(section: Section, line: str, case: LayerCase) -> Requirement | 
     return None
 
 
-KIND: Final = Kind(
+KIND: Final = SubmissionKind(
     (".yaml", ".yml"), {each.name: each for each in CHECKS}, read_settings, collect_once(collect_evidence)
 )

@@ -21,7 +21,7 @@ from grader.kinds.reward.exploit_recording import save_exploit
 from grader.kinds.reward.mirrored_cases import MIRRORED_MOVES, mirrored, rotated
 from grader.kinds.reward.optimal_policy import (
     OptimalPolicy,
-    PolicyOutcome,
+    OptimalPolicyScore,
     draw_path,
     evaluate_policy,
     rollout,
@@ -88,7 +88,7 @@ class RewardEvidence:
         return value_iteration(self.model, self.rewards, self._clock.check)
 
     @cached_property
-    def plan_outcome(self) -> PolicyOutcome:
+    def plan_outcome(self) -> OptimalPolicyScore:
         return evaluate_policy(self.policy, self._clock.check)
 
     @cached_property

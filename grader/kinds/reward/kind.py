@@ -8,7 +8,7 @@ from typing import Final
 
 from grader.assignment import Assignment, GridTask
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, FixedEvidence
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.kinds.reward.checks import CHECKS
 from grader.kinds.reward.evidence import RewardEvidence
 from kit.plain_text import quoted
@@ -52,4 +52,4 @@ def _grid(section: Section) -> GridTask:
     return made
 
 
-KIND: Final = Kind((".py",), CHECKS, read_settings, collect)
+KIND: Final = SubmissionKind((".py",), CHECKS, read_settings, collect)

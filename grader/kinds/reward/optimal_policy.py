@@ -66,7 +66,7 @@ def value_iteration(
 
 
 @dataclass(frozen=True, eq=False)
-class PolicyOutcome:
+class OptimalPolicyScore:
     """How the optimal behaviour does from every start, by the true goal."""
 
     success: float
@@ -77,7 +77,7 @@ class PolicyOutcome:
     """A start from which the target may be missed; None if there is none."""
 
 
-def evaluate_policy(policy: OptimalPolicy, check_time: TimeCheck = without_limit) -> PolicyOutcome:
+def evaluate_policy(policy: OptimalPolicy, check_time: TimeCheck = without_limit) -> OptimalPolicyScore:
     """Evaluates the policy from every start from which the target can be reached, for ``max_steps``."""
     model = policy.model
     starts = model.starts[np.isfinite(model.to_go[model.cell_of(model.starts)])]
@@ -91,7 +91,7 @@ def evaluate_policy(policy: OptimalPolicy, check_time: TimeCheck = without_limit
     # Where it is missed most; of these, from neither the nearest nor the farthest start: that shows best.
     worst = lost[success[lost] <= success[lost].min(initial=1.0) + 1e-9]
     order = np.argsort(model.to_go[model.cell_of(worst)], kind="stable")
-    return PolicyOutcome(
+    return OptimalPolicyScore(
         float(success[starts].mean()),
         float(steps[starts].mean()),
         int(worst[order[len(worst) // 2]]) if len(worst) else None,

@@ -28,12 +28,12 @@ from grader.assignment import Assignment
 from grader.check import Check, NoParams, check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, SingleEvidence
 from grader.evidence.training_results import PosedTaskPlan
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.kinds.task.task_process import PosedTaskProcess
+from grader.problem_text import problems_text
 from grader.seeds import read_seed
 from grader.submitted_files import reading_submission
 from kit.host.failure import StudentCodeError
-from kit.host.wire import printable
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.goals.goal import CaseTargets
 from kit.learning.tasks.learning_task import UnknownTask
@@ -195,7 +195,7 @@ def _problem(file: Path) -> str:
         task = read_task(file).task
         count = len(task.map_cases())
     except (UnknownTask, WorldError, OSError) as error:
-        return printable(str(error).replace(f"{file.parent}/", ""))
+        return problems_text(error, file.parent)
     if task.reward_file is not None:
         return (
             f"{file.name}: write the reward as terms with weights; a reward in a Python file is not run here."
@@ -225,4 +225,4 @@ def _explain(posed: PosedTaskProcess, name: str, params: object) -> str:
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (sound, places, way, returns, loops, learns, arrives, quick)}
 )
-KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect, tells_secret_runs=True)
+KIND: Final = SubmissionKind((".yaml", ".yml"), CHECKS, read_settings, collect)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from grader.evidence.reader_process import MEMORY_LIMIT, ReaderProcess
+from grader.problem_text import numbered
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox.sandbox_config import Level
 from kit.host.wire import printable
@@ -60,7 +61,7 @@ class PosedTaskProcess(ReaderProcess):
     def read_task(self) -> str:
         """Returns what is wrong with the task; empty if nothing is. To be called first, and once."""
         self._clock.show_progress("reading the task and its world")
-        return printable(str(self._answer()["problem"]))
+        return numbered(str(self._answer()["problem"]).splitlines())
 
     def measure(self, check: str, params: Mapping[str, str]) -> PosedMeasure:
         """Measures what a check asks for, by its name and parameters."""

@@ -30,7 +30,13 @@ from grader.evidence.training_results import (
     TrainingResults,
     TrainingSettings,
 )
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once, read_submitted_yaml
+from grader.kinds.contract import (
+    AssignmentFiles,
+    KindSettings,
+    SubmissionKind,
+    collect_once,
+    read_submitted_yaml,
+)
 from grader.seeds import MAX_SEED
 from grader.task_files import read_task_choice
 from kit.host.failure import Failure, FailureKind, StudentCodeError
@@ -249,6 +255,4 @@ def _schedule(section: Section, key: str, default: tuple[float, float]) -> Linea
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (succeeds, every_case, remembers, reliable, honest, steps_used)}
 )
-KIND: Final = Kind(
-    (".yaml", ".yml"), CHECKS, read_settings, collect_once(collect_evidence), tells_secret_runs=True
-)
+KIND: Final = SubmissionKind((".yaml", ".yml"), CHECKS, read_settings, collect_once(collect_evidence))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -12,6 +12,7 @@ from grader.kinds.world.faults import WorldContents, WorldRun
 from grader.kinds.world.layer_checks import LAYER_CHECKS
 from grader.kinds.world.model_checks import MODEL_CHECKS
 from grader.kinds.world.run_checks import RUN_CHECKS
+from grader.problem_text import numbered
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (*CONTENT_CHECKS, *MODEL_CHECKS, *LAYER_CHECKS, *RUN_CHECKS)}
@@ -27,18 +28,13 @@ def explain(content: WorldContents | WorldRun, name: str, params: Any) -> str:
     """Explains what a check found wrong with a world, in words that help to correct it."""
     problems = content.world.problems
     if name == "loads":
-        return "\n".join(problems if len(problems) == 1 else number_problems(problems))
+        return numbered(problems)
     if problems:
         return "The world cannot be read yet."
     if isinstance(content, WorldRun) and content.run.problem:
         return content.run.problem
     faults = CHECKS[name].faults
     return "" if faults is None else join_faults(faults(content, params))
-
-
-def number_problems(problems: Sequence[str]) -> Iterator[str]:
-    """Numbers the problems, so that they stay distinct within one paragraph."""
-    return (f"({number}) {problem}" for number, problem in enumerate(problems, 1))
 
 
 def join_faults(faults: Iterable[str]) -> str:

@@ -27,7 +27,7 @@ from grader.evidence.contract import (
     EvidenceOptions,
     EvidenceRecord,
 )
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.kinds.world.checks import CHECKS, NAMES_NEEDING_RUN, explain
 from grader.kinds.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.kinds.world.faults import WorldContents, WorldRun
@@ -202,4 +202,4 @@ def collect(
     return WorldCollector(assignment, file, options)
 
 
-KIND: Final = Kind((".yaml", ".yml"), CHECKS, read_settings, collect)
+KIND: Final = SubmissionKind((".yaml", ".yml"), CHECKS, read_settings, collect)

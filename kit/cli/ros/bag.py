@@ -183,7 +183,7 @@ def info(folder: Path, verbose: bool) -> None:
     """Print the summary of a bag. Needs no running world."""
     from kit.inspection.bag_text import bag_info
 
-    click.echo(bag_info(_read(folder)))
+    click.echo(bag_info(_read_bag(folder)))
 
 
 @command.command(cls=ListOptionsCommand)
@@ -245,7 +245,7 @@ def play(
     folder = folder or given
     if folder is None:
         exit_with_error("Give the bag to play: kit ros bag play FOLDER")
-    bag, topics = _read(folder), tuple(_absolute(name) for name in chosen)
+    bag, topics = _read_bag(folder), tuple(_absolute(name) for name in chosen)
     admits = _filter(regex, exclude_regex, exclude_topics)
     first_ns = bag.start_ns + int(start_offset * 1e9)
     last_ns = bag.start_ns + bag.duration_ns
@@ -297,7 +297,7 @@ def _told(recorder: BagRecorder, log: Callable[[str], object], folder: Path) -> 
         log(f"{recorder.count} messages in {folder}")
 
 
-def _read(folder: Path) -> Bag:
+def _read_bag(folder: Path) -> Bag:
     """The summary of a bag, restored before if its recording was killed; ends the command where there is none."""
     from kit.ros.bag_storage import BagError, restore_bags
     from kit.ros.bags import read_bag

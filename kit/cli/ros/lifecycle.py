@@ -43,7 +43,7 @@ def nodes(client: InspectionClient, hidden: bool, count: bool) -> None:
 def get(client: InspectionClient, node: str | None, hidden: bool, timeout: float | None) -> None:
     """Print the state of a lifecycle node, or of all of them."""
     found = _lifecycle_nodes(client, hidden=hidden)
-    for name in found if node is None else [_find(found, node)]:
+    for name in found if node is None else [_find_lifecycle_node(found, node)]:
         state = _call(client, name, "get_state", GET_STATE_TYPE, timeout_s=timeout).current_state
         click.echo(f"{'' if node else f'{name}: '}{state.label} [{state.id}]")
 
@@ -55,7 +55,7 @@ def get(client: InspectionClient, node: str | None, hidden: bool, timeout: float
 @with_world_client
 def list_transitions(client: InspectionClient, node: str, every: bool, hidden: bool) -> None:
     """List the transitions possible from a node's current state."""
-    name = _find(_lifecycle_nodes(client, hidden=hidden), node)
+    name = _find_lifecycle_node(_lifecycle_nodes(client, hidden=hidden), node)
     for each in _transitions(client, name, "get_transition_graph" if every else "get_available_transitions"):
         click.echo(f"- {each.transition.label} [{each.transition.id}]")
         click.echo(f"\tStart: {each.start_state.label}\n\tGoal: {each.goal_state.label}")
@@ -72,7 +72,7 @@ def set_state(client: InspectionClient, node: str, transition: str, hidden: bool
     \b
     kit ros lifecycle set /talker configure
     """
-    name = _find(_lifecycle_nodes(client, hidden=hidden), node)
+    name = _find_lifecycle_node(_lifecycle_nodes(client, hidden=hidden), node)
     possible = [each.transition for each in _transitions(client, name, "get_available_transitions")]
     wanted = next((each for each in possible if transition in (each.label, str(each.id))), None)
     if wanted is None:
@@ -94,7 +94,7 @@ def _lifecycle_nodes(client: InspectionClient, *, hidden: bool) -> list[str]:
     ]
 
 
-def _find(names: list[str], name: str) -> str:
+def _find_lifecycle_node(names: list[str], name: str) -> str:
     if absolute_name(name) not in names:
         exit_with_error("Node not found")
     return absolute_name(name)

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import click
 
-from kit.cli.options import ExistingPath
+from kit.cli.existing_path import ExistingPath
 from kit.cli.ros.message_options import QosOptions, find_or_exit, make_message, parse_fields, with_qos_options
 from kit.cli.ros.world_client import (
     exit_with_error,

@@ -73,7 +73,7 @@ class ControlGroup:
         for folder, hierarchy in self.folders.items():
             if "memory" in hierarchy.counts:
                 file = "memory.events" if hierarchy.is_unified else "memory.oom_control"
-                for line in _read(f"{folder}/{file}").splitlines():
+                for line in _read_group_file(f"{folder}/{file}").splitlines():
                     name, _, number = line.partition(" ")
                     if name == "oom_kill":
                         return int(number)
@@ -82,7 +82,7 @@ class ControlGroup:
     def empty(self) -> bool:
         """Ends every process that is left; returns whether none is."""
         ends = time.monotonic() + EMPTY_S
-        while members := [line for each in self.member_files for line in _read(each).split()]:
+        while members := [line for each in self.member_files for line in _read_group_file(each).split()]:
             for process in map(int, members):
                 with suppress(OSError):
                     os.kill(process, signal.SIGKILL)
@@ -179,16 +179,16 @@ def _make_group(hierarchies: tuple[_Hierarchy, ...], wanted: tuple[int, int]) ->
             os.mkdir(folder)
             group.folders[folder] = each
             if "memory" in each.counts and each.is_unified:
-                _write(f"{folder}/memory.max", memory)
+                _write_group_file(f"{folder}/memory.max", memory)
                 for name, value in (("memory.swap.max", "0"), ("memory.oom.group", "1")):
                     with suppress(OSError):  # without swap, or an older kernel
-                        _write(f"{folder}/{name}", value)
+                        _write_group_file(f"{folder}/{name}", value)
             elif "memory" in each.counts:
-                _write(f"{folder}/memory.limit_in_bytes", memory)
+                _write_group_file(f"{folder}/memory.limit_in_bytes", memory)
                 with suppress(OSError):  # without swap
-                    _write(f"{folder}/memory.memsw.limit_in_bytes", memory)
+                    _write_group_file(f"{folder}/memory.memsw.limit_in_bytes", memory)
             if "pids" in each.counts:
-                _write(f"{folder}/pids.max", processes)
+                _write_group_file(f"{folder}/pids.max", processes)
     except OSError:
         group.remove()
         return None
@@ -205,7 +205,7 @@ def _find_hierarchies() -> tuple[_Hierarchy, ...]:
             continue
         # A group that has processes hands nothing down to groups below it, but the one above it may.
         for place in (folder, os.path.dirname(folder)):
-            handed_down = set(_read(f"{place}/cgroup.subtree_control").split())
+            handed_down = set(_read_group_file(f"{place}/cgroup.subtree_control").split())
             if handed_down >= {"memory", "pids"} and os.access(place, os.W_OK):
                 return (_Hierarchy(place, frozenset({"memory", "pids"}), is_unified=True),)
     return tuple(found.values()) if len(found) == 2 else ()
@@ -214,7 +214,7 @@ def _find_hierarchies() -> tuple[_Hierarchy, ...]:
 def _own_folders() -> list[tuple[str, str]]:
     """Returns the folder of this process's group in each hierarchy, with what it counts; the unified one by an empty name."""
     mounts: dict[str, tuple[str, str]] = {}
-    for line in _read("/proc/self/mountinfo").splitlines():
+    for line in _read_group_file("/proc/self/mountinfo").splitlines():
         before, _, after = line.partition(" - ")
         root, point = before.split()[3:5]
         kind, _, options = after.split(" ", 2)
@@ -223,7 +223,7 @@ def _own_folders() -> list[tuple[str, str]]:
         elif kind == "cgroup":
             mounts |= {each: (root, point) for each in ("memory", "pids") if each in options.split(",")}
     folders = []
-    for line in _read("/proc/self/cgroup").splitlines():
+    for line in _read_group_file("/proc/self/cgroup").splitlines():
         _, names, path = line.split(":", 2)
         for name in names.split(","):
             if name in mounts:
@@ -240,7 +240,7 @@ def _remove_abandoned(folder: str) -> None:
                 os.rmdir(path)
 
 
-def _read(file: str) -> str:
+def _read_group_file(file: str) -> str:
     try:
         with open(file) as opened:
             return opened.read()
@@ -248,6 +248,6 @@ def _read(file: str) -> str:
         return ""
 
 
-def _write(file: str, text: str) -> None:
+def _write_group_file(file: str, text: str) -> None:
     with open(file, "w") as opened:
         opened.write(text)

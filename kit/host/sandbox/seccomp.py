@@ -187,7 +187,7 @@ datagrams needs no ``connect``: each may name another receiver, such as ``/dev/l
 CLONE_THREAD: Final = 0x00010000
 
 _PR_SET_SECCOMP, _PR_GET_SECCOMP, _FILTER = 22, 21, 2
-_LOAD, _EQUAL, _ABOVE, _ANY_BIT, _RETURN = 0x20, 0x15, 0x25, 0x45, 0x06
+_LOAD, _EQUAL, _ANY_BIT, _RETURN = 0x20, 0x15, 0x45, 0x06
 _NUMBER, _ARCH = 0, 4
 _ALLOW, _KILL = 0x7FFF0000, 0x80000000
 

@@ -275,7 +275,7 @@ def apply_patch(patch: WorldPatch, wrong: Callable[[], Sequence[str]]) -> None:
             if _read_content(file.path) != file.before:
                 raise PatchError(f"{file.path} has changed since it was read")
             done.append(file)
-            _write(file.path, file.after)
+            _write_world_file(file.path, file.after)
         try:
             problems = list(wrong())
         except WorldError as error:
@@ -424,7 +424,7 @@ def _read_content(path: Path) -> bytes:
         raise UnsafeEdit(str(error)) from error
 
 
-def _write(path: Path, content: bytes) -> None:
+def _write_world_file(path: Path, content: bytes) -> None:
     mode = path.stat().st_mode
     write_atomically(path, content)
     path.chmod(mode)
@@ -432,7 +432,7 @@ def _write(path: Path, content: bytes) -> None:
 
 def _restore_files(done: Sequence[FilePatch]) -> None:
     for file in done:
-        _write(file.path, file.before)
+        _write_world_file(file.path, file.before)
 
 
 def _other_world_files(path: Path, world: World, root: Path | None) -> list[Path]:

@@ -254,7 +254,9 @@ class BatchEnv:
         """Counts in the state after a step what it has achieved."""
         after.count = self._goal_count.count(transition)
         after.achieved = after.count if self._is_share else after.count / self._needed[after.case]
-        after.told_achieved = transition.previous_achieved if self.task.goal.is_told_later else after.achieved
+        after.told_achieved = (
+            transition.previous_achieved if self.task.goal.is_observation_delayed else after.achieved
+        )
 
     def _drive(self, twists: FloatArray) -> tuple[DisturbanceState, StepMoves]:
         """The state of the disturbances once ``twists`` are sent, and how the robots move in this step."""

@@ -55,10 +55,12 @@ def compute_distance_field(
     start = round((target[1] - origin[1]) / CELL), round((target[0] - origin[0]) / CELL)
     lengths[start] = 0.0
     grids.relax_path_lengths(lengths, price, CELL)
-    return DistanceField(_fill_walls(lengths).astype(np.float32), (float(origin[0]), float(origin[1])))
+    return DistanceField(
+        _extrapolate_into_walls(lengths).astype(np.float32), (float(origin[0]), float(origin[1]))
+    )
 
 
-def _fill_walls(lengths: FloatArray) -> FloatArray:
+def _extrapolate_into_walls(lengths: FloatArray) -> FloatArray:
     """Cells beside walls take their neighbours' lengths, so that one can interpolate there; others the greatest."""
     rows, columns = lengths.shape
     for _ in range(4):

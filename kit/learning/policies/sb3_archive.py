@@ -82,7 +82,7 @@ def read_sb3_policy(
     writes it. PolicyError if the archive is damaged, of an unknown kind, or does not fit the task; FileNotFoundError.
     """
     task = spec.resolve()
-    weights, about = _read(file)
+    weights, about = _read_archive(file)
     choices = action_counts(task.actions.space(task.robots))
     if statistics is None and _is_normalised(about, task):
         raise PolicyError(
@@ -116,7 +116,7 @@ def read_sb3_policy(
     return policy
 
 
-def _read(file: Path) -> tuple[Weights, dict[str, Any]]:
+def _read_archive(file: Path) -> tuple[Weights, dict[str, Any]]:
     """The weights by name, and what the archive says in plain text."""
     try:
         import torch

@@ -113,7 +113,7 @@ class RecentExperience:
         found: Float32Array = self._seen[: self._count].reshape(-1, self._seen.shape[-1])
         return found
 
-    def payable(self, gamma: float, steps: int | None) -> float:
+    def largest_return(self, gamma: float, steps: int | None) -> float:
         """The discounted sum of rewards if each of ``steps`` steps, or of endlessly many, paid the most that one has paid so far,
         and the last one the most that a last one has. Infinite before the first step."""
         going, last = (0.0 if math.isinf(each) else max(0.0, float(each)) for each in self._largest)
@@ -133,7 +133,7 @@ class RecentExperience:
         found = {
             VALUE_MAX: float(values.max()),
             VALUE_MEAN: float(values.mean()),
-            VALUE_PAYABLE: self.payable(gamma, steps),
+            VALUE_PAYABLE: self.largest_return(gamma, steps),
         }
         return {name: number for name, number in found.items() if math.isfinite(number)}
 

@@ -24,8 +24,8 @@ from kit.learning.training.events import (
 from kit.learning.training.measures import MEASURES
 from kit.learning.training.run_config import RunConfig
 from kit.learning.training.run_text import format_event, success_shares
-from kit.learning.training.runs import RunCommand, TrainingSummary, summarise_events
 from kit.learning.training.training import resolve_preset
+from kit.learning.training.training_summary import TrainingCommand, TrainingSummary, summarise_events
 
 RECENT_REPORTS = 10
 """Batches of training, about five seconds: over so many the present figures are taken."""
@@ -175,7 +175,7 @@ class RunTracker:
         if not isinstance(event, TrainingProgress):
             self._note = _event_note(event)
 
-    def status(self, *, alive: bool, order: RunCommand) -> RunStatus:
+    def status(self, *, alive: bool, order: TrainingCommand) -> RunStatus:
         """Returns the status of the run, given whether a process trains it and which command it was sent."""
         summary = summarise_events(tuple(self._last.values()), alive=alive, order=order)
         return RunStatus(

@@ -20,7 +20,8 @@ from kit.learning.training.run_config import RunError
 from kit.learning.training.run_folders import NAME_PATTERN
 from kit.learning.training.run_status import RunTracker, plan_of_run
 from kit.learning.training.run_text import success_shares
-from kit.learning.training.runs import TrainingRun, TrainingSummary
+from kit.learning.training.runs import TrainingRun
+from kit.learning.training.training_summary import TrainingSummary
 from kit.plain_text import counted, format_size, quoted
 from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import Encoder

@@ -10,32 +10,26 @@ from __future__ import annotations
 import fcntl
 import io
 import json
-import os
 import time
 import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import IO, Any, Final, Literal, get_args
+from typing import IO, get_args
 
-from kit.array_archives import READ_ERRORS, check_arrays, check_stored
+from kit.array_archives import READ_ERRORS
 from kit.learning.policies.policy import Policy
 from kit.learning.policies.policy_file import load_policy
+from kit.learning.training.checkpoint_file import read_checkpoint
 from kit.learning.training.events import (
-    Evaluated,
     EventReader,
-    TrainingEnded,
     TrainingEvent,
-    TrainingProgress,
-    TrainingStarted,
 )
 from kit.learning.training.run_config import RunConfig, RunError
-from kit.plain_files import open_plain_file
+from kit.learning.training.training_summary import TrainingCommand, TrainingSummary, summarise_events
 from kit.workspace import write_atomically
 
-RunCommand = Literal["go", "pause", "stop"]
-"""Commands that a user interface may send to a learner."""
 LOCK_WAIT_S = 0.2
 """Seconds a learner waits for the lock, which a process that checks the run holds for a moment."""
 
@@ -52,30 +46,6 @@ def _try_lock(lock: IO[bytes]) -> bool:
             time.sleep(LOCK_WAIT_S / 20)
         else:
             return True
-
-
-RunState = Literal["running", "paused", "finished", "stopped", "failed", "interrupted", "new"]
-
-
-@dataclass(frozen=True, slots=True)
-class TrainingSummary:
-    """The state of a run and its last results."""
-
-    state: RunState
-    steps: int = 0
-    seconds: float = 0.0
-    rate: float = 0.0
-    last_evaluation: Evaluated | None = None
-    """The last test."""
-    best_evaluation: Evaluated | None = None
-    """That of the best policy."""
-    reason: str = ""
-    measures: dict[str, float] = field(default_factory=dict)
-    """What the learner last measured of its own learning; see ``kit.learning.training.measures``."""
-
-    def as_dict(self) -> dict[str, Any]:
-        """JSON-able."""
-        return asdict(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,15 +129,15 @@ class TrainingRun:
 
     # What the learner is asked to do
 
-    def send_command(self, order: RunCommand) -> None:
+    def send_command(self, order: TrainingCommand) -> None:
         """Sends a command, which the learner follows between two updates."""
         write_atomically(self.folder / "control", order.encode())
 
-    def read_command(self) -> RunCommand:
+    def read_command(self) -> TrainingCommand:
         """Returns the newest command."""
         with suppress(OSError, UnicodeDecodeError):
             text = (self.folder / "control").read_text().strip()
-            return next((order for order in get_args(RunCommand) if order == text), "go")
+            return next((order for order in get_args(TrainingCommand) if order == text), "go")
         return "go"
 
     # Who is at it
@@ -224,7 +194,7 @@ class TrainingRun:
         damage = ""
         for file in self.checkpoints:
             try:
-                return _read_checkpoint(file), damage
+                return read_checkpoint(file), damage
             except FileNotFoundError:
                 continue
             except READ_ERRORS as error:
@@ -235,52 +205,3 @@ class TrainingRun:
                 "new run with `kit train`."
             )
         return None
-
-
-MAX_CHECKPOINT_BYTES: Final = 4 << 30
-"""Bytes of a checkpoint: its replay buffer is the largest part."""
-
-
-def _read_checkpoint(file: Path) -> dict[str, bytes]:
-    """Returns the parts of a checkpoint, which may be somebody else's: none of them unpacks to more than it is. Raises OSError,
-    ValueError and zipfile.BadZipFile."""
-    with open_plain_file(file) as opened:
-        size = os.fstat(opened.fileno()).st_size
-        if size > MAX_CHECKPOINT_BYTES:
-            raise zipfile.BadZipFile(f"it is larger than {MAX_CHECKPOINT_BYTES >> 30} GiB")
-        with zipfile.ZipFile(opened) as archive:
-            check_stored(archive, size)
-            parts = {name: archive.read(name) for name in archive.namelist()}
-    for name, data in parts.items():
-        if zipfile.is_zipfile(io.BytesIO(data)):  # arrays, or parameters of torch's
-            with zipfile.ZipFile(io.BytesIO(data)) as inner:
-                check_stored(inner, len(data))
-                if name.endswith(".npz"):
-                    check_arrays(inner, MAX_CHECKPOINT_BYTES)
-    return parts
-
-
-def summarise_events(events: tuple[TrainingEvent, ...], *, alive: bool, order: RunCommand) -> TrainingSummary:
-    """Summarises a run's events."""
-    steps, seconds, rate, reason = 0, 0.0, 0.0, ""
-    tested: Evaluated | None = None
-    best: Evaluated | None = None
-    measures: dict[str, float] = {}
-    state: RunState = "interrupted" if events else "new"
-    for event in events:
-        match event:
-            case TrainingStarted():
-                state, steps = "interrupted", event.steps
-            case TrainingProgress():
-                steps, seconds, rate = event.steps, event.seconds, event.rate
-                measures = event.measures or measures
-            case Evaluated():
-                tested, measures = event, event.measures or measures
-                best = event if event.kept else best
-            case TrainingEnded():
-                state, steps, seconds, reason = event.how, event.steps, event.seconds, event.reason
-            case _:
-                pass
-    if alive:
-        state = "paused" if order == "pause" else "running"
-    return TrainingSummary(state, steps, seconds, rate, tested, best, reason, measures)

@@ -41,7 +41,6 @@ from kit.learning.training.events import (
     Evaluated,
     EventWriter,
     TrainingEnded,
-    TrainingEvent,
     TrainingNote,
     TrainingProgress,
     TrainingStarted,
@@ -233,7 +232,7 @@ class _TrainingLoop:
     # From start to end
 
     def run(self) -> TrainingEnded:
-        self._write(TrainingStarted(time.time(), self._learner.steps, versions()))
+        self._events.write(TrainingStarted(time.time(), self._learner.steps, versions()))
         self._assign_stage()
         stopped, reason = False, "all steps are done"
         try:
@@ -247,7 +246,7 @@ class _TrainingLoop:
         self._checkpoint()
         cheat = "" if self._config.reward_file is None else self._describe_cheat()
         if cheat:
-            self._write(TrainingNote(cheat))
+            self._events.write(TrainingNote(cheat))
         return TrainingEnded(
             "stopped" if stopped else "finished", self._learner.steps, self._elapsed(), reason
         )
@@ -334,10 +333,10 @@ class _TrainingLoop:
             save_policy(policy, self._run.best_policy)
             self._best_snapshot = self._learner.snapshot()
         measures = self._learner.measures()
-        self._write(_evaluation_event(steps, self._elapsed(), decision, test, measures))
+        self._events.write(_evaluation_event(steps, self._elapsed(), decision, test, measures))
         if is_value_too_large(measures) and not self._is_warned:
             self._is_warned = True
-            self._write(TrainingNote(value_warning(measures)))
+            self._events.write(TrainingNote(value_warning(measures)))
         if decision.restore_best and self._best_snapshot is not None and not last:
             self._learner.restore(self._best_snapshot)
         self._follow_curriculum(decision.counts)
@@ -365,20 +364,17 @@ class _TrainingLoop:
             practice = self._practices[self._stage]
         self._learner.assign_cases(practice.world_shares(names))
         count = len(self._practices) + 1
-        self._write(TrainingNote(f"Stage {self._stage + 1} of {count}: {', '.join(practice.cases)}."))
+        self._events.write(TrainingNote(f"Stage {self._stage + 1} of {count}: {', '.join(practice.cases)}."))
 
     # Writing
 
     def _elapsed(self) -> float:
         return self._seconds + time.monotonic() - self._began
 
-    def _write(self, event: TrainingEvent) -> None:
-        self._events.write(event)
-
     def _report_progress(self) -> None:
         if self._learner.steps > self._batch.steps:
             progress = self._batch.progress(self._learner.steps, self._elapsed())
-            self._write(replace(progress, measures=self._learner.measures()))
+            self._events.write(replace(progress, measures=self._learner.measures()))
             self._batch = _ProgressBatch(self._learner.steps)
 
     def _checkpoint(self) -> None:
@@ -411,7 +407,7 @@ class _TrainingLoop:
         loaded = self._run.load_checkpoint()
         if loaded is None:
             if self._run.events_file.stat().st_size:
-                self._write(TrainingNote("There was no checkpoint yet: training starts again."))
+                self._events.write(TrainingNote("There was no checkpoint yet: training starts again."))
             return None
         parts, damage = loaded
         with self._odd_checkpoint_as_run_error():
@@ -424,7 +420,7 @@ class _TrainingLoop:
             if min(self._seconds, self._test_count, self._resumed, self._next_evaluation, self._stage) < 0:
                 raise ValueError("a count below 0")
         note = "Training continues from the last checkpoint, with new episodes."
-        self._write(TrainingNote(f"{damage}: the previous one is used. {note}" if damage else note))
+        self._events.write(TrainingNote(f"{damage}: the previous one is used. {note}" if damage else note))
         return parts
 
 

@@ -16,8 +16,9 @@ from typing import Any, Final
 from kit.installation import install_command
 from kit.learning.training.run_check import check_settings
 from kit.learning.training.run_config import RunConfig, RunError, format_settings
+from kit.learning.training.sweep_table import sweep_rows
 from kit.learning.training.training import resolve_preset
-from kit.learning.training.training_sweep import TrainingSweep, sweep_rows
+from kit.learning.training.training_sweep import TrainingSweep
 
 TRIALS_AT_ONCE: Final = 4
 """Trials that are proposed before the costs of the last ones are known, so that they can be trained side by side."""

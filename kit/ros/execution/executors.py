@@ -269,7 +269,7 @@ class Executor:
                     or not context.ok()
                 )
 
-            was_changed = graph.wait(is_changed, until, what="spinning")
+            was_changed = graph.wait(is_changed, until, what="spinning", settles=until != next_due)
             self._is_woken = False
             if not context.ok() and context.ended_from_outside:
                 raise ExternalShutdownException
@@ -330,6 +330,9 @@ class MultiThreadedExecutor(Executor):
         super().__init__(context=context)
         count = max(2, os.cpu_count() or 2) if num_threads is None else num_threads
         self._pool = ThreadPoolExecutor(count, thread_name_prefix="ros-callback")
+        self._thread_count = count
+        self._open_jobs = 0
+        """Those that run, and those that wait for a thread of the pool."""
         self._exceptions: list[BaseException] = []
         self._jobs: set[Job[None]] = set()
 
@@ -357,7 +360,10 @@ class MultiThreadedExecutor(Executor):
 
     def _dispatch(self, work: TakenWork) -> None:
         with self._graph.lock:
-            self._graph.running_pool_callbacks += 1
+            self._open_jobs += 1
+            # Others cannot run before a thread is free: nobody is to wait for them while all threads wait.
+            if self._open_jobs <= self._thread_count:
+                self._graph.running_pool_callbacks += 1
         job = self._pool.submit(self._execute, work)
         self._jobs.add(job)
         job.add_done_callback(self._done)
@@ -374,5 +380,7 @@ class MultiThreadedExecutor(Executor):
             if exception is not None:
                 self._exceptions.append(exception)
         with self._graph.lock:  # at once: a waiter that finds no callback running must find the change
-            self._graph.running_pool_callbacks -= 1
+            if self._open_jobs <= self._thread_count:
+                self._graph.running_pool_callbacks -= 1
+            self._open_jobs -= 1
             self.wake()

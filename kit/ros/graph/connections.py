@@ -28,7 +28,8 @@ class NodeConnections:
     nodes: tuple[str, ...] = ()
     """Full names of the nodes at the end, sorted."""
     mistakes: tuple[str, ...] = ()
-    """Sentences about connections without another end, such as a subscription of a topic that nobody publishes."""
+    """Sentences about connections without another end, such as a subscription of a topic that nobody publishes, and about
+    commands for more than the robot can."""
     heard: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Topics to which each node has subscribed at any time, sorted, without those that every node has."""
     profiles: tuple[str, ...] = ()
@@ -63,7 +64,7 @@ class ConnectionsReader:
             names = frozenset(
                 handle.full_name for handle in self._graph.directory.nodes if handle not in self._others
             )
-            mistakes = find_mistakes(self._graph, names)
+            mistakes = (*find_mistakes(self._graph, names), *find_excesses(self._graph, names))
         heard = {name: tuple(sorted(topics)) for name, topics in self._heard.items()}
         return NodeConnections(
             tuple(sorted(names)), mistakes[:MAX_MISTAKES], heard, tuple(sorted(self._profiles))
@@ -75,6 +76,16 @@ def find_mistakes(graph: Graph, names: Set[str]) -> tuple[str, ...]:
     with graph.lock:
         handles = [handle for handle in graph.directory.nodes if handle.full_name in names]
         return tuple(mistake for handle in handles for mistake in _mistakes(graph.directory, handle))
+
+
+def find_excesses(graph: Graph, names: Set[str]) -> tuple[str, ...]:
+    """Returns a sentence about each of these nodes' commands for more than is carried out."""
+    with graph.lock:
+        return tuple(
+            f"{node} asks for {excess.asked} on {topic}, where the robot does at most {excess.largest}."
+            for (node, topic, _), excess in graph.directory.excesses.items()
+            if node in names
+        )
 
 
 def _heard_topics(handle: NodeEntry) -> set[str]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, Final, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, TypeVar
 
 from kit.msg.message import type_name
 from kit.ros.node.qos import (
@@ -26,6 +26,17 @@ WORLD_NODE_NAME: Final = "flatland_server"
 STAMPED_COMMAND: Final = ("geometry_msgs/msg/TwistStamped", "geometry_msgs/msg/Twist")
 """The types of a publisher and of a subscription of the world's node that do not match and yet drive a robot: the world takes
 commands in either form, as bases of older and of newer distributions do, and subscribes to the second when it is published."""
+
+
+MAX_EXCESSES: Final = 100
+"""Excesses that are kept: a program may make nodes without end."""
+
+
+class Excess(NamedTuple):
+    """A command for more than is carried out, and what is, both with their unit."""
+
+    asked: str
+    largest: str
 
 
 class GraphNode(Protocol):
@@ -286,6 +297,8 @@ class Directory:
         self.topics: dict[str, Topic] = {}
         self.subscribed_topics: set[str] = set()
         """The absolute names of the topics that have subscriptions."""
+        self.excesses: dict[tuple[str, str, str], Excess] = {}
+        """The first command that asked for more than is carried out, by node, topic and field of the message."""
         self.services: dict[str, list[ServiceServer]] = {}
         self.clients: dict[str, list[ServiceClient]] = {}
 
@@ -319,6 +332,12 @@ class Directory:
         """To be called when a topic's new endpoint has been added to its node: others may have looked in between, since
         a mismatch of types is logged, and a log is a message."""
         self.version += 1
+
+    def note_excess(self, node: str, topic: str, field: str, excess: Excess) -> None:
+        """Keeps the first command of a node on a topic that asked for more in a field than is carried out."""
+        if (node, topic, field) not in self.excesses and len(self.excesses) < MAX_EXCESSES:
+            self.excesses[node, topic, field] = excess
+            self.version += 1
 
     def remove_endpoint(self, endpoint: GraphEndpoint) -> None:
         self.version += 1

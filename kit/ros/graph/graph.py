@@ -49,6 +49,9 @@ READS_PER_STEP = 10
 class Waiter(Protocol):
     """Waits for a program whose time and messages come from another process."""
 
+    def is_alone(self, graph: Graph) -> bool:
+        """Whether the calling thread is the only one that may use the graph."""
+
     def wait(self, graph: Graph, until_ns: int | None) -> None:
         """Returns when something may have changed: time was advanced, messages were published, a shutdown.
 
@@ -115,6 +118,8 @@ class Graph:
         """The threads in ``wait``, by their identifiers."""
         self.running_pool_callbacks = 0
         """The number of callbacks that run in the pools of MultiThreadedExecutors."""
+        self.settling: set[int] = set()
+        """The threads whose time has come and that wait until no other one has anything to do; the waiter takes them out."""
         self.pool_threads: WeakSet[threading.Thread] = WeakSet()
         """The threads of these pools, which are idle but for these callbacks."""
         self.wait_started = threading.Condition(self.lock)
@@ -223,9 +228,16 @@ class Graph:
     # Free-running
 
     def wait(
-        self, ready: Callable[[], bool], until_ns: int | None = None, *, what: str = "this call"
+        self,
+        ready: Callable[[], bool],
+        until_ns: int | None = None,
+        *,
+        what: str = "this call",
+        settles: bool = True,
     ) -> bool:
         """Waits until ``ready()``; False if ``until_ns`` is reached first or time jumps back meanwhile.
+
+        ``settles``: when ``until_ns`` is reached, others first do what is due then; False for who does it.
 
         ``ready`` is called with the lock held. Raises WouldDeadlock, naming ``what``, if time and messages
         cannot advance while the calling thread waits.
@@ -234,17 +246,33 @@ class Graph:
         with self.lock:
             jumps = self._time_jump_count
             state.is_waiting = True
+            has_waited, has_settled = False, not settles
             try:
-                while not ready():
+                while True:
+                    if until_ns is not None and has_waited and not has_settled and self.now_ns >= until_ns:
+                        has_settled = True
+                        if self.waiter is not None:
+                            self._settle(self.waiter)
+                    if ready():
+                        return True
                     if until_ns is not None and (self.now_ns >= until_ns or jumps != self._time_jump_count):
                         if self._is_polling_too_often():
                             self._wait_once(until_ns)
                         return False
                     self._raise_if_deadlock(what)
                     self._wait_once(until_ns)
-                return True
+                    has_waited = True
             finally:
                 state.is_waiting = False
+
+    def _settle(self, waiter: Waiter) -> None:
+        """Lets the other threads do first what is due at this instant: so a thread whose time has come finds the same on every machine."""
+        me = threading.get_ident()
+        if waiter.is_alone(self):
+            return
+        self.settling.add(me)
+        while me in self.settling:
+            self._wait_once(self.now_ns)
 
     def count_read(self, weight: float = 1.0) -> None:
         """To be called when a program reads the clock, or asks whether something has happened, of its own accord.

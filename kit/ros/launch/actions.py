@@ -20,7 +20,7 @@ from kit.ros.launch.event_handlers import EventHandler
 from kit.ros.launch.events import Event
 from kit.ros.launch.events import Shutdown as ShutdownEvent
 from kit.ros.launch.loops import with_loop_values
-from kit.ros.launch.settings import SetLaunchConfiguration, forget_settings, within_scope
+from kit.ros.launch.settings import SetLaunchConfiguration, reset_settings, within_scope
 from kit.ros.launch.substitutions import (
     SomeText,
     describe_substitutions,
@@ -199,7 +199,7 @@ class ScopedIncludeLaunchDescription(IncludeLaunchDescription):
             perform_substitutions(context, name): perform_substitutions(context, value)
             for name, value in self.launch_arguments
         }
-        return within_scope([*forget_settings(given), _ContextStep(self._enter)])
+        return within_scope([*reset_settings(given), _ContextStep(self._enter)])
 
 
 class TimerAction(Action):

@@ -29,7 +29,7 @@ class ParameterValue:
         text = perform_substitutions(context, self.value)
         if self.value_type is str:
             return text
-        value = _read(text)
+        value = _parse_yaml_value(text)
         if self.value_type in (int, float, bool):
             if self.value_type is float and type(value) is int:
                 value = float(value)
@@ -89,15 +89,15 @@ def _evaluate(context: LaunchContext, value: Any) -> Any:
     if isinstance(value, ParameterValue):
         return value.evaluate(context)
     if isinstance(value, (str, Path, Substitution)):
-        return _read(perform_substitutions(context, value))
+        return _parse_yaml_value(perform_substitutions(context, value))
     if isinstance(value, (list, tuple)):
         if any(isinstance(entry, Substitution) for entry in value):
-            return _read(perform_substitutions(context, value))
+            return _parse_yaml_value(perform_substitutions(context, value))
         return list(value)
     return value
 
 
-def _read(text: str) -> Any:
+def _parse_yaml_value(text: str) -> Any:
     from kit.ros.parameters.parameter_files import (  # only now: it takes PyYAML
         AmbiguousValue,
         parse_value,

@@ -52,11 +52,11 @@ class LaunchService:
         context.launch_configurations.update(arguments)
         context.files.append(file)
         context.request = self._request
-        context.emit = self._emit
         context.read_markup = read_launch_description
         context.start_timer = self._start_timer
         self._requests: list[Request] = []
         self._events: list[Event] = []
+        context.emit = self._events.append
         self._timers: list[tuple[int, int, tuple[LaunchDescriptionEntity, ...], Visitable | None]] = []
         """When [ns], a number, what is to be carried out then, and the action that waits, if one does."""
         self._cancelled: set[int] = set()
@@ -153,9 +153,6 @@ class LaunchService:
             content = (number, with_original_paths(specification))
         self._requests.append([kind, *content])
 
-    def _emit(self, event: Event) -> None:
-        self._events.append(event)
-
     def _start_timer(
         self,
         seconds: float,
@@ -173,30 +170,30 @@ class LaunchService:
     def _started(self, number: int, pid: int) -> None:
         action, name = self._actions[number]
         action.process_details = {**(action.process_details or {}), "name": name, "pid": pid}
-        self._emit(ProcessStarted(action=action, name=name, pid=pid))
+        self._events.append(ProcessStarted(action=action, name=name, pid=pid))
 
     def _exited(self, number: int, pid: int, code: int) -> None:
         action, name = self._actions.pop(number)
-        self._emit(ProcessExited(action=action, name=name, pid=pid, returncode=code))
+        self._events.append(ProcessExited(action=action, name=name, pid=pid, returncode=code))
         self.context.report_complete(action)
         if action.respawns(self.context) and not self.context.is_shutdown:
             self._start_timer(action.respawn_delay or 0.0, [action])
 
     def _printed(self, number: int, text: str, from_stdout: bool) -> None:
         action, name = self._actions[number]
-        self._emit(ProcessIO(action=action, name=name, text=text.encode(), from_stdout=from_stdout))
+        self._events.append(ProcessIO(action=action, name=name, text=text.encode(), from_stdout=from_stdout))
 
     def _transitioned(self, node: str, transition: str, start_state: str, goal_state: str) -> None:
         for action, _ in list(self._actions.values()):
             if isinstance(action, LifecycleNode) and action.full_name == node:
-                self._emit(
+                self._events.append(
                     StateTransition(
                         action=action, transition=transition, start_state=start_state, goal_state=goal_state
                     )
                 )
 
     def _interrupted(self, reason: str) -> None:
-        self._emit(Shutdown(reason=reason, due_to_sigint=True))
+        self._events.append(Shutdown(reason=reason, due_to_sigint=True))
 
 
 _EVENT_METHODS: Final[Mapping[str, Callable[..., None]]] = MappingProxyType(

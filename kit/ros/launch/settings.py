@@ -182,7 +182,7 @@ class GroupAction(Action):
         given = [SetLaunchConfiguration(name, value) for name, value in self.launch_configurations.items()]
         if not self.scoped:
             return [*given, *self.actions]
-        begin = given if self.forwarding else forget_settings(self.launch_configurations)
+        begin = given if self.forwarding else reset_settings(self.launch_configurations)
         return within_scope([*begin, *self.actions])
 
 
@@ -197,6 +197,6 @@ def within_scope(entities: Iterable[LaunchDescriptionEntity]) -> list[LaunchDesc
     ]
 
 
-def forget_settings(kept: Mapping[Any, SomeText]) -> list[LaunchDescriptionEntity]:
+def reset_settings(kept: Mapping[Any, SomeText]) -> list[LaunchDescriptionEntity]:
     """Actions that start with these launch arguments alone."""
     return [ResetLaunchConfigurations(kept), ResetEnvironment()]

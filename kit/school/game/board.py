@@ -31,8 +31,16 @@ class Board(ABC):
 
     keys: ClassVar[str]
     """What the keys do, in one sentence."""
-    scale: int = 1
-    """How many times larger than usual a drawing is shown."""
+
+    @classmethod
+    def marks(cls) -> bool:
+        """Whether the space bar does something."""
+        return cls.mark is not Board.mark
+
+    @classmethod
+    def switches(cls) -> bool:
+        """Whether the tabulator does something."""
+        return cls.switch is not Board.switch
 
     @property
     @abstractmethod
@@ -40,8 +48,8 @@ class Board(ABC):
         """The answer as its file holds it."""
 
     @abstractmethod
-    def rows(self) -> list[Row]:
-        """The board with its cursor, and what is to be counted."""
+    def rows(self, scale: int = 1) -> list[Row]:
+        """The board with its cursor, and what is to be counted. ``scale``: how many times larger than usual a drawing is."""
 
     @abstractmethod
     def judgement(self) -> Judgement:

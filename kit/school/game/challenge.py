@@ -6,6 +6,7 @@ import math
 import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final, Self
@@ -35,11 +36,11 @@ def _say_nothing(_: str) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class HandedIn:
+class AnswerSubmission:
     """An answer that is handed in."""
 
     answer: str
-    """What ``ChallengeTask.read_answer`` read, or the word after ``kit game challenge NAME``."""
+    """As ``ChallengeTask.read_answer`` or ``parse_answer`` returned it; the name of a training run where that is the answer."""
     runs: Path
     """The folder of the training runs."""
     seconds: float = math.inf
@@ -64,7 +65,7 @@ class ChallengeTask(ABC):
         """Reads the kind's keys of one challenge. ``folder``: of the lessons. Mistakes are noted in the section."""
 
     @abstractmethod
-    def judge(self, handed_in: HandedIn) -> Judgement:
+    def judge(self, submission: AnswerSubmission) -> Judgement:
         """Judges an answer. Raises ChallengeError and WorldError."""
 
     def lines(self) -> list[str]:
@@ -87,7 +88,7 @@ class ChallengeTask(ABC):
     def judge_shared(self, text: str) -> Judgement:
         """Judges what ``shared_text`` gave. Reads nothing of this machine that the text names, and carries nothing out. Raises as
         ``judge``."""
-        return self.judge(HandedIn(text, NO_RUNS))
+        return self.judge(AnswerSubmission(text, NO_RUNS))
 
     def prepare(self, folder: Path, about: Sequence[str]) -> Path | None:
         """Makes the answer's file in ``folder`` unless it is there, and returns it; None where the answer is no file.
@@ -110,6 +111,17 @@ class ChallengeTask(ABC):
         except (OSError, UnicodeDecodeError) as error:
             raise ChallengeError(f"{file} cannot be read: {error}") from None
         return " ".join(line for line in lines if not line.lstrip().startswith(COMMENT))
+
+    def parse_answer(self, argument: str) -> str:
+        """What ``judge`` takes of a command's argument: the name of an answer's file, or the answer itself. Raises ChallengeError."""
+        file = Path(argument)
+        with suppress(OSError):  # moves may be longer than a file's name
+            if file.is_file():
+                return self.read_answer(file)
+        ending = Path(self.answer_file).suffix
+        if ending and argument.endswith(ending):
+            raise ChallengeError(f"There is no file {argument}.")
+        return argument
 
 
 def judge_share(text: str, comparison: AnswerComparison, naive: float, best: float) -> Judgement:
@@ -134,5 +146,12 @@ class Challenge:
     title: str
     story: str
     task_text: str
+    form: str
+    """How an answer is written down, where that is not how it is found; may be empty."""
     lesson: str
     task: ChallengeTask
+
+    @property
+    def written_task(self) -> str:
+        """The task of whoever writes the answer down."""
+        return f"{self.task_text} {self.form}".rstrip()

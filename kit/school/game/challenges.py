@@ -43,6 +43,7 @@ def _read_challenges(section: Section, folder: Path) -> Iterator[Challenge]:
             each.name("title"),
             each.text("story"),
             each.text("task"),
+            each.text("form", ""),
             each.name("lesson"),
             kind.read(each, folder),
         )
@@ -70,7 +71,7 @@ def prepare_answer(
     Returns the file, None where the answer is none, and the seconds since the first look, infinite where no clock runs.
     Raises ProgressError and OSError.
     """
-    file = challenge.task.prepare(folder / challenge.id, (challenge.task_text,))
+    file = challenge.task.prepare(folder / challenge.id, (challenge.written_task,))
     if challenge.task.clock is None:
         return file, math.inf
     subject = f"{PREFIX}{challenge.id}"

@@ -8,12 +8,13 @@ for friends, and must not be used for marks.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Final
@@ -31,6 +32,7 @@ from kit.school.game.shared_drives import (
     MAX_FILE_BYTES,
     DriveRefused,
     JudgedDrive,
+    digest_of,
     judge_shared_drives,
     share_drives,
 )
@@ -44,7 +46,9 @@ MAX_NAME_LENGTH: Final = 40
 MAX_NAME_BYTES: Final = 4096
 """Of the file with a user's name."""
 SAME_WAY: Final = 0.005
-"""Two hands that are nowhere farther apart than this are one [m]."""
+"""Two drives that are nowhere farther apart than this are one [m]."""
+MAX_FORMER: Final = 50
+"""So many drives of one user by one driver on one level are compared with those of others, the oldest ones."""
 MAX_JUDGED: Final = 4096
 """Drives whose judgement is kept in memory."""
 
@@ -74,6 +78,8 @@ class LeaderboardEntry:
     """Since when its file stands there, by the folder's own clock [ns]."""
     is_same_platform: bool = True
     """Whether it was driven on a machine like this one; else the referee's judgement stands, not equality to the bit."""
+    copy_of: str = ""
+    """Who had the same drive of a program before; empty: nobody."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,8 +98,8 @@ class PlayerStanding:
 
 def standings(entries: Sequence[LeaderboardEntry]) -> list[PlayerStanding]:
     """Ranks all users who have joined: by records, then master, gold, silver and bronze medals, and stars; the level of the day counts
-    for none. ``entries``: in the order of ``read_entries``."""
-    entries = [each for each in entries if not each.level.startswith(DAILY_PREFIX)]
+    for none, and what another had before does not count. ``entries``: in the order of ``read_entries``."""
+    entries = [each for each in entries if not each.level.startswith(DAILY_PREFIX) and not each.copy_of]
     first: dict[str, int] = {}
     for entry in entries:
         first.setdefault(entry.level, entry.user)
@@ -141,7 +147,11 @@ def publish_drives(
         content = json.dumps({"name": name[:MAX_NAME_LENGTH]}).encode()
         write_atomically(_name_file(folder, os.getuid()), content)
         for (level, driver), recordings in drives.items():
-            share_drives(recordings, _drive_file(folder, os.getuid(), level, driver))
+            file = _drive_file(folder, os.getuid(), level, driver)
+            share_drives(recordings, file)
+            # What is driven later takes the place of the first file, but never of this one: a copy of it is younger.
+            digest = hashlib.sha256("".join(map(digest_of, recordings)).encode()).hexdigest()
+            share_drives(recordings, file.with_suffix(f".{digest[:16]}.npz"))
     except OSError as error:
         raise LeaderboardError(
             f"{folder}: the leaderboard cannot be written to ({error.strerror})."
@@ -167,14 +177,21 @@ def own_name(folder: Path) -> str:
 def read_entries(folder: Path, levels: Sequence[GameLevel] | None = None) -> list[LeaderboardEntry]:
     """Judges the drives of all who have joined, by default on all levels and that of the day; sorted by level and time.
     Passes over what may not stand there, and what is another's drive by hand. Takes about a second for twenty drives that were not judged before."""
-    entries = []
+    entries, former = [], []
     for user, name in _names(folder).items():
         for level in levels if levels is not None else (*all_levels(), daily_level(today())):
             for driver in DriverKind:
-                judged = _judged(folder, user, level, driver)
+                file = _drive_file(folder, user, level.id, driver)
+                judged = _judged(file, user, level, driver)
                 if judged is not None:
                     entries.append(_entry(name, user, level, driver, *judged))
-    return sorted(_without_copies(entries), key=lambda each: (each.level, each.seconds, each.name))
+                former += [
+                    _entry(name, user, level, driver, *judged)
+                    for each in _former_files(file)
+                    if (judged := _judged(each, user, level, driver)) is not None
+                ]
+    told = _without_copies(entries, former)
+    return sorted(told, key=lambda each: (each.level, each.seconds, bool(each.copy_of), each.name))
 
 
 def _entry(
@@ -222,9 +239,16 @@ def _read_name(folder: Path, user: int) -> str | None:
     return None
 
 
-def _judged(folder: Path, user: int, level: GameLevel, driver: DriverKind) -> tuple[JudgedDrive, int] | None:
+def _former_files(file: Path) -> list[Path]:
+    """The files of all that was ever put in place of a drive's file, the oldest first."""
+    with suppress(OSError):
+        found = file.parent.glob(f"{file.stem}.*.npz")
+        return sorted(found, key=lambda each: each.lstat().st_ctime_ns)[:MAX_FORMER]
+    return []
+
+
+def _judged(file: Path, user: int, level: GameLevel, driver: DriverKind) -> tuple[JudgedDrive, int] | None:
     """A user's shared drive of a level, run again, and since when it stands there [ns]; None if there is none that may."""
-    file = _drive_file(folder, user, level.id, driver)
     try:
         content, since_ns = read_own(file, user, MAX_FILE_BYTES), file.lstat().st_ctime_ns
         judged = _judge(content, level, driver)
@@ -233,20 +257,34 @@ def _judged(folder: Path, user: int, level: GameLevel, driver: DriverKind) -> tu
     return None if judged is None else (judged, since_ns)
 
 
-def _without_copies(entries: Sequence[LeaderboardEntry]) -> list[LeaderboardEntry]:
-    """Without drives by hand that another user had before, a tick sooner or later: no two hands drive the same. The system keeps
-    the time at which a file was last changed, so that no user can set it back. Programs may well be equal."""
+def _without_copies(
+    entries: Sequence[LeaderboardEntry], former: Sequence[LeaderboardEntry]
+) -> list[LeaderboardEntry]:
+    """Without drives by hand that another user had before, a tick sooner or later: no two hands drive the same. Two programs may
+    well be equal, so theirs are kept, and told whose they are. The system keeps the time at which a file was last changed, so
+    that no user can set it back. ``former``: every drive that was ever put on the board, by those who are on it."""
+    earliest = sorted([*entries, *former], key=lambda entry: (entry.since_ns, entry.user))
+    since: dict[tuple[int, str, DriverKind, float], int] = {}
+    for each in earliest:
+        since.setdefault((each.user, each.level, each.driver, each.seconds), each.since_ns)
     kept: list[LeaderboardEntry] = []
-    for each in sorted(entries, key=lambda entry: (entry.since_ns, entry.user)):
-        is_copy = each.driver is DriverKind.KEYS and any(
-            other.driver is DriverKind.KEYS
-            and other.level == each.level
-            and other.user != each.user
-            and _is_same_way(each, other)
-            for other in kept
+    for each in entries:
+        own_since = since[each.user, each.level, each.driver, each.seconds]
+        first = next(
+            (
+                other
+                for other in earliest
+                if (other.since_ns, other.user) < (own_since, each.user)
+                and other.user != each.user
+                and (other.level, other.driver) == (each.level, each.driver)
+                and _is_same_way(each, other)
+            ),
+            None,
         )
-        if not is_copy:
+        if first is None:
             kept.append(each)
+        elif each.driver is not DriverKind.KEYS:
+            kept.append(replace(each, copy_of=first.name))
     return kept
 
 

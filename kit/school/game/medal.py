@@ -59,6 +59,13 @@ def medal_time(medal: Medal, reference_s: float, driver: DriverKind = DriverKind
     return (hundredths - (medal is Medal.RECORD)) / 100.0
 
 
+def rung_in_reach(driver: DriverKind, reference_s: float, seconds: float, collisions: int) -> Medal | None:
+    """The highest medal that a drive still earns which is at the goal at once; None: no medal any more."""
+    most = Medal.BRONZE if collisions else Medal.RECORD
+    left = [medal for medal in RUNGS if medal <= most and seconds <= medal_time(medal, reference_s, driver)]
+    return max(left, default=None)
+
+
 def next_rung(driver: DriverKind, reference_s: float, seconds: float | None) -> Medal | None:
     """The lowest medal that a time does not earn; None above the record. ``seconds``: None: nothing was driven."""
     missing = [

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from kit.plain_text import quoted
 from kit.school.game.board import MOVES, Board, letters_of
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
 from kit.school.game.judgement import Judgement
 
 
@@ -38,7 +38,7 @@ class MovesBoard(Board):
         return f"{self.moves}\n"
 
     def judgement(self) -> Judgement:
-        return self._task.judge(HandedIn(self.moves, Path()))
+        return self._task.judge(AnswerSubmission(self.moves, Path()))
 
     def move(self, columns: int, rows: int) -> None:
         if len(self.moves) < self._most:

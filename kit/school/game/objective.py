@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 
 from kit.arrays import FloatArray
 from kit.learning.maps.ray_directions import RAY_COUNT, ranges_in_directions, ray_direction
-from kit.learning.tasks.goals.goal import GoalCase
+from kit.learning.tasks.goals.goal import KNOWN_IN_RACE, GoalCase
 from kit.learning.tasks.transition import FAR, EpisodeState, Transition
 from kit.render.scene import Disc
 from kit.run.metrics import is_in_target
@@ -57,7 +57,7 @@ class Objective:
         """From the hull of the robot that is farthest to the nearest target that is left [m]; None where there is none."""
         self._left = list(self._all)
         world = np.zeros(1, dtype=np.int64)
-        self._state = _unknown_state(poses, self._count.begin(world, world, poses))
+        self._state = _first_state(poses, self._target_heading, self._count.begin(world, world, poses))
 
     def on_step(self, simulation: Simulation) -> None:
         """Counts one tick."""
@@ -139,25 +139,21 @@ class Objective:
         return nearest
 
 
-def _unknown_state(poses: FloatArray, count: FloatArray) -> EpisodeState:
-    """The state of one world with robots at ``poses`` (1, robots, 3), of which a race knows nothing else."""
+def _first_state(poses: FloatArray, target_heading: FloatArray, count: FloatArray) -> EpisodeState:
+    """The state of one world with robots at ``poses`` (1, robots, 3), of which a race knows what is ``KNOWN_IN_RACE``."""
     shape = poses.shape[:2]
-    unknown: Any = np.full(shape, np.nan)
-    return EpisodeState(
-        case=np.zeros(1, dtype=np.int64),
-        step=np.zeros(1, dtype=np.int64),
-        pose=poses,
-        hit=np.zeros(shape, dtype=np.bool_),
-        in_target=np.zeros(shape, dtype=np.bool_),
-        to_go=unknown,
-        rotation=unknown,
-        ranges=np.full((*shape, RAY_COUNT), np.nan),
-        move=unknown,
-        twist=np.full((*shape, 2), np.nan),
-        forward_steps=unknown,
-        target=np.zeros((1, 2)),
-        target_heading=np.zeros(1),
-        obstacle_distance=np.full(shape, FAR),
-        count=count,
-        achieved=np.zeros(1),
-    )
+    known: dict[str, Any] = {
+        "case": np.zeros(1, dtype=np.int64),
+        "step": np.zeros(1, dtype=np.int64),
+        "pose": poses,
+        "hit": np.zeros(shape, dtype=np.bool_),
+        "in_target": np.zeros(shape, dtype=np.bool_),
+        "target": np.zeros((1, 2)),
+        "target_heading": target_heading,
+        "obstacle_distance": np.full(shape, FAR),
+        "count": count,
+        "achieved": np.zeros(1),
+    }
+    assert known.keys() == KNOWN_IN_RACE
+    unknown = np.full(shape, np.nan)
+    return EpisodeState(**{each.name: known.get(each.name, unknown) for each in fields(EpisodeState)})

@@ -19,7 +19,7 @@ from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.host.sandbox.probe import is_level_available
 from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL
 from kit.host.sandbox.sandbox_config import Level as Confinement
-from kit.run.episode import EndCondition, EndReason, run_until, when, when_failed
+from kit.run.episode import EndReason, run_until, when, when_failed
 from kit.run.lockstep import Observer
 from kit.run.metrics import MetricsRecorder
 from kit.run.recording import Recorder, Recording
@@ -151,11 +151,6 @@ class RaceReferee(Observer):
             splits=self.objective.splits,
             has_stopped=self._has_stopped,
         )
-
-    @property
-    def when_finished(self) -> EndCondition:
-        """Ends the race when all have reached the target without a foul."""
-        return EndCondition(EndReason.REACHED, lambda: self.objective.reached_s is not None)
 
     @property
     def is_over(self) -> bool:

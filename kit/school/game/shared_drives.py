@@ -59,7 +59,7 @@ class JudgedDrive:
     """Whether it was driven on this platform, and so is the same to the bit."""
 
 
-def platform_name() -> str:
+def platform_key() -> str:
     """What two machines must have in common so that a run is the same on both, to the bit."""
     versions = f"numpy {np.__version__}, Python {platform.python_version()}"
     return f"{platform.system()} {platform.machine()}, {versions}"
@@ -70,7 +70,7 @@ def share_drives(recordings: Sequence[Recording], file: Path, remarks: Sequence[
     program. Raises OSError."""
     content = {
         "format": FORMAT,
-        "platform": platform_name(),
+        "platform": platform_key(),
         "drives": [
             {**recording_header(each), "ticks": each.ticks, "digest": digest_of(each)} for each in recordings
         ],
@@ -148,17 +148,17 @@ class SharedDrives:
 
 def read_shared_drives(data: bytes) -> SharedDrives:
     """Reads a file of ``share_drives``. Raises DriveRefused."""
-    content = _read(data)
+    content = _read_drives_archive(data)
     try:
         digests = tuple(str(each["digest"]) for each in content["drives"])
     except KeyError as error:
         raise DriveRefused(f"a drive is damaged ({error})") from None
     recordings = tuple(_stripped_recording(each) for each in content["drives"])
     remarks = tuple(map(str, content["remarks"]))
-    return SharedDrives(content["platform"] == platform_name(), recordings, digests, remarks)
+    return SharedDrives(content["platform"] == platform_key(), recordings, digests, remarks)
 
 
-def _read(data: bytes) -> dict[str, Any]:
+def _read_drives_archive(data: bytes) -> dict[str, Any]:
     """The content of a file. Raises DriveRefused."""
     if len(data) > MAX_FILE_BYTES:
         raise DriveRefused("it is too large")

@@ -13,11 +13,13 @@ from kit.geometry import Pose
 from kit.host.wire import Json, ProtocolError, boolean, integer, items, number, text
 from kit.school.game.two_players import PLAYERS, SharedGameState, SharedMode, SharedPhase
 
-VERSION: Final = 2
-MAX_FRAME: Final = 1024
+VERSION: Final = 3
+MAX_FRAME: Final = 4096
 """Bytes of a frame, in both directions."""
 MAX_PLAYER_NAME: Final = 24
 MAX_LEVEL_NAME: Final = 64
+MAX_WATCHING: Final = 8
+"""Names of spectators in a frame."""
 MAX_COORDINATE: Final = 1e4
 """A pose beyond this [m] is no pose of a world of the kit."""
 MAX_SECONDS: Final = 1e6
@@ -51,6 +53,11 @@ class KeyPush:
 
 
 @dataclass(frozen=True, slots=True)
+class RematchRequest:
+    """A guest that plays asks for another game."""
+
+
+@dataclass(frozen=True, slots=True)
 class GameOffer:
     """The host's answer to a request."""
 
@@ -73,6 +80,11 @@ def encode_push(push: KeyPush) -> Json:
     return ["push", push.linear, push.angular]
 
 
+def encode_rematch_request() -> Json:
+    """A guest's frame after a game that is over."""
+    return ["again"]
+
+
 def encode_offer(offer: GameOffer) -> Json:
     """The host's first frame."""
     return ["offer", VERSION, offer.level, offer.mode.value, offer.name, offer.plays]
@@ -82,11 +94,12 @@ def encode_state(state: SharedGameState) -> Json:
     """The host's later frames."""
     poses: Json = [[round(each, 4) for each in pose] for pose in state.poses]
     scores: Json = [round(each, 2) for each in state.scores]
-    who: Json = [state.catcher, state.winner, list(state.names)]
+    watching: Json = list(state.watching[:MAX_WATCHING])
+    who: Json = [state.catcher, state.winner, list(state.names), state.asks_again, watching]
     return ["state", state.phase.value, round(state.seconds, 3), poses, scores, *who]
 
 
-def parse_from_guest(frame: Json) -> JoinRequest | KeyPush:
+def parse_from_guest(frame: Json) -> JoinRequest | KeyPush | RematchRequest:
     """Raises ProtocolError for anything that a guest must not send."""
     kind, *rest = items(frame) or [None]
     if kind == "join":
@@ -96,6 +109,9 @@ def parse_from_guest(frame: Json) -> JoinRequest | KeyPush:
     if kind == "push":
         linear, angular = items(rest, 2)
         return KeyPush(_share(linear), _share(angular))
+    if kind == "again":
+        items(rest, 0)
+        return RematchRequest()
     raise ProtocolError("a frame of an unknown kind")
 
 
@@ -109,7 +125,9 @@ def parse_from_host(frame: Json) -> GameOffer | SharedGameState:
             text(level, MAX_LEVEL_NAME), SharedMode(_one_of(mode, SharedMode)), _name(name), boolean(plays)
         )
     if kind == "state":
-        phase, seconds, poses, scores, catcher, winner, names = items(rest, 7)
+        phase, seconds, poses, scores, catcher, winner, names, asks_again, watching = items(rest, 9)
+        if len(items(watching)) > MAX_WATCHING:
+            raise ProtocolError(f"more than {MAX_WATCHING} spectators")
         return SharedGameState(
             SharedPhase(_one_of(phase, SharedPhase)),
             _limited(seconds, MAX_SECONDS),
@@ -118,6 +136,8 @@ def parse_from_host(frame: Json) -> GameOffer | SharedGameState:
             _player(catcher),
             _player(winner),
             tuple(text(each, MAX_PLAYER_NAME) for each in items(names, PLAYERS)),
+            boolean(asks_again),
+            tuple(_name(each) for each in items(watching)),
         )
     raise ProtocolError("a frame of an unknown kind")
 

@@ -25,9 +25,11 @@ from kit.school.game.shared_protocol import (
     GameOffer,
     JoinRequest,
     KeyPush,
+    RematchRequest,
     encode_join_request,
     encode_offer,
     encode_push,
+    encode_rematch_request,
     encode_state,
     parse_from_guest,
     parse_from_host,
@@ -54,6 +56,8 @@ class SharedGameRules(Protocol):
     def push(self, player: int, linear: float, angular: float) -> None: ...
 
     def start(self) -> None: ...
+
+    def ask_again(self) -> None: ...
 
     def remove_player(self, player: int) -> None: ...
 
@@ -122,15 +126,15 @@ class SharedGameServer:
         return next((guest.name for guest in list(self._guests) if guest.plays), "")
 
     @property
-    def spectators(self) -> int:
-        """The number of guests that only watch."""
-        return sum(guest.has_joined and not guest.plays for guest in list(self._guests))
+    def spectators(self) -> tuple[str, ...]:
+        """The names of the guests that only watch."""
+        return tuple(guest.name for guest in list(self._guests) if guest.has_joined and not guest.plays)
 
     def publish(self, state: SharedGameState) -> SharedGameState:
-        """Tells everybody how things stand, and returns it, with the players' names; who has left keeps the name. Of several
-        states that could not be sent yet only the newest is."""
+        """Tells everybody how things stand, and returns it, with the names of all; a player who has left keeps the name. Of
+        several states that could not be sent yet only the newest is."""
         self._player_name = self.player_name or self._player_name
-        named = replace(state, names=(self._name, self._player_name))
+        named = replace(state, names=(self._name, self._player_name), watching=self.spectators)
         self._newest = encode(encode_state(named))
         self._wake()
         return named
@@ -245,6 +249,9 @@ class SharedGameServer:
         elif isinstance(content, KeyPush) and guest.has_joined:
             if guest.plays:
                 self._game.push(1, content.linear, content.angular)
+        elif isinstance(content, RematchRequest) and guest.has_joined:
+            if guest.plays:
+                self._game.ask_again()
         else:
             raise ProtocolError("a frame at the wrong time")
 
@@ -322,6 +329,7 @@ class SharedGameClient:
         connection.settimeout(SILENCE)
         self._socket = FramedSocket(connection, largest_frame=MAX_FRAME)
         self._push = KeyPush(0.0, 0.0)
+        self._asks_again = False
         self._has_news = threading.Event()
         self._is_closed = False
         try:
@@ -356,6 +364,11 @@ class SharedGameClient:
         self._push = KeyPush(min(max(linear, -1.0), 1.0), min(max(angular, -1.0), 1.0))
         self._has_news.set()
 
+    def ask_again(self) -> None:
+        """Asks the host for another game. Does not wait."""
+        self._asks_again = True
+        self._has_news.set()
+
     def close(self) -> None:
         """Leaves the game. May be called twice."""
         self._is_closed = True
@@ -383,6 +396,9 @@ class SharedGameClient:
             while not self._is_closed:
                 self._has_news.wait(KEEP_ALIVE)
                 self._has_news.clear()
+                if self._asks_again:
+                    self._asks_again = False
+                    self._socket.send(encode_rematch_request())
                 self._socket.send(encode_push(self._push))
                 time.sleep(0.02)
 

@@ -5,6 +5,7 @@ Such a level has no reference drive and so no medals: there are the time, each d
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -17,6 +18,7 @@ from kit.learning.authoring.task_check import check_task
 from kit.learning.environment.episode_start import EpisodeStart, first_start
 from kit.learning.maps.batch_map import UnsupportedWorld, load_batch_map
 from kit.learning.maps.obstacles import Obstacle, phases_of_bodies
+from kit.learning.policies.policy_node import node_refusals
 from kit.learning.tasks.catalogue import find_task_file, task_names, tasks_folder
 from kit.learning.tasks.learning_task import LearningTask, UnknownTask
 from kit.learning.tasks.task_case import TaskCase
@@ -201,6 +203,21 @@ def race_refusals(task: LearningTask) -> Iterator[str]:
     """Names the features that the task asks for and a level cannot have."""
     if task.robots > MAX_ROBOTS:
         yield f"{task.robots} robots, only {MAX_ROBOTS} that are driven as one"
+
+
+def race_command(task: LearningTask, agent: str) -> str:
+    """The command that races an agent, a run or a policy's file, in a task; empty where the task or its file cannot be raced.
+
+    UnsupportedWorld and WorldError for a world that nobody can learn in.
+    """
+    if next(race_refusals(task), None) is not None or node_refusals(task):
+        return ""
+    name = task.name
+    if name not in task_names():
+        if task.file is None or not task.file.is_file():
+            return ""
+        name = shlex.quote(str(_short(task.file)))
+    return f"kit game race {name} --agent {agent}"
 
 
 def _left_out(task: LearningTask, case: TaskCase) -> Iterator[str]:

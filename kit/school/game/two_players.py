@@ -78,6 +78,10 @@ class SharedGameState:
     """Once it is over; None if nobody has won."""
     names: tuple[str, ...] = ("",) * PLAYERS
     """Of the players; empty for one who has not come yet."""
+    asks_again: bool = False
+    """Whether the second player asks for another game, after one that is over."""
+    watching: tuple[str, ...] = ()
+    """Names of those who only watch."""
 
     def next_targets(
         self, targets: Sequence[tuple[float, float]], player: int | None
@@ -209,7 +213,12 @@ class SharedGame(SharedReferee):
         self._runner = runner
         self._players = tuple(_Player(runner.simulation.command_topics(robot)) for robot in self.robots)
         self._has_second = False
+        self._asks_again = False
         self._first_catcher = self._catcher
+
+    @property
+    def state(self) -> SharedGameState:
+        return replace(super().state, asks_again=self._asks_again and self.is_over)
 
     def push(self, player: int, linear: float, angular: float) -> None:
         """What a player's keys ask for now, forward and left, each from -1 to 1; more is cut. From any thread."""
@@ -221,9 +230,14 @@ class SharedGame(SharedReferee):
         if self._phase is SharedPhase.WAITING:
             self._enter(SharedPhase.COUNTDOWN)
 
+    def ask_again(self) -> None:
+        """The second player asks for another game, after one that is over. From any thread."""
+        self._asks_again = self.is_over
+
     def remove_player(self, player: int) -> None:
         """A player has gone: the other has won, if it had begun."""
         self.push(player, 0.0, 0.0)
+        self._asks_again = False
         self._has_second = False
         if self._phase is SharedPhase.RUNNING:
             self._winner = 1 - player
@@ -238,6 +252,7 @@ class SharedGame(SharedReferee):
             return
         self._scores = [0.0] * PLAYERS
         self._winner = None
+        self._asks_again = False
         if self._first_catcher is not None:
             self._first_catcher = 1 - self._first_catcher
         self._catcher = self._first_catcher

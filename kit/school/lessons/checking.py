@@ -66,6 +66,16 @@ def install_exercise(workspace: Workspace, lesson: Lesson, exercise: Exercise) -
     return folder / exercise.file
 
 
+def untouched_files(exercise: Exercise, folder: Path) -> frozenset[Path]:
+    """The files of an exercise that are as the starter has them."""
+    untouched = set()
+    for name, content in _starter_files(exercise):
+        with contextlib.suppress(OSError):
+            if (folder / name).read_bytes() == content:
+                untouched.add(folder / name)
+    return frozenset(untouched)
+
+
 def is_untouched(file: Path, exercise: Exercise) -> bool:
     """Whether the file to hand in is missing, or still the starter's."""
     try:
@@ -375,7 +385,7 @@ def check_exercise(exercise: Exercise, file: Path, *, recording: Path | None = N
 
 def submission_path(exercise: Exercise, file: Path) -> Path:
     """The path to submit: the file, or its folder where the starter is a folder."""
-    return file.parent if (exercise.folder / "starter").is_dir() else file
+    return file.parent if has_other_files(exercise) else file
 
 
 def _without_result(problem: str, verdict: GradingVerdict) -> CheckReport:

@@ -5,52 +5,52 @@ from __future__ import annotations
 import re
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import suppress
 from itertools import zip_longest
 from pathlib import Path
 from typing import Final
 
 from kit.host.file_watcher import FileWatcher
 from kit.results.result_blocks import replay_lines
-from kit.school.lessons.checking import CheckReport, ExerciseCheck, has_other_files, submission_path
+from kit.school.lessons.checking import (
+    CheckReport,
+    ExerciseCheck,
+    has_other_files,
+    submission_path,
+    untouched_files,
+)
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import Exercise
 from kit.school.lessons.training_curves import DriveLoop, TestDrive, TrainingCurves
 
-RESCAN_S: Final = 1.0
-"""Between two looks for files that are new."""
 TO_WRITE: Final = ("TODO", "# write this")
 """What a starter says of a line that is to be written."""
-MOST_FILES: Final = 200
-"""No exercise has more; a folder that was unpacked there by mistake may."""
+LARGEST_TEXT: Final = 1_000_000
+"""Bytes of a file that somebody may want to edit."""
 
 
-class FolderWatch:
-    """Notices when any file of an exercise has been saved. One that is new counts from its next save on: editors
-    make files for a moment."""
+def files_in(folder: Path) -> Iterator[Path]:
+    """The student's files in a folder, without what is hidden, kept by an editor, or made by Python."""
+    with suppress(OSError):  # a network drive that is away comes back
+        for file in sorted(folder.rglob("*")):
+            parts = file.relative_to(folder).parts
+            if any(part.startswith(".") or part == "__pycache__" for part in parts) or file.name.endswith(
+                "~"
+            ):
+                continue
+            if file.is_file():
+                yield file
 
-    def __init__(self, file: Path) -> None:
-        self._folder = file.parent
-        self._watches = {file: FileWatcher(file)}
-        self._scan()
 
-    def has_changed(self) -> bool:
-        """Whether something was saved since the last time this was true. Call it often."""
-        if time.monotonic() - self._scanned >= RESCAN_S:
-            self._scan()
-        changed = [watch.has_changed() for watch in self._watches.values()]
-        return any(changed)
-
-    def _scan(self) -> None:
-        self._scanned = time.monotonic()
-        try:
-            for file in sorted(self._folder.rglob("*")):
-                parts = file.relative_to(self._folder).parts
-                if any(part.startswith((".", "__")) for part in parts) or file.name.endswith("~"):
-                    continue
-                if file not in self._watches and len(self._watches) < MOST_FILES and file.is_file():
-                    self._watches[file] = FileWatcher(file)
-        except OSError:  # a network drive that is away comes back
-            return
+def _is_text(file: Path) -> bool:
+    try:
+        if file.stat().st_size > LARGEST_TEXT:
+            return False
+        file.read_bytes().decode()
+        return True
+    except (OSError, UnicodeDecodeError):
+        return False
 
 
 class ExerciseAttempt:
@@ -66,6 +66,8 @@ class ExerciseAttempt:
         """What the student edits."""
         self._watch = FileWatcher(submission_path(self.exercise, self.file))
         self._check: ExerciseCheck | None = None
+        self._chosen: Path | None = None
+        """The file to edit, once the student has chosen one."""
         self._edited_watch = FileWatcher(self.edited_file)
         self._edited_lines: tuple[str, ...] | None = None
         self._curves: TrainingCurves | None = None
@@ -100,6 +102,34 @@ class ExerciseAttempt:
             return ()
         return tuple("".join(filter(str.isprintable, line.expandtabs(4))) for line in text.splitlines())
 
+    def files(self, told: str) -> list[Path]:
+        """The texts among the files of the exercise, those first that the words of the step name, in the order in which they do."""
+        text = told.replace("{file}", self.exercise.file)
+        return sorted(
+            filter(_is_text, files_in(self.file.parent)), key=lambda file: self._place_in(text, file)
+        )
+
+    def suggested_file(self, told: str) -> Path:
+        """The file to edit now: the one in which the last check found an error; else the first that is still the starter's, of
+        the one to begin with and, if the words of the step name it, the one to hand in; else the one that was edited last."""
+        if (wrong := next(filter(self._find_error, self.files(told)), None)) is not None:
+            return wrong
+        to_edit = [self._first_file, *([self.file] if "{file}" in told else [])]
+        untouched = untouched_files(self.exercise, self.file.parent)
+        return next((file for file in to_edit if file in untouched), self.edited_file)
+
+    def _place_in(self, text: str, file: Path) -> int:
+        """Where a text names a file; its length if it does not."""
+        names = (file.relative_to(self.file.parent).as_posix(), file.name)
+        found = [text.find(name) for name in names if "." in name]  # else it is a word like others
+        return min((at for at in found if at >= 0), default=len(text))
+
+    def choose(self, file: Path) -> None:
+        """Has this file be the one to edit."""
+        if file != self.edited_file:
+            self._chosen, self._edited_lines, self.changed_line = file, None, 1
+            self._edited_watch = FileWatcher(file)
+
     @property
     def line_to_edit(self) -> int:
         """The line of the edited file to begin at, counted from 1: the one that the last check's first error names; else that
@@ -109,20 +139,20 @@ class ExerciseAttempt:
     @property
     def error_line(self) -> int:
         """The line of the edited file that the last check's first error names; 0 if it names none."""
-        found = self._named_error
+        found = self._find_error(self.edited_file)
         return 0 if found is None else int(found[1])
 
     @property
     def error_text(self) -> str:
         """What the last check's first error says that names a line of the edited file; empty if none does."""
-        found = self._named_error
+        found = self._find_error(self.edited_file)
         return "" if found is None else found.string[found.end() :].lstrip(": ,")
 
-    @property
-    def _named_error(self) -> re.Match[str] | None:
+    def _find_error(self, file: Path) -> re.Match[str] | None:
+        """Where the last check's first error names a line of a file."""
         report = self.report
         texts = [] if report is None else [report.problem, *(each.rationale for each in report.lost_criteria)]
-        name = re.escape(self.edited_file.name)
+        name = re.escape(file.name)
         return next(
             (match for text in texts if (match := re.search(rf"\b{name}:(\d+)(?::\d+)?", text))), None
         )
@@ -142,6 +172,11 @@ class ExerciseAttempt:
     @property
     def edited_file(self) -> Path:
         """The file to open in an editor."""
+        return self._chosen or self._first_file
+
+    @property
+    def _first_file(self) -> Path:
+        """The one to begin with."""
         return self.file.parent / self.exercise.edited_first if self.exercise.edited_first else self.file
 
     @property

@@ -6,8 +6,8 @@ import math
 from typing import Final
 
 from kit.plain_text import counted
-from kit.render.curve import paste_frame, write_text
 from kit.render.encode import AsciiEncoder, Encoder, Frame
+from kit.render.frame_text import paste_frame, write_text
 from kit.render.graph import GraphDrawing, GraphView, draw_graph
 from kit.render.graph_data import GraphData, GraphItem
 from kit.render.graph_glyphs import ASCII_LINES, UNICODE_LINES

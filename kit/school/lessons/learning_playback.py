@@ -11,8 +11,9 @@ from kit.learning.grid.grid_learner import GridLearner
 from kit.learning.grid.grid_world import CLIFF, GridCell
 from kit.learning.grid.registry import make_grid_learner
 from kit.plain_text import counted, wrap
-from kit.render.curve import Axes, Curve, draw_curves, paste_frame, write_text
+from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import AsciiEncoder, Encoder, Frame
+from kit.render.frame_text import paste_frame, write_text
 from kit.render.value_grid import ValueGrid, draw_value_grids, value_grids_height, value_grids_width
 from kit.school.lessons.own_learners import make_own_learner
 from kit.school.lessons.records import LearningScene

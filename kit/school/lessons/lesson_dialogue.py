@@ -21,7 +21,7 @@ from kit.school.lessons.defence_dialogue import DefenceDialogue
 from kit.school.lessons.exercise_work import ExerciseAttempt
 from kit.school.lessons.glossary import glossary_action
 from kit.school.lessons.graph_playback import graph_rows
-from kit.school.lessons.lesson_session import LessonSession
+from kit.school.lessons.lesson_session import LessonHint, LessonSession
 from kit.school.lessons.lesson_text import (
     command_blocks,
     ending_blocks,
@@ -136,6 +136,10 @@ class LessonDialogue(Dialogue):
         """Commands of somebody else's lesson that the student has seen and let run."""
         self._looks_at = ""
         """What was just said: ``answer``, ``verdict``, ``hint`` or ``film``."""
+        self._newest_hint: LessonHint | None = None
+        """The one that was opened last."""
+        self.is_writing = False
+        """Whether keys are letters of the program, in an editor beside the lesson. The face says so."""
         self._film: OwnAgentFilm | None = None
         """The film of the student's own agent, in the step that shows it."""
         self._drive_follows = False
@@ -242,9 +246,10 @@ class LessonDialogue(Dialogue):
     def look(self) -> Block | None:
         said = self.said()
         match self._looks_at:
-            case "hint":
-                hints = [each for each in said if isinstance(each, Text) and each.lead.startswith("Hint ")]
-                return hints[-1] if hints else None
+            case "hint" if (newest := self._newest_hint) is not None:
+                lead = f"Hint {newest.number} of "
+                hints = (each for each in said if isinstance(each, Text) and each.lead.startswith(lead))
+                return next((each for each in hints if each.text == newest.text), None)
             case "verdict":
                 lost = (
                     each
@@ -261,8 +266,19 @@ class LessonDialogue(Dialogue):
         if self._problem:
             return Text(self._problem, Tone.BAD)
         if self.work is None or self.has_ended:
-            return None
-        return status_text(self.report, self.session.lesson_progress, self.work.exercise)
+            told = (
+                f"Step {each.number} is being checked: {self._progress_of(each)}"
+                for each in self.checked_elsewhere
+            )
+            return next((Text(each, Tone.DIM) for each in told), None)
+        session, exercise = self.session, self.work.exercise
+        return status_text(
+            self.report,
+            session.lesson_progress,
+            exercise,
+            has_hint=session.has_closed_hints(exercise),
+            is_writing=self.is_writing,
+        )
 
     def opening(self) -> Sequence[Block]:
         lesson, progress = self.session.lesson, self.session.lesson_progress
@@ -353,9 +369,14 @@ class LessonDialogue(Dialogue):
     def polls(self) -> bool:
         """Whether time brings something: a check that runs, or a file that may be saved anew. A drive by hand is not."""
         is_edited = self.work is not None and not self.work.by_hand
-        return bool(self.busy or self._checked_elsewhere()) or is_edited
+        return bool(self.busy or self.checked_elsewhere) or is_edited
 
-    def _checked_elsewhere(self) -> list[LessonStep]:
+    def _progress_of(self, step: LessonStep) -> str:
+        assert step.exercise is not None
+        return self._works[step.exercise.name].progress or "it has begun"
+
+    @property
+    def checked_elsewhere(self) -> list[LessonStep]:
         """The steps, besides this one, whose exercise is being checked."""
         return [
             step
@@ -367,7 +388,7 @@ class LessonDialogue(Dialogue):
         ]
 
     def poll(self) -> Effect:
-        said = [text for step in self._checked_elsewhere() if (text := self._poll_elsewhere(step))]
+        said = [text for step in self.checked_elsewhere if (text := self._poll_elsewhere(step))]
         effect = self._poll_here()
         return Remark(" ".join(said), Tone.DIM) if effect is None and said else effect
 
@@ -580,12 +601,29 @@ class LessonDialogue(Dialogue):
         return None
 
     def edit(self) -> Effect:
-        work = self._work
-        return Show(Edit(work.edited_file, work.line_to_edit), self._edited)
+        return self._choose_file(Edit)
 
     def edit_here(self) -> Effect:
+        return self._choose_file(EditHere)
+
+    def _choose_file(self, request: type[Edit | EditHere]) -> Effect:
+        """Asks which of several files is to be opened."""
         work = self._work
-        return Show(EditHere(work.edited_file, work.line_to_edit), self._edited)
+        files = work.files(self.step.text) if work.has_others else []
+        if len(files) < 2:
+            return self._open_file(request, work, work.edited_file)
+        options = [Option(each.relative_to(work.file.parent).as_posix()) for each in files]
+        suggested = work.suggested_file(self.step.text)
+        return Choose(
+            "Which file?",
+            options,
+            lambda index: None if index is None else self._open_file(request, work, files[index]),
+            files.index(suggested) if suggested in files else 0,
+        )
+
+    def _open_file(self, request: type[Edit | EditHere], work: ExerciseAttempt, file: Path) -> Effect:
+        work.choose(file)
+        return Show(request(file, work.line_to_edit), self._edited)
 
     def _edited(self, problem: str) -> Effect:
         if problem:
@@ -594,9 +632,7 @@ class LessonDialogue(Dialogue):
 
     def hint(self) -> Effect:
         self._looks_at = "hint"
-        exercise = self._work.exercise
-        if self.session.next_hint(exercise) is None:
-            return Remark("You have seen all hints for this criterion.")
+        self._newest_hint = self.session.next_hint(self._work.exercise)
         return None
 
     def drive(self) -> Effect:
@@ -713,8 +749,10 @@ class LessonDialogue(Dialogue):
         report = self.report
         if report is None:
             return "Check first (c): hints are for criteria that you missed."
-        if any(each.hints for each in report.lost_criteria):
+        if self.session.has_closed_hints(self.work.exercise):
             return True
+        if self.session.opened_hints(self.work.exercise):
+            return "You have seen all hints; they stand below what was missed."
         return "Nothing was missed." if report.is_passed else "There is no hint for this."
 
     def can_drive(self) -> bool:
@@ -773,7 +811,7 @@ class LessonDialogue(Dialogue):
         return "next lesson" if self.has_ended else "next"
 
     def back_word(self) -> str:
-        return "back, which ends the check" if self.busy or self._checked_elsewhere() else "back"
+        return "back, which ends the check" if self.busy or self.checked_elsewhere else "back"
 
     def predict_keys(self) -> str:
         return f"1-{len(self.step.options)}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import shutil
 import zlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -39,8 +39,6 @@ class LessonHint:
     criterion: CriterionResult
     number: int
     text: str
-    remaining: int
-    """Number of hints that follow."""
 
 
 class LessonSession:
@@ -200,26 +198,28 @@ class LessonSession:
         return right
 
     def opened_hints(self, exercise: Exercise) -> tuple[LessonHint, ...]:
-        """The hints opened so far for the first criterion that did not pass."""
-        lost = self._first_lost_criterion(exercise)
-        if lost is None:
-            return ()
-        opened = min(self._lesson_progress.opened_hint_count(exercise, lost.id), len(lost.hints))
-        return tuple(_hint_of(lost, number) for number in range(1, opened + 1))
+        """The hints opened so far for the criteria that did not pass, in the order in which they are opened."""
+        return tuple(
+            LessonHint(lost, number, lost.hints[number - 1])
+            for lost in self._lost_criteria(exercise)
+            for number in range(1, self._opened_count(exercise, lost) + 1)
+        )
 
     def next_hint(self, exercise: Exercise) -> LessonHint | None:
-        """Opens one more hint for the first criterion that did not pass; None where there is no further hint or no
-        such criterion."""
-        lost = self._first_lost_criterion(exercise)
+        """Opens one more hint: those of a criterion that knows the mistake come first, then those of the others that did
+        not pass, in their order. None where all are open, or there is none."""
+        lost = next(self._with_closed_hints(exercise), None)
         if lost is None:
             return None
-        number = self._lesson_progress.opened_hint_count(exercise, lost.id) + 1
-        if number > len(lost.hints):
-            return None
+        number = self._opened_count(exercise, lost) + 1
         self._record_event(
             EventKind.HINT, f"{self.lesson.exercise_subject(exercise)}/{lost.id}", {"step": number}
         )
-        return _hint_of(lost, number)
+        return LessonHint(lost, number, lost.hints[number - 1])
+
+    def has_closed_hints(self, exercise: Exercise) -> bool:
+        """Whether ``next_hint`` opens one."""
+        return next(self._with_closed_hints(exercise), None) is not None
 
     def can_see_solution(self, exercise: Exercise) -> bool:
         """Whether the exercise has been passed."""
@@ -237,9 +237,18 @@ class LessonSession:
     def _passed_run_file(self, exercise: Exercise) -> Path:
         return self.exercise_file(exercise).with_name(PASSED_RUN_FILE)
 
-    def _first_lost_criterion(self, exercise: Exercise) -> CriterionResult | None:
+    def _lost_criteria(self, exercise: Exercise) -> Sequence[CriterionResult]:
         report = self._reports.get(exercise.name)
-        return next(iter(report.lost_criteria), None) if report is not None else None
+        lost = () if report is None else report.lost_criteria
+        return sorted(lost, key=lambda each: not each.knows_mistake)  # sorting keeps the order of equals
+
+    def _opened_count(self, exercise: Exercise, lost: CriterionResult) -> int:
+        return min(self._lesson_progress.opened_hint_count(exercise, lost.id), len(lost.hints))
+
+    def _with_closed_hints(self, exercise: Exercise) -> Iterator[CriterionResult]:
+        for lost in self._lost_criteria(exercise):
+            if self._opened_count(exercise, lost) < len(lost.hints):
+                yield lost
 
     def _record_event(self, kind: EventKind, subject: str, content: dict[str, object] | None = None) -> None:
         self.journal.add(kind, subject, content)
@@ -247,7 +256,3 @@ class LessonSession:
 
     def _read_progress(self) -> LessonProgress:
         return lesson_progress_from_events(self.lesson, self.journal.events())
-
-
-def _hint_of(lost: CriterionResult, number: int) -> LessonHint:
-    return LessonHint(lost, number, lost.hints[number - 1], len(lost.hints) - number)

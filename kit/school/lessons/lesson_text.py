@@ -9,6 +9,7 @@ from typing import Final
 
 from kit.document.blocks import Block, Choice, Choices, Code, Text, Tone
 from kit.plain_text import join_names
+from kit.results.grading_result import CriterionStatus
 from kit.results.result_blocks import criterion_blocks, points_text
 from kit.school.game.levels import GameLevel, opened_levels_text
 from kit.school.lessons.catalogue import LessonProgress
@@ -73,26 +74,38 @@ def verdict_blocks(report: CheckReport, hints: Sequence[LessonHint]) -> list[Blo
     blocks: list[Block] = []
     if report.problem:
         blocks.append(Text(report.problem, Tone.WARN if report.is_broken else Tone.BAD))
+    skipped = {each.id for each in report.criteria if each.status is CriterionStatus.SKIPPED}
     for each in report.criteria:
+        if each.id in skipped and each.depends_on in skipped:  # what comes first has been said of that one
+            each = replace(each, rationale="")
         first, *others = criterion_blocks(each, hints=sum(hint.criterion.id == each.id for hint in hints))
         blocks += [first if blocks else replace(first, is_tight=False), *others]
     return blocks
 
 
-def status_text(report: CheckReport | None, progress: LessonProgress, exercise: Exercise) -> Text:
-    """Where one is with an exercise, in a sentence or two."""
-    begin = (
-        "Press d to drive; leaving the drive checks it."
-        if exercise.is_driven
-        else "Save the file to check it, or press c."
-    )
+def status_text(
+    report: CheckReport | None,
+    progress: LessonProgress,
+    exercise: Exercise,
+    *,
+    has_hint: bool = False,
+    is_writing: bool = False,
+) -> Text:
+    """Where one is with an exercise, in a sentence or two. ``has_hint``: whether there is one that is not open yet.
+    ``is_writing``: whether keys are letters of the program, so that ``c`` and ``h`` come after Esc."""
+    begin = "Save the file to check it, or press c."
+    if exercise.is_driven:
+        begin = "Press d to drive; leaving the drive checks it."
+    elif is_writing:
+        begin = "^S saves and checks."
     if report is None:
         if exercise.name in progress.passed_exercises:
             return Text(begin, lead="Passed before.", lead_tone=Tone.GOOD)
         best = progress.best_shares.get(exercise.name)
         return Text(begin, tail=f" Best so far: {best:.0%}." if best else "")
     if report.is_broken:
-        return Text("The check itself failed. Press c to try again.", Tone.WARN)
+        again = "^S tries again." if is_writing else "Press c to try again."
+        return Text(f"The check itself failed. {again}", Tone.WARN)
     level = f", isolation level {report.result.level}" if report.result and report.result.level else ""
     points = (
         f"{points_text(report.points, report.max_points)} points, checked in {report.seconds:.1f} s{level}."
@@ -101,7 +114,7 @@ def status_text(report: CheckReport | None, progress: LessonProgress, exercise: 
         return Text(points, lead="Passed: ***", lead_tone=Tone.GOOD)
     if not report.criteria:
         return Text("Not checked.", Tone.BAD)
-    more = " Press h for a hint." if any(each.hints for each in report.lost_criteria) else ""
+    more = (" Esc, then h: a hint." if is_writing else " Press h for a hint.") if has_hint else ""
     return Text(f"{points}{more}", lead="Not yet:", lead_tone=Tone.BAD)
 
 

@@ -53,8 +53,8 @@ class TestDrive:
         """The robot on its map ``time_s`` after the start, by default at the end. Below: which drive it is, and how long it
         has driven; at the end, how it ended."""
         from kit.render.camera import Camera
-        from kit.render.curve import paste_frame, write_text
         from kit.render.encode import Frame
+        from kit.render.frame_text import paste_frame, write_text
         from kit.render.painter import Painter
 
         episode, frame = self.episode, Frame.empty(columns, rows)
@@ -107,8 +107,9 @@ class TrainingCurves:
         """
         import numpy as np
 
-        from kit.render.curve import Axes, Curve, draw_curves, paste_frame
+        from kit.render.curve import Axes, Curve, draw_curves
         from kit.render.encode import Frame
+        from kit.render.frame_text import paste_frame
 
         curves = [
             Curve(

@@ -10,7 +10,7 @@ from typing import Any
 from kit.msg.geometry_msgs import Twist
 from kit.sim.motors import SpeedLimits, read_speed_limits
 from kit.sim.odometry import Odometry, OdometryParams, read_odometry_params
-from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin import CommandLimit, OutgoingMessage, Plugin, PluginContext, PluginType
 from kit.sim.plugin_messages import read_topic
 from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
@@ -64,7 +64,11 @@ class DiffDrive(Plugin):
         self._body = context.bodies[params.body]
         self._is_limited = not (params.linear.is_unlimited and params.angular.is_unlimited)
         self._odometry = Odometry(params.odometry, context, self._body)
-        self.endpoints = [context.subscription(params.topic, Twist), *self._odometry.endpoints]
+        limits = (
+            CommandLimit("linear.x", params.linear.speed, "m/s"),
+            CommandLimit("angular.z", params.angular.speed, "rad/s"),
+        )
+        self.endpoints = [context.subscription(params.topic, Twist, limits), *self._odometry.endpoints]
 
     def reset(self, seed: int) -> None:
         self._command = self._velocity = (0.0, 0.0)

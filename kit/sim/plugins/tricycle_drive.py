@@ -14,7 +14,7 @@ from kit.sim import motors
 from kit.sim.bodies import clamp
 from kit.sim.motors import SpeedLimits, read_speed_limits
 from kit.sim.odometry import Odometry, OdometryParams, read_odometry_params
-from kit.sim.plugin import OutgoingMessage, Plugin, PluginContext, PluginType
+from kit.sim.plugin import CommandLimit, OutgoingMessage, Plugin, PluginContext, PluginType
 from kit.sim.plugin_messages import read_topic
 from kit.world.plugin_reader import ModelScope
 from kit.world.records import Joint, JointAnchor
@@ -159,9 +159,15 @@ class TricycleDrive(Plugin):
         self._body = context.bodies[params.body]
         self._front_wheel = context.bodies[params.front_wheel]
         self._odometry = Odometry(params.odometry, context, self._body, origin_offset=params.wheelbase)
-        self.endpoints = [context.subscription(params.topic, Twist), *self._odometry.endpoints]
+        fastest, steering = params.linear.speed, params.max_steering
+        limits = CommandLimit("linear.x", fastest, "m/s"), CommandLimit("angular.z", steering, "rad")
+        self.endpoints = [context.subscription(params.topic, Twist, limits), *self._odometry.endpoints]
         if params.ackermann_topic:
-            self.endpoints.append(context.subscription(params.ackermann_topic, AckermannDriveStamped))
+            limits = (
+                CommandLimit("drive.speed", fastest, "m/s"),
+                CommandLimit("drive.steering_angle", steering, "rad"),
+            )
+            self.endpoints.append(context.subscription(params.ackermann_topic, AckermannDriveStamped, limits))
 
     def reset(self, seed: int) -> None:
         self._command = (0.0, 0.0)

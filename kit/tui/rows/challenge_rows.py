@@ -15,8 +15,11 @@ from kit.school.game.medal import Medal
 from kit.school.game.needed import Bin
 from kit.school.lessons.reading import lesson_number
 from kit.school.lessons.shell_lines import shell_path
-from kit.tui.rows.drive_end_rows import medal_row, needed_rows, share_bar
-from kit.tui.rows.level_rows import MEDAL_SIGNS, MEDAL_STYLES, TITLE_WIDTH
+from kit.tui.rows.drive_end_rows import needed_rows
+from kit.tui.rows.level_rows import TITLE_WIDTH
+from kit.tui.rows.medal_rows import medal_row
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES
+from kit.tui.rows.progress_marks import share_bar
 
 TITLE_COLUMNS: Final = TITLE_WIDTH + 8
 HEADER: Final = f"  {'challenge':<{TITLE_COLUMNS}} medal  lesson"
@@ -28,6 +31,9 @@ LEAST_BOARD: Final = 60
 GAP: Final = 2
 LARGEST_SCALE: Final = 5
 NAME_COLUMNS: Final = 14
+LIST_COLUMNS: Final = 56
+"""Of the list, where a picture stands beside it."""
+ROOM_FOR_PICTURE: Final = LIST_COLUMNS + 50
 
 
 def first_shown(count: int, chosen: int, room: int) -> int:
@@ -72,6 +78,16 @@ def about_challenge(challenge: Challenge, medal: Medal, width: int) -> list[Row]
     ]
 
 
+def challenge_picture(challenge: Challenge, width: int, height: int) -> list[Row]:
+    """What a challenge looks like before anybody has begun, as large as fits: its board, or the drawing of one that has none."""
+    board = challenge.task.board("")
+    if board is None:
+        shown = [row((line, "code")) for line in challenge.task.lines()]
+    else:
+        shown = board.rows(largest_drawing(board, width, height)[0])
+    return [part for each in shown for part in _within(each, width)][:height]
+
+
 def challenge_page(challenge: Challenge, file: Path | None, width: int) -> list[Row]:
     """A challenge as a page. ``file``: where the answer is written; None: a training run is handed in."""
     place = (
@@ -81,7 +97,7 @@ def challenge_page(challenge: Challenge, file: Path | None, width: int) -> list[
     )
     return [
         *_wrapped("", challenge.story, width),
-        *_wrapped("task  ", challenge.task_text, width, "dim"),
+        *_wrapped("task  ", challenge.written_task, width, "dim"),
         *(row((line, "code")) for line in challenge.task.lines()),
         row((place, "bold")),
     ]
@@ -114,9 +130,9 @@ def puzzle_beside(
     challenge: Challenge, board: Board, judgement: Judgement | str, width: int, height: int
 ) -> list[Row]:
     """A puzzle with its board at the left, as large as there is room for, and the rest beside it."""
-    drawing = _largest_drawing(board, width - LEAST_TEXT - GAP, height - 1)
+    scale, drawing = largest_drawing(board, width - LEAST_TEXT - GAP, height - 1)
     column = min(max(LEAST_BOARD, drawing + GAP), width - LEAST_TEXT)
-    left = [each for shown in board.rows() for each in _within(shown, column - GAP)]
+    left = [each for shown in board.rows(scale) for each in _within(shown, column - GAP)]
     room = min(width - column - 1, WIDEST_TEXT)
     story, task, keys = _about_puzzle(challenge, board, room)
     worth, sentence = worth_now(judgement, room)
@@ -124,18 +140,15 @@ def puzzle_beside(
     return side_by_side([row(), *left], text, column)
 
 
-def _largest_drawing(board: Board, width: int, height: int) -> int:
-    """Makes the drawing as large as fits; returns how many columns it then has, 0 for one that has no scale."""
-    board.scale = 1
+def largest_drawing(board: Board, width: int, height: int) -> tuple[int, int]:
+    """The largest scale of a board's drawing that fits, and how many columns it then has, 0 for one that has no scale."""
     usual = {row_text(each) for each in board.rows()}
     for scale in range(LARGEST_SCALE, 1, -1):
-        board.scale = scale
-        rows = [row_text(each) for each in board.rows()]
+        rows = [row_text(each) for each in board.rows(scale)]
         drawn = max((len(each.rstrip()) for each in rows if each not in usual), default=0)
         if drawn <= width and len(rows) <= height:
-            return drawn
-    board.scale = 1
-    return 0
+            return scale, drawn
+    return 1, 0
 
 
 def _within(shown: Row, width: int) -> list[Row]:
@@ -159,10 +172,11 @@ def _about_puzzle(challenge: Challenge, board: Board, width: int) -> tuple[list[
 def worth_now(judgement: Judgement | str, width: int) -> tuple[list[Row], list[Row]]:
     """What the answer on a board is worth, with a bar from the naive answer to the best one; and a sentence about it."""
     if isinstance(judgement, str):
-        return [row(("  now   ", "dim"), "no answer yet")], _wrapped("  ", judgement, width, "dim")
+        sentence = _wrapped("      ", judgement, width, "dim") if judgement else []
+        return [row(("now    ", "dim"), "no answer yet")], sentence
     rows = [
         row(
-            ("  now   ", "dim"),
+            ("now    ", "dim"),
             (MEDAL_SIGNS[judgement.medal] + " ", MEDAL_STYLES[judgement.medal]),
             (judgement.medal.title, "bold"),
         )
@@ -176,12 +190,12 @@ def worth_now(judgement: Judgement | str, width: int) -> tuple[list[Row], list[R
             (share_bar(share), "good" if judgement.medal is not Medal.NONE else "dim"),
             (f" {last} {_number(best)} {comparison.unit}", "dim"),
         )
-        indent = "        "
+        indent = "       "
         if len(indent) + sum(len(text) for text, _ in parts) <= width:
             rows.append(row(indent, *parts))
         else:
             rows += [row(indent, (text.strip(), style)) for text, style in parts]
-    return rows, _wrapped("  ", judgement.text, width, "dim")
+    return rows, _wrapped("      ", judgement.text, width, "dim")
 
 
 def judged(judgement: Judgement, previous: Medal, following: str | None, width: int) -> list[Row]:

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
 
 from kit.document.rows import Row, row
 from kit.plain_text import counted
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.levels import GameLevel, all_worlds
-from kit.school.game.medal import Medal
 from kit.school.game.needed import Bin
 from kit.school.game.race import DriverKind, RaceFinish
-from kit.tui.rows.level_rows import BAR, MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, STAR
+from kit.tui.rows.level_rows import BAR
+from kit.tui.rows.medal_rows import medal_row
+from kit.tui.rows.medal_signs import NO_STAR, STAR
 
 
 def finish_sentence(finish: RaceFinish) -> str:
@@ -48,39 +48,6 @@ def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord) -> list[Ro
         new = " (new)" if rule in record.new_rules else ""
         rows.append(row((f"   {STAR} ", "warn"), rule.description(level) + new))
     return rows
-
-
-def medal_row(medal: Medal, *, is_new: bool) -> Row:
-    """A medal that was earned. ``is_new``: whether it is better than those before."""
-    better = " (new)" if is_new else ""
-    return row((f"   {MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]), (f"{medal.title}{better}", "bold"))
-
-
-MEDAL_PICTURE: Final = (
-    r"  \ \   / /",
-    r"   \ \ / /",
-    r"   .-'-'-.",
-    r"  /       \ ",
-    r" |    {}    |",
-    r"  \       /",
-    r"   '-----'",
-)
-SPARK_SIGNS: Final = "*.+'"
-
-
-def medal_drawing(medal: Medal, spark: int) -> list[Row]:
-    """A medal with its letter. ``spark``: the number of a picture of joy around it, 0 for none."""
-    rows = []
-    for number, line in enumerate(MEDAL_PICTURE):
-        sparks = "".join(
-            SPARK_SIGNS[(number + column) % len(SPARK_SIGNS)]
-            if (7 * column + 5 * number + 3 * spark) % 11 < 2
-            else " "
-            for column in range(30 if spark else 0)
-        )
-        drawn = f"   {line.format(MEDAL_SIGNS[medal]):<14}"
-        rows.append(row((drawn, MEDAL_STYLES[medal]), (sparks, "warn")))
-    return [*rows, row()]
 
 
 def compared(
@@ -143,12 +110,3 @@ def won_besides(level: GameLevel, record: DriveRecord) -> list[Row]:
 
 def _difference(seconds: float) -> tuple[str, str]:
     return f"{seconds:+.2f}", "good" if seconds <= 0.0 else "warn"
-
-
-BAR_WIDTH: Final = 20
-
-
-def share_bar(share: float) -> str:
-    """How far something is: ``share`` from 0 to 1, one character for a twentieth."""
-    full = round(min(max(share, 0.0), 1.0) * BAR_WIDTH)
-    return "█" * full + "░" * (BAR_WIDTH - full)

@@ -14,15 +14,9 @@ from kit.school.game.medal import RUNGS, medal_time
 from kit.school.game.player_progress import ExtraRule
 from kit.school.game.race import DriverKind
 from kit.tui.rows.drive_end_rows import sector_rows
-from kit.tui.rows.level_rows import (
-    MEDAL_SIGNS,
-    MEDAL_STYLES,
-    NO_STAR,
-    RESULT_BAR,
-    STAR,
-    ladder_bar,
-)
-from kit.tui.rows.readout_rows import title as ruled
+from kit.tui.rows.ladder_rows import RESULT_BAR, ladder_bar
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, STAR
+from kit.tui.rows.ruled_title import ruled_title
 
 COLUMN: Final = 54
 """Columns of the stars where the sectors stand beside them."""
@@ -49,7 +43,7 @@ def level_card(
     ladder = [] if reference is None else _ladder(driver, reference, width)
     stars = [] if reference is None else star_rows(level, kept, width)
     parts = [
-        [ruled("level", width), *(row(line) for line in wrap(level.story, width))],
+        [ruled_title("level", width), *(row(line) for line in wrap(level.story, width))],
         [row((line, "bold")) for line in wrap(level.hint, width)],
         [row((line, "dim")) for line in wrap(skill, width)],
         ladder,
@@ -65,7 +59,7 @@ def level_card(
 def _ladder(driver: DriverKind, reference: float, width: int) -> list[Row]:
     """The ladder with the time of each of its rungs."""
     rows = [
-        ruled("ladder", width, driver.phrase),
+        ruled_title("ladder", width, driver.phrase),
         row(*ladder_bar(driver, reference, None, min(width, RESULT_BAR))),
     ]
     return rows + [
@@ -79,7 +73,7 @@ def _ladder(driver: DriverKind, reference: float, width: int) -> list[Row]:
 
 def star_rows(level: GameLevel, kept: Collection[ExtraRule], width: int) -> list[Row]:
     """The rules that earn stars, those that a drive has kept with theirs."""
-    rows = [ruled("stars", width)]
+    rows = [ruled_title("stars", width)]
     for rule in ExtraRule:
         sign, style = (STAR, "warn") if rule in kept else (NO_STAR, "")
         first, *rest = wrap(rule.description(level), width - 2)
@@ -111,7 +105,7 @@ def stars_and_sectors(
     sectors = (
         []
         if best is None
-        else [ruled("sectors", width - COLUMN, f"best {best[0].phrase}"), *sector_rows(best[1])]
+        else [ruled_title("sectors", width - COLUMN, f"best {best[0].phrase}"), *sector_rows(best[1])]
     )
     if not sectors or COLUMN + max(map(row_width, sectors)) > width:
         return [row(" ", *each) for each in stars]

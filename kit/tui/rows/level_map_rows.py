@@ -10,18 +10,8 @@ from typing import Final
 from kit.document.rows import Row
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import LevelProgress
-from kit.tui.rows.level_rows import (
-    DOWN,
-    LEAST_COLUMNS,
-    LEAST_ROWS,
-    LEFT,
-    MEDAL_SIGNS,
-    MOST_COLUMNS,
-    MOST_ROWS,
-    RIGHT,
-    SHUT,
-    UP,
-)
+from kit.tui.rows.level_rows import DOWN, LEAST_COLUMNS, LEAST_ROWS, LEFT, MOST_COLUMNS, MOST_ROWS, RIGHT, UP
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, SHUT
 
 GAP: Final = 4
 """Columns between two pictures, for the lines."""
@@ -96,7 +86,7 @@ def map_rows(
         place = by_level[each.level.id]
         medal = SHUT if not each.is_open else MEDAL_SIGNS[each.best_medal] if each.best_medal else " "
         style = "key" if each.level.id == chosen else "" if each.is_open else "dim"
-        _write(
+        _write_signs(
             signs,
             place.x,
             place.y,
@@ -105,14 +95,16 @@ def map_rows(
         )
         style = "warn" if each.best_medal >= Medal.GOLD else "" if each.is_open else "dim"
         for number, text in enumerate(pictures.get(each.level.id, ())[: place.rows]):
-            _write(signs, place.x, place.y + 1 + number, text[: place.columns].ljust(place.columns), style)
+            _write_signs(
+                signs, place.x, place.y + 1 + number, text[: place.columns].ljust(place.columns), style
+            )
     return [
         tuple(("".join(sign for sign, _ in run), style) for style, run in groupby(line, lambda each: each[1]))
         for line in signs
     ]
 
 
-def _write(signs: list[list[tuple[str, str]]], x: int, y: int, text: str, style: str) -> None:
+def _write_signs(signs: list[list[tuple[str, str]]], x: int, y: int, text: str, style: str) -> None:
     for number, sign in enumerate(text):
         signs[y][x + number] = sign, style
 

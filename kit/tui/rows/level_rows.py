@@ -1,44 +1,23 @@
-"""The game's levels as rows of text: medals, the ladder, what is known of a level, leaderboards. Pure."""
+"""The game's levels as rows of text: medals, what is known of a level, its starts. Pure."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Final
 
-from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText
+from kit.document.blocks import Cell, CellStyle, Column, Table, Tone, ToneText
 from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row
-from kit.plain_text import counted
-from kit.school.game.daily import DAILY_PREFIX, daily_level, today
-from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost
-from kit.school.game.leaderboard import LeaderboardEntry, PlayerStanding
 from kit.school.game.levels import GameLevel, GameWorld, all_levels
-from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time, next_rung
+from kit.school.game.medal import RUNGS, Medal, medal_time, rung_in_reach
 from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgress, belt_of
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.starts import SEEDS
+from kit.tui.rows.ladder_rows import ABOUT_BAR, LIST_BAR, ladder_bar, ladder_words
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, SHUT, STAR
 
 TITLE_WIDTH: Final = 24
-STAR, NO_STAR, SHUT = "*", ".", "-"
-MEDAL_SIGNS: Final = {
-    Medal.NONE: NO_STAR,
-    Medal.BRONZE: "B",
-    Medal.SILVER: "S",
-    Medal.GOLD: "G",
-    Medal.MASTER: "M",
-    Medal.RECORD: "R",
-}
-MEDAL_STYLES: Final = {
-    Medal.NONE: "dim",
-    Medal.BRONZE: "",
-    Medal.SILVER: "bold",
-    Medal.GOLD: "warn",
-    Medal.MASTER: "good",
-    Medal.RECORD: "good",
-}
 HEADER: Final = "  level" + " " * (TITLE_WIDTH - 4) + "hand  program  agent  stars    best   ladder"
 BAR: Final = 12
 """Columns of the longest sector's bar."""
@@ -83,52 +62,12 @@ BEST, BEST_TODAY = 3, 10
 """Rows of the leaderboard per level, and for that of the day."""
 
 
-def leaderboard_standings(standings: Sequence[PlayerStanding], offer: str = "") -> list[Block]:
-    """A table of all who have joined. ``offer``: what can be done about it."""
-    offered = [Text(offer, Tone.DIM)] if offer else []
-    if not standings:
-        return [Text("Nobody is on the leaderboard of this machine yet."), *offered]
-    columns = (
-        Column(""),
-        Column("", CellStyle.TEXT),
-        *(Column(each.title) for each in reversed(RUNGS)),
-        Column("stars"),
-        Column("quickest on", CellStyle.TEXT),
-    )
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
-        (
-            f"{place}.",
-            _player(each.name, each.is_mine),
-            *(each.medals[medal] for medal in reversed(RUNGS)),
-            each.stars,
-            counted(each.fastest, "level"),
-        )
-        for place, each in enumerate(standings, 1)
-    )
-    return [Table("standings", "", columns, rows, is_ruled=False), *offered]
-
-
-def _player(name: str, is_mine: bool) -> ToneText:
-    return ToneText(name, Tone.BOLD if is_mine else Tone.PLAIN)
-
-
-def _driven(entry: LeaderboardEntry) -> str:
-    """Who drove, and whether it was on another kind of machine than this one, where a drive is the same but not to the bit."""
-    return entry.driver.phrase if entry.is_same_platform else f"{entry.driver.phrase}, another machine"
-
-
-def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
-    """The quickest drives of today's level and of each other. ``entries``: in the order of ``read_entries``."""
-    titles = {daily_level(today()).id: "Today's level", **{each.id: each.title for each in all_levels()}}
-    rows = tuple(
-        (title, _player(each.name, each.is_mine), f"{each.seconds:.2f} s", _driven(each))
-        for level, title in titles.items()
-        for each in [each for each in entries if each.level == level][
-            : BEST_TODAY if level.startswith(DAILY_PREFIX) else BEST
-        ]
-    )
-    columns = (Column("", CellStyle.TEXT), Column("", CellStyle.TEXT), Column(""), Column("", CellStyle.TEXT))
-    return Table("times", "", columns, rows, grouped=True)
+def still_in_reach(driver: DriverKind, reference: float, seconds: float, collisions: int) -> str:
+    """The medal that is still in reach while one drives, and until when."""
+    medal = rung_in_reach(driver, reference, seconds, collisions)
+    if medal is None:
+        return "no medal any more"
+    return f"{medal.title} until {medal_time(medal, reference, driver):.2f} s"
 
 
 def world_levels(
@@ -192,57 +131,6 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
     return rows
 
 
-LIST_BAR, ABOUT_BAR, RESULT_BAR = 13, 34, 40
-"""Columns of a ladder in the list of levels, below it, and at the end of a drive."""
-HERE: Final = "\u25cf"
-"""Where a drive stands on a ladder."""
-
-
-def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, width: int) -> Row:
-    """All rungs of a driver's ladder, as far apart as the logarithms of their times, and where a time stands among them.
-
-    >>> from kit.document.rows import row_text
-    >>> row_text(ladder_bar(DriverKind.KEYS, 10.0, 15.0, 30))
-    'B━━━━━━━━━━━●─────S──────G──MR'
-    """
-    shares = SHARES[driver]
-    widest = math.log(shares[Medal.BRONZE])
-
-    def column(share: float) -> int:
-        return round((width - 1) * (1.0 - min(math.log(max(share, 1.0)) / widest, 1.0)))
-
-    signs = ["─"] * width
-    for medal in RUNGS:
-        below_record = 0 if medal is Medal.RECORD else 1
-        signs[min(column(shares[medal]), width - 1 - below_record)] = MEDAL_SIGNS[medal]
-    if seconds is None or seconds > medal_time(Medal.BRONZE, reference, driver):
-        return row(("".join(signs), "dim"))
-    here = column(seconds / reference)
-    passed = "".join("━" if sign == "─" else sign for sign in signs[:here])
-    return row((passed, "good"), (HERE, "bold"), ("".join(signs[here + 1 :]), "dim"))
-
-
-def ladder_words(driver: DriverKind, reference: float, seconds: float | None) -> str:
-    """A time and what the next rung asks for."""
-    rung = next_rung(driver, reference, seconds)
-    asked = "" if rung is None else f"{rung.title} at {medal_time(rung, reference, driver):.2f} s"
-    return f"  {asked}" if seconds is None else f"  {seconds:.2f} s{', ' if asked else ''}{asked}"
-
-
-def ladder_rows(driver: DriverKind, reference: float, seconds: float | None) -> list[Row]:
-    """A ladder with the times of its rungs below it, and how far the next one is."""
-    times = [f"{medal.title} {medal_time(medal, reference, driver):.2f}" for medal in RUNGS]
-    rows = [
-        row("   ", *ladder_bar(driver, reference, seconds, RESULT_BAR), (f"  {driver.phrase}", "dim")),
-        row((f"   {'  '.join(times)} s", "dim")),
-    ]
-    rung = next_rung(driver, reference, seconds)
-    if seconds is not None and rung is not None:
-        missing = seconds - medal_time(rung, reference, driver)
-        rows.append(row("   next ", (f"{rung.title}, {missing:.2f} s away", "bold")))
-    return rows
-
-
 def other_start(number: int, seconds: float) -> Row:
     """What is said while a program drives from its other starts."""
     return row(
@@ -258,20 +146,6 @@ def starts_rows(finishes: Sequence[RaceFinish], counts: int) -> list[Row]:
     times = [f"{each.seconds:.2f}" if each.reached else "not there" for each in finishes]
     times = [f"[{time}]" if number == counts else time for number, time in enumerate(times)]
     return [row((f"   {len(times)} starts  ", "dim"), "  ".join(times), (" s", "dim"))]
-
-
-def ladder_of_drive(
-    finish: RaceFinish, record: DriveRecord, driver: DriverKind, reference: float | None
-) -> list[Row]:
-    """The ladder of a drive that has ended; none where it earns nothing."""
-    if reference is None or record.is_shipped or not finish.reached:
-        return []
-    rows = ladder_rows(driver, reference, finish.seconds)
-    unharmed = medal_of(replace(finish, collisions=0), reference, driver)
-    if unharmed > record.medal:
-        bumps = "the bump" if finish.collisions == 1 else "the bumps"
-        rows[2:] = [row((f"   without {bumps} it would have been {unharmed.title}", "dim"))]
-    return rows
 
 
 def opens_after(level: GameLevel) -> str:

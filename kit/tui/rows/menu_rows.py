@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from kit.document.rows import Row, row
 from kit.plain_text import counted, wrap
-from kit.tui.rows.readout_rows import title as ruled
+from kit.tui.rows.ruled_title import ruled_title
 
 if TYPE_CHECKING:
     from kit.tui.student_store import StudentOverview
@@ -90,7 +90,7 @@ def today_rows(overview: StudentOverview) -> list[Row]:
     lines += [("5  train", f"{name} is running") for name in overview.running[:MOST_TRAININGS]]
     if len(overview.running) > MOST_TRAININGS:
         lines.append(("", f"and {len(overview.running) - MOST_TRAININGS} more"))
-    rows = [row(" ", *ruled("today", INSIDE - 1))]
+    rows = [row(" ", *ruled_title("today", INSIDE - 1))]
     for word, text in lines:
         first, *rest = wrap(text, TEXT - WORD)
         rows.append(row("  ", (f"{word:<{WORD}}", "dim"), first))
@@ -102,7 +102,7 @@ def won_rows(overview: StudentOverview) -> list[Row]:
     """How many levels of each world of the game have a medal, as a bar and in figures."""
     if not overview.won:
         return []
-    rows = [row(), row(" ", *ruled("medals", INSIDE - 1))]
+    rows = [row(), row(" ", *ruled_title("medals", INSIDE - 1))]
     for title, won, count in overview.won:
         figures = f"{won:>3} of {count}"
         rows.append(

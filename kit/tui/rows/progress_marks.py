@@ -1,4 +1,4 @@
-"""How far a lesson and an exercise are, as marks that are also read where there is no colour. Pure."""
+"""How far a lesson, an exercise or a work is, as marks that are also read where there is no colour. Pure."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from kit.school.lessons.records import LessonStep
 
 STARS: Final = 3
 """Stars of an exercise that has all points."""
+BAR_WIDTH: Final = 20
+"""Characters of a bar that is full."""
 
 
 def mark(entry: LessonEntry) -> str:
@@ -36,3 +38,9 @@ def stars(progress: LessonProgress, exercise: str) -> str:
     share = progress.best_shares.get(exercise, 0.0)
     count = STARS if exercise in progress.passed_exercises else 2 if share >= 0.5 else 1 if share > 0 else 0
     return "*" * count + "." * (STARS - count) + "*" * (exercise in progress.defended_exercises)
+
+
+def share_bar(share: float) -> str:
+    """How far something is: ``share`` from 0 to 1, one character for a twentieth."""
+    full = round(min(max(share, 0.0), 1.0) * BAR_WIDTH)
+    return "█" * full + "░" * (BAR_WIDTH - full)

@@ -10,7 +10,7 @@ from kit.school.lessons.catalogue import LessonEntry
 from kit.tui.rows.lesson_list_rows import TITLE
 from kit.tui.rows.progress_marks import mark, progress_bar, stars
 
-STARS_LEGEND: Final = "an exercise: *** all points, **. half or more, *.. some, ... none yet"
+STARS_LEGEND: Final = ("an exercise: *** all points, **. half or more,", "*.. some, ... none yet")
 """What ``stars`` means, on the page of progress."""
 
 
@@ -27,7 +27,7 @@ def progress(shelf: Sequence[LessonEntry]) -> list[Row]:
             f"  {sum(each.is_completed for each in readable)} of {len(shelf)} done,"
             f" {passed} of {len(exercises)} exercises passed",
         ),
-        row("  ", (STARS_LEGEND, "dim")),
+        *(row((f"  {line}", "dim")) for line in STARS_LEGEND),
         row(),
     ]
     for entry in shelf:
@@ -55,10 +55,9 @@ def game_and_quiz_progress(game: Sequence[Row], quiz: Iterable[str], workspace: 
         row(),
         row("  ", ("Export your progress", "bold")),
         row(),
-        row(
-            "  ", ("kit progress export FILE", "code"), " writes everything to one file, for another machine"
-        ),
-        row("  or for your teacher. ", ("kit progress import FILE", "code"), " imports it there."),
+        row("  ", ("kit progress export FILE", "code"), " writes everything to one file,"),
+        row("  for another machine or for your teacher."),
+        row("  ", ("kit progress import FILE", "code"), " imports it there."),
         row(),
         row((f"  Saved in {workspace}", "dim")),
     ]

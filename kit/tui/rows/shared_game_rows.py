@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from kit.document.rows import Row, row, spread
+from kit.document.rows import Row, row, row_width, spread
 from kit.plain_text import counted
 from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedGameState, SharedMode, SharedPhase
 
@@ -14,8 +14,8 @@ NOBODY: Final = "nobody yet"
 PLAYER_STYLES: Final = ("code", "bold")
 
 
-def shared_heading(level: str, mode: SharedMode, state: SharedGameState, watching: int, width: int) -> Row:
-    """The level and both players on the left, spectators and the clock on the right."""
+def shared_heading(level: str, mode: SharedMode, state: SharedGameState, width: int) -> Row:
+    """The level and both players on the left, spectators and the clock on the right: by name where there is room."""
     left = row(
         (level, "bold"),
         f"  {mode.value}  ",
@@ -27,8 +27,10 @@ def shared_heading(level: str, mode: SharedMode, state: SharedGameState, watchin
     if mode is SharedMode.TAG and state.phase is SharedPhase.RUNNING:
         seconds = max(0.0, TAG_SECONDS - seconds)
     clock = f"{seconds:.1f} s" if state.phase is SharedPhase.RUNNING else state.phase.value
-    watched = f"{counted(watching, 'spectator')}  " if watching else ""
-    return spread(left, row((watched, "dim"), (clock, "bold")), width)
+    watched = f"{', '.join(state.watching)} {'watches' if len(state.watching) == 1 else 'watch'}  "
+    if row_width(left) + len(watched) + len(clock) >= width:
+        watched = f"{counted(len(state.watching), 'spectator')}  "
+    return spread(left, row((watched if state.watching else "", "dim"), (clock, "bold")), width)
 
 
 def shared_message(
@@ -55,13 +57,25 @@ def shared_message(
         ),
     )
     if state.phase is SharedPhase.OVER:
-        again = "r plays again" if me == HOST else f"{state.names[HOST]} can begin a rematch" if me else ""
+        again = _again(state, me)
         end = row(
             (f" {_end(state, me)}", "good" if state.winner == me is not None else "bold"),
             (f"  {again}." if again else "", "dim"),
         )
         return end, scores
     return row((f" {_task(mode, state, me)}", "bold")), scores
+
+
+def _again(state: SharedGameState, me: int | None) -> str:
+    """What can be done about another game; empty for whoever watches."""
+    if me is None:
+        return ""
+    if me == HOST:
+        asked = f"{state.names[1] or NOBODY} asks for a rematch: " if state.asks_again else ""
+        return f"{asked}r plays again"
+    if state.asks_again:
+        return f"You have asked {state.names[HOST]} for a rematch"
+    return f"r asks {state.names[HOST]} for a rematch"
 
 
 def _task(mode: SharedMode, state: SharedGameState, me: int | None) -> str:

@@ -1,8 +1,8 @@
-"""Trainings as rows of text: their list, the settings of a new one, and the figures of one that runs. Pure."""
+"""A training that runs as rows of text: its figures, curves, cases and keys. Pure."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
@@ -11,10 +11,7 @@ import numpy as np
 
 from kit.arrays import FloatArray
 from kit.dialogue.actions import ScreenActions
-from kit.document.blocks import Text
-from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row, spread
-from kit.document.tables import list_rows
 from kit.learning.training.measures import (
     MEASURES,
     VALUE_MAX,
@@ -22,71 +19,15 @@ from kit.learning.training.measures import (
     format_measure,
     is_value_too_large,
 )
-from kit.plain_text import format_size, wrap
-from kit.render.curve import Axes, ChartPart, Curve, StackedCounts
+from kit.render.curve import Axes, Curve
 from kit.render.roles import Role
+from kit.render.stacked_chart import ChartPart, StackedCounts
+from kit.tui.rows.agent_rows import agent_panel
 from kit.tui.rows.key_rows import footer
-from kit.tui.rows.readout_rows import agent_panel
 
 if TYPE_CHECKING:
-    from kit.learning.tasks.learning_task import LearningTask
     from kit.learning.training.demonstration import DemonstrationView
     from kit.learning.training.run_status import CaseStatus, RunStatus
-    from kit.learning.training.run_upkeep import RunOverview
-
-
-def no_trainings(tasks: Sequence[LearningTask], width: int, height: int) -> list[Row]:
-    """Says how to start the first training, and lists the tasks, as far as there is room."""
-    begin = (
-        "No trainings yet. Press t to start one: choose a task, its cases, an algorithm, a reward, a seed."
-    )
-    from kit.learning.authoring.task_text import tasks_table
-
-    rows = rows_of([Text(begin), tasks_table(tasks)], Page(width=width - 2, margin=1))
-    if len(rows) <= height:
-        return rows
-    return [*rows[: max(0, height - 1)], row((" ... and more: kit task list", "dim"))]
-
-
-def training_list(
-    runs: Sequence[RunOverview], chosen: int, marked: Collection[str], width: int, height: int
-) -> list[Row]:
-    """The table of the runs, with the chosen one in sight."""
-    from kit.learning.training.run_upkeep import runs_table
-
-    places = [place for place, each in enumerate(runs) if each.run.name in marked]
-    return list_rows(runs_table(runs), width, height, chosen, places)
-
-
-def about_run(each: RunOverview | None, total_bytes: int, width: int) -> Row:
-    """What the chosen run learns, and the disk that all take."""
-    if each is None:
-        return row()
-    if each.problem:
-        return row((each.problem[:width], "bad"))
-    return row((f"{each.title}   all runs: {format_size(total_bytes)}"[:width], "dim"))
-
-
-def _end_of(value: str, room: int) -> str:
-    """A value in its room: of a path that is too long, the end says which file it is."""
-    return value if len(value) <= room else f"...{value[3 - room :]}"
-
-
-def settings(entries: Sequence[tuple[str, str, str]], chosen: int, width: int) -> list[Row]:
-    """One block for each setting: its name, its value and what it means."""
-    rows: list[Row] = []
-    for number, (name, value, about) in enumerate(entries):
-        is_chosen = number == chosen
-        rows.append(
-            row(
-                (">" if is_chosen else " ", "bold"),
-                (f" {name:12}", "bold" if is_chosen else ""),
-                (_end_of(value, max(4, width - 15)), "bold"),
-            )
-        )
-        rows += [row("              ", (line, "dim")) for line in wrap(about, max(20, width - 15))]
-        rows.append(row())
-    return rows
 
 
 OUTCOMES: Final = (
@@ -325,7 +266,8 @@ def short_names(names: Sequence[str]) -> list[str]:
 def _terms(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
     """The reward per episode by named term."""
     total = "" if status.reward is None else f" {status.reward:.2f}"
-    title = row((f"reward per episode{total}, {RECENTLY}"[:width], "dim"))
+    told = f"reward per episode{total}, {RECENTLY}"
+    title = row((told if len(told) <= width else f"reward{total}, {RECENTLY}"[:width], "dim"))
     per_row = max(1, width // 28)
     cell = width // per_row
     cells = [

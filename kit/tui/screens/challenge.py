@@ -15,7 +15,7 @@ from textual.binding import BindingType
 from kit.dialogue.actions import ScreenActions
 from kit.document.rows import Row, row
 from kit.host.file_watcher import FileWatcher
-from kit.school.game.challenge import Challenge, ChallengeError, HandedIn
+from kit.school.game.challenge import AnswerSubmission, Challenge, ChallengeError
 from kit.school.game.challenges import answers_folder, challenge_medals, prepare_answer, record_judgement
 from kit.school.game.judgement import Judgement
 from kit.school.game.medal import Medal
@@ -24,7 +24,9 @@ from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.challenge_rows import answers_needed_rows, challenge_page, judged
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.lesson_rows import checking
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, TextScreen, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.text_screen import TextScreen
 from kit.tui.suspend import edit_aside
 from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
@@ -117,12 +119,15 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             return [checking(time.monotonic() - self._started_at, self._doing)]
         return self._result
 
-    def _keys(self) -> Row:
-        without = [
+    def _without(self) -> list[str]:
+        """Actions that do nothing here."""
+        return [
             *(["edit_file"] if self._file is None else []),
             *(["next"] if self._following is None else []),
         ]
-        return footer(self.screen_actions, self.size.width, without=without)
+
+    def _keys(self) -> Row:
+        return footer(self.screen_actions, self.size.width, without=self._without())
 
     # The check
 
@@ -167,8 +172,8 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         """Judges the answer, in a thread. Also returns the best medal before. ``run``: the training's name, where that is the answer."""
         file, seconds = self._prepare()
         answer = run if file is None else self._challenge.task.read_answer(file)
-        handed_in = HandedIn(answer, self._workspace.runs, seconds, self._note_progress)
-        judgement = self._challenge.task.judge(handed_in)
+        submission = AnswerSubmission(answer, self._workspace.runs, seconds, self._note_progress)
+        judgement = self._challenge.task.judge(submission)
         medals = challenge_medals(self._progress.events(EventKind.FINISH))
         record_judgement(self._progress, self._challenge, judgement)
         bins = share_answer(self._challenge, answer, judgement)

@@ -18,7 +18,9 @@ from kit.document.blocks import Tone
 from kit.document.layout import Page, place, rows_of
 from kit.document.rows import MARGIN, Row, row, side_by_side, spread, text_width, window
 from kit.tui.rows.key_rows import footer
-from kit.tui.screens.dialogs import HelpDialog, Picker, PickerItem, TextScreen
+from kit.tui.screens.dialogs import HelpDialog
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.text_screen import TextScreen
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 
 if TYPE_CHECKING:
@@ -135,7 +137,7 @@ class DialogueScreen(RowsScreen[None]):
         self._show_field()
         body, self._top = window(self._body(), self._top, room)
         if beside := self._beside():
-            body = side_by_side(body, beside[:room], self._widest)
+            body = side_by_side(body, beside[:room], self._widest + MARGIN)
         body = centred(body, width, room, self._whole)
         height = len(body) if self._field is not None and self._field.display else "1fr"
         if height != self._body_height:  # setting a style lays out and paints the whole screen
@@ -155,13 +157,13 @@ class DialogueScreen(RowsScreen[None]):
     def _whole(self) -> int:
         """Columns of the question and of what stands beside it."""
         has_room = self.room.width >= LEAST_BESIDE + BESIDE and self.dialogue.beside()
-        return self._widest + BESIDE if has_room else self._widest
+        return self._widest + MARGIN + BESIDE if has_room else self._widest
 
     @property
     def _widest(self) -> int:
         """Columns of the question."""
         if self.room.width >= LEAST_BESIDE + BESIDE and self.dialogue.beside():
-            return min(WIDEST, self.room.width - BESIDE)
+            return min(WIDEST, self.room.width - MARGIN - BESIDE)
         return WIDEST
 
     @property
@@ -285,10 +287,20 @@ class DialogueScreen(RowsScreen[None]):
                 self.show()
                 self._carry_out(effect)
 
+    @property
+    def help_notes(self) -> Sequence[Sequence[tuple[str, str]]]:
+        """Blocks of keys, signs or terms, and what they mean, below the dialogue's keys."""
+        return self.dialogue.help_notes
+
     def _show_help(self) -> None:
-        # What does nothing yet is on the page all the same: it says what there is.
+        # What does nothing yet is on the page all the same: it says what there is. But no key is there twice.
         self.app.push_screen(
-            HelpDialog(self.dialogue.help_title, self.screen_actions, *self.dialogue.help_notes)
+            HelpDialog(
+                self.dialogue.help_title,
+                self.screen_actions,
+                *self.help_notes,
+                without=[each.id for each in self.turn.hidden_by_others()],
+            )
         )
 
     @work

@@ -28,8 +28,9 @@ from kit.layers.planning import LayerPlan
 from kit.layers.requirements import LayerCase
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.layer_rows import layer_grid, picture, words_width
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.layer_case_editor import CaseEditor
+from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.workspace import write_atomically

@@ -15,17 +15,22 @@ from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row
 from kit.school.game import leaderboard
 from kit.school.game.drive_records import join_leaderboard
-from kit.school.progress import ProgressError, ProgressJournal
-from kit.tui.rows import level_rows
+from kit.school.game.levels import all_levels
+from kit.school.game.player_progress import LevelProgress, level_progress
+from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.dialogs import COLUMN, MessageDialog, TextScreen, wrapped
+from kit.tui.rows.leaderboard_rows import leaderboard_standings, leaderboard_times, times_to_beat
+from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.text_screen import COLUMN, TextScreen
 from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
+from kit.world.problems import WorldError
 
 
 class LeaderboardScreen(TextScreen, inherit_bindings=False):
     """Shows all who have joined."""
 
+    least_beside = COLUMN  # a table is not broken
     screen_actions = ScreenActions(
         "leaderboard",
         ("scroll", "join", "back"),
@@ -56,13 +61,21 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         """Judges the drives, which takes a moment where they were not judged before."""
         self._has_joined = leaderboard.has_joined(self._folder)
         entries = await to_thread(leaderboard.read_entries, self._folder)
-        standings = level_rows.leaderboard_standings(leaderboard.standings(entries), self._offer)
+        own = () if entries else await to_thread(self._own_progress)
+        standings = leaderboard_standings(leaderboard.standings(entries), self._offer)
         page = Page(width=COLUMN - 4, margin=2)
         self._rows = (row(), *rows_of(standings, page))
-        self._beside = (row(), *rows_of([level_rows.leaderboard_times(entries)], page))
+        times = leaderboard_times(entries) if entries else times_to_beat(own)
+        self._beside = (row(), *rows_of([times], page))
         self._width = 0
         if self.query(TextRows):  # not where the screen was left meanwhile
             self._show()
+
+    def _own_progress(self) -> tuple[LevelProgress, ...]:
+        try:
+            return level_progress(all_levels(), self._progress.events(EventKind.FINISH))
+        except (ProgressError, WorldError):  # both are told where one comes from
+            return ()
 
     @property
     def _offer(self) -> str:

@@ -32,9 +32,10 @@ from kit.school.game.league.tag_game import tag_scenario
 from kit.school.game.race import DriverKind
 from kit.school.game.starts import film_scenario
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.lesson_drive import ReplayScreen
 from kit.tui.screens.level_pictures import ghost_marks, ghost_paths, pictures_of
+from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.workspace import Workspace

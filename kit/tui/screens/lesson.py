@@ -60,6 +60,12 @@ EDITING: Final = "-editing"
 """The screen's class while the editor is beside the task."""
 WIDEST_EDITOR: Final = 100
 """Columns of the editor, beside the task or below it."""
+EDITOR_KEYS: Final = (
+    ("Ctrl-S", "in the kit's own editor: save, and check"),
+    ("Ctrl-Z Ctrl-Y", "there: undo, redo"),
+    ("Ctrl-X Ctrl-V", "there: cut, paste; shift with the arrows selects"),
+    ("Esc", "there: back to the task; the editor stays open"),
+)
 BREAKPOINTS = [(0, "-usual"), (130, "-wide")]
 
 
@@ -224,7 +230,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
             moves_rows=self._playback_rows,
             first_words=max(self._said_row, answer, len(words) - self._said_row),
             most_words=self._said_row + answer,
-            scrolls_with="PgDn" if dialogue.is_driving else "down",
+            scrolls_with="Esc, down" if self._is_writing else "PgDn" if dialogue.is_driving else "down",
             file=self._numbered(lines) if lines else (),
             file_title=work.edited_file.name if work is not None and has_work else "",
             file_line=max(work.error_line, work.changed_line) - 1 if work is not None and has_work else 0,
@@ -360,12 +366,13 @@ class LessonScreen(DialogueScreen, DriveScreen):
         if not self.dialogue.polls or not (self.is_active or is_checking):
             return
         is_read_anew = work is not None and work.reads_anew()
+        is_checked_elsewhere = bool(self.dialogue.checked_elsewhere)
         super()._poll()
         if is_checking and not self.dialogue.busy and work is not None and work is self.dialogue.work:
             self._celebrate(work)
         if self._editor is not None and self._is_editing:
             self._editor.follow_file()
-        if is_read_anew:
+        if is_read_anew or is_checked_elsewhere:
             self.show()
 
     def _celebrate(self, work: ExerciseAttempt) -> None:
@@ -404,6 +411,10 @@ class LessonScreen(DialogueScreen, DriveScreen):
         self._page.scroll_words(lines)
 
     # What is shown beside the lesson
+
+    @property
+    def help_notes(self) -> Sequence[Sequence[tuple[str, str]]]:
+        return (*super().help_notes, *((EDITOR_KEYS,) if self.dialogue.can_edit() else ()))
 
     def screen_for(self, dialogue: Dialogue) -> DialogueScreen:
         if isinstance(dialogue, DefenceDialogue):
@@ -513,11 +524,16 @@ class LessonScreen(DialogueScreen, DriveScreen):
 
     def on_descendant_focus(self) -> None:
         self._report_releases(False)
-        self._show_keys()
+        self._take_writing()
 
     def on_descendant_blur(self) -> None:
         self._report_releases(bool(self.theme.terminal.ask_keyboard.value))
-        self._show_keys()
+        self._take_writing()
+
+    def _take_writing(self) -> None:
+        """Has the words name the keys that work from now on."""
+        self.dialogue.is_writing = self._is_writing
+        self.show()
 
     def _report_releases(self, wanted: bool) -> None:
         driver = key_driver(self.app)
@@ -526,7 +542,12 @@ class LessonScreen(DialogueScreen, DriveScreen):
 
     def _show_keys(self) -> None:
         keys = key_row(
-            ("^S", "save and check"), ("Esc", "task"), ("^Z", "undo"), ("^E", "close"), ("^P", "find")
+            ("^S", "save and check"),
+            ("Esc", "task"),
+            ("^Z", "undo"),
+            ("^Y", "redo"),
+            ("^E", "close"),
+            ("^P", "find"),
         )
         self._rows("keys").show([keys if self._is_writing else self._keys()])
 

@@ -26,7 +26,8 @@ from kit.school.progress import EventKind, ProgressError
 from kit.school.quiz.items import read_bank
 from kit.tui.rows import lesson_list_rows, progress_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, TextScreen, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.text_screen import TextScreen
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows

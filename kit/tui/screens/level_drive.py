@@ -43,6 +43,7 @@ from kit.tui.input.drive_keys import drive_key, named
 from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_card_rows import level_card
+from kit.tui.rows.medal_signs import MEDAL_STYLES
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.level_pictures import GHOST_LOOKS, ghost_marks, ghost_paths
 from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish
@@ -279,6 +280,10 @@ class LevelDrive(WatchScreen):
             if self._behind is not None:
                 right += [(f"{self._behind:+.2f}", "good" if self._behind <= 0.0 else "warn"), " to R  "]
             right.append(f"bumps {referee.finish.collisions}  ")
+            reference = reference_seconds(self._level) if self._level.has_medals else None
+            if reference is not None and not self._is_over:
+                reach = level_rows.still_in_reach(self._driver, reference, time_s, referee.finish.collisions)
+                left.append((f"  {reach}", "dim"))
         return spread(row(*left), row(*right, (format_clock(time_s), "bold")), self.size.width)
 
     def _end(self, session: Session) -> None:
@@ -326,7 +331,7 @@ class LevelDrive(WatchScreen):
             self._behind = finish.seconds - reference  # as the result says it
             self._rows("heading").show([self._heading(finish.seconds)])
         medal = medal_of(finish, reference, self._driver)
-        earned = (f" {medal.title}", level_rows.MEDAL_STYLES[medal]) if self._level.has_medals else ""
+        earned = (f" {medal.title}", MEDAL_STYLES[medal]) if self._level.has_medals else ""
         self._result_row = row(earned, "  r restarts, Esc goes back to the levels.")
         track = recording.track(self._scenario.partners[0])
         has_splits = finish.reached and self._reference is not None
@@ -346,9 +351,9 @@ class LevelDrive(WatchScreen):
             splits,
             self._finishes,
         )
-        self.app.push_screen(DriveResultScreen(self._theme, result, self._workspace), self._act_on)
+        self.app.push_screen(DriveResultScreen(self._theme, result, self._workspace), self._do_choice)
 
-    def _act_on(self, wish: Wish | None) -> None:
+    def _do_choice(self, wish: Wish | None) -> None:
         """Does what the player chose in the dialog."""
         if wish == "restart":
             self.action_restart()

@@ -7,7 +7,7 @@ import os
 from asyncio import to_thread
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Final, Literal, TypeAlias
+from typing import ClassVar, Final, Literal, TypeAlias
 
 import numpy as np
 from textual import events, work
@@ -34,6 +34,8 @@ from kit.school.game.starts import film_scenario
 from kit.school.lessons.shell_lines import shell_path
 from kit.tui.rows import drive_end_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.ladder_rows import ladder_of_drive
+from kit.tui.rows.medal_rows import medal_drawing
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.lesson_drive import RecordingScreen
 from kit.tui.screens.level_pictures import ghost_paths, scene_of
@@ -41,10 +43,6 @@ from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import WorldView
 from kit.workspace import Workspace
-
-if TYPE_CHECKING:
-    pass
-
 
 REVEAL_INTERVAL: Final = 0.3
 """Between two rows that appear [s]."""
@@ -118,7 +116,7 @@ class DriveResultScreen(ModalScreen[Wish]):
         ]
         self._before_finish = [
             *drive_end_rows.earned(result.level, finish, record),
-            *level_rows.ladder_of_drive(finish, record, result.driver, result.reference),
+            *ladder_of_drive(finish, record, result.driver, result.reference),
             *level_rows.starts_rows(result.finishes, record.counts),
             *drive_end_rows.compared(finish, record, result.reference, result.ghosts),
             *drive_end_rows.sector_rows(result.splits),
@@ -187,7 +185,7 @@ class DriveResultScreen(ModalScreen[Wish]):
     def _medal(self) -> list[Row]:
         """The medal as a drawing, where there is room for it."""
         has_room = self.app.size.height >= HIGH and self._result.record.medal is not Medal.NONE
-        return drive_end_rows.medal_drawing(self._result.record.medal, self._spark) if has_room else []
+        return medal_drawing(self._result.record.medal, self._spark) if has_room else []
 
     @property
     def _revealed(self) -> list[Row]:

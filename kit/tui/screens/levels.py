@@ -43,13 +43,15 @@ from kit.school.game.references import reference_recording, reference_seconds
 from kit.school.game.starts import film_scenario
 from kit.school.news import take_news
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
-from kit.tui.rows import challenge_rows, drive_end_rows, level_rows
+from kit.tui.rows import challenge_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_card_rows import COLUMN, best_splits, stars_and_sectors
 from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
+from kit.tui.rows.progress_marks import share_bar
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_pictures import ghost_paths, picture_of, scene_of
+from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows
 from kit.tui.widgets.world_view import WorldView
@@ -265,16 +267,16 @@ class LevelsScreen(RowsScreen[None]):
         return self._rows("map").size.height - ROWS_ABOVE_LEVELS - len(levels) - 1
 
     def _challenge_rows(self, chosen: Challenge) -> tuple[list[Row], list[Row]]:
-        """The list of challenges, below it the chosen one's drawing where there is room, and what is said of it."""
+        """The list of challenges, beside it the chosen one's picture where there is room, and what is said of it."""
         medals = self._challenge_medals
-        listed = [
-            *self._world_heading([medals.get(each.id, Medal.NONE) for each in self._challenges]),
-            *challenge_rows.challenge_list(self._challenges, medals, chosen.id, self._challenge_room),
-        ]
-        drawing = [row(), *(row((f"  {line}", "code")) for line in chosen.task.lines())]
-        if len(listed) + len(drawing) <= self._rows("map").size.height:
-            listed += drawing
-        medal = medals.get(chosen.id, Medal.NONE)
+        heading = self._world_heading([medals.get(each.id, Medal.NONE) for each in self._challenges])
+        listed = challenge_rows.challenge_list(self._challenges, medals, chosen.id, self._challenge_room)
+        medal, width = medals.get(chosen.id, Medal.NONE), self.size.width  # the list has all of it, soon
+        if width >= challenge_rows.ROOM_FOR_PICTURE:
+            column, height = challenge_rows.LIST_COLUMNS, self._rows("map").size.height - len(heading)
+            picture = challenge_rows.challenge_picture(chosen, width - column - 1, height)
+            listed = side_by_side(listed, picture, column)
+        listed = [*heading, *listed]
         return listed, challenge_rows.about_challenge(chosen, medal, self.size.width)
 
     @property
@@ -284,7 +286,7 @@ class LevelsScreen(RowsScreen[None]):
 
     def _doing_row(self) -> Row:
         share = self._prepared.get(self._doing_level, 0.0)
-        return row((f"{self._doing}  ", "bold"), drive_end_rows.share_bar(share), f" {share:4.0%}")
+        return row((f"{self._doing}  ", "bold"), share_bar(share), f" {share:4.0%}")
 
     def _map_places(self) -> tuple[LevelPlace, ...]:
         """Where the levels of the chosen world stand below the list; none where the screen is too small."""

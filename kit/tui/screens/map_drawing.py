@@ -20,7 +20,8 @@ from kit.mapmaking.new_map import NewMap
 from kit.render.encode import Frame
 from kit.render.roles import Role
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.frame_view import FrameView
 from kit.tui.widgets.text_rows import TextRows

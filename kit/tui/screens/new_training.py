@@ -19,8 +19,9 @@ from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction
 from kit.document.rows import row
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.training_rows import settings
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, Picker, PickerItem, wrapped
+from kit.tui.rows.setting_rows import settings
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.task_preview import TaskPreview
 from kit.tui.widgets.text_rows import TextRows

@@ -18,8 +18,8 @@ from kit.document.rows import row
 from kit.mapmaking.pixels import Corners
 from kit.mapmaking.sheet import order_corners
 from kit.render import raster
-from kit.render.curve import write_text
 from kit.render.encode import Encoder
+from kit.render.frame_text import write_text
 from kit.render.roles import Role
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog

@@ -18,7 +18,8 @@ from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import named
 from kit.tui.input.driver import key_driver
 from kit.tui.rows.key_rows import bindings, key_row
-from kit.tui.screens.dialogs import MessageDialog, Picker, PickerItem, wrapped
+from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.world_view import FloorClicked

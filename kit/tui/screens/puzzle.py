@@ -68,13 +68,22 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         judgement: Judgement | str
         try:
             judgement = self._board.judgement()
-        except ChallengeError as error:
-            judgement = str(error)
+        except (
+            ChallengeError
+        ) as error:  # which says how an answer is written: nobody writes who has not begun
+            judgement = str(error) if self._board.answer.strip() else ""
         height = self.size.height - 2 - len(self._result_rows())
         if width >= WIDE:
             return puzzle_beside(self._challenge, self._board, judgement, width, height)
-        self._board.scale = 1
         return puzzle_page(self._challenge, self._board, judgement, width, height)
+
+    def _without(self) -> list[str]:
+        board = self._board
+        return [
+            *super()._without(),
+            *([] if board.marks() else ["mark_cell"]),
+            *([] if board.switches() else ["switch_robot"]),
+        ]
 
     def _changed(self) -> None:
         self._result = []
@@ -88,7 +97,7 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         if self._file is None or self._board.answer == self._written:
             return
         self._written = self._board.answer
-        about = as_comments([self._challenge.task_text, *self._challenge.task.lines()])
+        about = as_comments([self._challenge.written_task, *self._challenge.task.lines()])
         write_atomically(self._file, (about + self._written).encode())
         if self._watch is not None:
             self._watch.take_as_known()

@@ -25,18 +25,13 @@ from kit.school.quiz.quiz_session import (
 )
 from kit.school.quiz.quiz_text import scores_blocks, today_line
 from kit.school.quiz.schedule import build_schedule
-from kit.tui.screens.dialogs import MessageDialog, Picker, PickerItem, TextScreen, wrapped
+from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.dialogue import DialogueScreen
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.text_screen import TextScreen
 from kit.world.problems import WorldError
 
 TWELVE, TODAY, SCORES = "twelve", "today", "scores"
-
-
-async def ask_of_lesson(screen: Screen[Any], journal: ProgressJournal, lesson: str) -> None:
-    """Asks a lesson's questions, and comes back. To be called in a worker."""
-    bank = await _bank(screen)
-    if bank is not None:
-        await _ask(screen, journal, bank, lesson_plan(bank, lesson))
 
 
 async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> None:

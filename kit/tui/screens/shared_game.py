@@ -108,11 +108,6 @@ class SharedScreen(WatchScreen):
         self._with_ghosts = not self._with_ghosts
         self._show()
 
-    @property
-    def watching(self) -> int:
-        """The number of spectators, where it is known."""
-        return 0
-
     def _show_state(self) -> None:
         state = self.state
         if not self.is_active:
@@ -120,7 +115,7 @@ class SharedScreen(WatchScreen):
         if state is None:  # the world has not begun
             self._rows("heading").show([row((self._level.title, "bold"), f"  {self._mode.value}")])
             return
-        rows = shared_heading(self._level.title, self._mode, state, self.watching, self.size.width)
+        rows = shared_heading(self._level.title, self._mode, state, self.size.width)
         self._rows("heading").show([rows])
         self._rows("messages").show(shared_message(self._mode, state, self.player, self.join_command))
 
@@ -156,10 +151,6 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         self._recorder: Recorder | None = None
         self._film: Recording | None = None
         self.player = HOST
-
-    @property
-    def watching(self) -> int:
-        return self._server.spectators if self._server is not None else 0
 
     def open_world(self) -> None:
         self.host.open_session(self._open, lambda session: 1.0)
@@ -239,9 +230,16 @@ class SharedGameEnded(Message):
         self.reason = reason
 
 
-class SharedGuestScreen(SharedScreen):
+class SharedGuestScreen(SharedScreen, inherit_bindings=False):
     """Shows what the host says, drawn from this machine's own files, and sends the keys of the second player."""
 
+    screen_actions = ScreenActions(
+        "joined game",
+        ("drive_keys", "stop_robot", "restart", "help", "back", "quit"),
+        ("ghosts", "drive_mode", "zoom", *VIEW_IDS),
+        drives=True,
+    )
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = "SharedGuestScreen #panel { display: none; }"
 
     def __init__(self, theme: Theme, client: SharedGameClient, workspace: Workspace | None = None) -> None:
@@ -284,6 +282,11 @@ class SharedGuestScreen(SharedScreen):
         if self.player is not None:
             self._client.push(state.linear, state.angular)
 
+    def action_restart(self) -> None:
+        """Asks for another game, after one that is over."""
+        if self.player is not None and self.state is not None and self.state.phase is SharedPhase.OVER:
+            self._client.ask_again()
+
     def _show(self) -> None:
         if self.state is not None and self.is_active and not self.ended:
             self.world.offer(self._newest_scene)
@@ -294,7 +297,7 @@ class SharedGuestScreen(SharedScreen):
         return self._with_targets_and_ghosts(self._shapes.scene(self.state))
 
     def _show_keys(self) -> None:
-        without = ("back",) if self.player is not None else ("back", "drive_keys", "stop_robot")
+        without = ("back",) if self.player is not None else ("back", "drive_keys", "stop_robot", "restart")
         self._rows("keys").show([footer(self.screen_actions, self.size.width or 80, without=without)])
 
     def on_unmount(self) -> None:

@@ -20,7 +20,8 @@ from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import base_key
 from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.menu_rows import MENU, MENU_KEYS, PANEL_WIDTH, menu
-from kit.tui.screens.dialogs import MessageDialog, PaletteCommand, wrapped
+from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.palette import PaletteCommand
 from kit.tui.screens.play import TELEOP, PlayScreen
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme

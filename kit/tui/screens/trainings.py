@@ -17,20 +17,15 @@ from kit.dialogue.screen_action import ScreenAction, letter
 from kit.document.blocks import Block, Text
 from kit.document.rows import row, spread
 from kit.plain_text import counted, format_size
-from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.dialogs import (
-    HelpDialog,
-    MessageDialog,
-    NameDialog,
-    Picker,
-    PickerItem,
-    TextScreen,
-    wrapped,
-)
-from kit.tui.screens.new_training import SWEEPS, NewTrainingScreen
+from kit.tui.rows.training_list_rows import about_run, no_trainings, training_list
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, NameDialog, wrapped
+from kit.tui.screens.new_training import SWEEPS, NewTrainingScreen, TrainingChoices
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.text_screen import TextScreen
 from kit.tui.screens.training import TrainingScreen
 from kit.tui.theme import Theme
+from kit.tui.widgets.task_preview import TaskPreview
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.tui.widgets.training_preview import TrainingPreview
 
@@ -74,12 +69,15 @@ class TrainingsScreen(RowsScreen[None]):
     TrainingsScreen #middle { height: 1fr; }
     TrainingsScreen #body { width: 1fr; }
     TrainingsScreen #preview { width: 1fr; padding: 0 0 0 2; display: none; }
-    TrainingsScreen.-roomy #body { width: 68; }
-    TrainingsScreen.-roomy #preview { display: block; }
+    TrainingsScreen.-roomy #body, TrainingsScreen.-wide #body { width: 68; }
+    TrainingsScreen.-roomy #preview, TrainingsScreen.-wide #preview { display: block; }
+    TrainingsScreen TaskPreview { display: none; width: 1fr; }
     TrainingsScreen.-empty #body { width: 1fr; }
     TrainingsScreen.-empty #preview { display: none; }
+    TrainingsScreen.-empty.-wide #body { width: 118; }
+    TrainingsScreen.-empty.-wide TaskPreview { display: block; }
     """
-    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-roomy")]  # noqa: RUF012 - Textual's own
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-roomy"), (160, "-wide")]  # noqa: RUF012 - Textual's own
 
     def __init__(self, theme: Theme, runs: Path) -> None:
         super().__init__()
@@ -94,6 +92,8 @@ class TrainingsScreen(RowsScreen[None]):
         self._marked: set[str] = set()
         self._note = ""
         self._preview = TrainingPreview(theme, id="preview")
+        self._first_task = TaskPreview(theme, runs)
+        """What a first training would learn, unless another task is chosen."""
         self.add_class("-empty")
 
     def compose(self) -> ComposeResult:
@@ -101,6 +101,7 @@ class TrainingsScreen(RowsScreen[None]):
         with Horizontal(id="middle"):
             yield TextRows(id="body")
             yield self._preview
+            yield self._first_task
         yield TextRows(id="note")
         yield TextRows(id="keys")
 
@@ -148,15 +149,17 @@ class TrainingsScreen(RowsScreen[None]):
         else:
             room, columns = max(2, self.size.height - 3), self._rows("body").size.width or width
             self._rows("body").show(
-                training_rows.training_list(runs, self._chosen, self._marked, columns, room)
+                training_list(runs, self._chosen, self._marked, columns, room)
                 if runs
-                else training_rows.no_trainings(self._tasks, columns, room)
+                else no_trainings(self._tasks, columns, room)
             )
         chosen = self._chosen_run
+        if self._first_task.display:
+            self._first_task.tell(TrainingChoices())
         if self.is_active:
             self._preview.follow(chosen.run if chosen is not None and self._preview.display else None)
         total = sum(each.disk_bytes for each in runs or ())
-        about = training_rows.about_run(self._chosen_run, total, width)
+        about = about_run(self._chosen_run, total, width)
         self._rows("note").show([row((self._note[:width], "warn")) if self._note else about])
         unusable = (
             ()
@@ -384,7 +387,8 @@ def _sweep_items(folder: Path) -> list[PickerItem]:
 
 def _sweep_table(folder: Path, columns: int) -> list[str]:
     from kit.document.layout import Page, lines_of, text_blocks
-    from kit.learning.training.training_sweep import TrainingSweep, problems, sweep_rows, sweep_table
+    from kit.learning.training.sweep_table import problems, sweep_rows, sweep_table
+    from kit.learning.training.training_sweep import TrainingSweep
 
     sweep = TrainingSweep(folder)
     return lines_of(

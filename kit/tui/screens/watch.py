@@ -17,19 +17,10 @@ from kit.document.rows import Row, row
 from kit.kernels.compilation_progress import PROGRESS
 from kit.run.pacing import MAXIMUM, REAL_TIME
 from kit.tui.input.screen import DriveScreen
+from kit.tui.rows.agent_rows import AGENT_WIDTH, agent_panel
+from kit.tui.rows.instrument_rows import LARGE_SIZE, SpeedHistory, instruments, panel_width
 from kit.tui.rows.key_rows import footer
-from kit.tui.rows.readout_rows import (
-    AGENT_WIDTH,
-    LARGE_SIZE,
-    PANEL_WIDTH,
-    SpeedHistory,
-    agent_panel,
-    failure_or_messages,
-    heading,
-    instruments,
-    panel_width,
-    readout,
-)
+from kit.tui.rows.readout_rows import PANEL_WIDTH, failure_or_messages, heading, readout
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
 from kit.tui.session_host import SessionHost
 from kit.tui.theme import Theme

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 
 from textual import events
 
-from kit.render.curve import Axes, ChartPart, Curve, StackedCounts, draw_curves, draw_stacked_chart
+from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import UNICODE_GLYPHS, BrailleEncoder, Encoder, GlyphSet
 from kit.render.roles import ANSI_PALETTE, Palette
+from kit.render.stacked_chart import ChartPart, StackedCounts, draw_stacked_chart
 from kit.tui.widgets.frame_view import FrameView
 
 

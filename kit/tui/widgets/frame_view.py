@@ -87,13 +87,6 @@ class FrameView(Widget):
             self._strips.clear()
             self.refresh()
 
-    def use_palette(self, palette: Palette) -> None:
-        """Shows what is shown in these colours from now on."""
-        self._palette = palette
-        self._strips.clear()
-        self._styles.clear()
-        self.refresh()
-
     def get_line_filters(self) -> Sequence[LineFilter]:
         """None: the palette is already what the terminal takes."""
         return ()

@@ -175,9 +175,20 @@ class ProgramTextArea(KitTextArea):
         )
 
     def show_text(self, text: str, language: str | None) -> None:
-        """Shows another text. ``language``: the one in which its words are coloured, as pygments calls it; None: none."""
+        """Shows another program's text; nothing of the one before can be undone. ``language``: the one in which its words are
+        coloured, as pygments calls it; None: none."""
         self._coloured_as, self._failed_line = language, None
         self.load_text(text)
+
+    def take_text(self, text: str) -> None:
+        """Shows another state of the same text, with the cursor where it was: one edit more, which can be undone."""
+        if text == self.text:
+            return
+        place = self.cursor_location
+        self.history.checkpoint()
+        self.replace(text, self.document.start, self.document.end)
+        self.history.checkpoint()
+        self.move_cursor(place)
 
     async def _on_paste(self, event: events.Paste) -> None:
         """Refuses what is too much; what is not, Textual has the text area take afterwards."""
@@ -270,11 +281,13 @@ class ProgramEditor(Vertical):
 
     def edit(self, program: ProgramFile) -> None:
         """Edits another program; what is not saved of the one before is kept beside its file."""
-        if program is not self._program:
+        is_opened_again = program is not self._program and program.file == self._program.file
+        if program is not self._program and not is_opened_again:
             self.keep_draft()
         self._program, self._may_overwrite, self._failure = program, False, ()
-        text = program.text if program.draft is None else program.draft
-        self.area.show_text(text, LANGUAGES.get(program.file.suffix))
+        if not is_opened_again:
+            self.area.show_text(program.text, LANGUAGES.get(program.file.suffix))
+        self.area.take_text(program.text if program.draft is None else program.draft)
         left = "as you left it, not saved"
         if program.draft is None:
             self._notice = ()
@@ -324,9 +337,7 @@ class ProgramEditor(Vertical):
                 self._show()
         else:
             self._program.accept(text)
-            place = self.area.cursor_location
-            self.area.load_text(text)
-            self.area.move_cursor(place)
+            self.area.take_text(text)
             self._notice = row(("read again: it was saved elsewhere", "dim"))
             self._show()
 

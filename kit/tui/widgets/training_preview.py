@@ -12,8 +12,8 @@ from textual.timer import Timer
 
 from kit.document.rows import row
 from kit.tui.rows import training_rows
-from kit.tui.screens.training import TrainingFollower
 from kit.tui.theme import Theme
+from kit.tui.training_follower import TrainingFollower
 from kit.tui.widgets.chart_view import CurveView
 from kit.tui.widgets.text_rows import TextRows
 from kit.tui.widgets.world_view import WorldView

@@ -102,9 +102,6 @@ class FrameThrottle:
             return 1
         return min(1 + math.ceil(min(self._lags) * self._fps), self._most)
 
-    def may_draw(self, now: float) -> bool:
-        return self.wait(now) <= 0
-
     def wait(self, now: float) -> float:
         """Seconds until a frame may be drawn, if no answer arrives before."""
         self._give_up(now)

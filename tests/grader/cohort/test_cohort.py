@@ -159,8 +159,8 @@ def test_another_grader_grades_anew(queue: Queue, tmp_path: Path, monkeypatch: p
     seen = list(version._source_files())
     assert {name.partition("/")[0] for name, _ in seen} == {"grader", "kit", "maps"}
     edited = tmp_path / "edited.py"
-    edited.write_text(seen[0][1].read_text() + "# another line\n")
-    monkeypatch.setattr(version, "_source_files", lambda: [(seen[0][0], edited), *seen[1:]])
+    edited.write_text(Path(seen[0][1]).read_text() + "# another line\n")
+    monkeypatch.setattr(version, "_source_files", lambda: [(seen[0][0], str(edited)), *seen[1:]])
     other = version.grader_version.__wrapped__()
     assert other != version.grader_version()
     monkeypatch.setattr("grader.cohort.queue.grader_version", lambda: other)

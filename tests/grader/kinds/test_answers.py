@@ -143,3 +143,10 @@ def test_whatever_a_file_of_answers_holds_it_is_told(name: str, folder: Path) ->
     assert (result.verdict, result.points) == (GradingVerdict.FAIL, 0.0)
     assert all(test.rationale.isprintable() or "\n" in test.rationale for test in result.tests)
     assert any("answers.yaml:" in test.rationale or test.rationale for test in result.tests)
+
+
+def test_of_one_question_only_its_own_feedback_is_told_and_of_several_the_count(folder: Path) -> None:
+    one, several = grade(read_assignment(folder), handed_in("topic: odom\nrate: 10\n"), DESK).tests
+    assert one.rationale.startswith('"topic": odom is not right.')
+    assert several.rationale.startswith('1 of 3 answers are right. "topic"')
+    assert "%" not in one.rationale + one.actual + several.rationale + several.actual

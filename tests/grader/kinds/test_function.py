@@ -6,6 +6,7 @@ import json
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import ModuleType
@@ -16,6 +17,7 @@ import pytest
 from grader.evidence.contract import EvidenceRecord
 from grader.grading import GradingOptions, grade
 from grader.kinds.function.kind import (
+    CALL_LIMITS,
     MAX_CASES,
     FunctionsTask,
     _as_json,
@@ -29,10 +31,11 @@ from grader.new_assignment import example_of_kind, make_assignment
 from grader.reading import read_assignment
 from grader.submission import Submission, read_submission
 from kit.host.failure import Failure, FailureKind
+from kit.host.sandbox.limits import GRADER_LIMITS
 from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.wire import Json
-from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
+from kit.results.grading_result import PUBLIC_CASES, CriterionStatus, GradingResult, GradingVerdict
 from kit.school.lessons.reading import lessons_folder
 from kit.world.problems import WorldError
 from tests.cases import every_case
@@ -331,6 +334,52 @@ def test_public_cases_share_a_process_and_secret_ones_another(
     graded(folder, source, GradingOptions(Level.LIMITED, secret=True))
     assert starts == processes
     assert all(each.is_closed for each in opened)
+
+
+@pytest.mark.parametrize("body", ["while True: pass", "raise ValueError('no')"])
+@pytest.mark.parametrize("is_own_check", [True, False])
+def test_in_a_students_own_check_a_function_that_failed_is_not_called_with_secret_cases(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, body: str, is_own_check: bool
+) -> None:
+    calls: list[str] = []
+
+    class Counted(StudentFunctions):
+        def call_json(self, name: str, record: Mapping[str, Json]) -> Json:
+            calls.append(name)
+            return super().call_json(name, record)
+
+    monkeypatch.setattr("grader.kinds.function.kind.StudentFunctions", Counted)
+    told: list[str] = []
+    options = GradingOptions(Level.LIMITED, secret=True, examples=is_own_check, show_progress=told.append)
+    result = graded(folder, f"def nearest(ranges):\n    {body}\n{HALVES}", options)
+    assert calls.count("nearest") == (1 if is_own_check else 2)
+    assert calls.count("halves") >= 2
+    assert "nearest()" in result.tests[0].rationale
+    if is_own_check:
+        assert result.tests[1].status is CriterionStatus.PASS
+        verdict = next(each for each in told if each.startswith(PUBLIC_CASES))
+        assert told.index(verdict) < told.index("halves() on secret cases")
+        assert "1 of 2" in verdict
+
+
+def test_a_mistake_that_only_a_secret_case_shows_is_shown_in_ones_own_check(folder: Path) -> None:
+    case = cases_of(load_reference(folder / "reference.py"), "nearest", 77)[-1]
+    source = f"{NEAREST.replace('nearest', 'right')}def nearest(ranges):\n    return 7.0 if ranges == {case['ranges']!r} else right(ranges)\n{HALVES}"
+    own = graded(folder, source, GradingOptions(Level.LIMITED, secret=True, examples=True)).tests[0]
+    assert own.status is not CriterionStatus.PASS
+    assert "and is 7" in own.rationale
+    assert "the secret one" in own.rationale
+    others = graded(folder, source, GradingOptions(Level.LIMITED, secret=True)).tests[0]
+    assert "and is 7" not in others.rationale
+    assert "and is 7" in others.teacher_note
+
+
+def test_a_call_has_less_time_than_an_episodes_reply_unless_the_sheet_says_otherwise(folder: Path) -> None:
+    sheet = folder / "assignment.yaml"
+    assert read_assignment(folder).limits.reply_s == 1.0
+    sheet.write_text(sheet.read_text().replace("budget: {reply: 1.0}", "budget: {total: 60}"))
+    assert read_assignment(folder).limits == replace(CALL_LIMITS, total_s=60.0)
+    assert CALL_LIMITS.reply_s < GRADER_LIMITS.reply_s
 
 
 def test_the_call_is_a_sentence_of_its_own_after_what_failed() -> None:

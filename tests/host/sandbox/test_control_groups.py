@@ -169,8 +169,8 @@ def test_where_groups_can_be_made(
     for folder, names in handed_down.items():
         (tmp_path / folder / "cgroup.subtree_control").write_text(names)
     told = {"/proc/self/mountinfo": "\n".join(lines), "/proc/self/cgroup": own}
-    read = control_groups._read
-    monkeypatch.setattr(control_groups, "_read", lambda file: told.get(file) or read(file))
+    read = control_groups._read_group_file
+    monkeypatch.setattr(control_groups, "_read_group_file", lambda file: told.get(file) or read(file))
     found = {each.folder for each in control_groups._find_hierarchies()}
     if place is None:
         assert not found

@@ -41,28 +41,28 @@ def experience(rewards: list[float], ended: list[bool]) -> RecentExperience:
     return recent
 
 
-def test_no_episode_earns_more_than_is_said_to_be_payable() -> None:
+def test_no_episode_earns_more_than_is_said_to_be_possible() -> None:
     chance = np.random.default_rng(1)
     for gamma in (0.0, 0.5, 0.99, 1.0):
         for _ in range(20):
             rewards = chance.normal(size=12) * 10
             recent = experience(rewards.tolist(), [False] * 11 + [True])
             earned = [float((gamma ** np.arange(12 - k) * rewards[k:]).sum()) for k in range(12)]
-            assert max(earned) <= recent.payable(gamma, 11) + 1e-4
+            assert max(earned) <= recent.largest_return(gamma, 11) + 1e-4
             if gamma < 1.0:
-                assert recent.payable(gamma, None) >= recent.payable(gamma, 11)
+                assert recent.largest_return(gamma, None) >= recent.largest_return(gamma, 11)
 
 
-def test_the_best_reward_in_every_step_is_what_is_payable() -> None:
+def test_the_best_reward_in_every_step_is_the_largest_return() -> None:
     recent = experience([1.0, 3.0, -2.0, 100.0], [False, False, False, True])
-    assert recent.payable(0.9, None) == pytest.approx(3.0 / 0.1 + 100.0)
-    assert recent.payable(0.9, 2) == pytest.approx(3.0 + 2.7 + 100.0)
-    assert math.isinf(recent.payable(1.0, None))
-    assert math.isinf(RecentExperience(1, 1).payable(0.9, None))
+    assert recent.largest_return(0.9, None) == pytest.approx(3.0 / 0.1 + 100.0)
+    assert recent.largest_return(0.9, 2) == pytest.approx(3.0 + 2.7 + 100.0)
+    assert math.isinf(recent.largest_return(1.0, None))
+    assert math.isinf(RecentExperience(1, 1).largest_return(0.9, None))
     again = RecentExperience(1, 1)
     again.add(np.zeros((1, 1), np.float32), np.array([-1.0], np.float32), np.array([False]))
     again.load(json.loads(json.dumps(recent.save())))
-    assert again.payable(0.9, None) == recent.payable(0.9, None)
+    assert again.largest_return(0.9, None) == recent.largest_return(0.9, None)
 
 
 def test_the_last_observations_are_kept() -> None:
@@ -71,7 +71,7 @@ def test_the_last_observations_are_kept() -> None:
     assert len(experience([0.0] * 3, [False] * 3).observations) == 3
 
 
-def test_values_beyond_what_is_payable_are_told_with_both_numbers() -> None:
+def test_values_beyond_the_largest_return_are_told_with_both_numbers() -> None:
     measures = {VALUE_MAX: 57_123_456.0, VALUE_MEAN: 3.0, VALUE_PAYABLE: 1390.0}
     assert is_value_too_large(measures)
     assert "57,123,456" in value_warning(measures)

@@ -28,7 +28,8 @@ from kit.learning.training.events import (
 )
 from kit.learning.training.run_config import RunConfig, RunError
 from kit.learning.training.run_folders import create_run, find_run, list_runs
-from kit.learning.training.runs import TrainingRun, summarise_events
+from kit.learning.training.runs import TrainingRun
+from kit.learning.training.training_summary import summarise_events
 from tests.cases import every_case
 
 CONFIG = RunConfig(TaskSpec("turn"), "q-learning", seed=3)

@@ -22,16 +22,9 @@ from kit.host.job_folder import JobExecutor
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.training.run_config import RunError
 from kit.learning.training.runs import TrainingRun
+from kit.learning.training.sweep_table import problems, sweep_rows, sweep_table, sweep_table_csv
 from kit.learning.training.sweep_worker import start_sweep
-from kit.learning.training.training_sweep import (
-    SweepResult,
-    TrainingSweep,
-    combine,
-    problems,
-    sweep_rows,
-    sweep_table,
-    sweep_table_csv,
-)
+from kit.learning.training.training_sweep import SweepResult, TrainingSweep, combine
 from tests.waiting import wait_until
 
 QUICK = combine(["turn"], algorithms=["q-learning", "sarsa"], seeds=[3, 4], steps=2_000)

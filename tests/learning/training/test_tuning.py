@@ -17,13 +17,9 @@ from kit.learning.training.algorithm_settings import LinearSchedule
 from kit.learning.training.algorithms import ALGORITHMS, find_algorithm
 from kit.learning.training.presets import find_preset
 from kit.learning.training.run_config import RunConfig, RunError, format_settings
+from kit.learning.training.sweep_table import sweep_rows
 from kit.learning.training.training import resolve_preset
-from kit.learning.training.training_sweep import (
-    SweepResult,
-    TrainingSweep,
-    combine,
-    sweep_rows,
-)
+from kit.learning.training.training_sweep import SweepResult, TrainingSweep, combine
 from kit.learning.training.tuning import SettingRange, check_ranges, tune
 
 needs_learner = pytest.mark.skipif(find_spec("torch") is None, reason="the extra learn is not installed")

@@ -384,6 +384,9 @@ class StagedWaiter:
         self.asked: list[int | None] = []
         self.inside = 0
 
+    def is_alone(self, graph: Graph) -> bool:
+        return True
+
     def wait(self, graph: Graph, until_ns: int | None) -> None:
         self.inside += 1
         assert self.inside == 1, "one thread calls the waiter at a time"

@@ -361,6 +361,9 @@ class CountingWaiter:
     def __init__(self) -> None:
         self.count = 0
 
+    def is_alone(self, graph: Graph) -> bool:
+        return True
+
     def wait(self, graph: Graph, until_ns: int | None) -> None:
         self.count += 1
 

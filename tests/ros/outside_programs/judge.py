@@ -174,7 +174,7 @@ def run_program(program: OutsideProgram, seed: int = 0) -> Outcome:
         programs += [(str(each), []) for each in program.beside]
         text = _LAUNCH_FILE.format(world=_WORLDS[program.world], launch_files=launch_files, programs=programs)
         launch_file.write_text(text, encoding="utf-8")
-        target = find_launch_file(str(launch_file), None, ())
+        target = find_launch_file(str(launch_file), None, (program.file.parent,))
         name, workspace = target.name, Path(folder) / "workspace"
         launch = Launch(
             target, graph, seed=seed, workspace=workspace, name=world_name(name), on_output=on_output

@@ -14,7 +14,7 @@ MISTAKEN: Final = {
 }
 """Programs that do not do in ROS 2 what their author means either, and why."""
 
-SETS: Final = ("first", "second", "third", "fourth", "fifth")
+SETS: Final = ("first", "second", "third", "fourth", "fifth", "sixth")
 PROGRAMS: Final = [each for name in SETS for each in programs_of(name)]
 
 

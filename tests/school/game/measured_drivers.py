@@ -9,13 +9,11 @@ reference drive back, ``agent`` is what ``kit train`` makes with the preset's se
 from __future__ import annotations
 
 import argparse
-from collections import deque
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final
 
 from kit.controllers import find_controller
-from kit.geometry import Pose
 from kit.run.recording import Recording
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel, all_levels
@@ -30,40 +28,9 @@ from kit.school.game.race import (
 )
 from kit.school.game.references import CommandPlayer, find_drive, reference_seconds
 from kit.school.game.starts import OWN_SEED, scenario_from, seeds_of
-from tests.school.game.tidy import TidyDriver
+from tests.school.game.ordinary import OrdinaryDriver
 
 LASER_PROGRAM: Final = Path(__file__).with_name("laser_program.py")
-REACTION_TICKS: Final = 20
-"""From what is seen to the key that is pressed: 0.2 s, as of people who expect something."""
-KEY_TICKS: Final = 10
-"""Keys change no faster than a terminal repeats them: every 0.1 s."""
-
-
-class OrdinaryDriver(TidyDriver):
-    """The tidy driver's keys with the delays of a hand: what is seen is acted on a fifth of a second later."""
-
-    def __init__(self, session: Session, targets: Sequence[tuple[float, float]]) -> None:
-        super().__init__(session, targets)
-        self._seen: deque[Pose] = deque(maxlen=REACTION_TICKS)
-        self._tick = 0
-        self._held = (0.0, 0.0)
-
-    def keys(self, pose: Pose) -> tuple[float, float]:
-        self._seen.append(pose)
-        if self._tick % KEY_TICKS == 0:
-            self._held = super().keys(self._seen[0])
-        self._tick += 1
-        return self._held
-
-
-def targets_of(level: GameLevel) -> list[tuple[float, float]]:
-    """The targets in the order of the file, whatever order would be best."""
-    if level.goal.is_route:
-        return list(level.goal.route(level.targets))
-    case = level.find_scenario().case
-    assert case is not None
-    return [case.target]
-
 
 Install = Callable[[Session], None]
 
@@ -75,9 +42,8 @@ def drive(level: GameLevel, seed: int, install: Install) -> tuple[RaceFinish, Re
 
 def keys_drive(level: GameLevel, seed: int = OWN_SEED) -> tuple[RaceFinish, Recording]:
     """The ordinary hand's drive."""
-    targets = targets_of(level)
     return drive(
-        level, seed, lambda session: session.runner.participants.append(OrdinaryDriver(session, targets))
+        level, seed, lambda session: session.runner.participants.append(OrdinaryDriver(session, level))
     )
 
 

@@ -1,4 +1,4 @@
-"""Searches the reference drives of the game: ``python tests/school/game/search.py [LEVEL ...]`` writes lessons/reference_drives.json.
+"""Searches the reference drives of the game: ``python -m tests.school.game.search [LEVEL ...]`` writes lessons/reference_drives.json.
 
 A* (Hart, Nilsson and Raphael 1968) over motion primitives of a tenth of a second that are measured on the exact simulation
 (a state lattice, Pivtoraju and Kelly 2005): forward, backwards, bends and turns on the spot, at the level's full speed. Moving
@@ -32,6 +32,8 @@ from kit.school.game.race import DOCK_TIME, RaceReferee
 from kit.school.game.references import drive_reference, drives_file, load_drives
 from kit.school.game.starts import OWN_SEED
 from kit.sim.simulation import Simulation
+from tests.school.game.measured_drivers import drive
+from tests.school.game.ordinary import OrdinaryDriver
 
 TICKS = 10
 """Of one primitive."""
@@ -542,6 +544,20 @@ def polish(level: GameLevel, drive: ReferenceDrive, seconds: float) -> Reference
     return drive
 
 
+def hand_drive(level: GameLevel) -> ReferenceDrive:
+    """The keys that a hand with ordinary skill presses: what is found has to beat it."""
+    pressed: list[tuple[float, float]] = []
+
+    class Noted(OrdinaryDriver):
+        def keys(self, pose):
+            pressed.append(super().keys(pose))
+            return pressed[-1]
+
+    drive(level, OWN_SEED, lambda session: session.runner.participants.append(Noted(session, level)))
+    runs = itertools.groupby(pressed)
+    return ReferenceDrive(tuple(DriveCommand(len(list(run)), *keys) for keys, run in runs))
+
+
 def search_pursuit(level: GameLevel, seconds: float) -> ReferenceDrive | None:
     """Searches the gains of a driver that follows a way, or a leader, where no lattice can be measured."""
     scenario = level.find_scenario()
@@ -559,6 +575,7 @@ def search_pursuit(level: GameLevel, seconds: float) -> ReferenceDrive | None:
             random.uniform(0.0, 1.5),
         )
         slow_angle, least = random.uniform(0.3, 1.5), random.uniform(0.0, 0.6)
+        distance = random.uniform(0.3, 0.7)
         if not level.leader and clearance not in fields:
             fields[clearance] = compute_distance_field.__wrapped__(
                 SimpleNamespace(walls=walls), scenario.case.target, clearance, 8.0
@@ -573,7 +590,7 @@ def search_pursuit(level: GameLevel, seconds: float) -> ReferenceDrive | None:
             if level.leader:
                 leader = simulation.pose(level.leader)
                 x, y, top = leader.x, leader.y, math.dist(leader[:2], pose[:2])
-                top = max(-1.0, min(1.0, gain * (top - 0.3 - 0.5 * lookahead)))
+                top = max(-1.0, min(1.0, gain * (top - distance)))
             else:
                 x, y = aim_point(fields[clearance], scenario.case.target, pose[0], pose[1], lookahead)
                 top = 1.0
@@ -617,21 +634,21 @@ def main(names: list[str]) -> None:
         begin = time.perf_counter()
         if level.goal.needs_leader or level.conditions.acceleration:
             found = search_pursuit(level, PURSUIT_S)
-            candidates = [] if found is None else [found]
+            candidates = [hand_drive(level), *([] if found is None else [found])]
         else:
             candidates = search_lattice(level)
         report = "nothing found"
-        for drive in candidates:
-            finish, _ = drive_reference(level, drive)
+        for found in candidates:
+            finish, _ = drive_reference(level, found)
             report = f"{finish.seconds:.2f} s, reached {finish.reached}, bumps {finish.collisions}"
             if finish.reached and not finish.collisions:
-                drive = polish(level, drive, POLISH_S)
-                finish, _ = drive_reference(level, drive)
-                drive = replace(drive, seconds=round(finish.seconds, 3))
+                found = polish(level, found, POLISH_S)
+                finish, _ = drive_reference(level, found)
+                found = replace(found, seconds=round(finish.seconds, 3))
                 report += f", polished {finish.seconds:.2f} s"
                 before = drives.get(level.id)
                 if before is None or drive_reference(level, before)[0].seconds > finish.seconds:
-                    drives[level.id] = drive
+                    drives[level.id] = found
         print(f"{level.id}: {report} ({time.perf_counter() - begin:.0f} s)", flush=True)
         save_drives(drives)
 
@@ -639,9 +656,9 @@ def main(names: list[str]) -> None:
 def save_drives(drives: dict[str, ReferenceDrive]) -> None:
     """Writes the file of all reference drives, one line each."""
     rows = []
-    for name, drive in sorted(drives.items()):
-        commands = [[each.ticks, round(each.speed, 4), round(each.turn, 4)] for each in drive.commands]
-        rows.append(f"  {json.dumps(name)}: {json.dumps({'seconds': drive.seconds, 'commands': commands})}")
+    for name, each in sorted(drives.items()):
+        commands = [[each.ticks, round(each.speed, 4), round(each.turn, 4)] for each in each.commands]
+        rows.append(f"  {json.dumps(name)}: {json.dumps({'seconds': each.seconds, 'commands': commands})}")
     drives_file().write_text("{\n" + ",\n".join(rows) + "\n}\n")
 
 

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli.game import command
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
 from kit.school.game.challenge_kinds import challenge_kinds
 from kit.school.game.challenge_kinds.exploit import best_moves
 from kit.school.game.challenges import all_challenges, find_challenge, prepare_answer
@@ -44,13 +44,37 @@ def test_the_verb_lists_shows_judges_and_keeps_the_best(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("challenge", WRITTEN, ids=lambda each: each.id)
+def test_the_verb_takes_an_answers_file_wherever_it_lies(challenge, tmp_path: Path) -> None:
+    file = tmp_path / f"elsewhere{Path(challenge.task.answer_file).suffix}"
+    written = challenge.task.prepare(tmp_path / "challenges", ())
+    assert written is not None
+    file.write_bytes(written.read_bytes())
+    assert (
+        challenge.task.judge(AnswerSubmission(challenge.task.parse_answer(str(file)), tmp_path)).medal
+        is Medal.NONE
+    )
+    words = ["--workspace", str(tmp_path), "challenge", challenge.id, str(file)]
+    result = CliRunner().invoke(command, words)
+    assert (result.exit_code, "no medal" in result.output) == (0, True), result.output
+    file.unlink()
+    missing = CliRunner().invoke(command, words)
+    assert missing.exit_code == 2
+    assert str(file) in missing.output.replace("\n", "")
+
+
+def test_moves_may_be_longer_than_a_files_name() -> None:
+    task = next(each.task for each in all_challenges() if each.task.kind == "exploit")
+    assert task.parse_answer("lr" * 5000) == "lr" * 5000
+
+
+@pytest.mark.parametrize("challenge", WRITTEN, ids=lambda each: each.id)
 def test_an_answers_file_begins_with_the_naive_answer_and_is_kept(challenge, tmp_path: Path) -> None:
     task = challenge.task
     with ProgressJournal(tmp_path) as journal:
         file, seconds = prepare_answer(journal, challenge, tmp_path / "challenges")
         assert file is not None
         assert seconds == math.inf  # no clock
-        judgement = task.judge(HandedIn(task.read_answer(file), tmp_path))
+        judgement = task.judge(AnswerSubmission(task.read_answer(file), tmp_path))
         assert judgement.medal is Medal.NONE
         figures = {} if judgement.comparison is None else dict(judgement.comparison.others)
         if judgement.comparison is not None and "naive answer" in figures:
@@ -60,7 +84,7 @@ def test_an_answers_file_begins_with_the_naive_answer_and_is_kept(challenge, tmp
         assert file.read_text() == "mine\n"
         file.unlink()
         with pytest.raises(ChallengeError, match=file.name):
-            task.judge(HandedIn(task.read_answer(file), tmp_path))
+            task.judge(AnswerSubmission(task.read_answer(file), tmp_path))
 
 
 @pytest.mark.parametrize("challenge", all_challenges(), ids=lambda each: each.id)

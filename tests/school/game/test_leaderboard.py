@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from kit.controllers import find_controller
+from kit.document.layout import lines_of
 from kit.run.recording import Input, Recording
 from kit.school.game import ghosts, leaderboard, references, shared_drives
 from kit.school.game.leaderboard import (
@@ -23,15 +25,20 @@ from kit.school.game.leaderboard import (
     LeaderboardEntry,
     publish_drives,
     read_entries,
+    standings,
 )
 from kit.school.game.medal import Medal
-from kit.school.game.race import DriverKind
+from kit.school.game.race import DriverKind, judge_recording, race_from_all_starts
 from kit.school.game.references import drive_reference
-from kit.school.game.shared_drives import MAX_FILE_BYTES, platform_name, share_drives
+from kit.school.game.shared_drives import MAX_FILE_BYTES, platform_key, share_drives
+from kit.school.game.starts import OWN_SEED
 from kit.school.progress import EventKind, ProgressJournal
+from kit.tui.rows.leaderboard_rows import leaderboard_times
 from kit.workspace import open_workspace
 from tests.kit_content import kit_levels
-from tests.school.game.measured_drivers import keys_drive, tape_drives
+from tests.school.game.measured_drivers import LASER_PROGRAM, drive, keys_drive, tape_drives
+from tests.school.game.ordinary import targets_of
+from tests.school.game.tidy import TidyDriver
 
 LEVELS = kit_levels()
 FIRST = LEVELS[0]
@@ -43,6 +50,14 @@ KEYS, CONTROLLER = DriverKind.KEYS, DriverKind.CONTROLLER
 @cache
 def by_hand() -> Recording:
     return keys_drive(FIRST)[1]
+
+
+def quicker() -> Recording:
+    """A drive of the same keys without a hand's delay."""
+    targets = targets_of(FIRST)
+    return drive(
+        FIRST, OWN_SEED, lambda session: session.runner.participants.append(TidyDriver(session, targets))
+    )[1]
 
 
 def own_file(board: Path, level: str = FIRST.id, driver: DriverKind = KEYS) -> Path:
@@ -256,6 +271,36 @@ def test_a_replay_of_anothers_drive_by_hand_stands_nowhere(tmp_path: Path) -> No
 
 
 @pytest.mark.usefixtures("of_many_users")
+def test_a_copy_stands_nowhere_although_its_owner_has_driven_better_since(tmp_path: Path) -> None:
+    board = join(tmp_path / "board", by_hand())
+    (board / "7.json").write_text('{"name": "Bob"}')
+    shutil.copy(own_file(board), board / f"7.{FIRST.id}.keys.npz")
+    join(board, quicker())
+    (entry,) = read_entries(board, [FIRST])
+    assert (entry.user, entry.seconds < judge_recording(FIRST, by_hand()).seconds) == (OWN, True)
+
+
+@pytest.mark.usefixtures("of_many_users")
+def test_who_claims_anothers_drive_as_an_earlier_one_takes_nothing_away(tmp_path: Path) -> None:
+    board = join(tmp_path / "board", by_hand())
+    (board / "7.json").write_text('{"name": "Bob"}')
+    shutil.copy(own_file(board), board / f"7.{FIRST.id}.keys.0123456789abcdef.npz")
+    assert [each.user for each in read_entries(board, [FIRST])] == [OWN]
+
+
+@pytest.mark.usefixtures("of_many_users")
+def test_a_copied_drive_of_a_program_is_told_and_does_not_count(tmp_path: Path) -> None:
+    drives = race_from_all_starts(FIRST, find_controller(str(LASER_PROGRAM)))
+    board = join(tmp_path / "board", *(recording for _, recording in drives), driver=CONTROLLER)
+    (board / "7.json").write_text('{"name": "Bob"}')
+    shutil.copy(own_file(board, driver=CONTROLLER), board / f"7.{FIRST.id}.controller.npz")
+    entries = read_entries(board, [FIRST])
+    assert [(each.user, each.copy_of) for each in entries] == [(OWN, ""), (7, "Ada")]
+    assert "as Ada before" in "\n".join(lines_of([leaderboard_times(entries)]))
+    assert [each.name for each in standings(entries)] == ["Ada"]
+
+
+@pytest.mark.usefixtures("of_many_users")
 def test_two_of_one_name_are_told_apart(tmp_path: Path) -> None:
     board = join(tmp_path / "board", by_hand())
     (board / "7.json").write_text('{"name": "ADA"}')
@@ -268,7 +313,7 @@ def test_a_drive_from_another_platform_is_judged_and_marked(tmp_path: Path) -> N
     board = join(tmp_path / "board", by_hand())
 
     def elsewhere(content: dict[str, Any]) -> None:
-        content["platform"] = f"not {platform_name()}"
+        content["platform"] = f"not {platform_key()}"
         content["drives"][0]["digest"] = "its last digits were others"
 
     change(own_file(board), elsewhere)

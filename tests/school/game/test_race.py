@@ -40,7 +40,8 @@ from kit.world.problems import WorldError
 from tests.driving_program import driving_program
 from tests.kit_content import kit_levels
 from tests.school.game.measured_drivers import drive as drive_from
-from tests.school.game.measured_drivers import keys_drive, targets_of
+from tests.school.game.measured_drivers import keys_drive
+from tests.school.game.ordinary import targets_of
 from tests.school.game.tidy import TidyDriver
 
 LEVELS = kit_levels()

@@ -10,7 +10,7 @@ import pytest
 from kit.layers.planning import solve_layers
 from kit.layers.requirements_file import read_requirements
 from kit.school.game import leaderboard
-from kit.school.game.challenge import HandedIn
+from kit.school.game.challenge import AnswerSubmission
 from kit.school.game.challenge_kinds.devices import DevicesTask, fewest_lasers
 from kit.school.game.challenge_kinds.layers import LayersTask, format_plan
 from kit.school.game.challenges import all_challenges
@@ -95,7 +95,7 @@ def test_the_histogram_comes_with_the_fifth_player(board: Path, monkeypatch: pyt
     monkeypatch.setattr(
         leaderboard, "read_own", lambda file, user, limit: file.read_bytes()
     )  # of several users
-    judgement = LASERS.task.judge(HandedIn(lasers(), board))
+    judgement = LASERS.task.judge(AnswerSubmission(lasers(), board))
     assert judgement.medal is Medal.GOLD
     assert judgement.comparison is not None
     for player in range(1, LEAST_PLAYERS):
@@ -107,5 +107,5 @@ def test_the_histogram_comes_with_the_fifth_player(board: Path, monkeypatch: pyt
     text = [row_text(each) for each in answers_needed_rows(bins, judgement.comparison)]
     assert all(judgement.comparison.unit in each for each in text[1:])
     assert sum("you" in each for each in text) == 1
-    naive = LASERS.task.judge(HandedIn(LASERS.task.naive_answer(), board))
+    naive = LASERS.task.judge(AnswerSubmission(LASERS.task.naive_answer(), board))
     assert share_answer(LASERS, LASERS.task.naive_answer(), naive) == ()

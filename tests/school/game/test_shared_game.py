@@ -32,13 +32,16 @@ from kit.school.game.shared_protocol import (
     MAX_LEVEL_NAME,
     MAX_PLAYER_NAME,
     MAX_SECONDS,
+    MAX_WATCHING,
     VERSION,
     GameOffer,
     JoinRequest,
     KeyPush,
+    RematchRequest,
     encode_join_request,
     encode_offer,
     encode_push,
+    encode_rematch_request,
     encode_state,
     parse_from_guest,
     parse_from_host,
@@ -231,11 +234,16 @@ def test_a_rematch_begins_anew_with_the_other_catching_first_or_waits(
     game.start()
     until(session, COUNTDOWN + 0.5)
     game.rematch()
+    game.ask_again()
     assert game.state.phase is SharedPhase.RUNNING  # not before it is over
     until(session, 1.0)
     assert (game.state.phase, game.state.catcher, game.state.winner) == (SharedPhase.OVER, 0, 1)
+    assert not game.state.asks_again
+    game.ask_again()
+    assert game.state.asks_again
     game.rematch()
     session.reset()
+    assert not game.state.asks_again
     assert (game.state.phase, game.state.winner, game.state.scores) == (
         SharedPhase.COUNTDOWN,
         None,
@@ -259,26 +267,36 @@ def test_frames_come_back_as_they_were() -> None:
     assert parse_from_guest(encode_push(KeyPush(-1.0, 0.5))) == KeyPush(-1.0, 0.5)
     offer = GameOffer("two-doors", SharedMode.TAG, "Ada", False)
     assert parse_from_host(encode_offer(offer)) == offer
+    assert parse_from_guest(encode_rematch_request()) == RematchRequest()
     assert parse_from_host(encode_state(STATE)) == STATE
-    assert len(encode(encode_state(STATE))) < MAX_FRAME
+    asked = replace(
+        STATE, asks_again=True, names=("\N{GRINNING FACE}" * MAX_PLAYER_NAME,) * 2, watching=("Eve",)
+    )
+    assert parse_from_host(encode_state(asked)) == asked
+    many = replace(asked, watching=asked.names[:1] * 2 * MAX_WATCHING)
+    assert len(encode(encode_state(many))) < MAX_FRAME
+    assert parse_from_host(encode_state(many)) == replace(many, watching=many.watching[:MAX_WATCHING])
 
 
 BAD_FROM_GUEST: tuple[Json, ...] = (
     None, 1, "join", [], [[]], ["eval", "1"], ["join"], ["join", VERSION, "a"], ["join", 99, "a", True],
     ["join", VERSION, "a" * 1000, True], ["join", VERSION, "a", 1], ["join", True, "a", True], ["push"], ["push", 1.0],
     ["push", 1.5, 0.0], ["push", 0.0, -1e300], ["push", "1", 0], ["push", True, 0.0], ["push", 10**400, 0.0],
-    ["push", None, None], ["push", 0.0, 0.0, 0.0], {"push": 1}, ["state", "running", 0, [], [], None, None],
+    ["push", None, None], ["push", 0.0, 0.0, 0.0], {"push": 1}, ["again", 1], ["state", "running", 0, [], [], None, None],
 )  # fmt: skip
 BAD_FROM_HOST: tuple[Json, ...] = (
     ["push", 0.0, 0.0], ["offer", VERSION, "x" * 100, "race", "a", True], ["offer", VERSION, "a", "chess", "a", True],
-    ["state", "running", 0.0, [[0, 0, 0]], [0, 0], None, None, ["a", "b"]],
-    ["state", "running", 0.0, [[0, 0, 0], [1e9, 0, 0]], [0, 0], None, None, ["a", "b"]],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0]], [0, 0], None, None, ["a", "b"]],
-    ["state", "running", 1e99, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"]],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], 2, None, ["a", "b"]],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a"]],
-    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a" * 1000, "b"]],
-    ["state", "sleeping", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"]],
+    ["state", "running", 0.0, [[0, 0, 0]], [0, 0], None, None, ["a", "b"], False, []],
+    ["state", "running", 0.0, [[0, 0, 0], [1e9, 0, 0]], [0, 0], None, None, ["a", "b"], False, []],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0]], [0, 0], None, None, ["a", "b"], False, []],
+    ["state", "running", 1e99, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, []],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], 2, None, ["a", "b"], False, []],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a"], False, []],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a" * 1000, "b"], False, []],
+    ["state", "sleeping", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, []],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], 1, []],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, ["a"] * 99],
+    ["state", "running", 0.0, [[0, 0, 0], [0, 0, 0]], [0, 0], None, None, ["a", "b"], False, ["a" * 99]],
 )  # fmt: skip
 
 
@@ -296,7 +314,18 @@ def test_a_host_can_say_nothing_else(frame: Json) -> None:
 
 def test_numbers_and_names_of_frames_go_up_to_their_limits() -> None:
     def state(seconds: float, x: float, score: float, name: str) -> Json:
-        return ["state", "running", seconds, [[0, 0, 0], [x, 0, 0]], [0, score], None, None, [name, "b"]]
+        return [
+            "state",
+            "running",
+            seconds,
+            [[0, 0, 0], [x, 0, 0]],
+            [0, score],
+            None,
+            None,
+            [name, "b"],
+            False,
+            [],
+        ]
 
     most = (MAX_SECONDS, -MAX_COORDINATE, MAX_SECONDS, "n" * MAX_PLAYER_NAME)
     found = parse_from_host(state(*most))
@@ -341,6 +370,9 @@ class Rules:
     def start(self) -> None:
         self.told.append(("start",))
 
+    def ask_again(self) -> None:
+        self.told.append(("again",))
+
     def remove_player(self, player: int) -> None:
         self.told.append(("leave", player))
 
@@ -373,10 +405,14 @@ def test_a_guest_plays_another_watches_and_both_are_told(server: Opened) -> None
         wait_until(lambda: ("push", 1, 1.0, -0.5) in rules.told)
         told = opened.publish(STATE)
         wait_until(lambda: seen and also)
-        assert seen[0] == also[0] == told == replace(STATE, names=("Ada", "Ben"))
-        assert (opened.player_name, opened.spectators) == ("Ben", 1)
+        assert seen[0] == also[0] == told == replace(STATE, names=("Ada", "Ben"), watching=("Eve",))
+        assert (opened.player_name, opened.spectators) == ("Ben", ("Eve",))
+        eve.ask_again()
+        ben.ask_again()
+        wait_until(lambda: ("again",) in rules.told)
     wait_until(lambda: ("leave", 1) in rules.told)
     assert rules.told[0] == ("start",)
+    assert rules.told.count(("again",)) == 1  # who watches asks for nothing
     assert ("push", 1, -1.0, 0.0) not in rules.told  # who watches moves nobody
     wait_until(lambda: not opened.player_name)
     assert opened.publish(STATE).names == ("Ada", "Ben")  # who has left keeps the name
@@ -466,7 +502,7 @@ def test_who_says_nothing_or_half_a_frame_or_does_not_read_is_cut_off(
     connection = game.connect()
     connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
     connection.sendall(encode(["join", VERSION, "a", False]))
-    wait_until(lambda: opened.spectators == 1)
+    wait_until(lambda: opened.spectators == ("a",))
     deadline = time.monotonic() + 20
     while opened.spectators and time.monotonic() < deadline:
         opened.publish(STATE)

@@ -66,7 +66,7 @@ def swing_settings(words: str, step: LessonStep, folder: Path) -> str:
     error = start - aim
     texts = (
         f"The wall is {start:g} m to the robot's right; it is to be {aim:g} m",
-        f"the error is {aim:g} m less the distance",
+        f"the error is {aim:g} m minus the distance",
         f"turns at {gain:.1f} times the error, and drives on at {speed:g} m/s",
         f"The error is {error:.1g} m at first, so it turns at {gain * error:.1g} rad/s",
     )
@@ -147,7 +147,10 @@ def one_ray_settings(words: str, step: LessonStep, folder: Path) -> str:
         f"It drives along a wall at {start_of('doorway') - wall:.1g} m",
         f"behind it the next wall is {jump:g} m further away",
         "After two metres comes a door",
-        f"The error jumps by {jump:g} m in {SCAN_S:g} s: a change of {-jump / SCAN_S:g} m/s, and three times that in rad/s",
+        (
+            f"The error jumps by {jump:g} m in {SCAN_S:g} s: a change of {-jump / SCAN_S:g} m/s. "
+            f"This one turns at {gain:.1f} times the change"
+        ),
     )
     assert aim == DISTANCE
     return next((each for each in texts if each[:9] == words[:9]), texts[0])

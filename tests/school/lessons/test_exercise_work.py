@@ -1,92 +1,23 @@
-"""An exercise on the bench: any of its files that is saved has it checked; one that a moment brings does not."""
+"""An exercise on the bench: where an editor begins, which file it opens, and what a check tells while it runs."""
 
 from __future__ import annotations
 
 import os
-import time
-from collections.abc import Callable
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from kit.results.grading_result import PUBLIC_CASES
-from kit.school.lessons import exercise_work
-from kit.school.lessons.checking import ExerciseCheck, read_solution
-from kit.school.lessons.exercise_work import ExerciseAttempt, FolderWatch
+from kit.school.lessons.checking import ExerciseCheck, has_other_files, read_solution
+from kit.school.lessons.exercise_work import ExerciseAttempt
 from kit.school.lessons.lesson_session import LessonSession
+from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
 from kit.school.progress import ProgressJournal
 from kit.workspace import open_workspace
 from tests.kit_content import kit_lesson
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    (tmp_path / "maps").mkdir()
-    for name in ("world.yaml", "maps/hall.yaml"):
-        (tmp_path / name).write_text("as it was")
-    return tmp_path
-
-
-@pytest.fixture
-def noticed(folder: Path) -> Callable[[], bool]:
-    """Whether a save is noticed within a little while."""
-    return look_in(folder)
-
-
-def look_in(folder: Path) -> Callable[[], bool]:
-    watch = FolderWatch(folder / "world.yaml")
-
-    def look() -> bool:
-        end = time.monotonic() + 1.5
-        while time.monotonic() < end:
-            if watch.has_changed():
-                return True
-            time.sleep(0.02)
-        return False
-
-    return look
-
-
-@pytest.mark.long
-def test_each_file_counts(folder: Path, noticed: Callable[[], bool]) -> None:
-    for name in ("world.yaml", "maps/hall.yaml"):
-        (folder / name).write_text("mended, and longer")
-        assert noticed(), name
-    assert not noticed()
-
-
-@pytest.mark.long
-def test_what_editors_and_checks_leave_does_not(folder: Path, noticed: Callable[[], bool]) -> None:
-    (folder / "__pycache__").mkdir()
-    for name in (".world.yaml.swp", ".worst.npz", "world.yaml~", "__pycache__/x.pyc", "4913"):
-        (folder / name).write_text("for a moment")
-    assert not noticed()
-
-
-@pytest.mark.long
-def test_a_new_file_counts_from_its_next_save_on(folder: Path, noticed: Callable[[], bool]) -> None:
-    (folder / "pen.dat").write_text("0 0 1 1")
-    assert not noticed()
-    (folder / "pen.dat").write_text("0 0 1 1, and more")
-    assert noticed()
-
-
-@pytest.mark.long
-def test_so_many_files_are_watched(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(exercise_work, "MOST_FILES", 3)  # world.yaml, the one in maps, and one more
-    for name in ("one", "two"):
-        (folder / f"room_{name}.yaml").write_text("as it was")
-    noticed = look_in(folder)
-    for name, is_watched in (("world", True), ("room_one", True), ("room_two", False)):
-        (folder / f"{name}.yaml").write_text("mended, and longer")
-        assert noticed() == is_watched, name
-
-
-@pytest.mark.long
-def test_a_folder_that_goes_away_is_no_save(folder: Path, noticed: Callable[[], bool]) -> None:
-    (folder / "maps" / "hall.yaml").unlink()
-    (folder / "maps").rmdir()
-    assert not noticed()
+from tests.school.lessons.check_reports import lost, report_of
 
 
 def test_an_editor_begins_at_the_first_todo_and_then_at_the_error(tmp_path: Path) -> None:
@@ -108,6 +39,48 @@ def test_an_editor_begins_at_the_first_todo_and_then_at_the_error(tmp_path: Path
         assert model.line_to_edit == 1
 
 
+def works_of_folders(tmp_path: Path, journal: ProgressJournal) -> Iterator[tuple[str, ExerciseAttempt]]:
+    """The kit's exercises with several files, and the words of their steps."""
+    for name in lesson_names():
+        session = LessonSession(read_lesson(lessons_folder() / name), journal, open_workspace(tmp_path))
+        for step in session.lesson.steps:
+            if step.exercise is not None and has_other_files(step.exercise):
+                yield step.text, ExerciseAttempt(session, step.exercise)
+
+
+def test_the_file_that_a_step_talks_about_is_the_one_that_is_suggested(tmp_path: Path) -> None:
+    with ProgressJournal(tmp_path) as journal:
+        for told, work in works_of_folders(tmp_path, journal):
+            suggested = work.suggested_file(told)
+            words = told.replace("{file}", work.exercise.file).replace("{folder}", "")
+            assert suggested.name in words or suggested.stem in words.split(), words
+            assert suggested in work.files(told)
+
+
+def test_after_the_first_file_the_one_to_hand_in_is_suggested_and_first_of_all_the_one_with_an_error(
+    tmp_path: Path,
+) -> None:
+    with ProgressJournal(tmp_path) as journal:
+        told, draft = next(
+            each for each in works_of_folders(tmp_path, journal) if each[1].exercise.name == "draft"
+        )
+        course, task = draft.file.with_name("course.txt"), draft.file
+        assert draft.files(told) == [course, task]
+        assert (draft.suggested_file(told), draft.edited_file) == (course, course)
+        course.write_text("###\n")
+        assert draft.suggested_file(told) == task
+        draft.choose(task)
+        assert draft.edited_file == task
+        assert "summary" in draft.edited_lines()[0]
+        task.write_text("summary: mine\n")
+        draft.choose(course)
+        assert draft.suggested_file(told) == course, "the one that was edited last"
+        draft.session.record(draft.exercise, report_of(replace(lost("a"), rationale="(1) task.yaml:1:3: no")))
+        assert draft.suggested_file(told) == task
+        draft.choose(task)
+        assert (draft.line_to_edit, draft.error_text) == (1, "no")
+
+
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("old", "new", "verdict"), [("", "", "all passed"), ("max(table", "min(table", "of 3 criteria passed")]
@@ -125,6 +98,7 @@ def test_the_public_verdict_is_told_before_the_secret_cases(
         while check.poll() is None:
             seen.add(check.progress)
         written = os.pread(check._progress.fileno(), 1 << 16, 0).decode().splitlines()
+    assert "reading" in written[0], "said before anything is run, and before what runs it is imported"
     [at] = [number for number, line in enumerate(written) if line.startswith(PUBLIC_CASES)]
     assert verdict in written[at]
     assert not any("secret" in line for line in written[:at])

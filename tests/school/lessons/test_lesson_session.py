@@ -11,6 +11,7 @@ from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import Lesson
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace
+from tests.school.lessons.check_reports import lost, report_of
 
 
 def done(session: LessonSession) -> list[int]:
@@ -111,3 +112,28 @@ def test_a_check_can_be_left(session: LessonSession, lesson: Lesson) -> None:
     assert running.poll() is None
     running.close()
     running.close()
+
+
+def test_hints_go_on_to_every_lost_criterion_and_the_one_that_knows_the_mistake_is_first(
+    session: LessonSession, lesson: Lesson
+) -> None:
+    exercise = lesson.exercises[0]
+    told = lost("told", "The very mistake.", "More of it.", knows_mistake=True)
+    session.record(exercise, report_of(lost("first", "A."), lost("mute"), told, lost("last", "B.", "C.")))
+    said = []
+    while session.has_closed_hints(exercise):
+        hint = session.next_hint(exercise)
+        assert hint is not None
+        assert session.opened_hints(exercise)[-1] == hint
+        said.append((hint.criterion.id, hint.number, hint.text))
+    assert said == [
+        ("told", 1, "The very mistake."),
+        ("told", 2, "More of it."),
+        ("first", 1, "A."),
+        ("last", 1, "B."),
+        ("last", 2, "C."),
+    ]
+    assert session.next_hint(exercise) is None
+    session.record(exercise, report_of(lost("last", "B.", "C."), lost("new", "D.")))
+    assert [hint.text for hint in session.opened_hints(exercise)] == ["B.", "C."]
+    assert session.has_closed_hints(exercise)

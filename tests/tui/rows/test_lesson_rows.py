@@ -78,7 +78,7 @@ def widest(rows: list[Row]) -> int:
 @pytest.mark.parametrize("width", [60, 80, 200])
 def test_nothing_is_wider_than_the_screen(lesson: Lesson, stand: LessonProgress, width: int) -> None:
     predict, *_, make = lesson.steps
-    hints = (LessonHint(LOST, 1, LOST.hints[0], 2), LessonHint(LOST, 2, LOST.hints[1], 1))
+    hints = (LessonHint(LOST, 1, LOST.hints[0]), LessonHint(LOST, 2, LOST.hints[1]))
     assert (
         widest(
             [
@@ -142,7 +142,7 @@ def test_the_kits_titles_are_whole_on_80_columns() -> None:
 
 
 def test_a_verdict_names_points_and_what_was_wanted() -> None:
-    told = "\n".join(map(row_text, shown(verdict_blocks(REPORT, (LessonHint(LOST, 1, "Go.", 2),)))))
+    told = "\n".join(map(row_text, shown(verdict_blocks(REPORT, (LessonHint(LOST, 1, "Go."),)))))
     assert "[ok] It runs: 1 of 1" in told
     assert "[no] It comes near" in told
     assert "0.5 of 3" in told
@@ -197,3 +197,18 @@ def test_what_has_passed_moves_from_left_to_right_once() -> None:
     assert stars[0] == 0
     assert stars[-1] == stars[-2] == lesson_rows.PASSED_CELLS
     assert all(line.startswith("  Passed: ") and line.endswith(">") and line.isascii() for line in lines)
+
+
+def test_that_a_criterion_was_not_graded_is_said_of_the_first_of_a_chain_alone() -> None:
+    def skipped(name: str, after: str) -> CriterionResult:
+        told = f"Not graded: pass {after} first."
+        return CriterionResult(
+            name, name, CriterionStatus.SKIPPED, 0.0, 1.0, rationale=told, depends_on=after
+        )
+
+    chain = (LOST, skipped("b", LOST.id), skipped("c", "b"), skipped("d", "c"))
+    told = "\n".join(
+        map(row_text, shown(verdict_blocks(replace(REPORT, result=replace(REPORT.result, tests=chain)), ())))
+    )
+    assert told.count("Not graded") == 1
+    assert told.index("[--] b") < told.index("Not graded") < told.index("[--] c") < told.index("[--] d")

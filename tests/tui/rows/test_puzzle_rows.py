@@ -8,7 +8,7 @@ from kit.document.rows import row_text
 from kit.school.game.challenge import Challenge, ChallengeError
 from kit.school.game.challenges import all_challenges
 from kit.school.game.judgement import Judgement
-from kit.tui.rows.challenge_rows import puzzle_beside
+from kit.tui.rows.challenge_rows import GAP, LEAST_TEXT, largest_drawing, puzzle_beside
 
 PLAYED = [each for each in all_challenges() if each.task.board("") is not None]
 
@@ -29,5 +29,5 @@ def test_it_fits_and_is_as_large_as_there_is_room_for(challenge: Challenge) -> N
         assert len(rows) <= height
         assert not any("…" in each for each in rows), "nothing is cut"
         assert all(word in " ".join(rows) for word in challenge.story.split())
-        scales.append(board.scale)
+        scales.append(largest_drawing(board, width - LEAST_TEXT - GAP, height - 1)[0])
     assert scales == sorted(scales)

@@ -10,10 +10,13 @@ import pytest
 
 from kit.controllers import find_controller
 from kit.document.rows import Row
+from kit.ros.log import LoggingSeverity, LogRecord
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from kit.run.view import LASER_DIRECTIONS, View, ViewBuilder
-from kit.tui.rows.readout_rows import CHART_ROWS, SpeedHistory, instruments, laser_chart, readout, time_chart
+from kit.tui.rows.chart_rows import CHART_ROWS, laser_chart, time_chart
+from kit.tui.rows.instrument_rows import SpeedHistory, instruments
+from kit.tui.rows.readout_rows import failure_or_messages, readout
 from tests.cases import every_case
 from tests.tui.lesson_stage import row_text
 
@@ -57,6 +60,22 @@ def test_a_program_is_shown_from_its_first_class_on(views: list[View]) -> None:
     rows = texts(instruments(views[-1], SpeedHistory(), None, program, (58, 40)))
     assert not any("import rclpy" in line for line in rows)
     assert any(line.startswith("  4 class Mine") for line in rows)
+
+
+def test_the_newest_message_is_told_to_its_end_where_there_is_room(views: list[View]) -> None:
+    def said(text: str) -> LogRecord:
+        return LogRecord(1_200_000_000, LoggingSeverity.WARN, "fields", text, "", "", 0)
+
+    long = " ".join(f"word{number}" for number in range(14))
+    alone = texts(failure_or_messages(replace(views[-1], messages=[said(long)]), 2, 80))
+    assert len(alone) == 2
+    assert " ".join(" ".join(alone).split()).endswith(long)
+    pushed = texts(failure_or_messages(replace(views[-1], messages=[said("older"), said(long)]), 2, 80))
+    assert pushed == alone
+    above = texts(failure_or_messages(replace(views[-1], messages=[said(long), said("newer")]), 2, 80))
+    assert above[0].endswith("...")
+    assert above[1].endswith("newer")
+    assert all(len(line) <= 80 for line in (*alone, *above))
 
 
 def test_the_laser_by_direction_is_what_the_sides_say(views: list[View]) -> None:

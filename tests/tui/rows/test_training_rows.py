@@ -11,6 +11,7 @@ from kit.learning.tasks.catalogue import TASKS
 from kit.learning.training.events import Evaluated, TrainingEvent, TrainingProgress
 from kit.learning.training.run_status import RECENT_REPORTS, RunPlan, RunStatus, RunTracker
 from kit.tui.rows import training_rows
+from kit.tui.rows.training_list_rows import no_trainings
 from kit.tui.screens.training import TrainingScreen
 from tests.cases import every_case
 from tests.tui.lesson_stage import row_text
@@ -112,9 +113,9 @@ def test_the_lines_fit_into_eighty_columns() -> None:
 
 
 def test_the_tasks_to_begin_with_say_where_they_are_cut() -> None:
-    whole = [row_text(each) for each in training_rows.no_trainings(TASKS, 80, 100)]
+    whole = [row_text(each) for each in no_trainings(TASKS, 80, 100)]
     assert all(any(task.name in line for line in whole) for task in TASKS)
-    cut = [row_text(each) for each in training_rows.no_trainings(TASKS, 80, 8)]
+    cut = [row_text(each) for each in no_trainings(TASKS, 80, 8)]
     assert len(cut) == 8
     assert "kit task list" in cut[-1]
 

@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
 from kit.school.game import leaderboard
-from kit.school.game.challenge import Challenge, HandedIn
+from kit.school.game.challenge import AnswerSubmission, Challenge
 from kit.school.game.challenge_kinds.exploit import ExploitTask, best_moves, shortest_moves
 from kit.school.game.challenge_kinds.repair import RepairTask
 from kit.school.game.challenge_kinds.training import TrainingTask
@@ -223,11 +223,11 @@ def test_a_check_shows_what_it_does_and_ends_when_the_challenge_is_left(
 ) -> None:
     ended = threading.Event()
 
-    def long_check(task: RepairTask, handed_in: HandedIn) -> Judgement:
-        assert Path(handed_in.answer).is_file()
+    def long_check(task: RepairTask, submission: AnswerSubmission) -> Judgement:
+        assert Path(submission.answer).is_file()
         try:
             while True:
-                handed_in.show_progress("episode 2 of 5")
+                submission.show_progress("episode 2 of 5")
                 ended.wait(0.01)
         finally:
             ended.set()

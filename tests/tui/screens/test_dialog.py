@@ -10,7 +10,9 @@ from textual.screen import Screen
 
 from kit.document.rows import row
 from kit.tui.app import KitApp
-from kit.tui.screens.dialogs import MessageDialog, NameDialog, Picker, PickerItem, TextScreen
+from kit.tui.screens.dialogs import MessageDialog, NameDialog
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.screens.text_screen import TextScreen
 from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
 from tests.render.test_roles import contrast
 

@@ -279,10 +279,12 @@ def test_a_check_goes_on_while_another_step_is_looked_at(student: Student, play:
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "controller.py")
         await pilot.press("c")
-        await seen(pilot, "Checking ...")
-        await pilot.press("b")
-        assert "step 4 of 5" in rows(pilot)[0]
-        await pilot.press("n")
+        assert "Checking ..." in text(pilot), "at once, and not when the check says its first word"
+        await pilot.press("b", "b")
+        assert "step 3 of 5" in rows(pilot)[0]
+        assert "Step 5 is being checked" in text(pilot)
+        await seen(pilot, "The check of step 5 has ended: not yet passed.")
+        await pilot.press("n", "n")
         await seen(pilot, "It reaches the target: 0 of 3")
 
     play(scene)
@@ -609,6 +611,53 @@ def test_the_editor_follows_the_file_and_overwrites_nothing_unasked(student: Stu
         await pilot.press("y", "ctrl+s")
         await seen(pilot, "is read-only")
         assert student.file.read_text() == "colour: bluex\n"
+
+    stage(student.screen, scene)
+
+
+@pytest.mark.long
+def test_in_the_editor_only_keys_that_work_there_are_named(student: Student) -> None:
+    student.goes_to(COLOUR)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await opened_editor(pilot)
+        assert "press c" not in text(pilot)
+        assert "^S saves and checks" in text(pilot)
+        await pilot.press("end", "space", "x", "ctrl+s")
+        await seen(pilot, "[no] The colour")
+        assert "Esc, then h" in text(pilot)
+        await pilot.press("escape")
+        await seen(pilot, "Press h for a hint")
+        await pilot.press("h")
+        await seen(pilot, "Hint 1 of 3")
+
+    stage(student.screen, scene)
+
+
+@pytest.mark.long
+def test_what_was_typed_can_be_undone_after_the_file_was_read_again_and_the_editor_closed(
+    student: Student,
+) -> None:
+    student.goes_to(COLOUR)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        editor = await opened_editor(pilot)
+        first = editor.area.text
+        await pilot.press("end", "space", "a", "ctrl+s")
+        typed = editor.area.text
+        await until(pilot, lambda: editor.is_saved, "the saved text")
+        student.file.write_text("colour: blue\n")
+        await seen(pilot, "read again: it was saved elsewhere")
+        await pilot.press("ctrl+z")
+        assert editor.area.text == typed
+        await pilot.press("ctrl+y")
+        assert editor.area.text == "colour: blue\n"
+        await pilot.press("ctrl+e")
+        await seen(pilot, "^E write")
+        await pilot.press("ctrl+e")
+        await seen(pilot, "^S save and check")
+        await pilot.press(*["ctrl+z"] * 5)
+        assert editor.area.text == first
 
     stage(student.screen, scene)
 

@@ -19,7 +19,7 @@ from kit.learning.training.run_folders import create_run
 from kit.learning.training.runs import TrainingRun
 from kit.render.curve import Axes, Curve
 from kit.render.encode import AsciiEncoder
-from kit.tui.rows.readout_rows import agent_panel
+from kit.tui.rows.agent_rows import agent_panel
 from kit.tui.screens.training import TrainingScreen
 from kit.tui.widgets.chart_view import CurveView
 from tests.learning.policies.test_agent_view import random_policy, view_of

@@ -60,7 +60,7 @@ def play(link: Link, end: float, throttle: FrameThrottle | None = None, start: f
     while now < end:
         while link.events and link.events[0] <= now:
             throttle.answered(heapq.heappop(link.events))
-        if throttle.may_draw(now):
+        if throttle.wait(now) <= 0:
             throttle.drawn(now)
             link.send(now)
             throttle.sent(now)
@@ -198,7 +198,7 @@ def draw_for(cost: float, end: float, throttle: FrameThrottle, start: float) -> 
     """Draws whenever allowed, on a machine on which a frame takes ``cost`` seconds and a fast link."""
     now, drawn = start, []
     while now < end:
-        if throttle.may_draw(now):
+        if throttle.wait(now) <= 0:
             drawn.append(now)
             throttle.drawn(now, cost)
             now += cost

@@ -38,7 +38,7 @@ class NodeCount:
     def __init__(self, facts: dict[str, Any]) -> None:
         self.facts = facts
         self.needed: float = facts.get("needed", 1.0)
-        self.is_told_later: bool = facts.get("is_told_later", False)
+        self.is_observation_delayed: bool = facts.get("is_observation_delayed", False)
 
     def begin(self, poses: np.ndarray) -> float:
         """The count at the start of an episode, with robots at ``poses`` (robots, 3)."""
@@ -99,7 +99,7 @@ class GoalProgress:
             step = GoalStep(poses, self.before, arrived, np.array(self.target), beside)
             self.achieved = self.goal_count.count(self.achieved, step)
             earlier, self.share = self.share, self.achieved / self.needed
-            self.told_share = earlier if self.goal_count.is_told_later else self.share
+            self.told_share = earlier if self.goal_count.is_observation_delayed else self.share
             if arrived and len(self.left) > 1:
                 self.left = self.left[1:]
                 self.target = self.left[0]

@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from enum import Enum, auto
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 import numpy as np
 
@@ -21,6 +21,15 @@ from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
     from kit.learning.maps.batch_map import BatchMap
+
+
+KNOWN_IN_RACE: Final = frozenset(
+    {
+        "case", "step", "pose", "hit", "in_target", "target", "target_heading", "obstacle_distance", "count", "achieved",
+    }
+)  # fmt: skip
+"""The fields of a state that a race knows as a training does, beside ``ranges`` where a goal ``reads_lidar``: a goal counts by
+these alone, so that it can be raced. ``hit`` is never True there: a bump ends no race."""
 
 
 class CaseTargets(Enum):
@@ -66,8 +75,11 @@ class GoalCount(ABC):
 
     @abstractmethod
     def count(self, transition: Transition) -> FloatArray:
-        """(n,) the counts after a step; before it they were ``transition.before.count``, and no count falls unless robots
-        can leave a target."""
+        """(n,) the counts after a step; before it they were ``transition.before.count``.
+
+        Of the states only fields ``KNOWN_IN_RACE`` are read. No count falls unless robots can leave a target: what holds for
+        a while, such as a distance that is kept, is counted as the seconds or the metres during which it has held.
+        """
 
 
 class Goal(ABC):
@@ -76,7 +88,7 @@ class Goal(ABC):
     kind: ClassVar[str]
     """Its name in files."""
     case_targets: ClassVar[CaseTargets] = CaseTargets.NONE
-    is_told_later: ClassVar[bool] = False
+    is_observation_delayed: ClassVar[bool] = False
     """Whether agents that see ``achieved`` are told it one step later: where the newest scan is what is counted."""
     least_robots: ClassVar[int] = 1
     """How many robots it needs."""
@@ -112,7 +124,7 @@ class Goal(ABC):
         """What the program of a node must know to count it in a case, JSON-able: see ``kit/learning/policies/node_goals``."""
         settings = {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]  # a dataclass
         needed = float(self.make_count([case], 1, 1.0).needed[0])
-        return {**settings, "needed": needed, "is_told_later": self.is_told_later}
+        return {**settings, "needed": needed, "is_observation_delayed": self.is_observation_delayed}
 
     @property
     def needs_target(self) -> bool:

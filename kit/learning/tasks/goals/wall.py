@@ -27,7 +27,7 @@ class WallGoal(Goal):
     """Total length [m]."""
 
     kind: ClassVar[str] = "wall"
-    is_told_later: ClassVar[bool] = True
+    is_observation_delayed: ClassVar[bool] = True
     reads_lidar: ClassVar[bool] = True
 
     @classmethod

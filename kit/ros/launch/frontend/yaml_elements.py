@@ -60,13 +60,13 @@ def _element(tag: str, node: yaml.Node, place: TextPosition, problems: Problems)
         element.children += _actions(node, problems)
     elif isinstance(node, yaml.MappingNode):
         for key, value in node.value:
-            _add(element, key.value, value, _place(key), problems)
+            _add_child(element, key.value, value, _place(key), problems)
     elif node.value not in ("", "null", "~"):
         problems.add(place, f"the attributes of '{tag}' come below it, each with its name")
     return element
 
 
-def _add(element: Element, name: str, node: yaml.Node, place: TextPosition, problems: Problems) -> None:
+def _add_child(element: Element, name: str, node: yaml.Node, place: TextPosition, problems: Problems) -> None:
     """Adds an attribute, or children of this name."""
     if name in element.attributes:
         problems.add(place, f"'{name}' appears here twice")

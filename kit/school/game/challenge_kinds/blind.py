@@ -19,7 +19,7 @@ from kit.school.game.board import (
     shortest_way,
     step,
 )
-from kit.school.game.challenge import ChallengeTask, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.school.game.moves_board import MovesBoard, read_moves
@@ -53,8 +53,8 @@ class BlindTask(ChallengeTask):
     def board(self, answer: str) -> Board:
         return BlindBoard(self, answer)
 
-    def judge(self, handed_in: HandedIn) -> Judgement:
-        moves = read_moves(handed_in.answer, MAX_MOVES)
+    def judge(self, submission: AnswerSubmission) -> Judgement:
+        moves = read_moves(submission.answer, MAX_MOVES)
         belief = believed(self, moves)
         goal = find_cell(self.grid, "G")
         if belief != {goal}:
@@ -119,7 +119,7 @@ class BlindBoard(MovesBoard):
         super().__init__(task, answer, MAX_MOVES)
         self._blind = task
 
-    def rows(self) -> list[Row]:
+    def rows(self, scale: int = 1) -> list[Row]:
         task = self._blind
         belief = believed(task, self.moves)
         counts = Counter(belief)
@@ -127,7 +127,7 @@ class BlindBoard(MovesBoard):
         goal = find_cell(task.grid, "G")
         signs[goal] = ("@", "good") if goal in belief else ("G", "bold")
         return [
-            *grid_rows(task.grid, signs, self.scale),
+            *grid_rows(task.grid, signs, scale),
             row(),
             row((f"  moves {len(self.moves)}", "bold"), f"   the robot may be in {len(belief)} places"),
         ]

@@ -11,7 +11,7 @@ from typing import Final, Self
 from kit.document.rows import Row, row
 from kit.layers.cover import minimum_cover
 from kit.school.game.board import WALL, Board, Cell, History, free_cells, grid_rows
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
@@ -44,9 +44,9 @@ class DevicesTask(ChallengeTask):
     def board(self, answer: str) -> Board:
         return DevicesBoard(self, answer)
 
-    def judge(self, handed_in: HandedIn) -> Judgement:
+    def judge(self, submission: AnswerSubmission) -> Judgement:
         """Judges by what is not seen, then by the number of lasers against the fewest and the naive plan's."""
-        lasers = read_lasers(self, handed_in.answer)
+        lasers = read_lasers(self, submission.answer)
         missed = sorted(set(self.places) - self.seen_from(lasers))
         if missed:
             return Judgement(Medal.NONE, f"Nothing sees {', '.join(missed)}.")
@@ -101,7 +101,7 @@ class DevicesBoard(Board):
         return "".join(f"{row},{column}\n" for row, column in self._lasers)
 
     def judgement(self) -> Judgement:
-        return self._task.judge(HandedIn(self.answer, Path()))
+        return self._task.judge(AnswerSubmission(self.answer, Path()))
 
     def move(self, columns: int, rows: int) -> None:
         """To the next square of the floor in that direction; walls are passed over."""
@@ -123,19 +123,19 @@ class DevicesBoard(Board):
     def undo(self) -> None:
         self._lasers = self._history.take(self._lasers)
 
-    def rows(self) -> list[Row]:
+    def rows(self, scale: int = 1) -> list[Row]:
         task, seen = self._task, self._task.seen_from(self._lasers)
+        lit = {square for laser in self._lasers for square in _lit(task, laser)}
         signs: dict[Cell, tuple[str, str]] = {}
         for square in task.floor:
-            is_lit = any(task.sees(laser, square) for laser in self._lasers)
-            signs[square] = ("·", "warn") if is_lit else (" ", "")
+            signs[square] = ("·", "warn") if square in lit else (" ", "")
         for name, square in task.places.items():
             signs[square] = (name.upper(), "good") if name in seen else (name, "bold")
         signs |= dict.fromkeys(self._lasers, ("*", "warn"))
         under = signs[self._cursor][0]
         signs[self._cursor] = ("+" if under in " ·" else under, "chosen")
         return [
-            *grid_rows(task.grid, signs, self.scale),
+            *grid_rows(task.grid, signs, scale),
             row(),
             row(
                 (f"  lasers {len(self._lasers)}", "bold"),
@@ -161,6 +161,12 @@ def _visible(task: DevicesTask) -> dict[Cell, frozenset[str]]:
         square: frozenset(name for name, place in places.items() if task.sees(square, place))
         for square in task.floor
     }
+
+
+@cache
+def _lit(task: DevicesTask, laser: Cell) -> frozenset[Cell]:
+    """Computes which squares of the floor are seen from one of them."""
+    return frozenset(square for square in task.floor if task.sees(laser, square))
 
 
 @cache

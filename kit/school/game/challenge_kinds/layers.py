@@ -19,7 +19,7 @@ from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import read_requirements
 from kit.plain_files import is_file_there
 from kit.school.game.board import Board, History
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.world.documents import open_document
@@ -55,8 +55,8 @@ class LayersTask(ChallengeTask):
     def board(self, answer: str) -> Board:
         return LayersBoard(self, answer)
 
-    def judge(self, handed_in: HandedIn) -> Judgement:
-        return judge_assignment(self, read_plan(Path(handed_in.answer)))
+    def judge(self, submission: AnswerSubmission) -> Judgement:
+        return judge_assignment(self, read_plan(Path(submission.answer)))
 
     def shared_text(self, answer: str) -> str:
         return Path(answer).read_text(encoding="utf-8")
@@ -126,7 +126,7 @@ class LayersBoard(Board):
         self._layers = self._history.take(self._layers)
         self._column = min(self._column, len(self._layers))
 
-    def rows(self) -> list[Row]:
+    def rows(self, scale: int = 1) -> list[Row]:
         width = max(len(name) for name in self._names) + 2
         columns = min(len(self._layers) + 1, MAX_LAYERS)
         wrong = find_breaches(self._case, self._plan)

@@ -13,7 +13,7 @@ from typing import Final, Self
 from kit.document.rows import Row, row
 from kit.plain_text import quoted
 from kit.school.game.board import MOVES, Board, Cell, find_cell, grid_rows, letters_of, shortest_way, step
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
@@ -48,8 +48,8 @@ class PassByTask(ChallengeTask):
     def board(self, answer: str) -> Board:
         return PassByBoard(self, answer)
 
-    def judge(self, handed_in: HandedIn) -> Judgement:
-        moves = read_two(handed_in.answer)
+    def judge(self, submission: AnswerSubmission) -> Judgement:
+        moves = read_two(submission.answer)
         ticks = max(map(len, moves))
         if meeting := first_meeting(self, moves):
             return Judgement(Medal.NONE, f"The robots meet at tick {meeting}.")
@@ -147,7 +147,7 @@ class PassByBoard(Board):
         return "\n".join(own or WAIT for own in self._moves) + "\n"
 
     def judgement(self) -> Judgement:
-        return self._task.judge(HandedIn(self.answer, Path()))
+        return self._task.judge(AnswerSubmission(self.answer, Path()))
 
     def move(self, columns: int, rows: int) -> None:
         self._add(letters_of(columns, rows))
@@ -165,7 +165,7 @@ class PassByBoard(Board):
     def undo(self) -> None:
         self._moves[self._active] = self._moves[self._active][:-1]
 
-    def rows(self) -> list[Row]:
+    def rows(self, scale: int = 1) -> list[Row]:
         task, tick = self._task, len(self._moves[self._active])
         signs = {goal: (name, "good") for name, goal in zip("ab", task.goals, strict=True)}
         signs |= dict.fromkeys(task.starts, (" ", ""))
@@ -182,7 +182,7 @@ class PassByBoard(Board):
         state = f"they meet at tick {meeting}" if meeting else "they do not meet"
         ticks = max(map(len, self._moves))
         return [
-            *grid_rows(task.grid, signs, self.scale),
+            *grid_rows(task.grid, signs, scale),
             row(),
             *plans,
             row((f"  ticks {ticks}", "bold"), f"   shown: after tick {tick}   {state}"),

@@ -27,7 +27,7 @@ from kit.school.game.board import (
     grid_rows,
     step,
 )
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn, judge_share
+from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask, judge_share
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.world.yaml_section import Section
 
@@ -90,8 +90,8 @@ class PolicyTask(ChallengeTask):
     def board(self, answer: str) -> Board:
         return PolicyBoard(self, answer)
 
-    def judge(self, handed_in: HandedIn) -> Judgement:
-        value = value_of(self, read_policy(self, handed_in.answer))
+    def judge(self, submission: AnswerSubmission) -> Judgement:
+        value = value_of(self, read_policy(self, submission.answer))
         naive, best = value_of(self, naive_policy(self)), value_of(self, best_policy(self))
         comparison = AnswerComparison(
             "return", value, (("naive answer", naive), ("best answer", best)), more_is_better=True
@@ -243,7 +243,7 @@ class PolicyBoard(Board):
         return format_policy(self._task, self._policy)
 
     def judgement(self) -> Judgement:
-        return self._task.judge(HandedIn(self.answer, Path()))
+        return self._task.judge(AnswerSubmission(self.answer, Path()))
 
     def move(self, columns: int, rows: int) -> None:
         there = self._cursor[0] + rows, self._cursor[1] + columns
@@ -264,7 +264,7 @@ class PolicyBoard(Board):
     def undo(self) -> None:
         self._policy = self._history.take(self._policy)
 
-    def rows(self) -> list[Row]:
+    def rows(self, scale: int = 1) -> list[Row]:
         task, start = self._task, find_cell(self._task.grid, START)
         look = task.look(self._cursor) if self._cursor in self._policy else None
         signs = {
@@ -281,7 +281,7 @@ class PolicyBoard(Board):
         signs[self._cursor] = (signs[self._cursor][0], "chosen")
         worth = f"  worth {value_of(task, self._policy):.3f} from S, at {start[0]},{start[1]}"
         return [
-            *grid_rows(task.grid, signs, self.scale),
+            *grid_rows(task.grid, signs, scale),
             row(),
             row((worth, "bold")),
             row((f"  {task.prices}", "dim")),

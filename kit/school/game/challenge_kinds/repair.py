@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Self
 
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.school.lessons.checking import ExerciseCheck
@@ -49,21 +49,21 @@ class RepairTask(ChallengeTask):
     def read_answer(self, file: Path) -> str:
         return str(file)  # the file itself is handed in
 
-    def judge(self, handed_in: HandedIn) -> Judgement:
-        file = Path(handed_in.answer)
+    def judge(self, submission: AnswerSubmission) -> Judgement:
+        file = Path(submission.answer)
         if not file.is_file() or file.name != self.file:
             raise ChallengeError(f"Hand in the repaired {self.file}; {file} is not it.")
         exercise = Exercise(self.folder.name, self.folder, self.file, seconds=60.0)
         with ExerciseCheck(exercise, file) as check:
             while (report := check.poll()) is None:
-                handed_in.show_progress(check.progress)
+                submission.show_progress(check.progress)
                 time.sleep(POLL_S)
         if report.result is None:
             raise ChallengeError(report.problem)
         if report.lost_criteria:
             lost = report.lost_criteria[0]
             return Judgement(Medal.NONE, f"Not repaired yet: {lost.rationale or lost.title}")
-        seconds, (gold_s, silver_s) = handed_in.seconds, self.clock
+        seconds, (gold_s, silver_s) = submission.seconds, self.clock
         text = f"Repaired after {seconds:.0f} s; gold is at {gold_s:.0f} s, silver at {silver_s:.0f} s."
         comparison = AnswerComparison("s", seconds, (("gold at", gold_s), ("silver at", silver_s)))
         medal = Medal.GOLD if seconds <= gold_s else Medal.SILVER if seconds <= silver_s else Medal.BRONZE

@@ -10,7 +10,7 @@ from typing import Self
 
 from kit.document.rows import Row, row
 from kit.school.game.board import Board, Cell, distances_to, find_cell, grid_rows, shortest_way, step
-from kit.school.game.challenge import ChallengeTask, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.school.game.moves_board import MovesBoard, read_moves
@@ -42,8 +42,8 @@ class RoundTask(ChallengeTask):
     def board(self, answer: str) -> Board:
         return RoundBoard(self, answer)
 
-    def judge(self, handed_in: HandedIn) -> Judgement:
-        moves = read_moves(handed_in.answer, MAX_MOVES)
+    def judge(self, submission: AnswerSubmission) -> Judgement:
+        moves = read_moves(submission.answer, MAX_MOVES)
         cell, left = walked(self, moves)
         if left:
             return Judgement(Medal.NONE, f"It does not come to {', '.join(sorted(left))}.")
@@ -117,7 +117,7 @@ class RoundBoard(MovesBoard):
         super().__init__(task, answer, MAX_MOVES)
         self._round = task
 
-    def rows(self) -> list[Row]:
+    def rows(self, scale: int = 1) -> list[Row]:
         task = self._round
         cell, left = walked(task, self.moves)
         signs = {
@@ -127,7 +127,7 @@ class RoundBoard(MovesBoard):
         signs[cell] = ("@", "chosen")
         visited = len(task.places) - len(left)
         return [
-            *grid_rows(task.grid, signs, self.scale),
+            *grid_rows(task.grid, signs, scale),
             row(),
             row(
                 (f"  moves {len(self.moves)}", "bold"),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Self
 
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
@@ -39,14 +39,17 @@ class TrainingTask(ChallengeTask):
             section.flag("own_reward"),
         )
 
-    def judge(self, handed_in: HandedIn) -> Judgement:
+    def parse_answer(self, argument: str) -> str:
+        return argument  # a run's name, also where a file is called so
+
+    def judge(self, submission: AnswerSubmission) -> Judgement:
         from kit.learning.training.run_config import RunError
         from kit.learning.training.run_folders import find_run
         from kit.learning.training.run_text import success_shares
 
-        name = handed_in.answer
+        name = submission.answer
         try:
-            run = find_run(handed_in.runs, name)
+            run = find_run(submission.runs, name)
             config, summary = run.config(), run.summary()
         except (RunError, LookupError) as error:
             raise ChallengeError(str(error)) from None

@@ -11,7 +11,7 @@ import numpy as np
 
 from kit.document.rows import Row, row
 from kit.school.game.board import MOVES, Board, History, distances_to, find_cell, free_cells, step
-from kit.school.game.challenge import ChallengeError, ChallengeTask, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
@@ -65,8 +65,8 @@ class TuningTask(ChallengeTask):
     def board(self, answer: str) -> Board:
         return TuningBoard(self, answer)
 
-    def judge(self, handed_in: HandedIn) -> Judgement:
-        learned = learn(self, tuple(read_numbers(handed_in.answer).values()))
+    def judge(self, submission: AnswerSubmission) -> Judgement:
+        learned = learn(self, tuple(read_numbers(submission.answer).values()))
         text = f"{learned.arrived} of {len(SEEDS)} seeds find a shortest way, after {learned.steps:,.0f} steps each."
         others = (("budget", self.max_steps), ("silver at", self.silver_steps), ("gold at", self.gold_steps))
         comparison = AnswerComparison("steps", learned.steps, others)
@@ -181,7 +181,7 @@ class TuningBoard(Board):
         return format_numbers(self._numbers)
 
     def judgement(self) -> Judgement:
-        return self._task.judge(HandedIn(self.answer, Path()))
+        return self._task.judge(AnswerSubmission(self.answer, Path()))
 
     def move(self, columns: int, rows: int) -> None:
         self._chosen = max(0, min(self._chosen + rows, len(CHOICES) - 1))
@@ -195,7 +195,7 @@ class TuningBoard(Board):
     def undo(self) -> None:
         self._numbers = self._history.take(self._numbers)
 
-    def rows(self) -> list[Row]:
+    def rows(self, scale: int = 1) -> list[Row]:
         learned = learn(self._task, tuple(self._numbers.values()))
         rows = []
         for number, (name, values) in enumerate(CHOICES.items()):

@@ -39,7 +39,7 @@ from kit.school.game.shared_drives import (
     DriveRefused,
     check_inputs,
     drives_again,
-    platform_name,
+    platform_key,
     read_shared_drives,
     share_drives,
 )
@@ -211,7 +211,7 @@ class League(JobFolder):
         job = next((each for each in self.jobs() if each.key == key), None)
         if job is None:
             return  # somebody has withdrawn meanwhile
-        recordings, remarks = drive(job, self.programme().confinement)
+        recordings, remarks = run_league_job(job, self.programme().confinement)
         share_drives(recordings, self.result_file(key), remarks)
 
     def record_loss(self, key: str) -> None:
@@ -282,7 +282,7 @@ def tag_job(level: GameLevel, first: Entry, second: Entry) -> LeagueJob:
     return LeagueJob(_key("tag", level.id, first.digest, second.digest), level, (first, second))
 
 
-def drive(job: LeagueJob, confinement: Confinement) -> tuple[list[Recording], list[str]]:
+def run_league_job(job: LeagueJob, confinement: Confinement) -> tuple[list[Recording], list[str]]:
     """Runs a job's programs. Returns its recordings, and why programs have stopped: of each drive, or of both players."""
     with private_folder() as folder:  # the programs as they were entered, whatever their owners do meanwhile
         programs = [_copied(each, folder, number) for number, each in enumerate(job.entrants)]
@@ -346,7 +346,7 @@ def read_programme(content: bytes, folder: Path) -> Programme:
 def _judge_once(folder: Path, content: bytes, level: GameLevel, players: int) -> JudgedJob | None:
     """Judges the content of a result once, and keeps that in ``folder``: thousands of drives would take minutes each time."""
     told = json.dumps(
-        [__version__, platform_name(), repr(level), players, hashlib.sha256(content).hexdigest()]
+        [__version__, platform_key(), repr(level), players, hashlib.sha256(content).hexdigest()]
     )
     file = folder / f"{hashlib.sha256(told.encode()).hexdigest()[:32]}.json"
     with suppress(OSError, ValueError, KeyError, TypeError):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from kit.school.game.league.league import League, LeagueJob, drive
+from kit.school.game.league.league import League, LeagueJob, run_league_job
 from kit.school.game.shared_drives import digest_of
 
 
@@ -26,7 +26,7 @@ def differing_jobs(league: League) -> Verification:
         if judged is None or not judged.is_same_platform:
             continue
         compared += 1
-        recordings, _ = drive(job, confinement)
+        recordings, _ = run_league_job(job, confinement)
         if list(map(digest_of, recordings)) != list(map(digest_of, league.recordings(job))):
             differing.append(job)
     return Verification(compared, tuple(differing))

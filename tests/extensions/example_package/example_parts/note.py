@@ -8,7 +8,7 @@ from pathlib import Path
 from grader.assignment import Assignment
 from grader.check import check
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
-from grader.kinds.contract import AssignmentFiles, Kind, KindSettings, collect_once
+from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind, collect_once
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,4 +30,4 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
     return EvidenceRecord(file.read_bytes().decode(errors="replace"))
 
 
-KIND = Kind((".txt",), {words.name: words}, read_settings, collect_once(collect_evidence))
+KIND = SubmissionKind((".txt",), {words.name: words}, read_settings, collect_once(collect_evidence))

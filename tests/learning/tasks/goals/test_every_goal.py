@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import json
 from dataclasses import fields, replace
-from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
 
@@ -19,8 +18,8 @@ from kit.learning.authoring.task_check import check_task
 from kit.learning.authoring.task_text import build_case_scene, key_tables, task_blocks
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.policies.node_goals.goal_count import GoalStep
-from kit.learning.policies.policy_node import node_refusals
-from kit.learning.tasks.goals.goal import CaseTargets
+from kit.learning.policies.policy_node import node_count, node_refusals
+from kit.learning.tasks.goals.goal import KNOWN_IN_RACE, CaseTargets
 from kit.learning.tasks.goals.registry import goal_kinds
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_reader import ReadTask, read_task
@@ -168,9 +167,10 @@ def test_a_race_counts_it_without_what_a_race_does_not_know(kind: str, tmp_path:
 
 def unsensed(state: object, reads_lidar: bool) -> EpisodeState:
     """The state as far as a race knows it, which reads lidars only where the goal does."""
-    known = EpisodeState.of(state)  # type: ignore[arg-type]
-    sensed = ("twist", "move", "rotation", "forward_steps", "to_go", *(() if reads_lidar else ("ranges",)))
-    return replace(known, **{name: np.full(getattr(known, name).shape, np.nan) for name in sensed})
+    whole = EpisodeState.of(state)  # type: ignore[arg-type]
+    known = KNOWN_IN_RACE | ({"ranges"} if reads_lidar else set())
+    unknown = {each.name for each in fields(EpisodeState)} - known
+    return replace(whole, **{name: np.full(getattr(whole, name).shape, np.nan) for name in unknown})
 
 
 @every_goal
@@ -182,11 +182,9 @@ def test_a_node_counts_it_as_training_does_or_is_refused(kind: str, tmp_path: Pa
         assert any(f"goal {kind}" in each for each in node_refusals(read.task))
         return
     assert node_refusals(read.task) == ()
-    module = import_module(f"kit.learning.policies.node_goals.{kind}")
-    count = getattr(module, f"{kind.title()}Count")(
-        json.loads(json.dumps({**goal.node_facts(cases[0]), "step_time": read.task.step_time}))
-    )
-    assert count.is_told_later == goal.is_told_later
+    facts = {**goal.node_facts(cases[0]), "step_time": read.task.step_time}
+    count = type(node_count(read.task))(json.loads(json.dumps(facts)))
+    assert count.is_observation_delayed == goal.is_observation_delayed
     steps = drive(read.task, 1)
     told = count.begin(steps[0].previous_pose[0])
     assert told == steps[0].before.count[0]

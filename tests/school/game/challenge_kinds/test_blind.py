@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from kit.school.game.board import MOVES, find_cell
-from kit.school.game.challenge import HandedIn
+from kit.school.game.challenge import AnswerSubmission
 from kit.school.game.challenge_kinds.blind import BlindTask, believed, fewest_moves, naive_moves
 from kit.school.game.challenges import all_challenges
 from kit.school.game.medal import Medal
@@ -21,7 +21,7 @@ def test_certainty_with_the_fewest_moves_earns_gold(challenge) -> None:
     task = challenge.task
 
     def worth(moves: str) -> Medal:
-        return task.judge(HandedIn(moves, Path())).medal
+        return task.judge(AnswerSubmission(moves, Path())).medal
 
     best = fewest_moves(task)
     assert believed(task, best) == {find_cell(task.grid, "G")}

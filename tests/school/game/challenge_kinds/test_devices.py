@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.game.challenge import ChallengeError, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError
 from kit.school.game.challenge_kinds.devices import DevicesTask, fewest_lasers, naive_lasers
 from kit.school.game.challenges import all_challenges
 from kit.school.game.medal import Medal
@@ -21,7 +21,7 @@ def test_a_laser_at_every_place_earns_nothing_and_the_fewest_gold(challenge, tmp
 
     def worth(lasers: Sequence[tuple[int, int]]) -> Medal:
         return challenge.task.judge(
-            HandedIn(" ".join(f"{row},{column}" for row, column in lasers), tmp_path)
+            AnswerSubmission(" ".join(f"{row},{column}" for row, column in lasers), tmp_path)
         ).medal
 
     best, naive = fewest_lasers(task), naive_lasers(task)
@@ -40,7 +40,7 @@ def test_a_laser_at_every_place_earns_nothing_and_the_fewest_gold(challenge, tmp
     assert worth(tidy) < Medal.GOLD
     for wrong in ("", "1", "1,1,1", "-1,2", "0,0", "a,b", "99999,1", "1,1 " * 101):
         with pytest.raises(ChallengeError):
-            challenge.task.judge(HandedIn(wrong, tmp_path))
+            challenge.task.judge(AnswerSubmission(wrong, tmp_path))
 
 
 def test_walls_are_not_seen_through() -> None:
@@ -57,7 +57,7 @@ def test_the_board_mounts_lasers_and_passes_over_walls() -> None:
     board.move(1, 0)
     board.mark()
     assert board.answer == "1,3\n", "the cursor passes over the wall"
-    assert task.judge(HandedIn(board.answer, Path())).medal is Medal.NONE
+    assert task.judge(AnswerSubmission(board.answer, Path())).medal is Medal.NONE
     board.mark()
     board.move(-1, 0)
     board.move(0, 1)

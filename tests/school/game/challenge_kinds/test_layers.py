@@ -9,7 +9,7 @@ import pytest
 
 from kit.layers.planning import solve_layers
 from kit.layers.requirements_file import read_requirements
-from kit.school.game.challenge import ChallengeError, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError
 from kit.school.game.challenge_kinds.layers import LayersTask, judge_assignment, naive_plan
 from kit.school.game.challenges import all_challenges
 from kit.school.game.medal import Medal
@@ -29,9 +29,9 @@ def test_a_plan_with_a_layer_for_every_line_earns_nothing(challenge, tmp_path: P
     rows = [f"  {layer.name}: [{', '.join(sorted(layer.members))}]" for layer in best.layers]
     watched = [f"  {laser}: [{', '.join(names)}]" for laser, names in best.watches.items()]
     file.write_text("\n".join(["layers:", *rows, "lasers:", *watched, ""]))
-    assert challenge.task.judge(HandedIn(str(file), tmp_path)).medal is Medal.GOLD
+    assert challenge.task.judge(AnswerSubmission(str(file), tmp_path)).medal is Medal.GOLD
     with pytest.raises(ChallengeError, match="no such file"):
-        challenge.task.judge(HandedIn(str(tmp_path / "none.yaml"), tmp_path))
+        challenge.task.judge(AnswerSubmission(str(tmp_path / "none.yaml"), tmp_path))
 
 
 @pytest.mark.parametrize("challenge", PLANS, ids=lambda each: each.id)
@@ -52,7 +52,7 @@ def test_a_plan_can_be_made_by_keys(challenge, tmp_path: Path) -> None:
     assert board.judgement().medal is Medal.GOLD
     file = tmp_path / task.answer_file
     file.write_text(board.answer)
-    assert task.judge(HandedIn(task.read_answer(file), tmp_path)).medal is Medal.GOLD
+    assert task.judge(AnswerSubmission(task.read_answer(file), tmp_path)).medal is Medal.GOLD
     again = task.board(task.read_answer(file))
     assert again.judgement().medal is Medal.GOLD
     again.undo()

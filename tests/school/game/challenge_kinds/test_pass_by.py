@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.game.challenge import ChallengeError, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError
 from kit.school.game.challenge_kinds.pass_by import PassByTask, fewest_ticks, first_meeting, read_two
 from kit.school.game.challenges import all_challenges
 from kit.school.game.medal import Medal
@@ -19,7 +19,7 @@ def test_the_earliest_plan_earns_gold_and_own_ways_meet(challenge) -> None:
     task = challenge.task
 
     def worth(*moves: str) -> Medal:
-        return task.judge(HandedIn(" ".join(moves), Path())).medal
+        return task.judge(AnswerSubmission(" ".join(moves), Path())).medal
 
     best = fewest_ticks(task)
     assert worth(*best) is Medal.GOLD

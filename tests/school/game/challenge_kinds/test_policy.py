@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from kit.school.game.board import MOVES, find_cell, step
-from kit.school.game.challenge import ChallengeError, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError
 from kit.school.game.challenge_kinds.policy import (
     GOAL,
     PIT,
@@ -32,7 +32,7 @@ def test_the_best_policy_earns_gold_and_the_shortest_way_nothing(challenge) -> N
     task = challenge.task
 
     def worth(text: str) -> Medal:
-        return task.judge(HandedIn(text, Path())).medal
+        return task.judge(AnswerSubmission(text, Path())).medal
 
     best, naive = (format_policy(task, each(task)) for each in (best_policy, naive_policy))
     assert worth(best) is Medal.GOLD
@@ -99,4 +99,4 @@ def test_cells_that_look_alike_share_an_arrow() -> None:
     at = cell[0] * (len(task.grid[0]) + 1) + cell[1]
     lines[at] = "l" if lines[at] != "l" else "r"
     with pytest.raises(ChallengeError, match="looks like"):
-        task.judge(HandedIn("".join(lines), Path()))
+        task.judge(AnswerSubmission("".join(lines), Path()))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.game.challenge import ChallengeError, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError
 from kit.school.game.challenge_kinds.repair import RepairTask
 from kit.school.game.challenges import all_challenges, challenge_medals, prepare_answer
 from kit.school.game.medal import Medal
@@ -26,7 +26,7 @@ def test_a_program_is_repaired_against_the_clock(challenge, tmp_path: Path) -> N
         file, seconds = prepare_answer(journal, challenge, tmp_path / "challenges")
         assert seconds == 0.0
         faulty = file.read_text()
-        broken = challenge.task.judge(HandedIn(str(file), tmp_path, 1.0))
+        broken = challenge.task.judge(AnswerSubmission(str(file), tmp_path, 1.0))
         assert broken.medal is Medal.NONE  # the naive answer: as it was
         solution = (
             SOLUTIONS / challenge.task.folder.relative_to(lessons_folder()) / "solution.py"
@@ -39,11 +39,11 @@ def test_a_program_is_repaired_against_the_clock(challenge, tmp_path: Path) -> N
     task = challenge.task
     gold_s, silver_s = task.clock
     for when, medal in ((gold_s, Medal.GOLD), (silver_s, Medal.SILVER), (math.inf, Medal.BRONZE)):
-        assert task.judge(HandedIn(str(file), tmp_path, when)).medal is medal
+        assert task.judge(AnswerSubmission(str(file), tmp_path, when)).medal is medal
     different = [a for a, b in zip(faulty.splitlines(), solution.splitlines(), strict=False) if a != b]
     assert len(different) >= 5  # more than one fault, so that it takes a while
     with pytest.raises(ChallengeError, match="Hand in"):
-        challenge.task.judge(HandedIn(str(tmp_path), tmp_path, 1.0))
+        challenge.task.judge(AnswerSubmission(str(tmp_path), tmp_path, 1.0))
 
 
 @pytest.mark.parametrize("challenge", REPAIRS, ids=lambda each: each.id)
@@ -57,4 +57,4 @@ def test_a_check_that_nobody_waits_for_ends(challenge, tmp_path: Path) -> None:
     with ProgressJournal(tmp_path) as journal:
         file, _ = prepare_answer(journal, challenge, tmp_path / "challenges")
         with pytest.raises(LeftError):
-            challenge.task.judge(HandedIn(str(file), tmp_path, 1.0, leave))
+            challenge.task.judge(AnswerSubmission(str(file), tmp_path, 1.0, leave))

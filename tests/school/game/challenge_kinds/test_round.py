@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from kit.school.game.board import find_cell, shortest_way
-from kit.school.game.challenge import HandedIn
+from kit.school.game.challenge import AnswerSubmission
 from kit.school.game.challenge_kinds.round import RoundTask, best_round, naive_round
 from kit.school.game.challenges import all_challenges
 from kit.school.game.medal import Medal
@@ -17,7 +17,7 @@ ROUNDS = [each for each in all_challenges() if isinstance(each.task, RoundTask)]
 
 
 def worth(task: RoundTask, moves: str) -> Medal:
-    return task.judge(HandedIn(moves, Path())).medal
+    return task.judge(AnswerSubmission(moves, Path())).medal
 
 
 @pytest.mark.parametrize("challenge", ROUNDS, ids=lambda each: each.id)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.game.challenge import Challenge, ChallengeError, HandedIn
+from kit.school.game.challenge import AnswerSubmission, Challenge, ChallengeError
 from kit.school.game.challenge_kinds.training import GOLD_STEPS, TrainingTask, judge_training
 from kit.school.game.challenges import all_challenges
 from kit.school.game.medal import Medal
@@ -39,7 +39,7 @@ def test_a_training_counts_steps_and_successes(challenge, tmp_path: Path) -> Non
     if own:
         assert judge_training(task, 1, 1.0, has_own_reward=False).medal is Medal.NONE
     with pytest.raises(ChallengeError):
-        challenge.task.judge(HandedIn("no-such-run", tmp_path))
+        challenge.task.judge(AnswerSubmission("no-such-run", tmp_path))
 
 
 @pytest.mark.nightly
@@ -56,7 +56,7 @@ def test_the_kits_settings_earn_nothing_and_settings_that_suit_the_task_gold(
     def medal(name: str, *options: str) -> Medal:
         command = [sys.executable, "-m", "kit", "train", "turn", "--plain", "--workspace", str(tmp_path)]
         subprocess.run([*command, "--name", name, *options], check=True, capture_output=True, timeout=600)
-        return challenge.task.judge(HandedIn(name, tmp_path / "runs")).medal
+        return challenge.task.judge(AnswerSubmission(name, tmp_path / "runs")).medal
 
     budget = challenge.task.max_steps
     given = () if not challenge.task.own_reward else ("--reward", str(STARTER))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.game.challenge import ChallengeError, HandedIn
+from kit.school.game.challenge import AnswerSubmission, ChallengeError
 from kit.school.game.challenge_kinds.tuning import CHOICES, NAIVE, TuningTask, format_numbers, learn
 from kit.school.game.challenges import all_challenges
 from kit.school.game.medal import Medal
@@ -20,7 +20,7 @@ def test_numbers_that_suit_the_grid_earn_gold(challenge) -> None:
     task = challenge.task
 
     def worth(numbers: dict[str, float]) -> Medal:
-        return task.judge(HandedIn(format_numbers(numbers), Path())).medal
+        return task.judge(AnswerSubmission(format_numbers(numbers), Path())).medal
 
     assert worth(NAIVE) is Medal.NONE
     assert worth(GOOD) is Medal.GOLD
@@ -29,7 +29,7 @@ def test_numbers_that_suit_the_grid_earn_gold(challenge) -> None:
     assert worth({**GOOD, "rate": 0.01}) is Medal.NONE
     for wrong in ("", "rate=0.1", format_numbers(GOOD) + "speed=1", format_numbers({**GOOD, "rate": 0.2})):
         with pytest.raises(ChallengeError):
-            task.judge(HandedIn(wrong, Path()))
+            task.judge(AnswerSubmission(wrong, Path()))
 
 
 def test_the_same_numbers_learn_the_same() -> None:

@@ -1,7 +1,7 @@
-"""An interpreter that has imported what students' processes import, and forks one for each request. See ``warm_start``.
+"""An interpreter that has imported what students' processes import, and forks one for each request. See ``kit.host.warm_start``.
 
 A request is a datagram: the working folder and the environment as JSON, with the descriptors that become 0, 1 and 2. The
-answer is the id of the process. It is a child of the tests' process, not of this one, has a session of its own, and goes on
+answer is the id of the process. It is a child of the process that asks, not of this one, has a session of its own, and goes on
 where a started one does, at ``supervisor.run``.
 """
 
@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import array
 import ctypes
+import gc
 import json
 import os
 import signal
 import socket
-from typing import Final
+import sys
+from typing import Final, NoReturn
 
 from kit.host.child import function_calls, launch_program, node_program, supervisor  # noqa: F401 - to be warm
 from kit.ros.execution import client_library  # noqa: F401 - likewise
@@ -22,8 +24,10 @@ MAX_REQUEST: Final = 1 << 18
 CLONE_PARENT: Final = 0x8000
 
 
-def serve(clone_call: int) -> None:
-    """Answers requests until the tests' process has gone. ``clone_call``: the number of the system call."""
+def serve(clone_call: int) -> NoReturn:
+    """Answers requests until the process that asks has gone. ``clone_call``: the number of the system call."""
+    del sys.modules[__name__]  # it is none that a program needs
+    gc.freeze()  # no collection in what is forked looks through it, which would copy its memory
     requests = socket.socket(fileno=0)
     room = socket.CMSG_SPACE(3 * array.array("i").itemsize)
     while True:

@@ -1,8 +1,8 @@
-"""Students' processes are forked from a warm interpreter, which takes a third of the work of starting one.
+"""Forks students' processes from a warm interpreter, which takes a third of the work of starting one.
 
-What is forked has the modules, descriptors, environment and parent of what would have been started. A test that looks at the
-start itself asks for the fixture ``cold_start``; with ``KIT_TESTS_COLD`` in the environment every process is started, as for
-users: ``.ci/run`` does that.
+For a student's own check, at level 0, and for tests. The interpreter belongs to one process of the kit and ends with it; it
+has never held anything but the kit's own modules. What is forked has the descriptors, environment and parent of what would have
+been started, and the modules that a program of any role may need.
 """
 
 from __future__ import annotations
@@ -18,49 +18,43 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from types import SimpleNamespace
 from typing import IO, Any, Final
-from unittest.mock import patch
 
 from kit.host import process
 
 CLONE_CALLS: Final = {"x86_64": 56, "aarch64": 220}
 """The number of Linux's system call ``clone``, by machine."""
 _SERVE: Final = (
-    "import sys; sys.path.insert(0, {root!r}); "
-    "from kit.host.child import supervisor; from tests.warm_interpreter import serve; "
-    "del sys.path[0], sys.modules['tests'], sys.modules['tests.warm_interpreter']; "
-    "serve({call})"
+    f"import sys; sys.path.insert(0, {str(Path(__file__).parents[2])!r}); "
+    "from kit.host.child import warm_interpreter; del sys.path[0]; warm_interpreter.serve({call})"
 )
 
 
 def is_possible() -> bool:
     """Returns whether this machine can fork a process beside another."""
-    return sys.platform == "linux" and platform.machine() in CLONE_CALLS
+    if sys.platform != "linux" or platform.machine() not in CLONE_CALLS:
+        return False
+    try:
+        os.close(os.pidfd_open(os.getpid()))
+    except OSError:  # an old kernel
+        return False
+    return True
 
 
 @contextmanager
 def warm_starts() -> Iterator[None]:
-    """Has students' processes be forked. Not for two threads at once."""
-    with WarmInterpreter() as interpreter:
-        stand_in = SimpleNamespace(
-            Popen=interpreter.start, PIPE=subprocess.PIPE, TimeoutExpired=subprocess.TimeoutExpired
-        )
-        with patch.object(process, "subprocess", stand_in):
-            yield
-
-
-@contextmanager
-def cold_starts() -> Iterator[None]:
-    """Has students' processes be started after all."""
-    with patch.object(process, "subprocess", subprocess):
+    """Has students' processes be forked, where this machine can. The interpreter starts at once, beside what follows."""
+    if not is_possible():
+        yield
+        return
+    with WarmInterpreter() as interpreter, process.started_by(interpreter.start):
         yield
 
 
 class ForkedProcess:
-    """Stands in for a ``subprocess.Popen`` with what ``StudentProcess`` uses of it."""
+    """A process that was forked, with what is used of a ``subprocess.Popen``."""
 
     def __init__(self, pid: int, stdout: int, stderr: int) -> None:
         self.pid = pid
@@ -88,13 +82,14 @@ class WarmInterpreter:
     def __init__(self) -> None:
         self._lock, self._owner = threading.Lock(), os.getpid()
         self._command = process.interpreter_command()
-        serving = _SERVE.format(root=str(Path(__file__).parents[1]), call=CLONE_CALLS[platform.machine()])
+        serving = _SERVE.replace("{call}", str(CLONE_CALLS[platform.machine()]))
         self._requests, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
             self._process = subprocess.Popen(
                 [*self._command[:-1], serving],
-                stdin=theirs,
+                stdin=theirs.fileno(),
                 stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
                 cwd="/",
                 env=process.process_environment("/"),
                 start_new_session=True,
@@ -104,29 +99,38 @@ class WarmInterpreter:
         return self
 
     def __exit__(self, *_: object) -> None:
+        with suppress(OSError):  # it has ended
+            self._requests.shutdown(socket.SHUT_RDWR)  # a fork of this process may hold it open
         self._requests.close()
         self._process.wait()
 
     def start(
         self,
-        command: Sequence[str],
+        command: list[str],
         *,
         stdin: int,
         cwd: str,
         env: Mapping[str, str],
         pass_fds: Sequence[int],
         **options: Any,
-    ) -> ForkedProcess | subprocess.Popen[bytes]:
-        """Forks a process in place of ``subprocess.Popen``, which starts what is no plain process of a student's. So it does in a
-        fork of the tests' process, which would not be the parent of what is forked."""
+    ) -> process.StartedProcess:
+        """Forks a process. What is no plain process of a student's is started, and so is what a fork of this process asks for,
+        which would not be the parent of what is forked."""
         if command != self._command or pass_fds or os.getpid() != self._owner:
-            return subprocess.Popen(command, stdin=stdin, cwd=cwd, env=env, pass_fds=pass_fds, **options)
+            return process.start_cold(command, stdin=stdin, cwd=cwd, env=env, pass_fds=pass_fds, **options)
         out, err = os.pipe(), os.pipe()
         request = json.dumps([cwd, dict(env)]).encode()
         passed = array.array("i", [stdin, out[1], err[1]])
-        with self._lock:
-            self._requests.sendmsg([request], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, passed)])
-            pid = int(self._requests.recv(64))
+        try:
+            with self._lock:
+                self._requests.sendmsg([request], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, passed)])
+                answer = self._requests.recv(64)
+        except OSError:
+            answer = b""
         os.close(out[1])
         os.close(err[1])
-        return ForkedProcess(pid, out[0], err[0])
+        if not answer:  # the interpreter has ended: not every kernel of such a version lets it fork
+            os.close(out[0])
+            os.close(err[0])
+            return process.start_cold(command, stdin=stdin, cwd=cwd, env=env, pass_fds=pass_fds, **options)
+        return ForkedProcess(int(answer), out[0], err[0])

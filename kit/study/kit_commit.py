@@ -1,0 +1,50 @@
+"""The commit of the kit's own source, asked of git without running what a repository names."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from pathlib import Path
+
+from kit.study.result_logs import (
+    SHIPPED_FOLDER,
+)
+
+
+def kit_commit() -> str:
+    """The commit of the kit's source, with a plus sign where files differ from it; empty where there is no repository.
+
+    Recorded results, which recording itself changes, do not count.
+    """
+    results = f":!{SHIPPED_FOLDER.relative_to(Path(__file__).parents[2])}"
+    try:
+        commit = _git("describe", "--always", "--abbrev=12", "--exclude=*")
+        return commit + ("+" if _git("status", "--porcelain", "-uno", "--", "kit", results) else "")
+    except (OSError, subprocess.SubprocessError):
+        return ""
+
+
+def _git(*words: str) -> str:
+    """Asks the repository that the folder of the kit's source is, and has git run none of the programs that it names.
+
+    A repository above an installed kit, or one that the user's variables name, may be anybody's.
+    """
+    folder = Path(__file__).resolve().parents[2]
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
+    environment |= {"GIT_CEILING_DIRECTORIES": str(folder.parent), "GIT_OPTIONAL_LOCKS": "0"}
+
+    def run(*command: str, check: bool) -> str:
+        found = subprocess.run(
+            ["git", "-c", "core.fsmonitor=false", "-c", "core.hooksPath=/dev/null", *command],
+            cwd=folder,
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=20,
+            check=check,
+        )
+        return found.stdout.strip()
+
+    filters = run("config", "--name-only", "--get-regexp", r"^filter\..*\.(clean|process)$", check=False)
+    without = [word for name in filters.splitlines() for word in ("-c", f"{name}=")]
+    return run(*without, *words, check=True)

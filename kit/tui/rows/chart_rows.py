@@ -1,0 +1,75 @@
+"""Charts of blocks, as rows of text: of a laser's distances, of values over time. Pure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Final
+
+from kit.document.rows import Row, row
+
+CHART_ROWS: Final = 5
+
+_EIGHTHS: Final = " ▁▂▃▄▅▆▇█"
+
+
+def laser_chart(laser: Sequence[float], width: int, rows: int = CHART_ROWS) -> list[Row]:
+    """Bars of the distance [m] by direction, from behind on the left over ahead in the middle to behind on the right."""
+    ranges = laser[::-1]
+    bars = width - 6
+    columns = (bar * len(ranges) // bars for bar in range(bars + 1))
+    heights = []
+    for start, stop in pairwise(columns):
+        seen = filter(math.isfinite, ranges[start : max(stop, start + 1)])
+        heights.append(min(seen, default=0.0))
+    return _bars(heights, max(heights, default=0.0) or 1.0, rows, "m")
+
+
+def time_chart(values: Sequence[float], width: int, least: float, rows: int = CHART_ROWS) -> list[Row]:
+    """The newest values on the right, from the middle row up and down where some are negative."""
+    room = width - 6
+    shown = list(values)[-room * 2 :]
+    # Two samples to a character where there are many.
+    paired = [max(shown[i : i + 2], key=abs) for i in range(0, len(shown), 2)] if len(shown) > room else shown
+    paired = [0.0] * (room - len(paired)) + paired[-room:]
+    largest = max((abs(value) for value in paired), default=0.0)
+    top = max(least, math.ceil(largest / least - 1e-9) * least)
+    if min(paired, default=0.0) > -0.05 * top:
+        return _bars(paired, top, rows, "")
+    middle = rows // 2
+    upper = _bars([max(value, 0.0) for value in paired], top, middle, "", has_zero=False)
+    lower = [
+        row(
+            (f"{-top:4.1f}  " if number == rows - middle - 2 else " " * 6, "dim"),
+            ("".join(_downward(-value / top * (rows - middle - 1) - number) for value in paired), "code"),
+        )
+        for number in range(rows - middle - 1)
+    ]
+    axis = row(("   0  ", "dim"), ("".join("─" if value == 0.0 else "━" for value in paired), "dim"))
+    return [*upper, axis, *lower]
+
+
+def _downward(share: float) -> str:
+    """A character filled from its top: half and whole are all there are."""
+    return "█" if share >= 0.75 else "▀" if share >= 0.1 else " "
+
+
+def column_chart(shares: Sequence[float], rows: int) -> list[str]:
+    """A column for each share, 0 to 1 of the height, as ``rows`` lines of text."""
+    return [
+        "".join(_EIGHTHS[min(8, max(0, round((share * rows - line) * 8)))] for share in shares)
+        for line in range(rows - 1, -1, -1)
+    ]
+
+
+def _bars(values: Sequence[float], top: float, rows: int, unit: str, *, has_zero: bool = True) -> list[Row]:
+    lines = []
+    for number, glyphs in enumerate(column_chart([value / top for value in values], rows)):
+        label = " " * 6
+        if number == 0:
+            label = f"{top:4.1f}{unit:<2}"
+        elif number == rows - 1 and has_zero:
+            label = f"   0{unit:<2}"
+        lines.append(row((label, "dim"), (glyphs, "code")))
+    return lines

@@ -1,0 +1,119 @@
+"""The instruments of a large terminal beside a driven world: charts of lasers and speeds, the program. Pure."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from kit.document.rows import Row, row
+from kit.tui.rows.chart_rows import laser_chart, time_chart
+from kit.tui.rows.readout_rows import message_rows, readout
+from kit.tui.rows.ruled_title import ruled_title
+
+if TYPE_CHECKING:
+    from kit.run.view import View
+
+
+LARGE_SIZE: Final = (120, 36)
+"""Columns and rows from which on a screen has room for instruments."""
+LARGE_PANEL_WIDTH: Final = 46
+WIDE_PANEL: Final = (160, 60)
+"""From so many columns on the panel is so wide."""
+HISTORY_S: Final = 60.0
+SAMPLE_S: Final = 0.2
+"""Seconds of the simulation that the charts of the past cover, and between two of their points."""
+
+
+def panel_width(columns: int) -> int:
+    """Returns the width of the panel of a large screen."""
+    return WIDE_PANEL[1] if columns >= WIDE_PANEL[0] else LARGE_PANEL_WIDTH
+
+
+@dataclass
+class SpeedHistory:
+    """The robot's speeds of the last minute."""
+
+    forward_speeds: deque[float] = field(default_factory=lambda: deque(maxlen=round(HISTORY_S / SAMPLE_S)))
+    turning: deque[float] = field(default_factory=lambda: deque(maxlen=round(HISTORY_S / SAMPLE_S)))
+    _last: float = -math.inf
+
+    def add(self, view: View) -> None:
+        """Notes the view's speeds, every ``SAMPLE_S``; starts again where the clock went back."""
+        if view.time_s < self._last:
+            self.forward_speeds.clear()
+            self.turning.clear()
+            self._last = -math.inf
+        # Several samples at once where the simulation runs ahead of the screen: the chart's axis is time.
+        missed = 1 if self._last == -math.inf else int((view.time_s - self._last) / SAMPLE_S + 1e-6)
+        for _ in range(min(missed, self.forward_speeds.maxlen or 0)):
+            self.forward_speeds.append(view.speed[0])
+            self.turning.append(view.speed[1])
+        if missed:
+            self._last = view.time_s if self._last == -math.inf else self._last + missed * SAMPLE_S
+
+
+def instruments(
+    view: View, history: SpeedHistory, drive: str | None, program: Sequence[str], size: tuple[int, int]
+) -> tuple[Row, ...]:
+    """The panel of a large screen, in order of importance as far as ``size``, columns and rows, has room.
+
+    ``program``: the lines of the controller's file.
+    """
+    width, height = size
+    rows: list[Row] = [ruled_title("robot", width), *_two_columns(readout(view, drive), width)]
+    ranges = view.laser.tolist()
+    if any(map(math.isfinite, ranges)):
+        rows += [
+            ruled_title("laser", width, "distance to the left, ahead, to the right"),
+            *laser_chart(ranges, width),
+        ]
+    if history.forward_speeds:
+        rows += [
+            ruled_title("speed", width, f"last {HISTORY_S:.0f} s, m/s"),
+            *time_chart(history.forward_speeds, width, 0.1),
+        ]
+        rows += [ruled_title("turning", width, "rad/s, up is left"), *time_chart(history.turning, width, 0.5)]
+    left = height - len(rows)
+    if view.messages and left > 2:
+        shown = view.messages[-max(1, min(len(view.messages), 8, left - 1)) :]
+        rows += [
+            ruled_title("messages", width),
+            *(each for record in shown for each in message_rows(record, width)),
+        ]
+    left = height - len(rows)
+    if program and left > 3:
+        rows += [
+            ruled_title(view.controller or "program", width, "^E edits it"),
+            *_code_rows(program, width, left - 1),
+        ]
+    return tuple(rows[:height])
+
+
+def _two_columns(rows: Sequence[Row], width: int) -> list[Row]:
+    """The same rows in two columns, the second from a title on."""
+    titles = [
+        number for number, parts in enumerate(rows) if len(parts) == 1 and not parts[0][0].startswith(" ")
+    ]
+    middle = min(titles, key=lambda number: abs(number - len(rows) / 2), default=0)
+    left, right = rows[:middle], rows[middle:]
+    half = width // 2
+    joined = []
+    for number in range(max(len(left), len(right))):
+        first = left[number] if number < len(left) else ()
+        used = sum(len(text) for text, _ in first)
+        second = right[number] if number < len(right) else ()
+        joined.append((*first, (" " * max(1, half - used), ""), *second))
+    return joined
+
+
+def _code_rows(program: Sequence[str], width: int, rows: int) -> list[Row]:
+    """The program from its first class or function on, or its beginning."""
+    first = next((number for number, line in enumerate(program) if line.startswith(("class ", "def "))), 0)
+    start = max(0, min(first, len(program) - rows))
+    return [
+        row((f"{start + number + 1:3d} ", "dim"), line.expandtabs(4)[: max(0, width - 4)])
+        for number, line in enumerate(program[start : start + rows])
+    ]

@@ -1,0 +1,77 @@
+"""The ladder of times and medals of a level, as rows of text. Pure."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Final
+
+from kit.document.rows import Row, row
+from kit.school.game.drive_records import DriveRecord
+from kit.school.game.medal import RUNGS, SHARES, Medal, medal_of, medal_time, next_rung
+from kit.school.game.race import DriverKind, RaceFinish
+from kit.tui.rows.medal_signs import MEDAL_SIGNS
+
+LIST_BAR, ABOUT_BAR, RESULT_BAR = 13, 34, 40
+"""Columns of a ladder in the list of levels, below it, and at the end of a drive."""
+HERE: Final = "\u25cf"
+"""Where a drive stands on a ladder."""
+
+
+def ladder_bar(driver: DriverKind, reference: float, seconds: float | None, width: int) -> Row:
+    """All rungs of a driver's ladder, as far apart as the logarithms of their times, and where a time stands among them.
+
+    >>> from kit.document.rows import row_text
+    >>> row_text(ladder_bar(DriverKind.KEYS, 10.0, 15.0, 30))
+    'B━━━━━━━━━━━●─────S──────G──MR'
+    """
+    shares = SHARES[driver]
+    widest = math.log(shares[Medal.BRONZE])
+
+    def column(share: float) -> int:
+        return round((width - 1) * (1.0 - min(math.log(max(share, 1.0)) / widest, 1.0)))
+
+    signs = ["─"] * width
+    for medal in RUNGS:
+        below_record = 0 if medal is Medal.RECORD else 1
+        signs[min(column(shares[medal]), width - 1 - below_record)] = MEDAL_SIGNS[medal]
+    if seconds is None or seconds > medal_time(Medal.BRONZE, reference, driver):
+        return row(("".join(signs), "dim"))
+    here = column(seconds / reference)
+    passed = "".join("━" if sign == "─" else sign for sign in signs[:here])
+    return row((passed, "good"), (HERE, "bold"), ("".join(signs[here + 1 :]), "dim"))
+
+
+def ladder_words(driver: DriverKind, reference: float, seconds: float | None) -> str:
+    """A time and what the next rung asks for."""
+    rung = next_rung(driver, reference, seconds)
+    asked = "" if rung is None else f"{rung.title} at {medal_time(rung, reference, driver):.2f} s"
+    return f"  {asked}" if seconds is None else f"  {seconds:.2f} s{', ' if asked else ''}{asked}"
+
+
+def ladder_rows(driver: DriverKind, reference: float, seconds: float | None) -> list[Row]:
+    """A ladder with the times of its rungs below it, and how far the next one is."""
+    times = [f"{medal.title} {medal_time(medal, reference, driver):.2f}" for medal in RUNGS]
+    rows = [
+        row("   ", *ladder_bar(driver, reference, seconds, RESULT_BAR), (f"  {driver.phrase}", "dim")),
+        row((f"   {'  '.join(times)} s", "dim")),
+    ]
+    rung = next_rung(driver, reference, seconds)
+    if seconds is not None and rung is not None:
+        missing = seconds - medal_time(rung, reference, driver)
+        rows.append(row("   next ", (f"{rung.title}, {missing:.2f} s away", "bold")))
+    return rows
+
+
+def ladder_of_drive(
+    finish: RaceFinish, record: DriveRecord, driver: DriverKind, reference: float | None
+) -> list[Row]:
+    """The ladder of a drive that has ended; none where it earns nothing."""
+    if reference is None or record.is_shipped or not finish.reached:
+        return []
+    rows = ladder_rows(driver, reference, finish.seconds)
+    unharmed = medal_of(replace(finish, collisions=0), reference, driver)
+    if unharmed > record.medal:
+        bumps = "the bump" if finish.collisions == 1 else "the bumps"
+        rows[2:] = [row((f"   without {bumps} it would have been {unharmed.title}", "dim"))]
+    return rows

@@ -1,0 +1,87 @@
+"""Leaderboards as rows of text: standings of players, times on a level. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText
+from kit.plain_text import counted
+from kit.school.game.daily import DAILY_PREFIX, daily_level, today
+from kit.school.game.leaderboard import LeaderboardEntry, PlayerStanding
+from kit.school.game.levels import all_levels
+from kit.school.game.medal import RUNGS
+from kit.school.game.player_progress import LevelProgress
+from kit.school.game.race import DriverKind
+from kit.school.game.references import reference_seconds
+from kit.tui.rows.level_rows import BEST, BEST_TODAY
+
+
+def leaderboard_standings(standings: Sequence[PlayerStanding], offer: str = "") -> list[Block]:
+    """A table of all who have joined. ``offer``: what can be done about it."""
+    offered = [Text(offer, Tone.DIM)] if offer else []
+    if not standings:
+        return [Text("Nobody is on the leaderboard of this machine yet."), *offered]
+    columns = (
+        Column(""),
+        Column("", CellStyle.TEXT),
+        *(Column(each.title) for each in reversed(RUNGS)),
+        Column("stars"),
+        Column("quickest on", CellStyle.TEXT),
+    )
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
+        (
+            f"{place}.",
+            _player(each.name, each.is_mine),
+            *(each.medals[medal] for medal in reversed(RUNGS)),
+            each.stars,
+            counted(each.fastest, "level"),
+        )
+        for place, each in enumerate(standings, 1)
+    )
+    return [Table("standings", "", columns, rows, is_ruled=False), *offered]
+
+
+def _player(name: str, is_mine: bool) -> ToneText:
+    return ToneText(name, Tone.BOLD if is_mine else Tone.PLAIN)
+
+
+def _driven(entry: LeaderboardEntry) -> str:
+    """Who drove, whether it was on another kind of machine than this one, where a drive is the same but not to the bit, and who
+    had the same drive before."""
+    remarks = [
+        *([] if entry.is_same_platform else ["another machine"]),
+        *([f"as {entry.copy_of} before"] if entry.copy_of else []),
+    ]
+    return ", ".join([entry.driver.phrase, *remarks])
+
+
+def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
+    """The quickest drives of today's level and of each other. ``entries``: in the order of ``read_entries``."""
+    titles = {daily_level(today()).id: "Today's level", **{each.id: each.title for each in all_levels()}}
+    rows = tuple(
+        (title, _player(each.name, each.is_mine), f"{each.seconds:.2f} s", _driven(each))
+        for level, title in titles.items()
+        for each in [each for each in entries if each.level == level][
+            : BEST_TODAY if level.startswith(DAILY_PREFIX) else BEST
+        ]
+    )
+    columns = (Column("", CellStyle.TEXT), Column("", CellStyle.TEXT), Column(""), Column("", CellStyle.TEXT))
+    return Table("times", "", columns, rows, grouped=True)
+
+
+def times_to_beat(found: Sequence[LevelProgress]) -> Table:
+    """The reference drive's time of each level and the player's best ones, for a board on which nobody stands yet."""
+    rows = tuple(
+        (
+            each.level.title,
+            f"{reference:.2f} s",
+            *(
+                f"{each.best_times[driver]:.2f} s" if driver in each.best_times else ToneText("-", Tone.DIM)
+                for driver in DriverKind
+            ),
+        )
+        for each in found
+        if (reference := reference_seconds(each.level)) is not None
+    )
+    drivers = (Column(f"you {driver.phrase}") for driver in DriverKind)
+    return Table("to-beat", "", (Column("", CellStyle.TEXT), Column("the kit"), *drivers), rows)

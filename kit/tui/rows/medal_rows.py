@@ -1,0 +1,42 @@
+"""A medal as a row of text, and as a drawing. Pure."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from kit.document.rows import Row, row
+from kit.school.game.medal import Medal
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES
+
+
+def medal_row(medal: Medal, *, is_new: bool) -> Row:
+    """A medal that was earned. ``is_new``: whether it is better than those before."""
+    better = " (new)" if is_new else ""
+    return row((f"   {MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]), (f"{medal.title}{better}", "bold"))
+
+
+MEDAL_PICTURE: Final = (
+    r"  \ \   / /",
+    r"   \ \ / /",
+    r"   .-'-'-.",
+    r"  /       \ ",
+    r" |    {}    |",
+    r"  \       /",
+    r"   '-----'",
+)
+SPARK_SIGNS: Final = "*.+'"
+
+
+def medal_drawing(medal: Medal, spark: int) -> list[Row]:
+    """A medal with its letter. ``spark``: the number of a picture of joy around it, 0 for none."""
+    rows = []
+    for number, line in enumerate(MEDAL_PICTURE):
+        sparks = "".join(
+            SPARK_SIGNS[(number + column) % len(SPARK_SIGNS)]
+            if (7 * column + 5 * number + 3 * spark) % 11 < 2
+            else " "
+            for column in range(30 if spark else 0)
+        )
+        drawn = f"   {line.format(MEDAL_SIGNS[medal]):<14}"
+        rows.append(row((drawn, MEDAL_STYLES[medal]), (sparks, "warn")))
+    return [*rows, row()]

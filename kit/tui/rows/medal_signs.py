@@ -1,0 +1,25 @@
+"""Signs and styles of medals and stars, which are also read where there is no colour."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from kit.school.game.medal import Medal
+
+STAR, NO_STAR, SHUT = "*", ".", "-"
+MEDAL_SIGNS: Final = {
+    Medal.NONE: NO_STAR,
+    Medal.BRONZE: "B",
+    Medal.SILVER: "S",
+    Medal.GOLD: "G",
+    Medal.MASTER: "M",
+    Medal.RECORD: "R",
+}
+MEDAL_STYLES: Final = {
+    Medal.NONE: "dim",
+    Medal.BRONZE: "",
+    Medal.SILVER: "bold",
+    Medal.GOLD: "warn",
+    Medal.MASTER: "good",
+    Medal.RECORD: "good",
+}

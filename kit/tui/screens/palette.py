@@ -1,0 +1,96 @@
+"""The palette: all commands of the present screen and of the first one, in one list."""
+
+from __future__ import annotations
+
+from asyncio import create_task
+from collections.abc import Awaitable, Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+
+from kit.dialogue.actions import ScreenActions
+from kit.render.roles import COLOR_SCHEMES
+from kit.tui.input.driver import key_driver
+from kit.tui.screens.picker import Picker, PickerItem
+from kit.tui.terminal import MOUSE_VARIABLE
+
+if TYPE_CHECKING:
+    from textual.app import App
+    from textual.screen import Screen
+
+
+@dataclass(frozen=True, slots=True)
+class PaletteCommand:
+    """One line of the palette and what choosing it does."""
+
+    name: str
+    text: str
+    run: Callable[[], Awaitable[object]]
+
+
+@runtime_checkable
+class PaletteSource(Protocol):
+    """A first screen that can open others from anywhere."""
+
+    async def palette_commands(self) -> list[PaletteCommand]: ...
+
+
+async def open_palette(app: App[None], switch_theme: Callable[[str], None]) -> None:
+    """Shows what the present screen can do, what the first screen opens, and the themes; does what is chosen."""
+    screen, first = app.screen, app.screen_stack[1]
+    if isinstance(screen, Picker):
+        return
+    commands = [*_screen_commands(screen), *_theme_commands(app, switch_theme), *_mouse_commands(app)]
+    picker = Picker("Commands", _command_items(commands))
+    choice = create_task(app.push_screen_wait(picker))
+    if isinstance(first, PaletteSource):  # which may have to read them first
+        commands += await first.palette_commands()
+        picker.replace_choices(_command_items(commands))
+    chosen = await choice
+    if chosen is not None:
+        await commands[int(chosen)].run()
+
+
+def _command_items(commands: Sequence[PaletteCommand]) -> list[PickerItem]:
+    return [PickerItem(str(number), command.name, command.text) for number, command in enumerate(commands)]
+
+
+def _screen_commands(screen: Screen[Any]) -> Iterator[PaletteCommand]:
+    """The keys of the screen that mean one thing each."""
+    actions: ScreenActions | None = getattr(screen, "screen_actions", None)
+    for action in () if actions is None else actions.records:
+        if len(action.bindings) == 1:
+            call = action.bindings[0][1]
+            yield PaletteCommand(
+                action.label.capitalize(),
+                f"{action.help} ({action.footer_keys})",
+                partial(screen.run_action, call),
+            )
+
+
+def _mouse_commands(app: App[None]) -> Iterator[PaletteCommand]:
+    driver = key_driver(app)
+    if driver is None:
+        return
+    is_wanted = not driver.has_mouse
+
+    async def switch() -> None:
+        driver.use_mouse(is_wanted)
+
+    name, text = (
+        ("Mouse for the kit", "clicks press keys, choose and drive, the wheel zooms")
+        if is_wanted
+        else ("Mouse for the terminal", "text can be selected and copied")
+    )
+    yield PaletteCommand(name, f"{text}; for this session, {MOUSE_VARIABLE}={is_wanted:d} keeps it", switch)
+
+
+def _theme_commands(app: App[None], switch_theme: Callable[[str], None]) -> Iterator[PaletteCommand]:
+    if app.native_ansi_color:
+        return
+    for name in COLOR_SCHEMES:
+
+        async def switch(name: str = name) -> None:
+            switch_theme(name)
+
+        yield PaletteCommand(f"Theme {name}", f"for this session; KIT_THEME={name} keeps it", switch)

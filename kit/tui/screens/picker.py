@@ -1,0 +1,174 @@
+"""A list over a screen to choose from; what is typed filters it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Final
+
+from rich.text import Text
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Vertical
+from textual.widgets import Input, OptionList
+from textual.widgets.option_list import Option
+
+from kit.dialogue.actions import ScreenActions
+from kit.dialogue.screen_action import ScreenAction
+from kit.plain_text import wrap
+from kit.tui.rows.key_rows import bindings
+from kit.tui.screens.dialog import Dialog
+
+LIST_WIDTH: Final = 76
+HIGHEST: Final = 22
+"""Most rows of a list with its border and the field above it."""
+ROWS_AROUND: Final = 3
+"""Rows of these alone."""
+COLUMNS_AROUND: Final = 8
+"""Columns of the border, of the mark of the chosen line and of the scroll bar."""
+LINE: Final = LIST_WIDTH - COLUMNS_AROUND
+"""Characters of a line."""
+
+
+@dataclass(frozen=True, slots=True)
+class PickerItem:
+    """One line of the list: what choosing it returns, its name, and what is said of it."""
+
+    key: str
+    name: str
+    text: str = ""
+
+
+class FilterInput(Input):
+    """The field above a list; Home and End are the list's."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("home", "screen.choose(0, -1000)", show=False),
+        Binding("end", "screen.choose(0, 1000)", show=False),
+    ]
+
+
+class Picker(Dialog[str | None]):
+    """Returns the key of the choice, or None."""
+
+    screen_actions = ScreenActions(
+        "list",
+        ("choose", "back"),
+        ("type",),
+        own=(
+            ScreenAction("type", "letters", "filter", "show only lines that contain what you type", ()),
+        ),
+    )  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
+    DEFAULT_CSS = f"""
+    Picker > Vertical {{
+        width: {LIST_WIDTH}; max-width: 100%; height: auto; max-height: {HIGHEST}; border: solid $foreground; padding: 0 1;
+    }}
+    Picker Input, Picker Input:focus {{ border: none; padding: 0; height: 1; background: transparent; }}
+    Picker OptionList {{ border: none; padding: 0; height: auto; max-height: {HIGHEST - ROWS_AROUND}; background: transparent; }}
+    Picker OptionList > .option-list--option-highlighted {{
+        color: $foreground; background: transparent; text-style: none;
+    }}
+    """
+
+    def __init__(self, title: str, choices: Sequence[PickerItem], chosen: str | None = None) -> None:
+        super().__init__()
+        self._title = title
+        self._chosen = chosen
+        self._shown: list[PickerItem] = []
+        """The lines that match what is typed."""
+        self._marked = 0
+        """Number of the line that is marked as the chosen one."""
+        self._is_entered = False
+        """Whether Enter was pressed where nothing matched: what is still to come may match."""
+        self.replace_choices(choices)
+
+    def compose(self) -> ComposeResult:
+        with Vertical() as box:
+            box.border_title = self._title
+            box.border_subtitle = "arrows choose, Enter confirm, Esc back"
+            yield FilterInput(placeholder="type to filter", select_on_focus=False)
+            yield OptionList()
+
+    def on_mount(self) -> None:
+        self.query_one(Input).cursor_blink = False
+        self.query_one(OptionList).can_focus = False
+        self._fill("")
+        self.query_one(Input).focus()
+
+    def on_resize(self, event: events.Resize) -> None:
+        highest = min(HIGHEST, event.size.height)
+        self.query_one(Vertical).styles.max_height = highest
+        self.query_one(OptionList).styles.max_height = max(1, highest - ROWS_AROUND)
+        self.replace_choices(self._choices)
+
+    def on_input_changed(self, event: Input.Changed) -> None:
+        self._is_entered = False
+        self._fill(event.value)
+
+    def on_input_submitted(self) -> None:
+        options = self.query_one(OptionList)
+        self._is_entered = options.highlighted is None
+        if options.highlighted is not None:
+            self.dismiss(options.get_option_at_index(options.highlighted).id)
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        self.dismiss(event.option_id)
+
+    def action_back(self) -> None:
+        self.dismiss(None)
+
+    def action_choose(self, columns: int, rows: int) -> None:
+        options = self.query_one(OptionList)
+        if options.option_count:
+            at = (options.highlighted or 0) + rows
+            options.highlighted = min(max(at, 0), options.option_count - 1)
+
+    def replace_choices(self, choices: Sequence[PickerItem]) -> None:
+        """Shows these from now on, with what is typed and highlighted as it is."""
+        self._choices = tuple(choices)
+        self._width = max((len(choice.name) for choice in choices), default=0) + 2
+        if self.is_mounted and self.is_attached:
+            options = self.query_one(OptionList)
+            if options.highlighted is not None:
+                self._chosen = options.get_option_at_index(options.highlighted).id
+            self._fill(self.query_one(Input).value)
+            if self._is_entered:
+                self.on_input_submitted()
+
+    def _fill(self, name_filter: str) -> None:
+        wanted = name_filter.casefold()
+        shown = [choice for choice in self._choices if wanted in f"{choice.name} {choice.text}".casefold()]
+        options = self.query_one(OptionList)
+        keys = [choice.key for choice in shown]
+        at = keys.index(self._chosen) if self._chosen in keys else 0
+        options.clear_options()
+        options.add_options(
+            Option(self._line(choice, is_chosen=number == at), id=choice.key)
+            for number, choice in enumerate(shown)
+        )
+        self._shown, self._marked = shown, at
+        if not wanted:  # a filter leaves the list as high as it is, so that it does not move
+            rows = sum(
+                option.prompt.plain.count("\n") + 1
+                for option in options.options
+                if isinstance(option.prompt, Text)
+            )
+            self.query_one(Vertical).styles.min_height = min(rows + ROWS_AROUND, HIGHEST, self.size.height)
+        if shown:
+            options.highlighted = at
+
+    def on_option_list_option_highlighted(self, event: OptionList.OptionHighlighted) -> None:
+        """Marks the chosen line: in the terminal's own colours, Textual's highlight looks like any other line."""
+        for number in {self._marked, event.option_index}:
+            if number < len(self._shown):
+                line = self._line(self._shown[number], is_chosen=number == event.option_index)
+                event.option_list.replace_option_prompt_at_index(number, line)
+        self._marked = event.option_index
+
+    def _line(self, choice: PickerItem, *, is_chosen: bool) -> Text:
+        """Name and text; what does not fit on a line stands below the text."""
+        lines = wrap(choice.text, max(20, min(LINE, self.size.width - COLUMNS_AROUND) - self._width))
+        text = f"{choice.name:{self._width}}" + ("\n  " + " " * self._width).join(lines)
+        return Text.assemble("> " if is_chosen else "  ", (text, "reverse bold" if is_chosen else ""))

@@ -1,0 +1,46 @@
+"""The end of a command: quick, and yet nothing is lost."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PROGRAM = """
+import atexit, sys, threading, time
+import click
+from kit.cli.process import run_as_process
+
+class Slow:
+    def __del__(self):
+        print("taken apart")
+
+SLOW = Slow()
+
+def late(name):
+    time.sleep(0.2)
+    open(name, "w").write("late")
+
+@click.command()
+@click.argument("name")
+@click.argument("code", type=int)
+def command(name, code):
+    atexit.register(lambda: print("at exit"))
+    threading.Thread(target=late, args=(name,)).start()
+    sys.stdout.write("said, without an end of line ")
+    raise SystemExit(code)
+
+run_as_process(command, "command")
+"""
+
+
+@pytest.mark.parametrize("code", [0, 1, 2, 3, 143])
+def test_a_command_ends_without_being_taken_apart_once_all_is_written(tmp_path: Path, code: int) -> None:
+    file = tmp_path / "late.txt"
+    command = [sys.executable, "-c", PROGRAM, str(file), str(code)]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert ended.returncode == code, ended.stderr
+    assert ended.stdout == "said, without an end of line at exit\n"
+    assert file.read_text() == "late", "the thread was waited for"

@@ -1,0 +1,43 @@
+"""The rows of a shared game: who watches, and what each side can do about another game."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from kit.document.rows import row_text
+from kit.geometry import Pose
+from kit.school.game.two_players import SharedGameState, SharedMode, SharedPhase
+from kit.tui.rows.shared_game_rows import HOST, shared_heading, shared_message
+
+OVER = SharedGameState(
+    SharedPhase.OVER, 1.0, (Pose(0.0, 0.0), Pose(1.0, 0.0)), (30.0, 60.0), 0, 0, ("Ada", "Ben")
+)
+
+
+def said(state: SharedGameState, me: int | None) -> str:
+    return " ".join(row_text(each) for each in shared_message(SharedMode.TAG, state, me))
+
+
+@pytest.mark.parametrize(
+    ("me", "before", "after"),
+    [
+        (HOST, "r plays again", "Ben asks for a rematch"),
+        (1, "r asks Ada", "You have asked Ada"),
+        (None, "Ada has won", "Ada has won"),
+    ],
+)
+def test_a_rematch_is_offered_and_asked_for(me: int | None, before: str, after: str) -> None:
+    assert before in said(OVER, me)
+    assert after in said(replace(OVER, asks_again=True), me)
+    assert ("rematch" in said(OVER, me)) == (me == 1)
+
+
+def test_spectators_are_named_where_there_is_room() -> None:
+    watched = replace(OVER, watching=("Eve", "Mallory"))
+    assert "Eve, Mallory watch" in row_text(shared_heading("The maze", SharedMode.TAG, watched, 80))
+    narrow = row_text(shared_heading("The maze", SharedMode.TAG, watched, 50))
+    assert "2 spectators" in narrow
+    assert len(narrow) <= 50
+    assert "watch" not in row_text(shared_heading("The maze", SharedMode.TAG, OVER, 80))

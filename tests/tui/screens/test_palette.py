@@ -1,0 +1,93 @@
+"""The palette of all commands: what it lists, and that it does what is chosen."""
+
+from __future__ import annotations
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import OptionList
+
+from kit.render.roles import COLOR_SCHEMES, Role
+from kit.tui.app import KitApp
+from kit.tui.screens.lesson import LessonScreen
+from kit.tui.screens.lessons import LessonsScreen
+from kit.tui.screens.new_training import NewTrainingScreen
+from kit.tui.screens.picker import Picker
+from kit.tui.screens.play import PlayScreen
+from kit.tui.screens.text_screen import TextScreen
+from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
+from tests.tui.lesson_stage import seen, text, until
+from tests.tui.screens.test_start import House
+from tests.tui.screens.test_start import house as house  # the fixture
+
+
+@pytest.mark.long
+def test_it_lists_lessons_levels_and_maps_and_opens_one_over_whatever_is_open(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await pilot.press("2")
+        await until(pilot, lambda: isinstance(pilot.app.screen, LessonsScreen), "the lessons")
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: isinstance(pilot.app.screen, Picker), "the palette")
+        await pilot.press(*"map warehouse", "enter")
+        await until(pilot, lambda: type(pilot.app.screen) is PlayScreen, "the map")
+        await seen(pilot, "warehouse")
+        assert len(pilot.app.screen_stack) == 3
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: isinstance(pilot.app.screen, Picker), "the palette")
+        await pilot.press(*"lesson 1", "enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, LessonScreen), "the lesson")
+        assert len(pilot.app.screen_stack) == 3
+
+    house.play(scene)
+
+
+def test_it_does_what_a_key_of_the_screen_does(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await until(pilot, lambda: "Lessons" in text(pilot), "the menu")
+        await pilot.press("ctrl+p", *"this page", "enter")
+        await seen(pilot, "The start screen")
+
+    house.play(scene)
+
+
+def test_it_lists_the_actions_of_the_screen_and_no_others(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await until(pilot, lambda: "Lessons" in text(pilot), "the menu")
+        await pilot.press("2")
+        await until(pilot, lambda: isinstance(pilot.app.screen, LessonsScreen), "the lessons")
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: isinstance(pilot.app.screen, Picker), "the palette")
+        options = pilot.app.screen.query_one(OptionList)
+        await until(pilot, lambda: options.option_count > 50, "lessons, levels and maps")
+        found = [str(option.prompt) for option in options.options]
+        assert sum("open the selected item (Enter)" in each for each in found) == 1
+        for action in NewTrainingScreen.screen_actions.own + TextScreen.screen_actions.records:
+            if action.id in ("change", "close"):  # call what actions of this screen call
+                assert not any(action.help in each for each in found)
+
+    house.play(scene)
+
+
+def test_escape_leaves_everything_as_it_was(house: House) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        before = pilot.app.screen
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: isinstance(pilot.app.screen, Picker), "the palette")
+        options = pilot.app.screen.query_one(OptionList)
+        await until(pilot, lambda: options.option_count > 50, "lessons, levels and maps")
+        await pilot.press("ctrl+p", "escape")
+        assert pilot.app.screen is before
+
+    house.play(scene)
+
+
+def test_themes_can_be_switched_while_it_runs() -> None:
+    terminal = decide_terminal(
+        {"TERM": "xterm-256color", "COLORTERM": "truecolor"}, TerminalFacts(), TerminalOptions()
+    )
+    app = KitApp(terminal)
+    palette = app.kit_theme.palette
+    assert palette[Role.FLOOR].color == COLOR_SCHEMES["dark"].roles[Role.FLOOR]
+    app.switch_theme("light")
+    assert app.kit_theme.palette is palette
+    assert palette[Role.FLOOR].color == COLOR_SCHEMES["light"].roles[Role.FLOOR]
+    assert app.theme == "kit-light"
