@@ -7,8 +7,6 @@ back into them.
 
 from __future__ import annotations
 
-import csv
-import io
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -16,11 +14,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
+from grader.cohort.csv_file import read_csv_file
 from grader.look_alikes import look
-from kit.plain_files import read_plain_file
 from kit.plain_text import join_names
-
-MAX_BYTES: Final = 32 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,16 +129,7 @@ class Roster:
 
 def read_roster(file: Path) -> Roster:
     """Reads a roster. Raises ValueError, with the file and the line, and OSError."""
-    data = read_plain_file(file, MAX_BYTES)
-    try:
-        text = data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
-    except UnicodeDecodeError:
-        text = data.decode("cp1252", "replace")  # how a spreadsheet of Windows saves CSV by default
-    separator = max(",;\t", key=text.partition("\n")[0].count)
-    try:
-        lines = list(csv.reader(io.StringIO(text), delimiter=separator))
-    except csv.Error as error:
-        raise ValueError(f"{file}: not a table in CSV: {error}") from None
+    lines = read_csv_file(file)
     if not lines:
         raise ValueError(f"{file}: it is empty; a roster begins with a line of column titles")
     titles = tuple(lines[0])

@@ -17,11 +17,19 @@ from pathlib import Path
 from typing import Any, Final
 from xml.etree import ElementTree
 
+from kit.plain_files import read_plain_file
+
 MAX_NESTING: Final = 8
 """How many folders above a program's file its package's may be."""
 
 MAX_DEPTH: Final = 3
 """Depth to which search folders are searched for packages, as in a workspace: ``src/group/package``."""
+
+MAX_VALUE_SIZE: Final = 100_000
+"""Letters or entries of a value that a ``setup.py`` puts together."""
+
+MAX_MANIFEST_BYTES: Final = 1 << 20
+"""Size of each of the files that describe a package."""
 
 SOURCE_FOLDERS: Final = ("src", "packages")
 """The folders of a workspace in which its packages lie: of colcon's, and of the kit's own."""
@@ -38,9 +46,7 @@ LAUNCH_SUFFIXES: Final = ("py", "xml", "yaml", "yml")
 INTERFACE_FOLDERS: Final = ("msg", "srv", "action")
 """The folders of a package that hold its definitions of messages, services and actions."""
 
-_INSTALLED_PROGRAMS: Final = re.compile(
-    r"install\s*\(\s*PROGRAMS\s+(.*?)\s+DESTINATION\b", re.DOTALL | re.IGNORECASE
-)
+_INSTALLED_PROGRAMS: Final = re.compile(r"install\s*\(\s*PROGRAMS\s([^()]*)\)", re.IGNORECASE)
 
 CONSOLE_SCRIPTS: Final = "console_scripts"
 """The group of entry points in which a package names its programs."""
@@ -147,13 +153,11 @@ def read_package(folder: Path) -> Package:
     """Reads the package in a folder with a ``package.xml``. Raises PackageError."""
     file = folder / "package.xml"
     try:
-        root = ElementTree.fromstring(file.read_bytes())
+        root = _parse(file)
     except FileNotFoundError:
         raise PackageError(f"{folder}: no package.xml here, so this is not a ROS 2 package") from None
     except OSError as problem:
         raise PackageError(f"{file}: {problem.strerror}") from None
-    except ElementTree.ParseError as problem:
-        raise _broken_xml(file, problem) from None
     name = (root.findtext("name") or "").strip()
     if not name:
         raise PackageError(f"{file}: the package has no <name>")
@@ -176,10 +180,8 @@ def find_packages(folders: Iterable[Path]) -> dict[str, Path]:
     for start in folders:
         for folder in _package_folders(start, MAX_DEPTH):
             try:
-                name = (
-                    ElementTree.fromstring((folder / "package.xml").read_bytes()).findtext("name") or ""
-                ).strip()
-            except (OSError, ElementTree.ParseError):
+                name = (_parse(folder / "package.xml").findtext("name") or "").strip()
+            except (OSError, PackageError):
                 continue  # reading it by its folder reports the error
             found.setdefault(name, folder)
     found.pop("", None)
@@ -220,11 +222,21 @@ def broken_packages(folders: Iterable[Path]) -> Iterator[str]:
     """Why each package in and below some folders that has no readable ``package.xml`` cannot be found: its file and line."""
     for folder in dict.fromkeys(each for start in folders for each in _package_folders(start, MAX_DEPTH)):
         try:
-            ElementTree.fromstring((folder / "package.xml").read_bytes())
-        except ElementTree.ParseError as problem:
-            yield str(_broken_xml(folder / "package.xml", problem))
+            _parse(folder / "package.xml")
+        except PackageError as problem:
+            yield str(problem)
         except OSError:
             continue
+
+
+def _parse(file: Path) -> ElementTree.Element:
+    """Reads a ``package.xml``. Raises PackageError for what is no XML, with its place, and OSError."""
+    try:
+        return ElementTree.fromstring(read_plain_file(file, MAX_MANIFEST_BYTES))
+    except ElementTree.ParseError as problem:
+        raise _broken_xml(file, problem) from None
+    except (LookupError, ValueError) as problem:  # the encoding that its first line names
+        raise PackageError(f"{file}:1: broken XML: {problem}; write it in UTF-8") from None
 
 
 def _broken_xml(file: Path, problem: ElementTree.ParseError) -> PackageError:
@@ -324,7 +336,7 @@ def _strings(found: Any) -> list[str]:
 def _from_configuration(file: Path, group: str) -> list[str]:
     parser = configparser.ConfigParser(interpolation=None)
     try:
-        parser.read_string(file.read_text(encoding="utf-8"))
+        parser.read_string(read_plain_file(file, MAX_MANIFEST_BYTES).decode())
     except (OSError, ValueError, configparser.Error) as problem:
         raise PackageError(f"{file}: {' '.join(str(problem).split())}") from None
     return _strings(parser.get("options.entry_points", group, fallback=""))
@@ -333,32 +345,38 @@ def _from_configuration(file: Path, group: str) -> list[str]:
 def _from_cmake(file: Path) -> tuple[PackageExecutable, ...]:
     """The Python scripts that a package built by CMake installs as programs."""
     try:
-        text = re.sub(r"#.*", "", file.read_text(encoding="utf-8"))
+        text = re.sub(r"#.*", "", read_plain_file(file, MAX_MANIFEST_BYTES).decode())
     except (OSError, ValueError) as problem:
         raise PackageError(f"{file}: {problem}") from None
-    words = [word.strip('"') for found in _INSTALLED_PROGRAMS.findall(text) for word in found.split()]
+    words = [
+        word.strip('"') for found in _INSTALLED_PROGRAMS.findall(text) for word in _before_destination(found)
+    ]
     paths = [file.parent / word for word in words if "$" not in word and word.endswith(".py")]
     return tuple(PackageExecutable(path.name, "", "", path) for path in paths if path.is_file())
 
 
+def _before_destination(arguments: str) -> list[str]:
+    words = arguments.split()
+    return words[: words.index("DESTINATION")] if "DESTINATION" in words else []
+
+
 def _from_project(file: Path, group: str) -> list[str]:
     try:
-        project = tomllib.loads(file.read_text(encoding="utf-8")).get("project", {})
-    except (OSError, ValueError) as problem:
+        points: Any = tomllib.loads(read_plain_file(file, MAX_MANIFEST_BYTES).decode())
+    except (OSError, ValueError, RecursionError) as problem:
         raise PackageError(f"{file}: {problem}") from None
-    points = (
-        project.get("scripts", {})
-        if group == CONSOLE_SCRIPTS
-        else project.get("entry-points", {}).get(group, {})
-    )
+    for key in ("project", *(("scripts",) if group == CONSOLE_SCRIPTS else ("entry-points", group))):
+        points = points.get(key, {})
+        if not isinstance(points, dict):
+            raise PackageError(f"{file}: '{key}' must be a table")
     return [f"{name} = {target}" for name, target in points.items()]
 
 
 def _setup_arguments(file: Path) -> dict[str, Any]:
     """The keyword arguments of the file's ``setup`` call that are plain values."""
     try:
-        tree = ast.parse(file.read_bytes(), str(file))
-    except (OSError, ValueError) as problem:
+        tree = ast.parse(read_plain_file(file, MAX_MANIFEST_BYTES), str(file))
+    except (OSError, ValueError, RecursionError, MemoryError) as problem:  # the last two: nested too deeply
         raise PackageError(f"{file}: cannot be read ({problem})") from None
     except SyntaxError as problem:
         raise PackageError(f"{file}:{problem.lineno}: {problem.msg}") from None
@@ -408,7 +426,9 @@ def _file_list(node: ast.expr, names: Mapping[str, Any], folder: Path) -> list[A
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
         return _file_list(node.left, names, folder) + _file_list(node.right, names, folder)
     if isinstance(node, ast.Call) and _called_name(node) == "glob" and node.args:
-        pattern = str(_value(node.args[0], names))
+        pattern = _text(node.args[0], names)
+        if Path(pattern).is_absolute() or ".." in Path(pattern).parts or not pattern:
+            return []  # a package's files are its own
         return sorted(str(file.relative_to(folder)) for file in folder.glob(pattern))
     return list(_value(node, names))
 
@@ -430,6 +450,8 @@ def installed_files(name: str, folder: Path) -> dict[str, Path]:
         for file in files:
             source = folder / file
             place = str(Path(inside[len(prefix) + 1 :], source.name))
+            if not source.resolve().is_relative_to(folder.resolve()):
+                continue  # a package's files are its own
             if source.is_file() and not (folder / place).exists():
                 moved[place] = source
     return moved
@@ -465,23 +487,39 @@ def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
     if isinstance(node, (ast.List, ast.Tuple)):
         return [_value(entry, names) for entry in node.elts]
     if isinstance(node, ast.Dict) and None not in node.keys:
-        return {
-            _value(key, names): _value(value, names)
-            for key, value in zip(node.keys, node.values, strict=True)
-            if key is not None
-        }
+        try:
+            return {
+                _value(key, names): _value(value, names)
+                for key, value in zip(node.keys, node.values, strict=True)
+                if key is not None
+            }
+        except TypeError:  # a list as a key
+            raise _NotConstant(node) from None
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
         left, right = _value(node.left, names), _value(node.right, names)
         if type(left) is type(right) and isinstance(left, (str, list)):
+            if len(left) + len(right) > MAX_VALUE_SIZE:  # doubled line by line, it would fill the memory
+                raise _NotConstant(node)
             return left + right
     if isinstance(node, ast.Call) and _called_name(node) == "join" and node.args and not node.keywords:
-        return str(Path(*(str(_value(each, names)) for each in node.args)))
+        return str(Path(*(_text(each, names) for each in node.args)))
     if isinstance(node, ast.JoinedStr):
-        return "".join(_format_part(part, names) for part in node.values)
+        text = "".join(_format_part(part, names) for part in node.values)
+        if len(text) > MAX_VALUE_SIZE:
+            raise _NotConstant(node)
+        return text
     raise _NotConstant(node)
 
 
 def _format_part(node: ast.expr, names: Mapping[str, Any]) -> str:
     if isinstance(node, ast.FormattedValue) and node.conversion == -1 and node.format_spec is None:
-        return str(_value(node.value, names))
-    return str(_value(node, names))
+        return _text(node.value, names)
+    return _text(node, names)
+
+
+def _text(node: ast.expr, names: Mapping[str, Any]) -> str:
+    """The text of a plain value. Not of a list: one that holds another twice, and so on, has a text without end."""
+    value = _value(node, names)
+    if isinstance(value, (list, dict)):
+        raise _NotConstant(node)
+    return str(value)

@@ -49,6 +49,20 @@ class Control:
 
 CONTROLS: Final = (
     Control(
+        "a long text in a platform's worksheet",
+        "grader/cohort/csv_file.py",
+        "csv.field_size_limit(MAX_BYTES)",
+        "csv.field_size_limit()",
+        "grader/cohort/test_class_list.py::test_what_a_student_typed_into_the_worksheet_costs_nobody_a_grade",
+    ),
+    Control(
+        "a package that installs files of others",
+        "kit/ros/packages.py",
+        "if not source.resolve().is_relative_to(folder.resolve()):",
+        "if False:",
+        "ros/test_packages.py::test_a_package_installs_its_own_files_alone",
+    ),
+    Control(
         "a pip.py beside a submission in CI",
         "grader/ci/services/github.py",
         "        run: python -P -m pip install --quiet",

@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import importlib
+import os
 from pathlib import Path
 
 import pytest
 
 from kit.msg import interfaces
-from kit.ros.packages import SEARCH_VARIABLE, PackageError, PackageExecutable, find_packages, read_package
+from kit.ros.packages import (
+    SEARCH_VARIABLE,
+    PackageError,
+    PackageExecutable,
+    find_packages,
+    installed_files,
+    read_package,
+)
 
 XML = (
     "<package format='3'><name>pkg</name><version>1.2.3</version><description> a\n b </description></package>"
@@ -171,3 +179,53 @@ def test_scripts_that_cmake_installs_are_programs(tmp_path: Path) -> None:
     (talker,) = package.executables
     assert (talker.name, talker.entry) == ("talker.py", None)
     assert package.file_of(talker) == tmp_path / "scripts" / "talker.py"
+
+
+DOUBLED = "setup(entry_points={'console_scripts': a})"
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("package.xml", '<?xml version="1.0" encoding="x-none"?><package/>'),
+        ("package.xml", '<?xml version="1.0" encoding="utf-7"?><package/>'),
+        ("setup.py", "x = " + "-" * 90_000 + "1"),
+        ("setup.py", "setup(entry_points={[]: 1})"),
+        ("setup.py", "a = 'xxxxxxxxxx'\n" + "a = f'{a}{a}'\n" * 60 + DOUBLED),
+        ("setup.py", "a = []\n" + "a = [a, a]\n" * 60 + "setup(entry_points={'console_scripts': f'{a}'})"),
+        ("pyproject.toml", "project = 3"),
+        ("pyproject.toml", "project.scripts = 3"),
+        ("pyproject.toml", "project.entry-points = [1]"),
+        ("pyproject.toml", "a = " + "[" * 50_000),
+    ],
+)
+def test_a_hostile_manifest_is_refused_by_name(name: str, text: str, tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text("<package><name>p</name></package>")
+    (tmp_path / name).write_text(text)
+    with pytest.raises(PackageError, match=name):
+        read_package(tmp_path)
+
+
+def test_a_list_doubled_line_by_line_stays_small(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text("<package><name>p</name></package>")
+    (tmp_path / "setup.py").write_text("a = ['x = y:z']\n" + "a = a + a\n" * 60 + DOUBLED)
+    assert len(read_package(tmp_path).executables) <= 100_000
+
+
+def test_a_named_pipe_as_manifest_holds_nobody(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "package.xml")
+    with pytest.raises(PackageError, match="not a plain file"):
+        read_package(tmp_path)
+
+
+def test_a_package_installs_its_own_files_alone(tmp_path: Path) -> None:
+    own = tmp_path / "p"
+    own.mkdir()
+    (own / "mine.txt").touch()
+    (tmp_path / "secret.yaml").touch()
+    (own / "link.yaml").symlink_to(tmp_path / "secret.yaml")
+    (own / "setup.py").write_text(
+        "from glob import glob\nsetup(data_files=[('share/p/a', ['mine.txt', 'link.yaml', '../secret.yaml', "
+        f"{str(tmp_path / 'secret.yaml')!r}]), ('share/p/b', glob('../*.yaml')), ('share/p/c', glob('/etc/*'))])"
+    )
+    assert installed_files("p", own) == {"a/mine.txt": own / "mine.txt"}

@@ -346,3 +346,14 @@ def test_what_is_no_roster_is_said(text: str, tmp_path: Path) -> None:
     (tmp_path / "class.csv").write_text(text)
     with pytest.raises(ValueError, match=r"class\.csv"):
         read_roster(tmp_path / "class.csv")
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "cp1252", "utf-16"])
+def test_what_a_student_typed_into_the_worksheet_costs_nobody_a_grade(tmp_path: Path, encoding: str) -> None:
+    file = tmp_path / "worksheet.csv"
+    with file.open("w", encoding=encoding, newline="") as opened:
+        table = csv.writer(opened)
+        table.writerow(["Identifier", "Full name", "Grade", "Online text", "Last modified (submission)"])
+        table.writerow(["Participant 1", "Ada", "", "é" * 200_000, "Friday, 6 March 2026, 5:00 PM"])
+    assert [each.name for each in read_roster(file).students.values()] == ["Ada"]
+    assert set(read_submission_times(file, UTC)) == {"1"}
