@@ -79,6 +79,18 @@ def compare_loops(
     return tuple(drives)
 
 
+def compare_approaches(
+    model: GridModel, rewards: FloatArray, check_time: TimeCheck = without_limit
+) -> tuple[BehaviourComparison, ...]:
+    """Compares drives towards the target with others that take as many steps; none of them arrives.
+
+    Arriving and the number of steps cannot tell such drives apart, only what a reward pays for the way. The better drive
+    is the last stretch of a shortest drive in which no step leads farther from the target, neither in a straight line
+    nor along the way: potential-based shaping with either distance pays it best (Ng, Harada and Russell, 1999).
+    """
+    return tuple(_compare_approaches(model, rewards, check_time))
+
+
 LOOPS: dict[str, tuple[int, ...]] = {
     "going forward and back": (FORWARD, BACK),
     "spinning on the spot": (LEFT,) * HEADINGS,
@@ -126,6 +138,60 @@ def _compare_behaviours(
             slow_return,
             discounted_return(model, rewards, start, (LEFT,) * model.task.max_steps),
         )
+
+
+def _compare_approaches(
+    model: GridModel, rewards: FloatArray, check_time: TimeCheck
+) -> Iterator[BehaviourComparison]:
+    for start, good in _sample_drives(model, check_time):
+        check_time()
+        state, moves = _last_approach(model, start, good)
+        if not moves:
+            continue
+        near_return = discounted_return(model, rewards, state, moves)
+        for name, other in (
+            ("turning to and fro", ((LEFT, RIGHT) * len(moves))[: len(moves)]),
+            ("driving away", _away_moves(model, state, len(moves))),
+        ):
+            yield BehaviourComparison(
+                f"coming nearer for {len(moves)} steps",
+                f"{name} as long, and neither arrives",
+                near_return,
+                discounted_return(model, rewards, state, other),
+            )
+
+
+def _last_approach(model: GridModel, start: int, good: Moves) -> tuple[int, Moves]:
+    """Returns the last stretch of a drive before it arrives in which every step keeps or lessens the distance: its first
+    state and its moves; no moves if it comes no nearer."""
+    states = [start]
+    for move in good[:-1]:
+        states.append(int(model.next[states[-1], move]))
+    cells = model.cell_of(np.array(states))
+    distances = np.column_stack([model.to_target[cells], model.to_go[cells]])
+    first = len(states) - 1
+    while first > 0 and (distances[first - 1] >= distances[first] - 1e-9).all():
+        first -= 1
+    is_nearer = bool((distances[first] > distances[-1] + 1e-9).all())
+    return states[first], good[first:-1] if is_nearer else ()
+
+
+def _away_moves(model: GridModel, start: int, count: int) -> Moves:
+    """Returns moves ahead or back, as long as they lead away from the target and into no wall, and turns after them."""
+    away = max((_leading_away(model, start, move, count) for move in (BACK, FORWARD)), key=len)
+    return (*away, *((LEFT, RIGHT) * count)[: count - len(away)])
+
+
+def _leading_away(model: GridModel, start: int, move: int, count: int) -> Moves:
+    """Returns the same move as often as it leads farther from the target, at most ``count`` times."""
+    state = start
+    for number in range(count):
+        after = int(model.next[state, move])
+        before_to_go, to_go = model.to_go[model.cell_of(np.array([state, after]))]
+        if model.done[state, move] or to_go <= before_to_go:
+            return (move,) * number
+        state = after
+    return (move,) * count
 
 
 def _sample_drives(model: GridModel, check_time: TimeCheck) -> list[tuple[int, tuple[int, ...]]]:

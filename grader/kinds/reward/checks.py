@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from grader.check import Check, NoParams, check
+from grader.kinds.reward.behaviours import BehaviourComparison
 from grader.kinds.reward.evidence import RewardEvidence
 from grader.kinds.reward.reward_training import RewardTrainingParams
 
@@ -40,14 +41,17 @@ def symmetric(evidence: RewardEvidence, params: NoParams) -> float:
     return evidence.symmetry
 
 
+@check(none=0.5, full=1, unit="%")
+def shaped(evidence: RewardEvidence, params: NoParams) -> float:
+    """Of two drives that are equally long and do not arrive, the one that comes nearer must be paid more; that holds for
+    {actual} of the comparisons. A reward for arriving alone tells a beginner nothing on the way."""
+    return _ordered_share(evidence.approaches)
+
+
 @check(none=0.4, full=1, unit="%")
 def ordered(evidence: RewardEvidence, params: NoParams) -> float:
     """Better drives must be paid more, all in all; that holds for {actual} of the comparisons."""
-    return (
-        float(np.mean([pair.is_ordered for pair in evidence.behaviours]))
-        if evidence.behaviours
-        else float("nan")
-    )
+    return _ordered_share(evidence.behaviours)
 
 
 @check(none=0.5, full=1, unit="%")
@@ -75,6 +79,10 @@ def trained(evidence: RewardEvidence, params: RewardTrainingParams) -> float:
 
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
-    {each.name: each for each in (contract, pure, symmetric, ordered, loops, planned, trained)}
+    {each.name: each for each in (contract, pure, symmetric, shaped, ordered, loops, planned, trained)}
 )
 """Every check of a reward, by name."""
+
+
+def _ordered_share(pairs: Sequence[BehaviourComparison]) -> float:
+    return float(np.mean([pair.is_ordered for pair in pairs])) if pairs else float("nan")

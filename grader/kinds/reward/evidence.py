@@ -13,6 +13,7 @@ from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.reward.behaviours import (
     BehaviourComparison,
     LoopComparison,
+    compare_approaches,
     compare_behaviours,
     compare_loops,
     discounted_return,
@@ -135,6 +136,11 @@ class RewardEvidence:
         return compare_behaviours(self.model, self.rewards, self._clock.check)
 
     @cached_property
+    def approaches(self) -> tuple[BehaviourComparison, ...]:
+        """Comparisons of drives of equal length, none of which arrives."""
+        return compare_approaches(self.model, self.rewards, self._clock.check)
+
+    @cached_property
     def loops(self) -> tuple[LoopComparison, ...]:
         return compare_loops(self.model, self.rewards, self._clock.check)
 
@@ -155,8 +161,9 @@ class RewardEvidence:
         """Explains the first comparison that a check counts as wrong, or how the reward failed during a check."""
         if check in self._interruptions:
             return f"But {self._interruptions[check]}"
-        if check == "ordered":
-            wrong = next((pair for pair in self.behaviours if not pair.is_ordered), None)
+        if check in ("ordered", "shaped"):
+            pairs = self.behaviours if check == "ordered" else self.approaches
+            wrong = next((pair for pair in pairs if not pair.is_ordered), None)
             return "" if wrong is None else str(wrong)
         if check == "loops":
             profitable = next((loop for loop in self.loops if loop.is_profitable), None)

@@ -86,6 +86,12 @@ class GridModel:
         return room
 
     @cached_property
+    def to_target(self) -> FloatArray:
+        """(cells,) distance to the target in a straight line [m]"""
+        distance: FloatArray = CELL * np.hypot(*(self.cells - self.cells[self.target]).T)
+        return distance
+
+    @cached_property
     def to_go(self) -> FloatArray:
         """(cells,) length of the shortest path to the target [m]; infinite where there is none."""
         length = np.full(len(self.cells), np.inf)

@@ -82,15 +82,6 @@ def exercise_folder(name: str) -> Path:
     return lessons_folder() / name
 
 
-@cache
-def feedback(exercise: str) -> str:
-    """Everything that the grader says about the exercise's untouched starter, on public seeds."""
-    assignment = read_assignment(exercise_folder(exercise))
-    (starter,) = exercise_folder(exercise).glob("starter*")
-    result = grade(assignment, read_submission(starter, assignment.submit), GradingOptions(Level.LIMITED))
-    return "\n".join(each.rationale for each in result.tests)
-
-
 # Lessons 1 to 4: driving, nodes, services, launch files
 
 
@@ -532,24 +523,27 @@ def grid_steps(words: str, step: LessonStep, folder: Path) -> str:
     return f"after {task['grid']['max_steps']} steps"
 
 
+def told_of_starter(exercise: str, folder: Path) -> str:
+    """What is said of a starter of the rewards' lesson if what a perfect learner does ends no judging."""
+    copy = shutil.copytree(exercise_folder(f"11-rewards/{exercise}"), folder / exercise)
+    task = copy / "assignment.yaml"
+    task.write_text(task.read_text().replace("    after: planned\n", ""))
+    assignment = read_assignment(copy)
+    (starter,) = copy.glob("starter*")
+    result = grade(assignment, read_submission(starter, assignment.submit), GradingOptions(Level.LIMITED))
+    return "\n".join(each.rationale for each in result.tests)
+
+
 def too_near_returns(words: str, step: LessonStep, folder: Path) -> str:
     """The starter of the exercise is this reward; the grader says what whole drives earn by it."""
-    found = re.search(
-        rf"pays ({NUMBER}) for driving to the target, but ({NUMBER})", feedback("11-rewards/too_near")
-    )
-    assert found is not None
+    told = told_of_starter("too_near", folder)
+    found = re.search(rf"pays ({NUMBER}) for driving to the target, but ({NUMBER})", told)
+    assert found is not None, told
     return f"earns {found[1]} here" if "here" in words else f"earns {found[2]}"
 
 
 def to_and_fro_returns(words: str, step: LessonStep, folder: Path) -> str:
-    source = exercise_folder("11-rewards/to_and_fro")
-    copy = shutil.copytree(source, folder / "to_and_fro")
-    task = copy / "assignment.yaml"
-    task.write_text(task.read_text().replace("    after: planned\n", ""))  # so that loops are judged too
-    assignment = read_assignment(copy)
-    (starter,) = copy.glob("starter*")
-    result = grade(assignment, read_submission(starter, assignment.submit), GradingOptions(Level.LIMITED))
-    told = "\n".join(each.rationale for each in result.tests)
+    told = told_of_starter("to_and_fro", folder)
     found = re.search(rf"ever earns ({NUMBER}), driving to the target only ({NUMBER})", told)
     assert found is not None, told
     return f"Over an episode that loop earns {found[1]}, driving to the target only {found[2]}."

@@ -328,3 +328,25 @@ def test_training_ends_where_the_reward_fails(tmp_path: Path) -> None:
     broken = examine(tmp_path, "n = [0]\ndef reward(distance):\n    n[0] += 1\n    return 1 / (n[0] != 5000)")
     assert broken.failure is None
     assert broken.success_after_training(BRIEF) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("parameters", "body", "least", "most"),
+    [
+        ("reached", "10.0 * reached", 0, 0),
+        ("reached", "-1.0", 0, 0),
+        ("move", "1.0 * (move in (1, 2))", 0.3, 0.9),
+        ("distance", "-distance", 1, 1),
+        ("distance, previous_distance", "previous_distance - distance", 1, 1),
+        ("to_go, previous_to_go", "previous_to_go - to_go - 0.01", 1, 1),
+        ("to_go, previous_to_go", "previous_to_go - 0.98 * to_go", 1, 1),
+        ("to_go, previous_to_go", "to_go - previous_to_go", 0, 0),
+    ],
+)
+@pytest.mark.parametrize("task", [SMALL, ROOM], ids=["small", "room"])
+def test_who_comes_nearer_without_arriving_is_paid_more(
+    tmp_path: Path, task: GridTask, parameters: str, body: str, least: float, most: float
+) -> None:
+    exam = examine(tmp_path, f"def reward({parameters}): return {body}", task)
+    assert len(exam.approaches) >= 6
+    assert least <= np.mean([pair.is_ordered for pair in exam.approaches]) <= most

@@ -4,4 +4,4 @@
 
 
 def reward(move, distance, previous_distance, reached, collided):
-    return previous_distance - distance + 2.0 * reached - 2.0 * collided + (0.2 if move > 2 else 0.0)
+    return previous_distance - distance + 2.0 * reached - 2.0 * collided + (0.1 if move > 2 else 0.0)
