@@ -12,7 +12,7 @@ from typing import IO, Any, Final
 from urllib.parse import quote
 
 import apsw
-import lz4.frame
+import lz4.frame  # type: ignore[import-untyped]
 from rosbags.rosbag2 import Reader, ReaderError
 from rosbags.rosbag2 import reader as directory_reading
 from rosbags.rosbag2 import storage_mcap as mcap_reading
@@ -20,7 +20,7 @@ from rosbags.rosbag2.reader import DirectoryReader
 from rosbags.rosbag2.storage_mcap import McapReader
 from rosbags.rosbag2.storage_sqlite3 import Sqlite3Reader
 
-zstd: Final[Any] = directory_reading.zstd
+zstd: Final[Any] = vars(directory_reading)["zstd"]
 """The module that rosbags found: of Python, or its backport."""
 
 MAX_UNPACKED: Final = 256 << 20
@@ -108,6 +108,6 @@ def _open_zstd(file: IO[bytes], mode: str) -> _LimitedFile:
 mcap_reading.DECOMPRESSORS.update(
     lz4=partial(_unpack, lz4.frame.LZ4FrameDecompressor), zstd=partial(_unpack, zstd.ZstdDecompressor)
 )
-directory_reading.zstd = SimpleNamespace(  # type: ignore[assignment]
+vars(directory_reading)["zstd"] = SimpleNamespace(
     open=_open_zstd, decompress=partial(_unpack, zstd.ZstdDecompressor)
 )
