@@ -23,7 +23,6 @@ from rosbags.interfaces import (
     QosReliability,
     QosTime,
 )
-from rosbags.rosbag2 import Reader
 
 from kit.interruption import uninterrupted
 from kit.msg.class_builder import build_recorded_message
@@ -31,6 +30,7 @@ from kit.msg.interfaces import DefinitionError, UnknownInterface, find_message
 from kit.msg.message import Message
 from kit.part_file import BeingWrittenError
 from kit.plain_text import quoted
+from kit.ros.bag_reader import LimitedReader
 from kit.ros.bag_storage import (
     STORAGE_SETTINGS,
     WRITE_ERRORS,
@@ -356,7 +356,7 @@ def _serializer_for(
 
 
 @contextmanager
-def open_reader(folder: Path) -> Iterator[Reader]:
+def open_reader(folder: Path) -> Iterator[LimitedReader]:
     if not (folder / "metadata.yaml").is_file():
         if is_being_recorded(folder):
             raise BagError(f"{folder}: a program records this bag now. It can be read when that has ended.")
@@ -365,7 +365,7 @@ def open_reader(folder: Path) -> Iterator[Reader]:
         if not each.is_file():
             raise BagError(f"{folder}: {quoted(each.name)} in it is not a file.")
     try:
-        reader = Reader(folder)
+        reader = LimitedReader(folder)
         reader.open()
     except Exception as problem:  # noqa: BLE001 - whatever a damaged file makes the library raise
         raise BagError(f"{folder}: not a bag, or a damaged one: {reason(problem)}") from None

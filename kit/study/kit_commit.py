@@ -46,5 +46,8 @@ def _git(*words: str) -> str:
         return found.stdout.strip()
 
     filters = run("config", "--name-only", "--get-regexp", r"^filter\..*\.(clean|process)$", check=False)
-    without = [word for name in filters.splitlines() for word in ("-c", f"{name}=")]
-    return run(*without, *words, check=True)
+    names = filters.splitlines()
+    environment["GIT_CONFIG_COUNT"] = str(len(names))
+    for number, name in enumerate(names):  # -c would end a name at its first equals sign
+        environment |= {f"GIT_CONFIG_KEY_{number}": name, f"GIT_CONFIG_VALUE_{number}": ""}
+    return run(*words, check=True)

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import os
 import shutil
-from contextlib import suppress
+import sqlite3
+import struct
+import tracemalloc
+from collections.abc import Callable
+from contextlib import closing, suppress
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, get_args
 
+import lz4.frame
 import pytest
+import zstandard
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader, Writer
@@ -20,7 +26,8 @@ from kit.msg.flatland_msgs import Collision, Collisions
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String
-from kit.ros.bag_storage import BagError, Storage, restore_bags
+from kit.ros import bag_reader
+from kit.ros.bag_storage import MCAP_END, MCAP_MAGIC, RECORD_HEAD, BagError, Storage, restore_bags
 from kit.ros.bags import MAX_PENDING, BagRecorder, read_bag, read_messages
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
@@ -307,3 +314,82 @@ def test_a_bag_whose_summary_has_other_types_is_refused(old: str, new: str, tmp_
     with suppress(BagError):
         assert read_bag(folder)
         assert list(read_messages(folder)) is not None
+
+
+@pytest.mark.parametrize("packed", [lz4.frame.compress, zstandard.compress], ids=["lz4", "zstd"])
+@pytest.mark.parametrize("said", [100, 1 << 40], ids=["says little", "says much"])
+def test_a_chunk_that_unpacks_to_more_than_it_may_takes_no_memory(
+    packed: Callable[[bytes], bytes], said: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bag_reader, "MAX_UNPACKED", 1 << 20)
+    folder = tmp_path / "bag"
+    record(folder)
+    data = packed(bytes(64 << 20))
+    name = packed.__module__.split(".")[0].replace("zstandard", "zstd").encode()
+
+    def part(of: bytes) -> bytes:
+        return struct.pack("<I", len(of)) + of
+
+    chunk = struct.pack("<QQQI", 0, 1, said, 0) + part(name) + struct.pack("<Q", len(data)) + data
+    head = part(b"ros2") + part(b"test")
+    (folder / "bag.mcap").write_bytes(
+        MCAP_MAGIC
+        + RECORD_HEAD.pack(1, len(head))
+        + head
+        + RECORD_HEAD.pack(6, len(chunk))
+        + chunk
+        + MCAP_END
+    )
+    tracemalloc.start()
+    try:
+        with pytest.raises(BagError, match="come out of"):
+            read_bag(folder)
+        assert tracemalloc.get_traced_memory()[1] < 16 << 20
+    finally:
+        tracemalloc.stop()
+
+
+def test_a_bag_that_is_compressed_as_a_whole_fills_no_disk(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "bag"
+    record(folder, "sqlite3")
+    whole = (folder / "bag.db3").read_bytes()
+    metadata = folder / "metadata.yaml"
+    metadata.write_text(
+        metadata.read_text()
+        .replace("compression_format: ''", "compression_format: zstd")
+        .replace("compression_mode: ''", "compression_mode: file")
+        .replace("bag.db3", "bag.db3.zstd")
+    )
+    (folder / "bag.db3").unlink()
+    (folder / "bag.db3.zstd").write_bytes(zstandard.compress(whole))
+    assert list(read_messages(folder))
+    monkeypatch.setattr(bag_reader, "MAX_UNPACKED_FILE", len(whole) - 1)
+    with pytest.raises(BagError, match="come out of"):
+        read_bag(folder)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        (
+            "ALTER TABLE messages RENAME TO other; CREATE TABLE messages (id INTEGER PRIMARY KEY, topic_id INTEGER,"
+            " timestamp INTEGER, data BLOB AS (zeroblob(900000000)));"
+            " INSERT INTO messages SELECT id, topic_id, timestamp FROM other"
+        ),
+        (
+            "ALTER TABLE topics RENAME TO other; CREATE VIEW endless AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL"
+            " SELECT x + 1 FROM c) SELECT x AS rowid, x AS id, x AS name FROM c;"
+            " CREATE VIRTUAL TABLE topics USING fts5(id, name, content=endless)"
+        ),
+    ],
+    ids=["computed column", "virtual table"],
+)
+def test_a_bag_whose_rows_are_computed_is_refused(change: str, tmp_path: Path) -> None:
+    folder = tmp_path / "bag"
+    record(folder, "sqlite3")
+    with closing(sqlite3.connect(folder / "bag.db3")) as database:
+        database.executescript(change)
+    with pytest.raises(BagError, match="computed"):
+        read_bag(folder)

@@ -10,7 +10,7 @@ import pytest
 
 from kit.study import kit_commit
 
-PROGRAMS = ("core.fsmonitor", "filter.a.clean", "filter.a.process", "core.hooksPath")
+PROGRAMS = ("core.fsmonitor", "filter.a.clean", "filter.a.process", "filter.a=b.clean", "core.hooksPath")
 """Settings of a repository that name a program, or a folder of programs."""
 
 
@@ -36,7 +36,7 @@ def source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def make_repository(folder: Path, marker: Path, setting: str) -> None:
     git(folder, "init", "-q")
     (folder / "kit").mkdir(exist_ok=True)
-    (folder / ".gitattributes").write_text("*.txt filter=a\n")
+    (folder / ".gitattributes").write_text(f"*.txt filter={'a=b' if '=' in setting else 'a'}\n")
     (folder / "kit" / "a.txt").write_text("one\n")
     git(folder, "add", ".")
     git(folder, "commit", "-qm", "one")

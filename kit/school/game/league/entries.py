@@ -51,9 +51,13 @@ class Entry:
 
 
 def read_entries(folder: Path) -> tuple[Entry, ...]:
-    """All entries of a league, by name. What is no entry's file is passed over. Raises LeagueError."""
+    """All entries of a league, by name. What is no entry's file is passed over. Raises LeagueError.
+
+    Of two entries of one name or program, the one that has been there for longer takes part: whoever copies another's
+    file into the folder, under whatever name, keeps nobody out.
+    """
     try:
-        files = sorted((folder / FOLDER).iterdir())
+        files = sorted((folder / FOLDER).iterdir(), key=_last_changed)
     except OSError:
         raise LeagueError(f"{folder}: there is no league; `kit league new {folder}` makes one.") from None
     shipped = {_digest(each.file.read_bytes()) for each in kit_controllers()}
@@ -87,7 +91,15 @@ def read_entries(folder: Path) -> tuple[Entry, ...]:
             elif same:
                 problem = f"it is the same program as {same[0]}"
         found.append(Entry(name, drivers[0], file, digest, is_mine, problem))
-    return tuple(found)
+    return tuple(sorted(found, key=lambda each: (each.name, each.driver.value)))
+
+
+def _last_changed(file: Path) -> tuple[int, str]:
+    """When a file was put there, by the system's clock, which its owner cannot set back as he can ``st_mtime`` [ns]."""
+    try:
+        return file.lstat().st_ctime_ns, file.name
+    except FileNotFoundError:  # withdrawn meanwhile
+        return 0, file.name
 
 
 def submit(folder: Path, name: str, driver: DriverKind, program: bytes) -> Path:

@@ -6,6 +6,7 @@ import io
 import json
 import os
 import shutil
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ import pytest
 from kit.controllers import kit_controllers
 from kit.document.layout import lines_of
 from kit.host.sandbox.sandbox_config import Level
+from kit.school.game.league import entries as entries_module
 from kit.school.game.league import league as league_module
 from kit.school.game.league.entries import MAX_BYTES, LeagueError, read_entries, submit, withdraw
 from kit.school.game.league.league import League, LeagueJob, drive_job, own_league, read_programme, tag_job
@@ -256,6 +258,8 @@ def test_no_league_or_a_second_one_is_refused(tmp_path: Path) -> None:
 # Cheats: entries
 
 EntryCheat = Callable[[League], None]
+CLOCK_STEP_S = 0.02
+"""What is written so much later has a later time in every file system that the tests use."""
 
 
 def copy_of_the_kits_own(league: League) -> None:
@@ -265,6 +269,10 @@ def copy_of_the_kits_own(league: League) -> None:
 
 def anothers_program_again(league: League) -> None:
     (league.folder / "entries" / "mine.controller.py").write_bytes(LASER)
+
+
+def anothers_program_under_an_earlier_name(league: League) -> None:
+    (league.folder / "entries" / "aaa.controller.py").write_bytes(LASER)
 
 
 def link_to_anothers_program(league: League) -> None:
@@ -288,6 +296,7 @@ def program_that_fills_the_disk(league: League) -> None:
     [
         copy_of_the_kits_own,
         anothers_program_again,
+        anothers_program_under_an_earlier_name,
         link_to_anothers_program,
         one_name_twice,
         name_in_capitals,
@@ -297,11 +306,27 @@ def program_that_fills_the_disk(league: League) -> None:
 )
 def test_what_is_nobodys_own_program_takes_no_part(tmp_path: Path, cheat: EntryCheat) -> None:
     league = make_league(tmp_path, laser=LASER, stands=GIVES_UP)
+    honest = read_entries(league.folder)
+    time.sleep(CLOCK_STEP_S)
     cheat(league)
     entries = read_entries(league.folder)
     assert len(entries) == 3
     assert len(league.entrants()) == 2
-    assert sum(bool(each.problem) for each in entries) == 1
+    assert [each for each in entries if not each.problem] == list(honest)
+
+
+def test_many_files_push_nobody_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    league = make_league(tmp_path, laser=LASER, stands=GIVES_UP)
+    honest = read_entries(league.folder)
+    monkeypatch.setattr(entries_module, "MAX_ENTRIES", 4)
+    time.sleep(CLOCK_STEP_S)
+    for number in range(10):
+        file = league.folder / "entries" / f"a{number}.controller.py"
+        file.write_bytes(LASER + b"# %d" % number)
+        os.utime(file, (0, 0))
+    entries = read_entries(league.folder)
+    assert len(entries) == 4
+    assert set(honest) <= set(entries)
 
 
 # Cheats: results
