@@ -92,15 +92,24 @@ def _figure(name: str, value: str, unit: str) -> Row:
     return row(f" {name:<9}", (f"{value:>5}", "bold"), (f" {unit}", "dim"))
 
 
+TOGETHER_NS: Final = 1_000_000_000
+"""Messages that come within such a time are read together [ns, simulated]."""
+
+
 def failure_or_messages(view: View, rows: int, width: int) -> tuple[Row, ...]:
     """What went wrong with the controller, in sight as long as it holds; else the newest messages."""
     if view.failure is not None:
         lines = wrap(str(view.failure), width, most=rows)
         return tuple(row((line, "bad")) for line in lines)
+    records = view.messages[-rows:]
+    together = [each for each in records if records[-1].time_ns - each.time_ns < TOGETHER_NS]
+    most = rows - max(
+        0, len(together) - 1
+    )  # the newest one has as many rows as it needs, but hides none that came with it
     shown: tuple[Row, ...] = ()
-    for record in reversed(view.messages[-rows:]):  # the newest one has as many rows as it needs
+    for record in reversed(records):
         if len(shown) < rows:
-            shown = (*message_rows(record, width, rows - len(shown)), *shown)
+            shown = (*message_rows(record, width, 1 if shown else most), *shown)
     return shown
 
 
@@ -110,7 +119,12 @@ def message_rows(record: LogRecord, width: int, most: int = 1) -> list[Row]:
     head = f"{clock}{record.name}: "
     text = record.text.partition("\n")[0]
     style = _LOUD.get(record.severity.name, "")
-    fits = len(head) + len(text) <= width
-    lines = [head + text] if fits else wrap(text, width, head, " " * len(clock), most=most)
+    line = head + text
+    if len(line) <= width:
+        lines = [line]
+    elif most == 1:  # to the last letter for which there is room: a name may end there
+        lines = [f"{line[: max(0, width - 3)]}..."]
+    else:
+        lines = wrap(text, width, head, " " * len(clock), most=most)
     first: StyledText = (lines[0][len(head) :], style)
     return [row((lines[0][: len(head)], "dim"), first), *(row((line, style)) for line in lines[1:])]

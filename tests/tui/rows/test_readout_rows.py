@@ -63,19 +63,22 @@ def test_a_program_is_shown_from_its_first_class_on(views: list[View]) -> None:
 
 
 def test_the_newest_message_is_told_to_its_end_where_there_is_room(views: list[View]) -> None:
-    def said(text: str) -> LogRecord:
-        return LogRecord(1_200_000_000, LoggingSeverity.WARN, "fields", text, "", "", 0)
+    def said(text: str, time_s: float = 3.0) -> LogRecord:
+        return LogRecord(round(time_s * 1e9), LoggingSeverity.WARN, "fields", text, "", "", 0)
 
     long = " ".join(f"word{number}" for number in range(14))
     alone = texts(failure_or_messages(replace(views[-1], messages=[said(long)]), 2, 80))
     assert len(alone) == 2
     assert " ".join(" ".join(alone).split()).endswith(long)
-    pushed = texts(failure_or_messages(replace(views[-1], messages=[said("older"), said(long)]), 2, 80))
+    pushed = texts(failure_or_messages(replace(views[-1], messages=[said("older", 1.5), said(long)]), 2, 80))
     assert pushed == alone
     above = texts(failure_or_messages(replace(views[-1], messages=[said(long), said("newer")]), 2, 80))
     assert above[0].endswith("...")
     assert above[1].endswith("newer")
-    assert all(len(line) <= 80 for line in (*alone, *above))
+    both = texts(failure_or_messages(replace(views[-1], messages=[said("with it"), said(long)]), 2, 80))
+    assert both[0].endswith("with it")
+    assert both[1].endswith("...")
+    assert all(len(line) <= 80 for line in (*alone, *above, *both))
 
 
 def test_the_laser_by_direction_is_what_the_sides_say(views: list[View]) -> None:
