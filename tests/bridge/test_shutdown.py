@@ -144,7 +144,7 @@ import kit.bridge.shutdown
 from kit.bridge.bridge import BridgeSettings
 from kit.bridge.wire import Direction, BridgeRoute
 from kit.bridge.wire import DryRunWire
-from kit.cli.bridge import BridgeRequest, _run
+from kit.cli.bridge import BridgeRequest, _run_bridge
 from kit.inspection.server import InspectionServer
 from kit.inspection.sockets import sockets_folder
 from kit.msg.geometry_msgs import Twist
@@ -181,7 +181,7 @@ def tick():
 
 threading.Thread(target=tick, daemon=True).start()
 settings = BridgeSettings((BridgeRoute.parse(Direction.SEND, "/cmd_vel"),))
-_run(BridgeRequest(lambda: settings, False, False, 0.1, None, folder), "nowhere", HangingWire)
+_run_bridge(BridgeRequest(lambda: settings, False, False, 0.1, None, folder), "nowhere", HangingWire)
 """
 
 

@@ -95,7 +95,7 @@ def test_it_is_found_from_the_play_screen_and_looked_at_in_any_size(kit: Open) -
     terminal.until(lambda: re.search(r"turn_\w+  after", terminal.text), "the robot")
     assert terminal.text.isascii()
     terminal.send(b"\t")
-    terminal.until(lambda: "reward per episode" in terminal.text, "the reward by term")
+    terminal.until(lambda: "last 10 batches" in terminal.text, "the reward by term")
     terminal.until(lambda: "forward" in terminal.text, "forward")
     terminal.send(b"y")
     terminal.until(lambda: "reward in training" in terminal.text, "the reward's curve")
