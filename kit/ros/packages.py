@@ -11,7 +11,7 @@ import configparser
 import os
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -274,14 +274,22 @@ def _package_folders(folder: Path, deep: int) -> Iterator[Path]:
         return
     if any(name in entries for name in IGNORE_MARKERS):
         return
-    if "package.xml" in entries and entries["package.xml"].is_file():
+    if "package.xml" in entries and _is(entries["package.xml"].is_file):
         yield folder
         return
     if deep == 0:
         return
     for name in sorted(entries):
-        if not name.startswith(".") and entries[name].is_dir():
+        if not name.startswith(".") and _is(entries[name].is_dir):
             yield from _package_folders(folder / name, deep - 1)
+
+
+def _is(kind: Callable[[], bool]) -> bool:
+    """Whether an entry is of a kind; False for a link that leads where this user may not look."""
+    try:
+        return kind()
+    except OSError:
+        return False
 
 
 # Programs

@@ -229,3 +229,10 @@ def test_a_package_installs_its_own_files_alone(tmp_path: Path) -> None:
         f"{str(tmp_path / 'secret.yaml')!r}]), ('share/p/b', glob('../*.yaml')), ('share/p/c', glob('/etc/*'))])"
     )
     assert installed_files("p", own) == {"a/mine.txt": own / "mine.txt"}
+
+
+def test_a_link_that_leads_nowhere_hides_no_package(tmp_path: Path) -> None:
+    (tmp_path / "a_link").symlink_to("a_link")
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "package.xml").write_text("<package><name>mine</name></package>")
+    assert find_packages([tmp_path]) == {"mine": tmp_path / "mine"}

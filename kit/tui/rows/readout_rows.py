@@ -114,16 +114,14 @@ def failure_or_messages(view: View, rows: int, width: int) -> tuple[Row, ...]:
 
 
 def message_rows(record: LogRecord, width: int, most: int = 1) -> list[Row]:
-    """A message in at most so many rows: its time, who says it, its first line; dots stand for what does not fit."""
+    """A message in at most so many rows: its time, who says it, its first line as far as it fits."""
     clock = f"{format_clock(record.time_ns / 1e9):>7} "
     head = f"{clock}{record.name}: "
     text = record.text.partition("\n")[0]
     style = _LOUD.get(record.severity.name, "")
     line = head + text
-    if len(line) <= width:
-        lines = [line]
-    elif most == 1:  # to the last letter for which there is room: a name may end there
-        lines = [f"{line[: max(0, width - 3)]}..."]
+    if len(line) <= width or most == 1:  # to the last letter for which there is room: a name may end there
+        lines = [line[:width]]
     else:
         lines = wrap(text, width, head, " " * len(clock), most=most)
     first: StyledText = (lines[0][len(head) :], style)
