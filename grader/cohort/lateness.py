@@ -21,7 +21,9 @@ from kit.world.yaml_section import Section
 
 EXAMPLE: Final = "2026-11-30T23:59:00+01:00"
 MAX_DAYS: Final = 3650
-"""Days of an extension, and of lateness that is counted."""
+"""Days of an extension, of a grace, and of lateness that is counted."""
+YEARS: Final = range(1970, 3000)
+"""Years of a time: ``MAX_DAYS`` before or after them are still in the calendar, in every zone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,10 +151,12 @@ def read_policy(file: Path) -> LatePolicy:
                 locations[student] = str(given.location_of(student))
         return LatePolicy(
             due or datetime.now(UTC),
-            60 * section.number("grace_minutes", 0.0, minimum=0),
+            60 * section.number("grace_minutes", 0.0, minimum=0, maximum=MAX_DAYS * 24 * 60),
             section.number("per_day", 0.1, minimum=0, maximum=1),
             section.number("least", 0.0, minimum=0, maximum=1),
-            section.number("latest_days", minimum=0) if section.has("latest_days") else None,
+            section.number("latest_days", minimum=0, maximum=MAX_DAYS)
+            if section.has("latest_days")
+            else None,
             zone,
             section.integer("grace_days", 0, minimum=0, maximum=MAX_DAYS),
             MappingProxyType(extensions),
@@ -194,7 +198,7 @@ def parse_time(text: str, zone: tzinfo | None = None, *, whole_day: bool = False
     """Parses a date and time with its offset, or in ``zone``. ``whole_day``: a date alone is the end of that day.
 
     Raises ValueError for anything else, also for a time that can be read in two ways: in no zone, of a day alone, or in
-    the hour that clocks skip or repeat. The message begins with a verb.
+    the hour that clocks skip or repeat; and for a year that is none of ``YEARS``. The message begins with a verb.
     """
     text = text.strip()
     at = _moodle_time(text)
@@ -203,6 +207,8 @@ def parse_time(text: str, zone: tzinfo | None = None, *, whole_day: bool = False
             at = datetime.fromisoformat(text)
         except ValueError:
             raise ValueError(f"must be a date and time such as {EXAMPLE}") from None
+    if at.year not in YEARS:
+        raise ValueError(f"must be in the years {YEARS.start} to {YEARS.stop - 1}")
     is_day = ":" not in text and "T" not in text.upper()
     if is_day and not whole_day:
         raise ValueError(f"names a day and no time ({text}): write when, such as {EXAMPLE}")

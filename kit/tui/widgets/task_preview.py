@@ -49,6 +49,8 @@ class TaskPreview(Vertical):
         self._told: TellsConfig | None = None
         self._world = WorldView(lambda: theme.encoder, theme.palette)
         self._text = TextRows()
+        self._blocks: Sequence[Block] = ()
+        """What is said of the task."""
 
     def compose(self) -> ComposeResult:
         yield self._world
@@ -72,7 +74,15 @@ class TaskPreview(Vertical):
             self._world.clear()
         else:
             self._world.show(scene)
-        rows = [row(), *rows_of(blocks, Page(max(20, self.size.width - 2 * MARGIN), MARGIN))]
+        self._blocks = blocks
+        self._show_text()
+
+    def on_resize(self) -> None:
+        """A task may have been read before there was any room."""
+        self._show_text()
+
+    def _show_text(self) -> None:
+        rows = [row(), *rows_of(self._blocks, Page(max(20, self.size.width - 2 * MARGIN), MARGIN))]
         self._text.show_all(rows[: max(0, self.size.height - LEAST_MAP_ROWS)])
 
 

@@ -610,6 +610,8 @@ LISBON, BERLIN = find_zone("Europe/Lisbon"), find_zone("Europe/Berlin")
         ("2026-03-28 24:00", BERLIN, "must be a date and time"),
         ("29/03/2026 23:59", BERLIN, "must be a date and time"),
         ("03.04.2026", BERLIN, "must be a date and time"),
+        ("9999-12-31T23:59:59-12:00", None, "must be in the years"),
+        ("0001-01-01T00:00:00+14:00", None, "must be in the years"),
     ],
 )
 def test_a_due_date_is_read_in_one_way_or_refused(text: str, zone: tzinfo | None, read: str) -> None:

@@ -250,6 +250,16 @@ def test_the_task_stands_beside_the_form_where_there_is_room(tmp_path: Path, siz
     stage(lambda theme: NewTrainingScreen(theme, tmp_path), scene, size=size)
 
 
+def test_more_is_told_of_the_task_once_there_is_room_for_it(tmp_path: Path) -> None:
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "at most")
+        assert "forward_lost" not in text(pilot)
+        await pilot.resize_terminal(160, 50)
+        await seen(pilot, "forward_lost")
+
+    stage(lambda theme: NewTrainingScreen(theme, tmp_path), scene, size=(160, 18))
+
+
 def test_a_narrow_form_has_the_form_alone(tmp_path: Path) -> None:
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "A new training")
