@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from typing import Final
 
@@ -14,6 +15,12 @@ DRIVE_PATTERN: Final = re.compile(r"[A-Za-z]:")
 def is_plain_name(path: str) -> bool:
     """True for a relative path of plain characters, that nothing can mistake for another."""
     return all(_NAME_PATTERN.fullmatch(part) and not part.endswith((".", " ")) for part in path.split("/"))
+
+
+def readable_name(name: str) -> str:
+    """Returns a file's name as text that can be written: bytes that are not UTF-8, which Python reads as halves of surrogates,
+    are replaced."""
+    return os.fsencode(name).decode("utf-8", "replace")
 
 
 def shown_name(path: str) -> str:

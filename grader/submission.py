@@ -19,7 +19,7 @@ from grader.archives.archive import MAX_PACKED_BYTES, archive_stem, unpack_archi
 from grader.archives.streams import packed_limit
 from grader.file_formats import YAML_ENDINGS, what_instead, wrong_format
 from grader.hidden_code import hidden_code
-from grader.shown_names import is_plain_name, shown_name
+from grader.shown_names import is_plain_name, readable_name, shown_name
 from grader.submitted_files import (
     MAX_BYTES,
     VIRTUAL_ENVIRONMENT_FILE,
@@ -82,9 +82,9 @@ def read_submission(path: Path, main: str) -> Submission:
 def submission_name(path: Path) -> str:
     """Returns the name of what was handed in: without the ending of a file or an archive, other dots kept."""
     if path.is_dir():
-        return path.name
+        return readable_name(path.name)
     stem = archive_stem(path.name)
-    return path.stem if stem is None else stem
+    return readable_name(path.stem if stem is None else stem)
 
 
 def _read_submission(path: Path, main: str) -> Submission:

@@ -20,6 +20,7 @@ from grader.evidence.findings import Findings
 from grader.grading import GradingOptions, grade_and_keep, judge_findings, level_for_untrusted
 from grader.look_alikes import outline
 from grader.reading import read_assignment
+from grader.shown_names import readable_name
 from grader.submission import Submission, read_submission, submission_name
 from grader.submitted_files import IGNORED_NAMES, SubmissionRefused, SubmissionUnreadable
 from grader.version import grader_version
@@ -308,7 +309,7 @@ def _entries(
     for path in sorted(cohort.iterdir()):
         if path.name.startswith(".") or path.name.lower() in IGNORED_NAMES:
             continue
-        name = _unlike(names, submission_name(path), path.name)
+        name = _unlike(names, submission_name(path), readable_name(path.name))
         names.add(outline(name))
         try:
             submission = read_submission(path, assignment.submit)

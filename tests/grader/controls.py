@@ -238,6 +238,13 @@ CONTROLS: Final = (
         "grader/cohort/test_cohort.py::test_no_two_names_of_a_class_look_alike",
     ),
     Control(
+        "signs in a name that show nothing",
+        "grader/look_alikes.py",
+        '_INVISIBLE.sub("", name)',
+        "name",
+        "grader/test_look_alikes.py::test_what_looks_the_same_has_one_outline",
+    ),
+    Control(
         "letters of other alphabets in a name",
         "grader/look_alikes.py",
         "    return look(look(name.translate(_LATIN_OF)).translate(_LATIN_OF))\n",

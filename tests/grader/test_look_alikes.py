@@ -18,6 +18,7 @@ from tests.grader.conftest import FORWARD
     "other",
     [
         "\u0430da", "a\u0501a", "ad\u0251", "\u0391da", "ada ", " a\u200bda", "\uff41da", "ADA", "\u0410\u0501\u0430",
+        "ada\u3164", "\uffa0ada", "a\u034fda", "ada\ufe0f", "ada\U000e0100", "\u2800ada", "ad\u180ba", "\u115f\u1160ada",
     ],
 )  # fmt: skip
 def test_what_looks_the_same_has_one_outline(other: str) -> None:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 import re
+import sys
 from datetime import UTC, datetime, timedelta
 from html.parser import HTMLParser
 from pathlib import Path
@@ -17,7 +19,7 @@ from click.testing import CliRunner
 from grader.__main__ import main
 from grader.cohort.class_findings import class_blocks
 from grader.cohort.class_list import ClassRules, ClassTable, class_table
-from grader.cohort.exports import for_canvas, for_moodle
+from grader.cohort.exports import EXPORTS, for_canvas, for_moodle
 from grader.cohort.feedback import write_feedback
 from grader.cohort.gradebook import (
     MISSING,
@@ -278,6 +280,17 @@ class _Links(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.found += [value or "" for name, value in attrs if name in ("src", "href")]
         assert tag not in ("script", "iframe", "link")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names of any bytes")
+def test_names_that_are_no_text_cost_a_class_nothing(tmp_path: Path) -> None:
+    names = [os.fsdecode(each) for each in (b"\xff.py", b"\xfe.py", b"\xed\xa0\x80", b"z\xe9")]
+    queue = graded_queue(tmp_path, dict.fromkeys(names, 1.0))
+    table = class_table(queue, ClassRules()).rows
+    assert len({row.name for row in table}) == len(names)
+    assert write_feedback(queue, table, tmp_path / "pages") == len(names)
+    for write in EXPORTS.values():
+        assert write(table, None, "Quick", 6.0, decimal_comma=False).encode()
 
 
 def test_every_student_has_a_page_that_needs_no_network(tmp_path: Path, queue: Queue) -> None:
