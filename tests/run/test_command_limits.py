@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 import shutil
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -24,7 +22,7 @@ from kit.run.runner import Runner
 from kit.run.scenario import scenario_on_map
 from kit.sim.simulation import Simulation
 from kit.world.catalogue import find_map
-from tests.run.test_connection_watch import LAUNCH
+from tests.run.test_connection_watch import LAUNCH, said_by_kit
 
 FAST = """
 import rclpy
@@ -178,15 +176,5 @@ def test_every_verb_tells_it(verb: str, tmp_path: Path) -> None:
         "run": ("run", "turtlebot", "--controller", str(program), "--steps", "300"),
         "launch": ("launch", str(launch), "--until", "3"),
     }[verb]
-    done = subprocess.run(
-        [sys.executable, "-m", "kit", *words],
-        capture_output=True,
-        text=True,
-        env={"PATH": "/usr/bin:/bin", "HOME": str(tmp_path), "KIT_WORKSPACE": str(tmp_path / "workspace")},
-        cwd=Path(__file__).parents[2],
-        timeout=120,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    (line,) = [line for line in (done.stdout + done.stderr).splitlines() if "0.22 m/s" in line]
+    (line,) = [line for line in said_by_kit(words, tmp_path) if "0.22 m/s" in line]
     assert line.index("/fast") < line.index("0.6 m/s") < line.index("0.22 m/s")

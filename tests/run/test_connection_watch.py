@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -66,6 +67,21 @@ generate_launch_description = generate_launch_description_of
 """
 """Sets a timer that sets itself again without end, in addition."""
 WORLD = Path(__file__).parents[1] / "ros" / "outside_programs" / "room" / "world.yaml"
+
+
+def said_by_kit(words: Sequence[str], folder: Path) -> list[str]:
+    """The lines that a command of the kit prints with ``folder`` as its home."""
+    done = subprocess.run(
+        [sys.executable, "-m", "kit", *words],
+        capture_output=True,
+        text=True,
+        env={"PATH": "/usr/bin:/bin", "HOME": str(folder), "KIT_WORKSPACE": str(folder / "workspace")},
+        cwd=Path(__file__).parents[2],
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return (done.stdout + done.stderr).splitlines()
 
 
 def tells_of_both(screen: str) -> bool:
@@ -173,17 +189,7 @@ def test_a_silent_controller_is_told_of_by_every_verb(verb: str, seconds: str, t
         "run": ("run", str(WORLD), "--controller", str(program), "--steps", steps),
         "launch": ("launch", str(launch), "--until", seconds),
     }[verb.partition(" ")[0]]
-    done = subprocess.run(
-        [sys.executable, "-m", "kit", *words],
-        capture_output=True,
-        text=True,
-        env={"PATH": "/usr/bin:/bin", "HOME": str(tmp_path), "KIT_WORKSPACE": str(tmp_path / "workspace")},
-        cwd=Path(__file__).parents[2],
-        timeout=120,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    lines = [line for line in (done.stdout + done.stderr).splitlines() if "/deaf" in line]
+    lines = [line for line in said_by_kit(words, tmp_path) if "/deaf" in line]
     assert len(lines) == len(SAID)
     for line, (named, there_is) in zip(lines, SAID, strict=True):
         assert line.index(named) < line.index("/deaf") < line.rindex(there_is)
