@@ -12,7 +12,7 @@ from typing import IO, Any, Final
 from urllib.parse import quote
 
 import apsw
-import lz4.frame  # type: ignore[import-untyped]
+import lz4.frame  # type: ignore[import-untyped]  # comes with rosbags, without types
 from rosbags.rosbag2 import Reader, ReaderError
 from rosbags.rosbag2 import reader as directory_reading
 from rosbags.rosbag2 import storage_mcap as mcap_reading
