@@ -156,7 +156,7 @@ def read_policy(task: PolicyTask, answer: str) -> Policy:
 
 
 @cache
-def _model(task: PolicyTask) -> dict[str, tuple[FloatArray, FloatArray]]:
+def _transition_model(task: PolicyTask) -> dict[str, tuple[FloatArray, FloatArray]]:
     """For each move the chances (cells, cells) of where it leads, and what it is paid on average (cells,)."""
     cells = task.cells
     number = {cell: at for at, cell in enumerate(cells)}
@@ -178,7 +178,7 @@ def _model(task: PolicyTask) -> dict[str, tuple[FloatArray, FloatArray]]:
 
 def value_of(task: PolicyTask, policy: Policy) -> float:
     """The expected return of a policy from the start, exactly: a linear system."""
-    cells, model = task.cells, _model(task)
+    cells, model = task.cells, _transition_model(task)
     chances = np.stack([model[policy[cell]][0][at] for at, cell in enumerate(cells)])
     pays = np.array([model[policy[cell]][1][at] for at, cell in enumerate(cells)])
     values = np.linalg.solve(np.eye(len(cells)) - task.discount * chances, pays)
@@ -186,8 +186,8 @@ def value_of(task: PolicyTask, policy: Policy) -> float:
 
 
 @cache
-def _best(task: PolicyTask) -> tuple[str, ...]:
-    cells, model = task.cells, _model(task)
+def _best_policy(task: PolicyTask) -> tuple[str, ...]:
+    cells, model = task.cells, _transition_model(task)
     if not task.looks_alike:  # policy iteration
         arrows = ["u"] * len(cells)
         while True:
@@ -222,7 +222,7 @@ def _best(task: PolicyTask) -> tuple[str, ...]:
 
 def best_policy(task: PolicyTask) -> Policy:
     """A policy than which none is better: by policy iteration, or of cells that look alike by comparing all."""
-    return dict(zip(task.cells, _best(task), strict=True))
+    return dict(zip(task.cells, _best_policy(task), strict=True))
 
 
 class PolicyBoard(Board):
