@@ -173,7 +173,7 @@ class Grading:
             except SubmissionRefused:
                 raise
             except Exception:  # noqa: BLE001  # any error in here is the grader's and must not cost the student a point
-                test = self._broken(criterion, traceback.format_exc())
+                test = self._broken_result(criterion, traceback.format_exc())
             self._tests[criterion.id] = test
         return self._tests[criterion.id]
 
@@ -299,13 +299,13 @@ class Grading:
             (each for each in scored if status_of_failure(each.failure) is CriterionStatus.GRADER_ERROR), None
         )
         if broken is not None:
-            return self._broken(criterion, str(broken.failure))
+            return self._broken_result(criterion, str(broken.failure))
         if criterion.after is not None and not any(
             each.share == 1.0 for each in self._score(self._criterion(criterion.after))
         ):
             title = self._criterion(criterion.after).title
             return replace(blank, rationale=NOT_ITS_TURN.format(title), depends_on=criterion.after)
-        share = _share(criterion, scored)
+        share = _earned_share(criterion, scored)
         full = share == 1.0
         shown = self._public_evidence(criterion, scored, full=full)
         worst = min(shown, key=lambda each: each.share, default=None)
@@ -329,7 +329,7 @@ class Grading:
             if worst is None or worst.measure is None or check.is_explained
             else check.format(worst.measure, beside=criterion.anchors.full),
             metrics={"share": round(share, 6)},
-            episodes=tuple(map(_summary, scored)),
+            episodes=tuple(map(_summarize_episode, scored)),
             log="" if worst is None or worst.evidence.secret else "\n".join(worst.evidence.printed),
             replay="" if full or worst is None else worst.evidence.picture(criterion.check),
             uses_secrets=any(each.evidence.secret for each in scored),
@@ -416,7 +416,7 @@ class Grading:
         if criterion.id in self._scored:
             return self._scored[criterion.id]
         self._run_public()
-        ready = self._ready(criterion)
+        ready = self._full_points_predicate(criterion)
         # An error in here was brought to light by this work: it must look like no fault of the grader's.
         with reading_submission(self.submission.name, AuthorCodeError):
             collected = self._collector.evidence(criterion)
@@ -437,7 +437,7 @@ class Grading:
         failure, steps = state_after(evidence, name, params)
         return _ScoredEvidence(evidence, measure, criterion.anchors.share(measure), failure, steps)
 
-    def _ready(self, criterion: Criterion) -> Callable[[Evidence], bool]:
+    def _full_points_predicate(self, criterion: Criterion) -> Callable[[Evidence], bool]:
         """Returns a predicate: did this evidence earn full points in the criterion that comes first?"""
         if criterion.after is None:
             return lambda evidence: True
@@ -544,7 +544,7 @@ class Grading:
             return ""
         return self._rationale(criterion, secret, worst)
 
-    def _broken(self, criterion: Criterion, log: str) -> CriterionResult:
+    def _broken_result(self, criterion: Criterion, log: str) -> CriterionResult:
         return CriterionResult(
             criterion.id,
             criterion.title,
@@ -688,7 +688,7 @@ def judge_findings(
     return None if result.verdict is GradingVerdict.BROKEN else result
 
 
-def _share(criterion: Criterion, scored: Sequence[_ScoredEvidence]) -> float:
+def _earned_share(criterion: Criterion, scored: Sequence[_ScoredEvidence]) -> float:
     """Returns the share of a criterion's points that its evidence earns together, 0 to 1.
 
     Where secret evidence counts, the share is one of a few steps, so that its digits carry no measure of a secret
@@ -706,9 +706,9 @@ def _share(criterion: Criterion, scored: Sequence[_ScoredEvidence]) -> float:
     return round_share(share, criterion.share_steps or DEFAULT_STEPS) if any(secret) else share
 
 
-def _summary(scored: _ScoredEvidence) -> EpisodeSummary:
+def _summarize_episode(scored: _ScoredEvidence) -> EpisodeSummary:
     evidence = scored.evidence
-    measure = None if scored.measure is None else _finite(scored.measure)
+    measure = None if scored.measure is None else _finite_or_none(scored.measure)
     return EpisodeSummary(evidence.label, evidence.outcome, scored.steps, measure, evidence.secret)
 
 
@@ -722,7 +722,7 @@ def _public_failure(evidence: Evidence) -> Failure:
     return Failure(failure.kind, f"{COARSE_RATIONALES[status]} ({evidence.label}).")
 
 
-def _finite(measure: float | None) -> float | None:
+def _finite_or_none(measure: float | None) -> float | None:
     """Returns None for infinity and NaN, which JSON cannot represent."""
     return round(measure, 6) if measure is not None and math.isfinite(measure) else None
 

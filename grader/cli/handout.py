@@ -229,10 +229,10 @@ def sheet_blocks(kind: str) -> list[Block]:
 
 
 def _key_table(title: str, keys: Iterable[SheetKey]) -> Table:
-    return labelled_table(((key.path.removeprefix("secret."), _told(key)) for key in keys), title)
+    return labelled_table(((key.path.removeprefix("secret."), _describe_key(key)) for key in keys), title)
 
 
-def _told(key: SheetKey) -> str:
+def _describe_key(key: SheetKey) -> str:
     """What a key means, what it holds, and what it is without being given."""
     default = key.key.default
     if "by default" in key.meaning:

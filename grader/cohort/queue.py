@@ -287,7 +287,7 @@ def prepare_queue(
     for folder in (queue.folder, *(queue.folder / name for name in ("jobs", "results", "findings"))):
         make_private_folder(folder)
     _copy_assignment(queue, assignment)
-    entries = tuple(_entries(queue, cohort, assignment, options))
+    entries = tuple(_queue_entries(queue, cohort, assignment, options))
     level = level_for_untrusted(assignment, options.level)
     content = {
         "assignment": assignment.id,
@@ -302,14 +302,14 @@ def prepare_queue(
     return entries
 
 
-def _entries(
+def _queue_entries(
     queue: Queue, cohort: Path, assignment: Assignment, options: GradingOptions
 ) -> Iterator[QueueEntry]:
     names: set[str] = set()
     for path in sorted(cohort.iterdir()):
         if path.name.startswith(".") or path.name.lower() in IGNORED_NAMES:
             continue
-        name = _unlike(names, submission_name(path), readable_name(path.name))
+        name = _unmistakable_name(names, submission_name(path), readable_name(path.name))
         names.add(outline(name))
         try:
             submission = read_submission(path, assignment.submit)
@@ -327,7 +327,7 @@ def _entries(
         yield QueueEntry(name, key, note=submission.note)
 
 
-def _unlike(outlines: set[str], name: str, file_name: str) -> str:
+def _unmistakable_name(outlines: set[str], name: str, file_name: str) -> str:
     """Returns a submission's name, or its file's, if that looks like no other; else one with a number."""
     for candidate in (name, file_name):
         if outline(candidate) not in outlines:

@@ -284,10 +284,10 @@ class EpisodeCollector(CachingCollector):
         self._criteria = assignment.criteria if criteria is None else criteria
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
-        return [self._evidence_of(spec) for spec in self._specs(criterion)]
+        return [self._evidence_of(spec) for spec in self._episode_specs(criterion)]
 
     def public_evidence(self, criterion: Criterion) -> Sequence[Evidence]:
-        return [self._evidence_of(spec) for spec in self._specs(criterion) if not spec.secret]
+        return [self._evidence_of(spec) for spec in self._episode_specs(criterion) if not spec.secret]
 
     def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
         specs = counterpart_specs(self._assignment, criterion)
@@ -295,7 +295,7 @@ class EpisodeCollector(CachingCollector):
             ((spec.trial.name, spec.seed), spec.label, partial(self._run, spec)) for spec in specs
         )
 
-    def _specs(self, criterion: Criterion) -> Iterator[EpisodeSpec]:
+    def _episode_specs(self, criterion: Criterion) -> Iterator[EpisodeSpec]:
         return episode_specs(self._assignment, criterion, secret=self._secret)
 
     def _evidence_of(self, spec: EpisodeSpec) -> Evidence:
@@ -317,5 +317,5 @@ class EpisodeCollector(CachingCollector):
     @cached_property
     def _episode_count(self) -> int:
         """How many episodes all criteria need."""
-        specs = chain.from_iterable(map(self._specs, self._criteria))
+        specs = chain.from_iterable(map(self._episode_specs, self._criteria))
         return len({(spec.trial.name, spec.secret, spec.seed) for spec in specs})

@@ -287,7 +287,7 @@ def _run_bridge(request: BridgeRequest, where: str, open_wire: Callable[[], Wire
                 bridge = opened.enter_context(Bridge(node, wire, settings, click.echo))
                 deadline.at_begin(bridge.stop)
                 opened.enter_context(StopSocket(bridge, folder, client.world, click.echo))
-                opened.enter_context(_keys(bridge, deadline))
+                opened.enter_context(_stop_keys(bridge, deadline))
                 opened.enter_context(_status_printer(bridge, request.every))
                 opened.callback(deadline.begin)  # first of all: whatever takes long or hangs comes after it
                 client.spin(node)
@@ -341,7 +341,7 @@ def _status_printer(bridge: Bridge, every: float) -> Iterator[None]:
 
 
 @contextmanager
-def _keys(bridge: Bridge, deadline: ShutdownDeadline) -> Iterator[None]:
+def _stop_keys(bridge: Bridge, deadline: ShutdownDeadline) -> Iterator[None]:
     """Lets keys stop the robot and go on, where there is a terminal."""
     if not sys.stdin.isatty():
         yield

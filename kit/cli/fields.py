@@ -213,19 +213,19 @@ def table(runs: int, seed: int, as_json: bool) -> None:
 
 
 def _table_row(row: PrintedPairResult, ours: tuple[PairSummary, ...]) -> str:
-    theirs = f"{_number(row.accuracy):>5} {_number(row.adjacency):>6}"
-    cells = "  ".join(map(_measured, ours))
+    theirs = f"{_number_text(row.accuracy):>5} {_number_text(row.adjacency):>6}"
+    cells = "  ".join(map(_measures_text, ours))
     return f"  {row.title:<14}  {theirs}  {cells}"
 
 
-def _measured(each: PairSummary) -> str:
+def _measures_text(each: PairSummary) -> str:
     """Success and adjacency by both measures; none where a program failed, which is no result of the method."""
     if each.broken:
         return " ".join([f"{'-':>6}"] * 3)
     return f"{each.accuracy:6.2f} {each.by_rays:6.2f} {each.by_geometry:6.2f}"
 
 
-def _number(value: float | None) -> str:
+def _number_text(value: float | None) -> str:
     return "-" if value is None else f"{value:.2f}"
 
 

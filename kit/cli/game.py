@@ -222,7 +222,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
         if name is None:
             medals = challenge_medals(journal.events())
             rows = [
-                (_sign(medals.get(each.id, Medal.NONE)), each.id, f"{each.title}. {each.story}")
+                (_medal_letter(medals.get(each.id, Medal.NONE)), each.id, f"{each.title}. {each.story}")
                 for each in all_challenges()
             ]
             click.echo("\n".join(lines_of([labelled_table(rows, indent=2)])))
@@ -412,7 +412,7 @@ def _print_levels(summary: GameSummary) -> None:
             if each.level.world != world.id:
                 continue
             level = each.level
-            medals = "".join(_sign(each.medals.get(driver, Medal.NONE)) for driver in DriverKind)
+            medals = "".join(_medal_letter(each.medals.get(driver, Medal.NONE)) for driver in DriverKind)
             stars = f"{STAR * each.star_count:{NO_STAR}<{len(ExtraRule)}}"
             times = ", ".join(f"{driver.phrase} {time:.2f} s" for driver, time in each.best_times.items())
             lesson = f", or after lesson {level.lesson_number}" if level.lesson_number else ""
@@ -428,7 +428,7 @@ def _print_levels(summary: GameSummary) -> None:
     click.echo("\n".join(lines_of([*blocks, Text(challenges), Text(ways)])))
 
 
-def _sign(medal: Medal) -> str:
+def _medal_letter(medal: Medal) -> str:
     """The first letter of a medal."""
     from kit.school.game.medal import Medal
 

@@ -59,14 +59,14 @@ def command(context: click.Context, topic: str | None, chapter: str | None, html
         click.echo(f"{counted(len(files), 'page')}: {files[0]}")
         return
     if topic is None:
-        _print(overview())
+        _print_document(overview())
     elif topic in topic_names():
-        _print(_part(topic, chapter))
+        _print_document(_topic_document(topic, chapter))
     else:
         _print_command_help(context, topic)
 
 
-def _part(name: str, chapter: str | None) -> Document:
+def _topic_document(name: str, chapter: str | None) -> Document:
     """A topic's page, or one chapter of it."""
     document = find_topic(name).document()
     if chapter is None:
@@ -89,7 +89,7 @@ def _print_command_help(context: click.Context, name: str) -> None:
     click.echo(found.get_help(found.context_class(found, info_name=name, parent=context.find_root())))
 
 
-def _print(document: Document) -> None:
+def _print_document(document: Document) -> None:
     click.echo(document.title)
     for each in document.chapters:
         click.echo("\n".join(("", _heading(each), "=" * len(each.title), "")))

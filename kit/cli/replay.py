@@ -109,14 +109,14 @@ def command(
     except OSError as error:
         messages.fail(messages.describe_os_error(error))
     if exported is not None:
-        _export(
+        _export_animation(
             recording,
             scenario,
             exported,
-            AnimationSettings(speed, fps, _size(size, exported.suffix), background),
+            AnimationSettings(speed, fps, _parse_size(size, exported.suffix), background),
         )
         return
-    policy = None if agent is None else _policy(agent, workspace)
+    policy = None if agent is None else _best_policy(agent, workspace)
     terminal = options.terminal(plain=check, glyphs=glyphs, color=color)
     if not terminal.plain.value:
 
@@ -151,7 +151,7 @@ def command(
     raise SystemExit(1)
 
 
-def _policy(agent: str, workspace: Path | None) -> Policy:
+def _best_policy(agent: str, workspace: Path | None) -> Policy:
     """The best policy of a run; ends with a message where there is none, or it drives another number of robots."""
     with learning_options.explained_errors():
         if Path(agent).suffix == ".npz":
@@ -166,7 +166,7 @@ def _scenario(recording: Recording, file: Path, root: Path | None) -> Scenario:
     return recorded_scenario(find_playable_level(recording.level), recording)
 
 
-def _size(text: str | None, ending: str) -> tuple[int, int] | None:
+def _parse_size(text: str | None, ending: str) -> tuple[int, int] | None:
     """The size as two numbers, within what a terminal or a picture can have."""
     if text is None:
         return None
@@ -181,7 +181,9 @@ def _size(text: str | None, ending: str) -> tuple[int, int] | None:
     return size
 
 
-def _export(recording: Recording, scenario: Scenario, file: Path, settings: AnimationSettings) -> None:
+def _export_animation(
+    recording: Recording, scenario: Scenario, file: Path, settings: AnimationSettings
+) -> None:
     count = count_frames(recording, settings)
     try:
         with click.progressbar(length=count, label=file.name, file=sys.stderr) as progress:

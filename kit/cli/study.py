@@ -102,14 +102,14 @@ def command(
         opened = options.open_existing_workspace(workspace)
         try:
             if check:
-                _check()
+                _check_document()
                 return
             kind, wanted = _read_number(number)
             if again:
                 if by_kit and no_limit:
                     messages.fail("--kit and --no-limit are two ways to train: give one of them.")
                 variant: StudyVariant = "kit" if by_kit else "no-limit" if no_limit else "seed"
-                for each in _variants(wanted, variant):
+                for each in _wanted_variants(wanted, variant):
                     _run_again(
                         f"figure-{wanted}" if kind == "figure" or wanted in FIGURES_ALONE else wanted,
                         opened,
@@ -137,7 +137,7 @@ FIGURES_ALONE: Final = tuple(
 """Figures that are none of the dissertation's: their names need no word before them."""
 
 
-def _variants(wanted: str, variant: StudyVariant) -> tuple[StudyVariant, ...]:
+def _wanted_variants(wanted: str, variant: StudyVariant) -> tuple[StudyVariant, ...]:
     """How a number is trained again: a figure that compares is trained both ways."""
     return ("seed", "no-limit") if wanted in FIGURES_ALONE else (variant,)
 
@@ -154,7 +154,7 @@ def _read_number(words: tuple[str, ...]) -> tuple[str, str]:
     return "", kind
 
 
-def _check() -> None:
+def _check_document() -> None:
     """Prints what differs between the document that comes with the kit and what its logs give; exits with 1 then."""
     differences = check_document()
     for line in differences[:20]:
@@ -178,7 +178,7 @@ def _run_again(
     trainings = (figure.training for chapter in study_chapters() for figure in chapter.figures)
     tables |= {each.id: each for each in trainings if each is not None}
     studies = {each.id: StudyRun.of(each, workspace, variant, steps) for each in tables.values()}
-    able = {name: run for name, run in studies.items() if run.groups or run.has_fields}
+    able = {name: run for name, run in studies.items() if run.groups or run.has_potential_fields}
     run = able.get(number)
     if run is None:
         words = VARIANT_OPTIONS[variant]

@@ -165,13 +165,13 @@ def show(task: str, on: str | None, glyphs: str | None) -> None:
             click.echo("\n".join(wrap(describe_case(found, case), columns - 1)))
             scene = build_case_scene(found, card, case)
             click.echo("\n".join(scene_rows(scene, columns - 1, max(8, rows // 2), encoder)) + "\n")
-        click.echo("\n".join(lines_of(task_blocks(found), _page())))
+        click.echo("\n".join(lines_of(task_blocks(found), _terminal_page())))
 
 
 @command.command()
 def keys() -> None:
     """Print every key of a task file, and every name that a reward may use."""
-    click.echo("\n".join(lines_of(key_tables(), _page())))
+    click.echo("\n".join(lines_of(key_tables(), _terminal_page())))
 
 
 @command.command(name="list")
@@ -193,6 +193,6 @@ def _say_whether_it_can_be_raced(task: LearningTask) -> None:
         messages.say(f"Its agents can be neither raced nor exported as a node or a package: {reason}.")
 
 
-def _page() -> Page:
+def _terminal_page() -> Page:
     """As wide as the terminal, at most 100 columns."""
     return Page(width=min(100, shutil.get_terminal_size().columns - 1))

@@ -234,12 +234,12 @@ class Turn:
     def find(self, key: str) -> tuple[DialogueAction[Any], tuple[object, ...]] | None:
         """The action that a key means now, and what the key stands for."""
         candidates = [
-            (action, _arguments(call))
+            (action, _call_arguments(call))
             for action in self.dialogue.actions
             for keys, call in action.keys.bindings
             if key in keys.split(",")
         ]
-        return min(candidates, key=lambda each: _rank(self.allowed(each[0])), default=None)
+        return min(candidates, key=lambda each: _availability_rank(self.allowed(each[0])), default=None)
 
     def hidden_by_others(self) -> list[DialogueAction[Any]]:
         """The actions all of whose keys now mean another one."""
@@ -315,12 +315,12 @@ class Turn:
         return remark
 
 
-def _rank(allowed: bool | str) -> int:
+def _availability_rank(allowed: bool | str) -> int:
     """Orders actions of one key: what is possible, what could become possible, what does not belong here."""
     return 0 if allowed is True else 1 if allowed else 2
 
 
-def _arguments(call: str) -> tuple[object, ...]:
+def _call_arguments(call: str) -> tuple[object, ...]:
     """``(1,)`` of ``answer(1)``."""
     inside = call.partition("(")[2].rstrip(")")
     return tuple(ast.literal_eval(f"({inside},)")) if inside else ()

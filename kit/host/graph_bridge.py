@@ -20,7 +20,7 @@ from kit.host.proxy_nodes import GraphDiff, NameScope, ProxyClient, ProxyNodes
 from kit.host.waiter import AllThreadsWaiter, TickSource
 from kit.host.wire import Json, ProtocolError, integer, items, kept_size
 from kit.msg.message import Message, is_request_or_response
-from kit.ros.graph.directory import Excess, GraphNode
+from kit.ros.graph.directory import Excess, NodeLike
 from kit.ros.graph.graph import Graph, Waiter
 from kit.ros.node.publisher import Publisher
 from kit.ros.node.service import Call, Service
@@ -334,7 +334,7 @@ class ChildBridge(GraphBridge):
             self.has_had_nodes = True
             self._add(*event)
 
-    def _record_message(self, _: int, node: GraphNode, topic: str, message: Message) -> None:
+    def _record_message(self, _: int, node: NodeLike, topic: str, message: Message) -> None:
         """Queues every message of the program's own nodes, whether or not anything subscribes."""
         if not is_request_or_response(type(message)):
             self._add_changes()

@@ -54,7 +54,7 @@ def decode(data: bytes) -> Json:
     opening = data.count(b"[") + data.count(b"{")
     if opening + data.count(b",") > MAX_ITEMS:
         raise ProtocolError(f"a frame with more than {MAX_ITEMS} items")
-    if opening > MAX_DEPTH and _depth(data) > MAX_DEPTH:
+    if opening > MAX_DEPTH and _nesting_depth(data) > MAX_DEPTH:
         raise ProtocolError(f"a frame nested deeper than {MAX_DEPTH}")
     try:
         return _DECODER.decode(data.decode("ascii"))
@@ -63,7 +63,7 @@ def decode(data: bytes) -> Json:
         raise ProtocolError(f"a frame that is not plain JSON ({type(problem).__name__})") from None
 
 
-def _depth(data: bytes) -> int:
+def _nesting_depth(data: bytes) -> int:
     depth = deepest = 0
     for bracket in _STRING.sub(b"", data).translate(None, _NO_BRACKETS):
         depth += 1 if bracket in b"[{" else -1

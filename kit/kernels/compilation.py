@@ -27,7 +27,7 @@ these import, they take 14 MB of every drive (``tests/benchmarks/memory.py``).""
 
 
 @contextmanager
-def _absent(names: Sequence[str]) -> Iterator[None]:
+def _hide_packages(names: Sequence[str]) -> Iterator[None]:
     """Has packages be as if they were not installed, unless they are imported already."""
     hidden = [name for name in names if name not in sys.modules]
     sys.modules.update(dict.fromkeys(hidden))  # type: ignore[arg-type] # None is Python's own mark for it
@@ -40,7 +40,7 @@ def _absent(names: Sequence[str]) -> Iterator[None]:
 
 # Not compiled, kernels take a hundred times as long, and what a budget of time allows depends on the caller's environment.
 os.environ.pop("NUMBA_DISABLE_JIT", None)
-with _absent(UNUSED), chdir("/") if NUMBA_SETTINGS.exists() else nullcontext():
+with _hide_packages(UNUSED), chdir("/") if NUMBA_SETTINGS.exists() else nullcontext():
     import numba
     from numba.core import caching, ccallback, config, event
     from numba.core.registry import cpu_target
@@ -78,12 +78,12 @@ def _is_shared(folder: Path) -> bool:
     return not unshared_reason(folder)
 
 
-def _locator(name: str) -> Any:
+def _numba_locator(name: str) -> Any:
     """A class of numba's, which older versions call by a name with an underscore."""
     return getattr(caching, name, None) or getattr(caching, f"_{name}")
 
 
-class _OwnersLocator(_locator("InTreeCacheLocator")):  # type: ignore[misc]
+class _OwnersLocator(_numba_locator("InTreeCacheLocator")):  # type: ignore[misc]
     """Beside the source, unless everybody may write there: anyone could leave code for the others."""
 
     def ensure_cache_path(self) -> None:
@@ -92,7 +92,7 @@ class _OwnersLocator(_locator("InTreeCacheLocator")):  # type: ignore[misc]
             raise OSError("everybody may write there")
 
 
-class _ReadOnlyLocator(_locator("InTreeCacheLocator")):  # type: ignore[misc]
+class _ReadOnlyLocator(_numba_locator("InTreeCacheLocator")):  # type: ignore[misc]
     """For an account, or a confined process, that has no place of its own: it reads the installation's."""
 
     def ensure_cache_path(self) -> None:
@@ -102,9 +102,9 @@ class _ReadOnlyLocator(_locator("InTreeCacheLocator")):  # type: ignore[misc]
 
 class _KernelCacheImpl(_UNTYPED.caching.CompileResultCacheImpl):  # type: ignore[misc]
     _locator_classes = (
-        _locator("UserProvidedCacheLocator"),
+        _numba_locator("UserProvidedCacheLocator"),
         _OwnersLocator,
-        _locator("UserWideCacheLocator"),
+        _numba_locator("UserWideCacheLocator"),
         _ReadOnlyLocator,
     )
 

@@ -144,7 +144,7 @@ def export_recording(
             write_atomically(file, drawn.encode())
         case _:
             data = io.BytesIO()
-            save_animation(data, _pictures(scenes(), columns, rows, settings), settings.fps)
+            save_animation(data, _draw_pictures(scenes(), columns, rows, settings), settings.fps)
             write_atomically(file, data.getvalue())
 
 
@@ -170,7 +170,7 @@ def _text_frames(
         yield shown, frame
 
 
-def _pictures(
+def _draw_pictures(
     scenes: Iterator[RecordedScene], width: int, height: int, settings: AnimationSettings
 ) -> Iterator[Pixels]:
     camera = None

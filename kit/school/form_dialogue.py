@@ -119,9 +119,9 @@ class FormDialogue(Dialogue):
         if question is None:
             return (Text(self.session.closing_text if self._has_asked else self.session.answered_text),)
         lead = [Text(question.group_text)] if question.group_text else []
-        return (*lead, Text(question.text, Tone.BOLD), *self._answers(question))
+        return (*lead, Text(question.text, Tone.BOLD), *self._answer_blocks(question))
 
-    def _answers(self, question: SurveyQuestion) -> list[Block]:
+    def _answer_blocks(self, question: SurveyQuestion) -> list[Block]:
         match question.shape:
             case AnswerShape.TEXT:
                 return []

@@ -137,13 +137,13 @@ def _misprint_chapter(study: EvaluationData) -> Chapter:
     wrong, unknown = print_differences(study), unexplained_differences(study)
     blocks: list[Block] = [
         Text(
-            f"{total - len(wrong)} of {total} printed entries are exact; {len(wrong)} differ, all in {_places(wrong)}."
+            f"{total - len(wrong)} of {total} printed entries are exact; {len(wrong)} differ, all in {_places_text(wrong)}."
         )
     ]
     rows: list[tuple[Cell, ...]] = []
     for slip in study.misprints:
         cells = [each for each in wrong if each.table == slip.table]
-        rows += [(_named(each), each.row, each.column, each.printed, each.ours) for each in cells]
+        rows += [(_place_name(each), each.row, each.column, each.printed, each.ours) for each in cells]
     blocks.append(
         Table(
             "slips",
@@ -164,7 +164,7 @@ def _misprint_chapter(study: EvaluationData) -> Chapter:
     ]
     blocks += [
         Caution(
-            f"{_named(each)}, {each.row}, {each.column}: {each.printed} printed, {each.ours:.4f} ours, and not known."
+            f"{_place_name(each)}, {each.row}, {each.column}: {each.printed} printed, {each.ours:.4f} ours, and not known."
         )
         for each in unknown
     ]
@@ -186,12 +186,12 @@ def _misprint_chapter(study: EvaluationData) -> Chapter:
     return Chapter("slips", "Where the print is wrong", tuple(blocks))
 
 
-def _places(wrong: Sequence[PrintDifference]) -> str:
+def _places_text(wrong: Sequence[PrintDifference]) -> str:
     names = ("the text" if each.table == "text" else f"table {each.table}" for each in wrong)
     return join_with_and(dict.fromkeys(names)) or "no table"
 
 
-def _named(each: PrintDifference) -> str:
+def _place_name(each: PrintDifference) -> str:
     return "text" if each.table == "text" else f"table {each.table}"
 
 

@@ -93,7 +93,7 @@ class PrintedTable:
         return tuple(dict.fromkeys(each for each in groups if each != POTENTIAL_FIELDS))
 
     @property
-    def has_fields(self) -> bool:
+    def has_potential_fields(self) -> bool:
         """Whether potential fields drove in some of its columns."""
         return POTENTIAL_FIELDS in self.groups
 

@@ -187,7 +187,7 @@ def compared_means_table() -> Table:
             if measure == STEPS:
                 continue
             printed = {row: table.cell(row, column) for row in _own_rows(table)}
-            label = f"{number}, {_measured(column, measure)}".rstrip(", ")
+            label = f"{number}, {_column_title(column, measure)}".rstrip(", ")
             if measure != SUCCESS:
                 told = [
                     row for row in printed if cells and all((row, column) in each for each in cells.values())
@@ -227,7 +227,7 @@ def _mean_cell(
     return mean if mean is None or not episodes else f"{mean:.2f} ({episodes:,} episodes)"
 
 
-def _measured(column: str, measure: str) -> str:
+def _column_title(column: str, measure: str) -> str:
     """A column's title with the measure, if it is not success, in full."""
     title = column.removesuffix("acc").removesuffix("adj").strip()
     by_rays = "adjacency by rays" if measure == ADJACENCY else measure

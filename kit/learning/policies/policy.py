@@ -266,12 +266,12 @@ class PolicyPlayer:
         )
         choices = self.policy.choices
         if not choices:
-            return self._draw(self.scores)
+            return self._sample_actions(self.scores)
         parts = np.split(self.scores, np.cumsum(choices)[:-1], axis=1)
-        chosen = np.stack([self._choose(part) for part in parts], axis=1)
+        chosen = np.stack([self._choose_actions(part) for part in parts], axis=1)
         return chosen[:, 0] if len(choices) == 1 else chosen
 
-    def _draw(self, outputs: Float32Array) -> Float32Array:
+    def _sample_actions(self, outputs: Float32Array) -> Float32Array:
         """(n, numbers) continuous actions."""
         sampling, deviations = self.policy.sampling, np.zeros(0, dtype=np.float32)
         if sampling.kind == "tanh-normal":
@@ -288,7 +288,7 @@ class PolicyPlayer:
             outputs = np.tanh(outputs)
         return np.clip(outputs, np.float32(-1), np.float32(1))
 
-    def _choose(self, scores: Float32Array) -> IntArray:
+    def _choose_actions(self, scores: Float32Array) -> IntArray:
         best: IntArray = scores.argmax(axis=1)
         if self._rng is None:
             return best

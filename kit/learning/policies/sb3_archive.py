@@ -201,7 +201,7 @@ def _parts_of(
     epsilon = ActionSampling("epsilon", float(chance) if isinstance(chance, (int, float)) else 0.0)
 
     def network(prefix: str, *heads: str) -> PolicyNetwork:
-        return PolicyNetwork(_layers(weights, prefix, heads), activation)
+        return PolicyNetwork(_linear_layers(weights, prefix, heads), activation)
 
     if "q_net.q_net.0.weight" in weights:
         return _Parts(network("q_net.q_net"), epsilon, None)
@@ -221,9 +221,9 @@ def _parts_of(
         model = network("actor.mu")
         return _Parts(model, ActionSampling("noisy-tanh", 1.0, (0.0,) * model.outputs), critic)
     if "action_net.weight" in weights:
-        memory = _memory(weights)
+        memory = _lstm_layer(weights)
         model = PolicyNetwork(
-            _layers(weights, "mlp_extractor.policy_net", ("action_net",)), activation, memory
+            _linear_layers(weights, "mlp_extractor.policy_net", ("action_net",)), activation, memory
         )
         value = None if memory else network("mlp_extractor.value_net", "value_net")
         if choices:
@@ -238,7 +238,7 @@ def _parts_of(
     )
 
 
-def _layers(weights: Weights, prefix: str, heads: tuple[str, ...] = ()) -> tuple[LinearLayer, ...]:
+def _linear_layers(weights: Weights, prefix: str, heads: tuple[str, ...] = ()) -> tuple[LinearLayer, ...]:
     """The linear layers ``prefix.0``, ``prefix.2`` and so on, and behind them the heads."""
     pattern = re.compile(rf"{re.escape(prefix)}\.(\d+)\.weight")
     numbers = sorted(int(found[1]) for name in weights if (found := pattern.fullmatch(name)))
@@ -251,7 +251,7 @@ def _layers(weights: Weights, prefix: str, heads: tuple[str, ...] = ()) -> tuple
     return tuple(layers)
 
 
-def _memory(weights: Weights) -> LstmLayer | None:
+def _lstm_layer(weights: Weights) -> LstmLayer | None:
     if "lstm_actor.weight_ih_l0" not in weights:
         return None
     if "lstm_actor.weight_ih_l1" in weights:

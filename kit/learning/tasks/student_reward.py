@@ -177,10 +177,10 @@ def call_reward(
 
 def reward_columns(transition: Transition, names: Sequence[str]) -> dict[str, Sequence[Any] | Array]:
     """Returns the arguments of a reward with these parameters: one column each, with a value for every world."""
-    return {name: _column(transition, name) for name in names}
+    return {name: _field_values(transition, name) for name in names}
 
 
-def _column(transition: Transition, name: str) -> Sequence[Any] | Array:
+def _field_values(transition: Transition, name: str) -> Sequence[Any] | Array:
     """(n,) one value for each world, or a list of n lists; the axis of the robots is left out where there is one."""
     count = len(transition.step)
     value = np.asarray(getattr(transition, name))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self, TypeVar
 from kit.msg.message import type_name
 from kit.ros.exceptions import InvalidHandle
 from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup
-from kit.ros.graph.directory import GraphEndpoint, GraphNode, NodeEntry
+from kit.ros.graph.directory import GraphEndpoint, NodeEntry, NodeLike
 from kit.ros.node.qos import QoSProfile
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class Destroyable(ABC):
         return self._handle
 
     @property
-    def node(self) -> GraphNode:
+    def node(self) -> NodeLike:
         """The node that made it."""
         return self._handle.node
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from kit.document.rows import Row, row, spread
+from kit.document.rows import Row, at_both_edges, row
 from kit.school.lessons.catalogue import LessonProgress
 from kit.school.lessons.records import LessonStep, StepKind
 from kit.tui.rows.progress_marks import progress_bar
@@ -34,7 +34,7 @@ def heading(progress: LessonProgress, step: LessonStep, width: int) -> Row:
     if len(goal) > room:
         goal = f"{goal[: room - 3].rstrip()}..." if room >= LEAST_GOAL else ""
     left = row((title, "bold"), "  ", (goal, "dim")) if goal else row((title, "bold"))
-    return spread(left, row(where, (bar, "bold")), width)
+    return at_both_edges(left, row(where, (bar, "bold")), width)
 
 
 def title(step: LessonStep, caption: Row, width: int) -> Row:
@@ -44,7 +44,7 @@ def title(step: LessonStep, caption: Row, width: int) -> Row:
     said = sum(len(text) for text, _ in caption)
     if len(kind) + len(step.title) + 1 + said > width:
         kind = ""
-    return spread(row((kind, "dim"), (step.title, "bold")), caption, width)
+    return at_both_edges(row((kind, "dim"), (step.title, "bold")), caption, width)
 
 
 def checking(seconds: float, progress: str = "") -> Row:

@@ -16,7 +16,7 @@ from kit.dialogue.dialogue import Dialogue, Turn
 from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show, StartTyping, Tell, Work
 from kit.document.blocks import Tone
 from kit.document.layout import Page, place, rows_of
-from kit.document.rows import MARGIN, Row, row, side_by_side, spread, text_width, window
+from kit.document.rows import MARGIN, Row, at_both_edges, row, side_by_side, text_width, window
 from kit.tui.rows.key_rows import footer
 from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.screens.picker import Picker, PickerItem
@@ -200,7 +200,7 @@ class DialogueScreen(RowsScreen[None]):
     def _heading(self) -> Row:
         title = row((self.dialogue.title, "bold"))
         position = self.dialogue.position
-        return spread(title, row((position, "dim")), self.room.width) if position else title
+        return at_both_edges(title, row((position, "dim")), self.room.width) if position else title
 
     def _remark(self) -> Row:
         if self.turn.remark is not None:

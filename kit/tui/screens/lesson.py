@@ -16,7 +16,7 @@ from kit.dialogue.dialogue import Dialogue
 from kit.dialogue.effects import Remark
 from kit.document.blocks import Block, Tone
 from kit.document.layout import Page, place, rows_of
-from kit.document.rows import MARGIN, Row, row, spread, text_width
+from kit.document.rows import MARGIN, Row, at_both_edges, row, text_width
 from kit.inspection.sockets import sockets_folder
 from kit.run.scenario import find_scenario
 from kit.school.lessons.aside import has_easy_editor, plain_lines
@@ -270,7 +270,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
     def _show_title(self) -> None:
         width, caption = self.room.width, self._caption()
         if self.dialogue.has_ended:
-            title = spread((), caption, width)
+            title = at_both_edges((), caption, width)
         else:
             title = lesson_rows.title(self.dialogue.step, caption, width)
         self._rows("title").show([title])

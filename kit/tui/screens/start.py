@@ -14,7 +14,7 @@ from textual.screen import Screen
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction
-from kit.document.rows import Row, row, spread
+from kit.document.rows import Row, at_both_edges, row
 from kit.inspection.sockets import sockets_folder
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import base_key
@@ -128,7 +128,9 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         driver = "you drive" if view.controller == TELEOP else "a program drives: random walk"
         if view.failure is not None:
             driver = "no program drives"
-        return spread(row(("The terminal robot-learning kit", "bold")), row((driver, "dim")), self.size.width)
+        return at_both_edges(
+            row(("The terminal robot-learning kit", "bold")), row((driver, "dim")), self.size.width
+        )
 
     def _show_menu(self) -> None:
         panel = self._rows("panel")

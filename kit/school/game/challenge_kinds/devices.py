@@ -76,7 +76,7 @@ class DevicesTask(ChallengeTask):
 
     def seen_from(self, lasers: tuple[Cell, ...]) -> set[str]:
         """The letters of the places that at least one laser sees."""
-        visible = _visible(self)
+        visible = _visible_squares(self)
         return {name for laser in lasers for name in visible[laser]}
 
     def _squares(self) -> dict[Cell, str]:
@@ -126,7 +126,7 @@ class DevicesBoard(Board):
 
     def rows(self, scale: int = 1) -> list[Row]:
         task, seen = self._task, self._task.seen_from(self._lasers)
-        lit = {square for laser in self._lasers for square in _lit(task, laser)}
+        lit = {square for laser in self._lasers for square in _squares_seen_from(task, laser)}
         signs: dict[Cell, tuple[str, str]] = {}
         for square in task.floor:
             signs[square] = ("·", "warn") if square in lit else (" ", "")
@@ -155,7 +155,7 @@ def naive_lasers(task: DevicesTask) -> tuple[Cell, ...]:
 
 
 @cache
-def _visible(task: DevicesTask) -> dict[Cell, frozenset[str]]:
+def _visible_squares(task: DevicesTask) -> dict[Cell, frozenset[str]]:
     """Computes which squares are seen from each square of the floor."""
     places = task.places
     return {
@@ -165,7 +165,7 @@ def _visible(task: DevicesTask) -> dict[Cell, frozenset[str]]:
 
 
 @cache
-def _lit(task: DevicesTask, laser: Cell) -> frozenset[Cell]:
+def _squares_seen_from(task: DevicesTask, laser: Cell) -> frozenset[Cell]:
     """Computes which squares of the floor are seen from one of them."""
     return frozenset(square for square in task.floor if task.sees(laser, square))
 

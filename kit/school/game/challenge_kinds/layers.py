@@ -92,7 +92,7 @@ class LayersBoard(Board):
                 )
 
     @property
-    def _plan(self) -> LayerAssignment:
+    def _make_plan(self) -> LayerAssignment:
         lasers = {laser.name for laser in self._case.lasers}
         layers = tuple(
             NamedLayer(f"layer {number}", members - lasers) for number, members in enumerate(self._layers, 1)
@@ -107,10 +107,10 @@ class LayersBoard(Board):
 
     @property
     def answer(self) -> str:
-        return format_plan(self._plan)
+        return format_plan(self._make_plan)
 
     def judgement(self) -> Judgement:
-        return judge_assignment(self._task, self._plan)
+        return judge_assignment(self._task, self._make_plan)
 
     def move(self, columns: int, rows: int) -> None:
         self._row = max(0, min(self._row + rows, len(self._names) - 1))
@@ -130,7 +130,7 @@ class LayersBoard(Board):
     def rows(self, scale: int = 1) -> list[Row]:
         width = max(len(name) for name in self._names) + 2
         columns = min(len(self._layers) + 1, MAX_LAYERS)
-        wrong = find_breaches(self._case, self._plan)
+        wrong = find_breaches(self._case, self._make_plan)
         about = {word for each in wrong for word in str(each).replace(",", " ").split()}
         rows = [row(("  " + " " * width + "".join(f"{number + 1:>3}" for number in range(columns)), "dim"))]
         for number, name in enumerate(self._names):

@@ -70,7 +70,7 @@ def walked(task: RoundTask, moves: str) -> tuple[Cell, set[str]]:
     return cell, {name for name, place in task.places.items() if place not in passed}
 
 
-def _way(task: RoundTask, names: str) -> str:
+def _moves_through(task: RoundTask, names: str) -> str:
     """The moves from place to place in this order, from the start and home."""
     home = find_cell(task.grid, "S")
     stops = [home, *(task.places[name] for name in names), home]
@@ -80,7 +80,7 @@ def _way(task: RoundTask, names: str) -> str:
 @cache
 def naive_round(task: RoundTask) -> str:
     """The round in the order of the letters."""
-    return _way(task, "".join(sorted(task.places)))
+    return _moves_through(task, "".join(sorted(task.places)))
 
 
 @cache
@@ -108,7 +108,7 @@ def best_round(task: RoundTask) -> str:
         for (visited, last), (moves, order) in best.items()
         if len(visited) == len(names)
     ]
-    return _way(task, min(ends)[1])
+    return _moves_through(task, min(ends)[1])
 
 
 class RoundBoard(MovesBoard):
