@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from itertools import chain, count
 from types import MappingProxyType
 from typing import Final
 
@@ -63,6 +64,15 @@ def outline(name: str) -> str:
     It tells names apart, and is shown to nobody: who is meant by a name is what ``look`` says.
     """
     return look(look(name.translate(_LATIN_OF)).translate(_LATIN_OF))
+
+
+def distinct_name(taken: set[str], name: str, file_name: str) -> str:
+    """Returns a name, or its file's, if that looks like none of those whose ``outline`` is taken; else one with a number.
+    Its own outline is taken then."""
+    numbered = (f"{file_name} ({number})" for number in count(2))
+    found = next(each for each in chain((name, file_name), numbered) if outline(each) not in taken)
+    taken.add(outline(found))
+    return found
 
 
 def mark_foreign_letters(name: str) -> str:

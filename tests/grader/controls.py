@@ -461,6 +461,34 @@ CONTROLS: Final = (
         "            part.read(length)",
         "test_plain_files.py::test_an_array_as_python_2_wrote_it_is_refused_without_a_warning",
     ),
+    Control(
+        "a work whose name begins with a dot",
+        "grader/cohort/queue.py",
+        "            passed_over.append(readable_name(path.name))\n",
+        "            pass\n",
+        "grader/cohort/test_cohort.py::test_what_is_not_taken_for_a_work_is_said",
+    ),
+    Control(
+        "a folder in the place of another's program in a ladder",
+        "grader/cohort/program_ladder.py",
+        "programs[distinct_name(names, submission_name(path), shown)] = program",
+        "programs[submission_name(path)] = program",
+        "grader/cohort/test_program_ladder.py::test_no_program_takes_the_place_or_the_look_of_another",
+    ),
+    Control(
+        "a student's file name that means another student",
+        "grader/cohort/roster.py",
+        "    if len(found) == 1:\n",
+        "    if found:\n",
+        "grader/cohort/test_class_list.py::test_what_a_student_chooses_of_a_name_means_no_other_student",
+    ),
+    Control(
+        "launch files that include each other again and again",
+        "kit/ros/launch/service.py",
+        "            if self._visited_count > MAX_ACTIONS:\n",
+        "            if False:\n",
+        "ros/launch/test_bounds.py::test_files_that_include_each_other_twice_and_again",
+    ),
 )  # fmt: skip
 
 
