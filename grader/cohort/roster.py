@@ -232,7 +232,8 @@ def owners_of(works: Iterable[str], roster: Roster) -> WorkOwners:
     ambiguous: dict[str, tuple[RosterEntry, ...]] = {}
     for work in works:
         key, found = next(
-            ((key, index[key]) for key in _possible_names(work, roster.platform, prefix) if key in index), ("", ())
+            ((key, index[key]) for key in _possible_names(work, roster.platform, prefix) if key in index),
+            ("", ()),
         )
         if len(found) > 1 and key not in groups:
             ambiguous[work], found = found, ()
