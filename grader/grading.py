@@ -27,9 +27,10 @@ from grader.evidence.findings import (
     state_after,
 )
 from grader.evidence.submission_clock import SubmissionClock
+from grader.failure_status import status_of_failure
 from grader.file_formats import YAML_ENDINGS
 from grader.kinds.contract import find_kind
-from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
+from grader.scoring import DEFAULT_STEPS, round_share
 from grader.seeds import SeedSet
 from grader.submission import Submission
 from grader.submitted_files import SubmissionRefused, reading_submission
