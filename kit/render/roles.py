@@ -60,14 +60,6 @@ SHADES = (Role.FLOOR, *LIT_ROLES)
 
 TRAIL_ROLES = (Role.TRAIL, Role.TRAIL_2)
 
-GHOST_ROLES = (
-    Role.GHOST_REFERENCE,
-    Role.GHOST_KEYS,
-    Role.GHOST_PROGRAM,
-    Role.GHOST_AGENT,
-    Role.GHOST_OTHER,
-)
-
 CURVE_ROLES = (Role.CURVE_1, Role.CURVE_2, Role.CURVE_3, Role.CURVE_4)
 """The first curve's of a plot, the second's, ..., the fifth's as the first's again; numbers and dashes tell them apart
 too."""

@@ -6,7 +6,7 @@ import pytest
 
 from kit.render.palettes import COLOR_SCHEMES, PALETTES, Palette
 from kit.render.role_looks import LINE_DASHES, ROLE_LOOKS
-from kit.render.roles import GHOST_ROLES, LIT_ROLES, ROBOT_ROLES, SHADES, Role
+from kit.render.roles import LIT_ROLES, ROBOT_ROLES, SHADES, Role
 from kit.render.xterm_colors import Rgb, nearest_xterm_color
 from tests.cases import every_case
 
@@ -30,6 +30,7 @@ def test_no_colour_has_none_but_tells_hits_and_robots_from_walls_by_weight() -> 
     assert not palette[Role.WALL].bold
 
 
+GHOST_ROLES = [role for role in Role if role.name.startswith("GHOST_")]
 MOVING = (Role.BODY, Role.TARGET, *GHOST_ROLES, *ROBOT_ROLES)
 """What is told apart at a glance while a level is driven."""
 
