@@ -53,7 +53,7 @@ def run_screen(
 
 
 def show_screen(terminal: TerminalDecision, make_screen: Callable[[KitApp], Screen[Any]]) -> NoReturn:
-    """The same, for a verb that ends with its screen; at SIGTERM and SIGHUP too, after the screen has saved what it keeps."""
+    """Runs a screen as ``run_screen``, and ends the verb with it; at SIGTERM and SIGHUP too, after the screen has saved its state."""
     _, code = run_screen(terminal, make_screen)
     raise ScreenClosed(code)
 

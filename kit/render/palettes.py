@@ -44,7 +44,7 @@ class ColorScheme:
     roles: Mapping[Role, Rgb]
 
     def reduced(self) -> ColorScheme:
-        """The same in colours that are among the 256 of xterm."""
+        """The scheme in the nearest of xterm's 256 colours."""
 
         def near(rgb: Rgb) -> Rgb:
             return xterm_rgb(nearest_xterm_color(rgb))

@@ -77,7 +77,7 @@ class BatchVecEnv(VecEnv):
         return info | ({"adjacency": episode.adjacency} if self.batch.task.robots > 1 else {})
 
     def close(self) -> None:
-        """There is nothing to close."""
+        """Does nothing: a batch holds no files and no processes."""
 
     # All worlds share their attributes: there is one object behind them.
 
