@@ -27,9 +27,10 @@ from grader.evidence.findings import (
     state_after,
 )
 from grader.evidence.submission_clock import SubmissionClock
+from grader.failure_status import status_of_failure
 from grader.file_formats import YAML_ENDINGS
 from grader.kinds.contract import find_kind
-from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
+from grader.scoring import DEFAULT_STEPS, round_share
 from grader.seeds import SeedSet
 from grader.submission import Submission
 from grader.submitted_files import SubmissionRefused, reading_submission
@@ -279,7 +280,7 @@ class Grading:
         return max(lost, key=lambda each: (not each[1].secret, each[0]), default=(0.0, None))[1]
 
     def first_public_evidence(self) -> Evidence | None:
-        """Returns what the first criterion saw first, secret evidence aside: the run to show where nothing was lost."""
+        """Returns the first evidence of the first criterion that is not secret: the run to show where nothing was lost."""
         seen = (each.evidence for scored in self._scored.values() for each in scored)
         return next((each for each in seen if not each.secret), None)
 

@@ -10,12 +10,12 @@ Point = tuple[float, float]
 
 
 def wrap_angle(angle: float) -> float:
-    """The same direction as ``angle`` [rad], in [-pi, pi)."""
+    """``angle`` [rad] wrapped to [-pi, pi)."""
     return (angle + math.pi) % math.tau - math.pi
 
 
 def whole_degrees(angle: float) -> int:
-    """The same direction as ``angle`` [rad], in degrees, rounded, in (-180, 180]: as it is shown to people.
+    """``angle`` [rad] in whole degrees, wrapped to (-180, 180]: as it is shown to people.
 
     >>> whole_degrees(-math.pi), whole_degrees(math.radians(-179.7)), whole_degrees(math.radians(269.0))
     (180, 180, -91)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from grader.cli import options
+from grader.cli import confinement, exits, loading, options
 from kit.cli.existing_path import ExistingPath
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from grader.grading import Grading
     from kit.results.grading_result import GradingResult
 
-EXIT_CODES = {"pass": 0, "fail": options.EXIT_FAILED, "broken": options.EXIT_BROKEN}
+EXIT_CODES = {"pass": 0, "fail": exits.EXIT_FAILED, "broken": exits.EXIT_BROKEN}
 
 
 _format_option = click.option(
@@ -82,19 +82,19 @@ def check(
 
     format_name = "json" if as_json else format_name
     if format_name not in FORMATS:
-        options.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")
+        exits.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")
     with (
         shown_progress(progress_descriptor) as show_progress,
         _own_starts(file, level, for_student=for_student),
     ):
         show_progress("reading the exercise")
-        assignment = options.load_assignment(folder)
-        options.warn_of_unused_secrets(assignment, secret=secret)
-        grading_level = options.level_for_untrusted(assignment, level, secret=secret)
+        assignment = loading.load_assignment(folder)
+        loading.warn_of_unused_secrets(assignment, secret=secret)
+        grading_level = confinement.level_for_untrusted(assignment, level, secret=secret)
         try:
             submission = read_submission(file, assignment.submit)
             if submission.note:
-                options.warn(f"Note: {submission.note}")
+                exits.warn(f"Note: {submission.note}")
             is_for_student = for_student or FORMATS[format_name].is_for_students
             grading_options = GradingOptions(
                 grading_level, secret, secret and is_for_student, show_progress=show_progress
@@ -105,7 +105,7 @@ def check(
                 if not picture and replay is not None:
                     picture = _keep_passed_run(grading, replay)
         except (SubmissionRefused, LevelTooLow) as error:
-            options.fail(str(error))
+            exits.fail(str(error))
     if for_student:
         result = result.for_student()
     text = _report(result, format_name, hints, picture)
@@ -175,7 +175,7 @@ def _save_replay(run: WatchableEvidence, replay: Path, grading: Grading) -> str:
     try:
         is_own_place = run.save_replay(replay.absolute())
     except OSError as error:
-        options.fail(f"Cannot write {replay}: {error.strerror or error}.")
+        exits.fail(f"Cannot write {replay}: {error.strerror or error}.")
     root = f" --root {shlex.quote(str(grading.assignment.folder))}" if is_own_place else ""
     return f"To watch it: kit replay {shlex.quote(str(replay))}{root}"
 
@@ -198,13 +198,13 @@ def report(file: Path, format_name: str, output: Path | None, for_student: bool,
     from kit.workspace import write_atomically
 
     if format_name not in FORMATS:
-        options.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")
+        exits.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")
     if work and format_name != "annotations":
-        options.fail("--work is for annotations.")
+        exits.fail("--work is for annotations.")
     try:
         result = GradingResult.from_dict(json.loads(file.read_bytes()))
     except (KeyError, TypeError, ValueError, RecursionError):
-        options.fail(f"{file}: not a result of the grader.")
+        exits.fail(f"{file}: not a result of the grader.")
     if for_student:
         result = result.for_student()
     text = write_annotations(result, work) if work else FORMATS[format_name].write(result)

@@ -51,7 +51,7 @@ class Evidence(Protocol):
 
     @property
     def outcome(self) -> str:
-        """A few words on what happened."""
+        """How the episode ended, in a few words."""
 
     @property
     def steps(self) -> int:

@@ -218,7 +218,7 @@ class FindingsRecorder:
         return [each for _, each in noted]
 
     def _noted_of(self, evidence: Evidence) -> tuple[int, NotedEvidence]:
-        """Its number and its noting twin, the same each time: criteria compare evidence by identity."""
+        """The number of a piece of evidence and the object that notes its measures, always the same object: criteria compare by identity."""
         known = self._noted.get(id(evidence))
         if known is None:
             finding = KeptFinding(evidence.label, evidence.secret, "", 0, (), None)

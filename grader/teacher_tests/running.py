@@ -14,7 +14,7 @@ from grader.assignment import TeacherTest
 from grader.author_code import AuthorCodeError, run_author_code
 from grader.evidence.contract import EvidenceSource
 from grader.evidence.submission_clock import SubmissionClock
-from grader.scoring import status_of_failure
+from grader.failure_status import status_of_failure
 from grader.teacher_tests.deadline import TestDeadline, TestTimeUsedUp
 from grader.teacher_tests.reading import MARK_HELP
 from kit.host.failure import Failure

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, opening, options, terminal_options
 from kit.cli.full_screen import show_dialogue
 from kit.cli.input_lines import InputBuffer, InputLines
 from kit.dialogue.dialogue import Dialogue, DialogueAction, Turn
@@ -52,11 +52,11 @@ def dialogue_command(name: str, make: Any) -> click.Command:
     @click.command(name, help=inspect.getdoc(make))
     @options.workspace
     @click.option("--plain", is_flag=True, help="Ask line by line instead of on a full screen.")
-    @options.glyphs
-    @options.color
+    @terminal_options.glyphs
+    @terminal_options.color
     def command(workspace: Path | None, plain: bool, glyphs: str | None, color: str | None) -> None:
-        terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
-        dialogue = make(options.open_existing_workspace(workspace))
+        terminal = terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
+        dialogue = make(opening.open_existing_workspace(workspace))
         if terminal.plain.value:
             run_dialogue(dialogue)
         else:

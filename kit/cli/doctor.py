@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 import kit
-from kit.cli import messages, options
+from kit.cli import messages, terminal_options
 from kit.cli.full_screen import show_screen
 from kit.document.blocks import labelled_table
 from kit.document.layout import lines_of
@@ -338,7 +338,7 @@ def command(students: int | None, machine_readable: bool) -> None:
 @click.command()
 def keys_command() -> None:
     """Show what this terminal sends for each key, and how you can drive with it. Ctrl-C leaves."""
-    terminal = options.full_screen("The key test")
+    terminal = terminal_options.full_screen("The key test")
 
     def make_screen(app: KitApp) -> KeyTestScreen:
         from kit.tui.screens.key_test import KeyTestScreen

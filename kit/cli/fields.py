@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, options, terminal_options
 from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import show_screen
 from kit.controllers import find_controller, prepare_workspace
@@ -69,8 +69,8 @@ def command() -> None:
 )
 @options.seed
 @options.workspace
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def show(
     place: str,
     case: str | None,
@@ -94,7 +94,7 @@ def show(
             messages.fail(str(error))
         scenario = replace(_place(place, case), charges=charges)
         setup = _open_setup(scenario, derived)
-        terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+        terminal = terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
         find_controller(controller, opened_workspace.controllers)
     if terminal.plain.value:
         for line in _describe_field(scenario, setup):

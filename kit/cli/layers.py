@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, options, terminal_options
 from kit.cli.full_screen import show_layers
 from kit.document.blocks import labelled_table
 from kit.document.layout import lines_of
@@ -128,7 +128,7 @@ def command(context: click.Context) -> None:
       kit layers check my.world.yaml         for CI: exit code 3 if not minimal
     """
     if context.invoked_subcommand is None:
-        terminal = options.terminal()
+        terminal = terminal_options.decide()
         if terminal.plain.value:
             click.echo(context.get_help())
             return

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 import numpy as np
 
-from kit.cli import learning_options, messages, options
+from kit.cli import learning_options, messages, options, terminal_options
 from kit.cli.full_screen import show_screen
 from kit.learning.policies.policy import Policy
 from kit.learning.policies.policy_file import load_policy
@@ -72,8 +72,8 @@ if TYPE_CHECKING:
 )
 @options.root
 @options.workspace
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def command(
     file: Path,
     check: bool,
@@ -117,7 +117,7 @@ def command(
         )
         return
     policy = None if agent is None else _best_policy(agent, workspace)
-    terminal = options.terminal(plain=check, glyphs=glyphs, color=color)
+    terminal = terminal_options.decide(plain=check, glyphs=glyphs, color=color)
     if not terminal.plain.value:
 
         def make_screen(app: KitApp) -> ReplayScreen:

@@ -8,7 +8,7 @@ from typing import Final
 
 import click
 
-from kit.cli import learning_options, messages, options, report_output
+from kit.cli import learning_options, messages, opening, options, report_output
 from kit.cli.executor_options import executor_options
 from kit.cli.sweep import run_sweep
 from kit.document.blocks import Document
@@ -99,7 +99,7 @@ def command(
     2 there is no such table; 130 interrupted by Ctrl-C.
     """
     with learning_options.explained_errors(), report_output.explained_errors():
-        opened = options.open_existing_workspace(workspace)
+        opened = opening.open_existing_workspace(workspace)
         try:
             if check:
                 _check_document()

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import learning_options, messages, options
+from kit.cli import learning_options, messages, terminal_options
 from kit.cli.existing_path import ExistingPath
 from kit.document.blocks import Text, labelled_table
 from kit.document.layout import Page, lines_of
@@ -152,14 +152,14 @@ def unpack(archive: Path, dest: Path) -> None:
 @command.command()
 @click.argument("task")
 @learning_options.on
-@options.glyphs
+@terminal_options.glyphs
 def show(task: str, on: str | None, glyphs: str | None) -> None:
     """Show TASK. Print starts (S) and targets on each map, observations, actions, reward, and how episodes end."""
     with learning_options.explained_errors():
         found = find_task(task)
         if on is not None:
             found = found.on(*learning_options.split_names(on))
-        encoder = ENCODERS[options.terminal(glyphs=glyphs).glyphs.value](True)
+        encoder = ENCODERS[terminal_options.decide(glyphs=glyphs).glyphs.value](True)
         columns, rows = shutil.get_terminal_size()
         for card, case in found.map_cases():
             click.echo("\n".join(wrap(describe_case(found, case), columns - 1)))

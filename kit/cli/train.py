@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from kit.cli import learning_options, messages, options
+from kit.cli import learning_options, messages, options, terminal_options
 from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen
 from kit.cli.shared_game import join_shared_game
@@ -56,8 +56,8 @@ PROGRESS_INTERVAL_S = 2.0
 @click.option("--once", is_flag=True, help="Print what has happened so far, and exit.")
 @options.workspace
 @learning_options.plain
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def watch_command(
     run: str | None, once: bool, workspace: Path | None, plain: bool, glyphs: str | None, color: str | None
 ) -> None:
@@ -71,7 +71,7 @@ def watch_command(
     with learning_options.explained_errors():
         found = find_run(learning_options.runs_folder(workspace), run)
         found.config()
-        terminal = options.terminal(plain=plain or once, glyphs=glyphs, color=color)
+        terminal = terminal_options.decide(plain=plain or once, glyphs=glyphs, color=color)
         if terminal.plain.value:
             follow(found, once=once)
         else:
@@ -224,8 +224,8 @@ def _suggest_race(run: TrainingRun) -> None:
 )
 @options.workspace
 @learning_options.plain
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def command(
     task: str | None,
     algo: str | None,
@@ -290,7 +290,7 @@ def command(
     if listed and task is None:
         click.echo("\n".join(_list_tasks()))
         return
-    terminal = None if detach else options.terminal(plain=plain, glyphs=glyphs, color=color)
+    terminal = None if detach else terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
     with learning_options.explained_errors():
         if resume is not None:
             _go_on(resume, workspace, terminal)

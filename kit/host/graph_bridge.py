@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 from kit.host.codec import Codec, NotFiniteError
 from kit.host.proxy_nodes import GraphDiff, NameScope, ProxyClient, ProxyNodes
 from kit.host.waiter import AllThreadsWaiter, TickSource
-from kit.host.wire import Json, ProtocolError, integer, items, kept_size
+from kit.host.wire import Json, ProtocolError, integer, items, memory_size
 from kit.msg.message import Message, is_request_or_response
 from kit.ros.graph.directory import Excess, NodeLike
 from kit.ros.graph.graph import Graph, Waiter
@@ -208,7 +208,7 @@ class ParentBridge(GraphBridge):
         publisher = self._proxies.endpoint(identity, Publisher)
         message = self._codec.unpack(publisher.msg_type, content)
         if self._max_kept is not None and publisher.qos_profile.is_transient_local:
-            self._count_history(identity, publisher.qos_profile.queue_length, kept_size(content))
+            self._count_history(identity, publisher.qos_profile.queue_length, memory_size(content))
         # The child's own subscriptions have received it already.
         self._is_publishing = True
         try:
@@ -240,7 +240,7 @@ class ParentBridge(GraphBridge):
     def on_request(self, service: int, call: Call) -> None:
         number = self.graph.next_number()
         content = self._codec.pack(call.request)
-        size = 0 if self._max_kept is None else kept_size(content)
+        size = 0 if self._max_kept is None else memory_size(content)
         self._requests[number] = _PendingRequest(service, call, size)
         self._kept += (
             size  # checked in ``apply_events``: this runs in the call of whoever has made the request

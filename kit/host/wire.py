@@ -152,11 +152,11 @@ def printable(value: str) -> str:
     )
 
 
-def kept_size(value: Json) -> int:
+def memory_size(value: Json) -> int:
     """Returns about how many bytes a message with this content takes in memory: rather too many than too few."""
     if isinstance(value, (list, dict)):
         inner = value.values() if isinstance(value, dict) else value
-        return 100 + sum(map(kept_size, inner))
+        return 100 + sum(map(memory_size, inner))
     return 50 + (4 * len(value) if isinstance(value, str) else 0)
 
 

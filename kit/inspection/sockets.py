@@ -95,7 +95,7 @@ class WorldNotFound(LookupError):
 
 @dataclass(frozen=True, slots=True)
 class RunningWorld:
-    """A world that other terminals can connect to."""
+    """A running world that other terminals can connect to."""
 
     path: Path
     started_s: float

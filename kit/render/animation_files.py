@@ -11,7 +11,9 @@ import numpy as np
 from kit.arrays import FloatArray
 from kit.render.encode import Frame, changed_spans
 from kit.render.image import IMAGE_THEMES, Color, path_role
-from kit.render.roles import ROBOT_ROLES, ROLE_LOOKS, LineStyle, Palette, Role, RoleStyle
+from kit.render.palettes import Palette
+from kit.render.role_looks import ROLE_LOOKS, LineStyle, RoleStyle
+from kit.render.roles import ROBOT_ROLES, Role
 from kit.render.scene import Disc, Scene, SceneBody, SceneBounds, SceneMark, ScenePath
 
 _ANSI_NAMES = ("black", "red", "green", "yellow", "blue", "magenta", "cyan", "white")

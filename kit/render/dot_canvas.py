@@ -11,7 +11,8 @@ from kit.render import raster
 from kit.render.camera import Camera
 from kit.render.encode import Encoder
 from kit.render.raster import Grid
-from kit.render.roles import LINE_DASHES, ROLE_LOOKS, TRAIL_ROLES, Role
+from kit.render.role_looks import LINE_DASHES, ROLE_LOOKS
+from kit.render.roles import TRAIL_ROLES, Role
 from kit.render.scene import CellState, Disc, SceneBody, SceneCells, ScenePath
 from kit.render.shading import sampled_cells
 from kit.render.sprites import MIN_OUTLINE_ROWS, size_in_rows

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from kit.arrays import Uint8Array
 from kit.render.raster import Grid
-from kit.render.roles import ROLE_LOOKS, SHADES, Role
+from kit.render.role_looks import ROLE_LOOKS
+from kit.render.roles import SHADES, Role
 
 BLANK = ord(" ")
 

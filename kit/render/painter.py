@@ -12,7 +12,8 @@ from kit.render.camera import Camera
 from kit.render.dot_canvas import NO_LINES, DotCanvas, ring_dots
 from kit.render.encode import Encoder, Frame
 from kit.render.raster import Grid
-from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role, nearest_pen_role
+from kit.render.role_looks import nearest_pen_role
+from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role
 from kit.render.scene import Disc, Scene
 from kit.render.shading import FloorMap, lit_cells, seen_surfaces, shade_roles
 from kit.render.sprites import SpriteLayer

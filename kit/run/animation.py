@@ -15,7 +15,8 @@ from kit.render.camera import Camera
 from kit.render.encode import BrailleEncoder, Frame
 from kit.render.image import IMAGE_THEMES, Pixels, draw_image, image_camera, save_animation
 from kit.render.painter import Painter
-from kit.render.roles import ANSI_PALETTE, COLOR_SCHEMES, Role
+from kit.render.palettes import ANSI_PALETTE, COLOR_SCHEMES
+from kit.render.roles import Role
 from kit.render.scene import Scene
 from kit.run.episode import run_until
 from kit.run.recording import Recording

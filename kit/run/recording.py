@@ -144,7 +144,7 @@ class RecordingStore(Protocol):
         """Starts anew, with a recording that has no ticks yet."""
 
     def offer(self, recorder: Recorder) -> None:
-        """Called after every tick."""
+        """Records a tick where one is due; called after every tick."""
 
 
 class Recorder(Observer):

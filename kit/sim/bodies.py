@@ -216,7 +216,7 @@ class PhysicalBody:
         )
 
     def set_pose(self, pose: Pose) -> None:
-        """Puts the body, and what is stiffly welded to it, there. Velocities stay."""
+        """Moves the body, and all bodies stiffly welded to it, to a pose. Velocities stay."""
         self.rigid.set_pose(pose.compose(self.offset.relative(Pose())))
 
     def hold(self, pose: Pose) -> None:

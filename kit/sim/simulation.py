@@ -229,7 +229,7 @@ class Simulation:
         return [endpoint for plugin in self._instance.plugins for endpoint in plugin.endpoints]
 
     def model_endpoints(self, model: str) -> Sequence[TopicEndpoint]:
-        """Those of one model's plugins; none if it is not there."""
+        """The endpoints of one model's plugins; none if there is no such model."""
         instance = self._instance.models.get(model)
         return [] if instance is None else [end for plugin in instance.plugins for end in plugin.endpoints]
 

@@ -33,7 +33,7 @@ from kit.study.evaluation_data import EvaluationData
 from kit.study.evaluation_tables import (
     PrintDifference,
     TableRows,
-    print_differences,
+    differences_from_print,
     recompute_tables,
     score_order,
     setting_of,
@@ -65,7 +65,7 @@ def evaluation_table(study: EvaluationData, number: str) -> tuple[Block, ...]:
         raise LookupError(f"The evaluation has no Table {number}.")
     ours = recompute_tables(study)[number]
     slips = (Text(f"Slip: {each.why}") for each in study.misprints if each.table == number)
-    return (_comparison_table(table, ours, print_differences(study), setting_of(study)), *slips)
+    return (_comparison_table(table, ours, differences_from_print(study), setting_of(study)), *slips)
 
 
 def evaluation_plots(study: EvaluationData) -> dict[str, Plot]:
@@ -134,7 +134,7 @@ def _comparison_table(
 
 def _misprint_chapter(study: EvaluationData) -> Chapter:
     total = sum(len(row) for table in study.printed for row in table.rows.values())
-    wrong, unknown = print_differences(study), unexplained_differences(study)
+    wrong, unknown = differences_from_print(study), unexplained_differences(study)
     blocks: list[Block] = [
         Text(
             f"{total - len(wrong)} of {total} printed entries are exact; {len(wrong)} differ, all in {_places_text(wrong)}."

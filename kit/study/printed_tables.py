@@ -98,6 +98,10 @@ class PrintedTable:
         return POTENTIAL_FIELDS in self.groups
 
     @property
+    def rows_without_means(self) -> list[str]:
+        return list(self.rows)[: len(self.cases) or self.attempts]
+
+    @property
     def attempts(self) -> int:
         """How many of its first rows are attempts at one training."""
         return sum(row not in SUMMARY_ROWS for row in self.rows) if self.seed_rows else 1

@@ -165,7 +165,7 @@ def recorded_study_document() -> str:
 
 
 def _table_numbers(chapter: StudyChapter) -> Iterator[str]:
-    """Those of its own data, then those of the evaluation."""
+    """The numbers of the tables of its own data, then of the evaluation's."""
     yield from (each.id for each in chapter.tables)
     if chapter.number == 5:
         yield from (each.id for each in _evaluation().printed)
@@ -294,5 +294,5 @@ def _evaluation() -> EvaluationData:
 
 @cache
 def _evaluation_plots() -> dict[str, Plot]:
-    """Those of the evaluation, by name."""
+    """The plots of the evaluation, by name."""
     return evaluation_plots(_evaluation())

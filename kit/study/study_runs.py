@@ -184,7 +184,7 @@ class StudyRun:
         return tuple(found)
 
     def missing_seeds(self, seeds: int) -> tuple[int, ...]:
-        """Those of the seeds from 0 on of which an agent has not been tested yet."""
+        """The seeds, counted from 0, whose agent has not been tested yet."""
         found = self.recorded()
         return tuple(
             seed
@@ -208,7 +208,7 @@ class StudyRun:
 
     @property
     def missing_fields_cases(self) -> tuple[tuple[str, str], ...]:
-        """Those that are not in the log."""
+        """The cases that are not in the log."""
         found = self.recorded()
         done = (
             {case for each in found.tests_of(POTENTIAL_FIELDS) for case in each.reached} if found else set()
@@ -392,7 +392,7 @@ def _test_agent(group: str, sweep: TrainingSweep, entry: SweepEntry, episodes: i
 
 
 def _known_shares(shares: dict[str, float]) -> dict[str, float]:
-    """Those that are numbers, rounded."""
+    """The shares that are numbers, rounded."""
     return {case: round(share, 4) for case, share in shares.items() if not np.isnan(share)}
 
 

@@ -281,7 +281,7 @@ CONTROLS: Final = (
     ),
     Control(
         "a command of a CI service in a note",
-        "grader/cli/options.py",
+        "grader/cli/exits.py",
         "    click.echo(plain(message), err=True)\n",
         "    click.echo(message, err=True)\n",
         "grader/cohort/test_cohort.py::test_a_note_gives_a_ci_service_no_command",
@@ -449,7 +449,7 @@ CONTROLS: Final = (
     ),
     Control(
         "kernels that are not compiled",
-        "kit/kernels/compilation.py",
+        "kit/kernels/numba_import.py",
         'os.environ.pop("NUMBA_DISABLE_JIT", None)\n',
         "\n",
         "grader/test_surroundings.py::test_no_environment_decides_a_grade",

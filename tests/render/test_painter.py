@@ -14,7 +14,7 @@ from kit.render import painter as painter_module
 from kit.render.camera import Camera
 from kit.render.encode import BLANK, ENCODERS, AsciiEncoder, BrailleEncoder, Encoder, Frame, HalfBlockEncoder
 from kit.render.painter import Painter
-from kit.render.roles import GHOST_ROLES, Role
+from kit.render.roles import Role
 from kit.render.scene import (
     CellState,
     Disc,
@@ -32,6 +32,7 @@ from tests.render.scenes import box_walls, maze, robot, scan
 every_encoder = pytest.mark.parametrize(
     "encoder", [BrailleEncoder(), HalfBlockEncoder(), AsciiEncoder()], ids=list(ENCODERS)
 )
+GHOST_ROLES = [role for role in Role if role.name.startswith("GHOST_")]
 
 
 def room() -> Scene:

@@ -215,7 +215,7 @@ class PosedTask:
             "loops": self._measure_loops,
             "learns": self._measure_learning,
             "arrives": self._measure_arriving,
-            "quick": self._measure_time,
+            "quick": self._measure_time_ratio,
         }[check](params)
 
     def _measure_places(self, params: Mapping[str, str]) -> PosedMeasure:
@@ -268,7 +268,7 @@ class PosedTask:
         share = lower_bound(sum(case.reached for case in cases), sum(case.episodes for case in cases))
         return PosedMeasure(share, _worst_case(self.policy_test))
 
-    def _measure_time(self, params: Mapping[str, str]) -> PosedMeasure:
+    def _measure_time_ratio(self, params: Mapping[str, str]) -> PosedMeasure:
         if isinstance(self.policy_test, str):
             return PosedMeasure(math.nan, self.policy_test)
         steps = [case.steps for case in self.policy_test.cases if case.reached]

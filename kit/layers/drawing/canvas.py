@@ -9,6 +9,26 @@ from typing import Final
 
 from kit.layers.drawing.spans import STYLE_RANK, DrawingLine, DrawingSpan, DrawingStyle, GlyphStyle
 
+_FRAMES: Final = {
+    "body": ("─", "│", "┌┐└┘"),
+    "laser": ("─", "│", "┌┐└┘"),
+    "map": ("═", "║", "╔╗╚╝"),
+    "group": ("━", "┃", "┏┓┗┛"),
+}
+"""Across, down and the four corners of a box."""
+
+
+_ASCII_FRAMES: Final = {
+    "body": ("-", "|", "++++"),
+    "map": ("=", "|", "####"),
+    "group": ("#", "#", "####"),
+}
+
+
+_BRAILLE: Final = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
+"""The bit of each dot of a braille character, by row and column."""
+BOX_ROWS: Final = 4
+
 
 @dataclass(frozen=True, slots=True)
 class EntityBox:
@@ -33,9 +53,6 @@ class EntityBox:
         across, down = abs(self.corner[0] - other.corner[0]), abs(self.corner[1] - other.corner[1])
         widest = self.width if self.corner[0] <= other.corner[0] else other.width
         return across < widest + 2 and down < BOX_ROWS + 1
-
-
-BOX_ROWS: Final = 4
 
 
 class TextCanvas:
@@ -147,26 +164,6 @@ class TextCanvas:
             if STYLE_RANK[style] >= STYLE_RANK[self._styles.get(cell, "space")]:
                 self._letters[cell] = letter
                 self._mark(cell, style)
-
-
-_FRAMES: Final = {
-    "body": ("─", "│", "┌┐└┘"),
-    "laser": ("─", "│", "┌┐└┘"),
-    "map": ("═", "║", "╔╗╚╝"),
-    "group": ("━", "┃", "┏┓┗┛"),
-}
-"""Across, down and the four corners of a box."""
-
-
-_ASCII_FRAMES: Final = {
-    "body": ("-", "|", "++++"),
-    "map": ("=", "|", "####"),
-    "group": ("#", "#", "####"),
-}
-
-
-_BRAILLE: Final = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
-"""The bit of each dot of a braille character, by row and column."""
 
 
 def _line_character(across: float, down: float) -> str:

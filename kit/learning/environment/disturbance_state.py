@@ -49,7 +49,7 @@ class DisturbanceState:
         )
 
     def copy(self) -> DisturbanceState:
-        """The same, into which ``begin`` may write."""
+        """A copy into which ``begin`` may write."""
         if not self.is_any:
             return self
         return replace(

@@ -45,7 +45,7 @@ class BatchVecEnv(VecEnv):
         super().__init__(batch.n, batch.observation_space, batch.action_space)
 
     def reset(self) -> VecEnvObs:
-        """Begins new episodes; from the start of the seed, if ``seed`` was called."""
+        """Begins new episodes in all worlds; after ``seed``, with that seed."""
         seed = self._seeds[0]
         self._reset_seeds()
         self._reset_options()
@@ -77,7 +77,7 @@ class BatchVecEnv(VecEnv):
         return info | ({"adjacency": episode.adjacency} if self.batch.task.robots > 1 else {})
 
     def close(self) -> None:
-        """There is nothing to close."""
+        """Does nothing: a batch holds no files and no processes."""
 
     # All worlds share their attributes: there is one object behind them.
 

@@ -273,7 +273,7 @@ class Evaluator:
 
 @dataclass(slots=True)
 class _CaseSums:
-    """Over the episodes of one case."""
+    """Sums over the episodes of one case."""
 
     outcomes: dict[EpisodeOutcome, int] = field(default_factory=lambda: dict.fromkeys(EpisodeOutcome, 0))
     steps: int = 0

@@ -96,7 +96,7 @@ class CaseReader:
         return (EpisodePlaces(first), *self._other_starts(section, len(first)))
 
     def _other_starts(self, section: Section, count: int) -> tuple[EpisodePlaces, ...]:
-        """Those of the other robots: a pose for each of them, beside each start of the first one."""
+        """The starts of the other robots: a pose for each of them, beside each start of the first one."""
         others = self._robots - 1
         if not others:
             return ()

@@ -18,8 +18,8 @@ from kit.ros.graph.directory import NodeEntry, NodeLike
 from kit.ros.graph.naming import expand_topic_name, full_name, validate_topic_name
 from kit.ros.graph.ready_queue import ReadyQueue
 from kit.ros.node.endpoint import (
+    CallbackEntity,
     Destroyable,
-    Entity,
     GuardCondition,
     TopicEndpointInfo,
     TopicEndpointTypeEnum,
@@ -136,7 +136,7 @@ class NodeHandle:
 
     def discard_queues(self) -> None:
         """Drops all queued messages, requests and responses. With the graph's lock held."""
-        entities: list[Entity] = [*self.subscriptions, *self.clients, *self.services]
+        entities: list[CallbackEntity] = [*self.subscriptions, *self.clients, *self.services]
         for entity in entities:
             entity.discard_queue()
 

@@ -46,7 +46,7 @@ def _publish_answer(folder: Path, challenge: Challenge, text: str) -> None:
 
 
 def publish_answers(folder: Path, workspace: Workspace, challenges: tuple[Challenge, ...]) -> None:
-    """The same for every answer that the workspace holds."""
+    """Publishes every answer that the workspace holds."""
     for challenge in challenges:
         file = answers_folder(workspace) / challenge.id / challenge.task.answer_file
         if challenge.task.answer_file and file.is_file():

@@ -30,6 +30,8 @@ from kit.school.quiz.schedule import PracticeSchedule, RoundHistory
 
 BAR: Final = 20
 """Width of a bar in columns."""
+MAP_BAR: Final = 10
+"""Columns of a topic's bar on the map of topics."""
 
 VERDICTS: Final[Mapping[AnswerOutcome, str]] = {
     AnswerOutcome.RIGHT: "Right.",
@@ -40,6 +42,7 @@ VERDICTS: Final[Mapping[AnswerOutcome, str]] = {
 CALIBRATION_HEADING: Final = "How sure you were, and how often right"
 CONFIDENCE_QUESTION: Final = "How sure are you?"
 CONFIDENCE_CHOICES: Final = tuple(CONFIDENCE_LABELS.items())
+_WORDS: Final = CellStyle.TEXT
 
 
 def verdict_text(item: QuizItem, choice: AnswerChoice) -> str:
@@ -50,9 +53,6 @@ def verdict_text(item: QuizItem, choice: AnswerChoice) -> str:
 def feedback_text(item: QuizItem, choice: AnswerChoice) -> str:
     """Feedback for the chosen option; for no choice, that of the right option."""
     return item.options[item.right_option if choice.option is None else choice.option].feedback
-
-
-_WORDS: Final = CellStyle.TEXT
 
 
 def follow_up_blocks(item: QuizItem) -> list[Block]:
@@ -129,10 +129,6 @@ def topic_table(scores: Mapping[QuizTopic, OutcomeCounts]) -> Table:
         for topic, t in scores.items()
     )
     return Table("topics", "", columns, rows, is_ruled=False)
-
-
-MAP_BAR: Final = 10
-"""Columns of a topic's bar on the map of topics."""
 
 
 def topic_map(bank: QuestionBank, answers: Iterable[QuizAnswer], current: QuizTopic) -> Table:

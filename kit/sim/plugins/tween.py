@@ -44,7 +44,7 @@ def _ease_in(curve: Easing) -> Easing:
 
 
 def _ease_out(curve: Easing) -> Easing:
-    """The same backwards: slow at the end."""
+    """An easing reversed in time: slow at the end."""
     return lambda t: 1.0 - curve(1.0 - t)
 
 

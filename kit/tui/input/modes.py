@@ -47,7 +47,7 @@ class DriveMode(Protocol):
         """Lets time pass up to the clock's now."""
 
     def stop(self) -> None:
-        """Everything up, at once."""
+        """Releases all keys."""
 
     def strengths(self) -> dict[str, float]:
         """Message names of the keys that count as down, and how strongly each pushes, 0 to 1."""

@@ -13,7 +13,9 @@ from kit.school.game.medal import RUNGS
 from kit.school.game.player_progress import LevelProgress
 from kit.school.game.race import DriverKind
 from kit.school.game.references import reference_seconds
-from kit.tui.rows.level_rows import BEST, BEST_TODAY
+
+BEST, BEST_TODAY = 3, 10
+"""Rows of the leaderboard per level, and for that of the day."""
 
 
 def leaderboard_standings(standings: Sequence[PlayerStanding], offer: str = "") -> list[Block]:

@@ -10,11 +10,15 @@ from typing import Final
 from kit.document.rows import Row
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import LevelProgress
-from kit.tui.rows.level_rows import DOWN, LEAST_COLUMNS, LEAST_ROWS, LEFT, MOST_COLUMNS, MOST_ROWS, RIGHT, UP
 from kit.tui.rows.medal_signs import MEDAL_SIGNS, SHUT
 
 GAP: Final = 4
 """Columns between two pictures, for the lines."""
+MOST_COLUMNS, LEAST_COLUMNS = 24, 12
+MOST_ROWS, LEAST_ROWS = 8, 3
+"""Most and fewest rows of a picture."""
+RIGHT, LEFT, UP, DOWN = 1, 2, 4, 8
+"""Directions in which a line leaves a character."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -124,7 +124,7 @@ class DialogueScreen(RowsScreen[None]):
         return self.size if self.size.width else self.app.size
 
     def show(self) -> None:
-        """Everything, as it stands now. Rows that are the same cost nothing."""
+        """Draws everything as it is now. Rows that have not changed cost nothing."""
         if not self.is_attached:
             return
         self._show_body()

@@ -392,7 +392,7 @@ class LevelDrive(WatchScreen):
         """Time is not for sale in a race."""
 
     def action_speed(self, key: str) -> None:
-        """A program may be watched faster: its own clock is the world's."""
+        """Changes the speed at which a program's drive is shown; its own clock is the world's."""
         if self._race_program is not None:
             super().action_speed(key)
 

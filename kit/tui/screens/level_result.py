@@ -17,7 +17,8 @@ from textual.screen import ModalScreen
 
 from kit.dialogue.actions import ScreenActions
 from kit.document.rows import Row, row
-from kit.render.roles import PEN_ROLES, Role
+from kit.render.role_looks import PEN_ROLES
+from kit.render.roles import Role
 from kit.render.scene import PenStroke, Scene, ScenePath
 from kit.run.animation import ExportError
 from kit.run.recording import Recording

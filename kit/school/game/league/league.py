@@ -215,7 +215,7 @@ class League(JobFolder):
         share_drives(recordings, self.result_file(key), remarks)
 
     def record_loss(self, key: str) -> None:
-        """Nothing is written: a job that was lost waits for the next run."""
+        """Writes nothing: a job that was lost waits for the next run."""
 
     # Results
 
