@@ -489,6 +489,20 @@ CONTROLS: Final = (
         "            if False:\n",
         "ros/launch/test_bounds.py::test_files_that_include_each_other_twice_and_again",
     ),
+    Control(
+        "signs that are not seen",
+        "grader/reports/cleaning.py",
+        '_UNSEEN.sub("\\N{REPLACEMENT CHARACTER}", text[:limit])',
+        "text[:limit]",
+        "grader/test_hostile_texts.py::test_no_text_of_a_program_leaves_as_anything_but_text",
+    ),
+    Control(
+        "a SyntaxError of the program's own, whose line is none",
+        "kit/host/child/student_module.py",
+        "line if type(line) is int and 0 < line <= MAX_ID else None",
+        "line or None",
+        "grader/test_hostile_texts.py::test_no_text_of_a_program_leaves_as_anything_but_text",
+    ),
 )  # fmt: skip
 
 
