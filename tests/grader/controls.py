@@ -503,6 +503,27 @@ CONTROLS: Final = (
         "line or None",
         "grader/test_hostile_texts.py::test_no_text_of_a_program_leaves_as_anything_but_text",
     ),
+    Control(
+        "very many names of an archive that are ignored",
+        "grader/submission.py",
+        "        handed_in = [*sorted(names), *sorted(files.ignored)]\n",
+        "        handed_in = sorted([*names, *files.ignored], key=lambda path: (path in files.ignored, path))\n",
+        "grader/test_submission.py::test_time_grows_with_what_is_handed_in_and_not_with_its_square",
+    ),
+    Control(
+        "paths of very many folders",
+        "grader/submitted_files.py",
+        "enumerate(parts[:MAX_DEPTH], 1)",
+        "enumerate(parts, 1)",
+        "grader/test_submission.py::test_time_grows_with_what_is_handed_in_and_not_with_its_square",
+    ),
+    Control(
+        "very many empty streams behind each other",
+        "grader/archives/streams.py",
+        "                if parts > MAX_STREAMS:\n",
+        "                if parts < 0:\n",
+        "grader/test_submission.py::test_a_file_of_very_many_empty_streams_is_a_bomb",
+    ),
 )  # fmt: skip
 
 
