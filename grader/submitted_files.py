@@ -112,7 +112,7 @@ class SubmittedFiles:
             raise SubmissionRefused(
                 f"{shown_name(path)} leads out of the folder: pack the files again by their plain names."
             )
-        for number, part in enumerate(parts, 1):
+        for number, part in enumerate(parts[:MAX_DEPTH], 1):  # what lies deeper is not needed either
             top = "/".join(parts[:number])
             if is_ignored_name(part) or top in self._ignored:
                 self.ignore(top)

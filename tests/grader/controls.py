@@ -489,6 +489,41 @@ CONTROLS: Final = (
         "            if False:\n",
         "ros/launch/test_bounds.py::test_files_that_include_each_other_twice_and_again",
     ),
+    Control(
+        "signs that are not seen",
+        "grader/reports/cleaning.py",
+        '_UNSEEN.sub("\\N{REPLACEMENT CHARACTER}", text[:limit])',
+        "text[:limit]",
+        "grader/test_hostile_texts.py::test_no_text_of_a_program_leaves_as_anything_but_text",
+    ),
+    Control(
+        "a SyntaxError of the program's own, whose line is none",
+        "kit/host/child/student_module.py",
+        "line if type(line) is int and 0 < line <= MAX_ID else None",
+        "line or None",
+        "grader/test_hostile_texts.py::test_no_text_of_a_program_leaves_as_anything_but_text",
+    ),
+    Control(
+        "very many names of an archive that are ignored",
+        "grader/submission.py",
+        "        handed_in = [*sorted(names), *sorted(files.ignored)]\n",
+        "        handed_in = sorted([*names, *files.ignored], key=lambda path: (path in files.ignored, path))\n",
+        "grader/test_submission.py::test_time_grows_with_what_is_handed_in_and_not_with_its_square",
+    ),
+    Control(
+        "paths of very many folders",
+        "grader/submitted_files.py",
+        "enumerate(parts[:MAX_DEPTH], 1)",
+        "enumerate(parts, 1)",
+        "grader/test_submission.py::test_time_grows_with_what_is_handed_in_and_not_with_its_square",
+    ),
+    Control(
+        "very many empty streams behind each other",
+        "grader/archives/streams.py",
+        "                if parts > MAX_STREAMS:\n",
+        "                if parts < 0:\n",
+        "grader/test_submission.py::test_a_file_of_very_many_empty_streams_is_a_bomb",
+    ),
 )  # fmt: skip
 
 
