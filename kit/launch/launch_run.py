@@ -310,6 +310,7 @@ class Launch:
                 # Time stands still until they are there: they are in step from the tick in which they were due.
                 for started in self._start_waiting():
                     started.wait_until_started()
+                    self._has_sent = True  # it may have ended already: its end counts in this tick
             except ProcessStartError as problem:
                 self._record_failure(str(problem))
                 self._end_all_processes()
