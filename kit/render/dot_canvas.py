@@ -170,9 +170,8 @@ def ring_dots(target: Disc, walls: Grid, camera: Camera, encoder: Encoder) -> ra
         return nothing, nothing
     rows, columns = np.arange(top, bottom), np.arange(left, right)
     away_x, away_y = (columns - column) / (radius_x + 0.5), (rows - row) / (radius_y + 0.5)
-    inside: BoolArray = np.less(away_x**2 + (away_y**2)[:, None], 1.0)
-    blocks = walls.reshape(height // down, down, width // across, across)
-    cells: BoolArray = np.asarray((blocks > 0).any(axis=(1, 3)))
+    inside = away_x**2 + (away_y**2)[:, None] < 1.0
+    cells: BoolArray = walls.reshape(height // down, down, width // across, across).max(axis=(1, 3)) > 0
     at = np.clip(rows // down, 0, len(cells) - 1)[:, None], np.clip(columns // across, 0, cells.shape[1] - 1)
     inside &= ~cells[at]
     parts = connected_parts(inside)
