@@ -7,6 +7,7 @@ import math
 import re
 from dataclasses import replace
 from pathlib import Path
+from statistics import median
 from xml.etree import ElementTree
 
 import pytest
@@ -24,7 +25,13 @@ from kit.study.recorded_results import (
     RecordedTest,
     TrainingSession,
 )
-from kit.study.result_logs import SHIPPED_FOLDER, append_event, find_recorded_result, read_recorded_result
+from kit.study.result_logs import (
+    SHIPPED_FOLDER,
+    append_event,
+    find_recorded_result,
+    find_recorded_results,
+    read_recorded_result,
+)
 from kit.study.seed_spread import cells_below
 from kit.study.study_check import check_document, incomparable_rows
 from kit.study.study_document import recorded_study_document
@@ -248,3 +255,25 @@ def test_a_recorded_agent_is_trained_again_and_does_as_well(tmp_path: Path) -> N
     assert again.reached.keys() == before.reached.keys()
     for case, reached in before.reached.items():
         assert abs(again.reached[case] - reached) <= 0.1 * before.episodes
+
+
+def test_standing_still_pays_more_than_arriving_on_the_turns() -> None:
+    """The numbers of the sentence that tells it follow from the tests of the agents of the turns."""
+    table = printed_table("4.5")
+    result = find_recorded_results(table, None)["no-limit"]
+    agents = result.tests_of("90_turns")
+    standing = [
+        [each for each in agent.sessions if each.timed_out == 100 and (each.adjacency or 0.0) > 0.9]
+        for agent in agents
+    ]
+    earned = median(each.reward for sessions in standing for each in sessions if each.reward is not None)
+    most = max(
+        each.reward
+        for agent in agents
+        for each in agent.sessions
+        if each.share >= 0.5 and each.reward is not None
+    )
+    (told,) = (text for text in table.settings if "standing still" in text)
+    assert f"{sum(map(bool, standing))} of {len(agents)} seeds" in told
+    assert f"earn {round(earned, -1):,.0f} an episode" in told
+    assert f"more than {math.ceil(most / 50) * 50:,} " in told
