@@ -17,21 +17,27 @@ from kit.study.printed_tables import (
     PrintedTable,
 )
 from kit.study.recorded_results import RecordedResult, RecordedTest, Results, pooled_cell
+from kit.study.study_variants import StudyVariant
 from kit.study.trained_seeds import TrainedSeeds
 
 
 def seeds_table(table: PrintedTable, results: Results) -> Table:
     """One row for each seed: the best of its tests, as the print is one, and its best agent on fresh episodes."""
     rows: list[tuple[Cell, ...]] = []
-    for variant in ("seed", "no-limit"):  # the kit's are trained for another end: for every case, or longer
+    settings_of: dict[StudyVariant, str] = {
+        "seed": table.settings_of,
+        "no-limit": f"{table.settings_of}, no limit",
+    }
+    if table.kit_task == table.repeat_task:  # an agent of another task is no row of this table
+        settings_of["kit"] = "kit"
+    for variant, settings in settings_of.items():
         result = results.get(variant)
-        settings = table.settings_of + (", no limit" if variant == "no-limit" else "")
         for row, group in zip(table.rows, table.row_groups, strict=False):
             seeds = TrainedSeeds.of(table, result, group)
             if result is not None:
                 rows += [(row, settings, *_seed_cells(result, test)) for test in seeds.tests]
             missing = seeds.planned - len(seeds.tests)
-            if missing:
+            if missing and variant != "kit":  # of which one seed is enough
                 rows.append((row, settings, f"{missing} of {seeds.planned}: not trained yet", *[None] * 8))
     columns = (
         Column("", CellStyle.TEXT),
