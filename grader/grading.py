@@ -155,7 +155,7 @@ class Grading:
         self._tests: dict[str, CriterionResult] = {}
         self._counterexamples: dict[str, _ScoredEvidence | None] = {}
         self._tried_counts: dict[str, int] = {}
-        """By criterion: the counterparts that were looked at."""
+        """By criterion: the counterparts that earned everything."""
         self.has_given_secrets = False
         """Whether ``evidence`` has returned any secret evidence."""
         self._first_shown: dict[str, Criterion] = {}
@@ -341,15 +341,19 @@ class Grading:
         self, criterion: Criterion, scored: Sequence[_ScoredEvidence], *, full: bool
     ) -> Sequence[_ScoredEvidence]:
         """Returns the evidence that a student is told of: the public, or where only secret evidence lost points, a
-        counterpart that loses points too; else, in a student's own check, the secret itself. Empty if none of these was found."""
+        counterpart that loses points too; in a student's own check, where none loses as much, the secret itself: what is told must
+        be why the points are lost. Empty if none of these was found."""
         public = [each for each in scored if not each.evidence.secret]
         if full or any(each.share < 1.0 for each in public):
             return public
         if self._looks_afterwards and criterion.id not in self._counterexamples:
             self._counterexamples[criterion.id] = self._find_counterexample(criterion)
         found = self._counterexamples.get(criterion.id)
-        if found is None and self._looks_afterwards:
-            return scored
+        if self._looks_afterwards:
+            if found is not None and found.share > min(each.share for each in scored):
+                found = self._counterexamples[criterion.id] = None
+            if found is None:
+                return scored
         return [] if found is None else [found]
 
     @property
@@ -401,10 +405,10 @@ class Grading:
     def _find_counterexample(self, criterion: Criterion) -> _ScoredEvidence | None:
         """Returns the first public counterpart that loses points; None if all that the collector makes earn everything."""
         for number, evidence in enumerate(self._collector.counterparts(criterion), 1):
-            self._tried_counts[criterion.id] = number
             scored = self._score_counterpart(criterion, evidence)
             if scored.share < 1.0:
                 return scored
+            self._tried_counts[criterion.id] = number
         return None
 
     def _score_counterpart(self, criterion: Criterion, evidence: Evidence) -> _ScoredEvidence:
@@ -465,7 +469,8 @@ class Grading:
                 return f"{text} {self._what_differs(criterion, shown)}".strip()
             # That a file cannot be read has nothing to do with where it would have been used.
             is_unread = failure.kind in (FailureKind.SYNTAX, FailureKind.IMPORT)
-            text = f"{failure}" if is_unread else f"{failure} ({evidence.label})"
+            is_named = evidence.label.removesuffix("()") in f"{failure}"  # a function by its own line
+            text = f"{failure}" if is_unread or is_named else f"{failure} ({evidence.label})"
             first = self._shown_before(criterion, text)
             return text if first is None else f"{SAME_MISTAKE} “{first.title}”."
         check = self._checks[criterion.check]

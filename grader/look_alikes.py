@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from itertools import chain, count
 from types import MappingProxyType
 from typing import Final
 
@@ -39,11 +40,11 @@ _ALIKE: Final = (
     ("z", "ΖᴢȤ"),
 )
 _LATIN_OF: Final = MappingProxyType({ord(sign): latin for latin, signs in _ALIKE for sign in signs})
-_INVISIBLE: Final = re.compile(
-    "[\u034f\u115f\u1160\u17b4\u17b5\u180b-\u180f\u2800\u3164\ufe00-\ufe0f\uffa0\U000e0100-\U000e01ef]"
-)
+INVISIBLE: Final = "\u034f\u115f\u1160\u17b4\u17b5\u180b-\u180f\u3164\uffa0\U000e0100-\U000e01ef"
 """Signs that show nothing, though Python counts them as printable: those of Unicode's Default_Ignorable_Code_Point
-(``DerivedCoreProperties.txt``), and Braille's blank."""
+(``DerivedCoreProperties.txt``) but the variation selectors, as the inside of a class of a regular expression."""
+_UNSEEN: Final = re.compile(f"[{INVISIBLE}\u2800\ufe00-\ufe0f]")
+"""Those that change nothing in a name's look: also Braille's blank, and the variation selectors."""
 _WORD: Final = re.compile(r"[^\W\d_]+")
 
 
@@ -51,7 +52,7 @@ def look(name: str) -> str:
     """Returns how a name is read: without double blanks, letters of other widths, and what cannot be seen."""
     shown = "".join(
         sign
-        for sign in unicodedata.normalize("NFKC", _INVISIBLE.sub("", name))
+        for sign in unicodedata.normalize("NFKC", _UNSEEN.sub("", name))
         if sign.isprintable() or sign.isspace()
     )
     return " ".join(shown.split()).casefold()
@@ -63,6 +64,15 @@ def outline(name: str) -> str:
     It tells names apart, and is shown to nobody: who is meant by a name is what ``look`` says.
     """
     return look(look(name.translate(_LATIN_OF)).translate(_LATIN_OF))
+
+
+def distinct_name(taken: set[str], name: str, file_name: str) -> str:
+    """Returns a name, or its file's, if that looks like none of those whose ``outline`` is taken; else one with a number.
+    Its own outline is taken then."""
+    numbered = (f"{file_name} ({number})" for number in count(2))
+    found = next(each for each in chain((name, file_name), numbered) if outline(each) not in taken)
+    taken.add(outline(found))
+    return found
 
 
 def mark_foreign_letters(name: str) -> str:

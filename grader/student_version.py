@@ -22,7 +22,7 @@ import yaml
 from grader.assignment import TEACHERS_STEMS, Assignment
 from grader.evidence_digest import ASSIGNMENT_FILE, YAML_LOADER
 from grader.reading import SECRET_FILE
-from grader.submitted_files import IGNORED_NAMES
+from grader.submitted_files import is_ignored_name
 from grader.teacher_tests.reading import read_teacher_tests
 from kit.plain_text import join_names
 from kit.results.grading_result import Visibility
@@ -95,7 +95,7 @@ def _files(folder: Path) -> Iterator[tuple[str, Path]]:
     """Yields the files of an assignment with their relative names, without what no assignment needs."""
     for file in sorted(folder.rglob("*")):
         parts = file.relative_to(folder).parts
-        if any(part.startswith(".") or part.casefold() in IGNORED_NAMES for part in parts):
+        if any(is_ignored_name(part) for part in parts):
             continue
         if file.suffix == ".pyc" or (file.is_dir() and not file.is_symlink()):
             continue

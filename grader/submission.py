@@ -150,7 +150,7 @@ def _main_path(files: SubmittedFiles, main: str) -> str:
     if not matches and len(programs) == 1:
         return programs[0]
     if not matches:
-        handed_in = sorted([*names, *files.ignored], key=lambda path: (path in files.ignored, path))
+        handed_in = [*sorted(names), *sorted(files.ignored)]
         shown = ", ".join(shown_name(path)[1:-1] for path in handed_in[:5]) or "nothing"
         way_out = what_instead(handed_in) or f" Give your program the name {main}."
         raise SubmissionRefused(

@@ -31,6 +31,11 @@ VIRTUAL_ENVIRONMENT_FILE: Final = "pyvenv.cfg"
 _PROJECT: Final = Path(__file__).parents[1]
 
 
+def is_ignored_name(name: str) -> bool:
+    """Whether a file or folder of this name is not looked at."""
+    return name.startswith(".") or name.casefold() in IGNORED_NAMES
+
+
 class SubmissionRefused(Exception):
     """The submission cannot be graded; the message tells the student why, and what to do."""
 
@@ -107,9 +112,9 @@ class SubmittedFiles:
             raise SubmissionRefused(
                 f"{shown_name(path)} leads out of the folder: pack the files again by their plain names."
             )
-        for number, part in enumerate(parts, 1):
+        for number, part in enumerate(parts[:MAX_DEPTH], 1):  # what lies deeper is not needed either
             top = "/".join(parts[:number])
-            if part.startswith(".") or part.lower() in IGNORED_NAMES or top in self._ignored:
+            if is_ignored_name(part) or top in self._ignored:
                 self.ignore(top)
                 return False
         if len(parts) + is_folder > MAX_DEPTH:

@@ -14,6 +14,9 @@ MAX_UNPACKED_BYTES: Final = 128 * 1024 * 1024
 """Bytes out of a compressed stream: headers, needed files, and those that are passed over."""
 MAX_COMPRESSION_RATIO: Final = 200
 """Unpacked to packed bytes: text packs to a tenth, a bomb to a thousandth."""
+MAX_STREAMS: Final = 10_000
+"""Compressed streams behind each other in one file, where each may be empty; a program that writes many, for random access,
+puts 64 KiB into each."""
 MAX_DICTIONARY_BYTES: Final = 96 * 1024 * 1024
 """Memory for unpacking xz, whose highest preset needs 65 MiB."""
 
@@ -112,6 +115,7 @@ class CountingStream:
     def _unpack(self) -> Iterator[bytes]:
         data = self._file.read(READ_SIZE)
         decompressor = _decompressor(data)
+        parts = 1
         while data or decompressor is not None:
             chunk = data if decompressor is None else decompressor.decompress(data, READ_SIZE)
             self._left -= len(chunk)
@@ -124,6 +128,9 @@ class CountingStream:
                 if not data and decompressor is not None:
                     raise EOFError("cut off")
             elif decompressor.eof:  # another compressed stream may follow
+                parts += 1
+                if parts > MAX_STREAMS:
+                    raise SubmissionRefused(BOMB_MESSAGE)
                 data = decompressor.unused_data
                 data += self._file.read(READ_SIZE - len(data)) if len(data) < READ_SIZE else b""
                 decompressor = _decompressor(data)

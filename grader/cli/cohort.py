@@ -11,7 +11,12 @@ import click
 
 from grader.cli import confinement, exits, loading, options
 from grader.cli.progress import counted_progress
-from grader.cohort.class_findings import attention_blocks, class_blocks, unjudged_line
+from grader.cohort.class_findings import (
+    attention_blocks,
+    class_blocks,
+    passed_over_line,
+    unjudged_line,
+)
 from grader.cohort.gradebook import UNREADABLE, WAITING, as_csv, as_json, gradebook_rows, summary
 from grader.cohort.program_ladder import LadderRace, find_programs, race_all, rank
 from grader.cohort.queue import (
@@ -112,6 +117,8 @@ def publish(queue: Queue, *, is_graded: bool) -> int:
         click.echo(" ".join(filter(None, ("Graded without --secret.", unjudged))))
     if attention := [*attention_blocks(table), *class_blocks(table)]:
         click.echo("\n".join(lines_of(attention)))
+    if told := passed_over_line(queue.passed_over(), "graded"):
+        click.echo(told)
     verdicts = {row.verdict for row in table}
     if is_graded and WAITING in verdicts:
         click.echo(
@@ -193,7 +200,9 @@ def ladder(folder: Path, names: tuple[str, ...], as_csv: bool, unconfined: bool)
             "This machine does not reach confinement level 1; `kit doctor` says why. To race without it, use --unconfined: "
             "a submitted program can then read and change anything that you can."
         )
-    programs = find_programs(folder)
+    programs, passed_over = find_programs(folder)
+    if told := passed_over_line(passed_over, "raced"):
+        exits.warn(told)
     if len(programs) < 2:
         raise click.UsageError(f"{folder}: a ladder needs at least two programs; it has {len(programs)}.")
     try:

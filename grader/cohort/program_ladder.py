@@ -16,8 +16,13 @@ from typing import Final
 
 import numpy as np
 
+from grader.look_alikes import distinct_name
+from grader.shown_names import readable_name
+from grader.submission import submission_name
+from grader.submitted_files import is_ignored_name
 from kit.arrays import FloatArray
 from kit.controllers import find_controller
+from kit.plain_text import counted
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import RaceFinish, race_controller
 
@@ -66,19 +71,33 @@ RACE_LIMIT_S: Final = 60.0
 """Wall clock of one race [s]: an honest one takes a second or two."""
 
 
-def find_programs(folder: Path) -> dict[str, Path]:
-    """The programs of a folder: each Python file, and of each folder in it the only one, by name. Links are none: what they
-    lead to was not handed in."""
-    programs = {file.stem: file for file in _python_files(folder)}
-    for each in sorted(path for path in folder.iterdir() if path.is_dir() and not path.is_symlink()):
-        files = _python_files(each)
-        if len(files) == 1:
-            programs[each.name] = files[0]
-    return programs
+def find_programs(folder: Path) -> tuple[dict[str, Path], list[str]]:
+    """Returns the programs of a folder by name: each Python file, and of each folder in it the only one; and what is passed
+    over, each with the reason. Links are no programs: what they lead to was not handed in."""
+    programs: dict[str, Path] = {}
+    passed_over: list[str] = []
+    names: set[str] = set()
+    for path in sorted(folder.iterdir(), key=lambda path: (path.is_dir(), path.name)):
+        program, reason = _program_in(path)
+        shown = readable_name(path.name)
+        if program is None:
+            passed_over.append(f"{shown} ({reason})")
+        else:
+            programs[distinct_name(names, submission_name(path), shown)] = program
+    return programs, passed_over
 
 
-def _python_files(folder: Path) -> list[Path]:
-    return sorted(file for file in folder.glob("*.py") if file.is_file() and not file.is_symlink())
+def _program_in(path: Path) -> tuple[Path | None, str]:
+    """Returns the program that a file or folder is, or None and why it is none."""
+    if is_ignored_name(path.name):
+        return None, "not a work, by its name"
+    if path.is_symlink():
+        return None, "a link"
+    if not path.is_dir():
+        is_program = path.is_file() and path.suffix == ".py"
+        return (path, "") if is_program else (None, "no Python file")
+    files = sorted(file for file in path.glob("*.py") if file.is_file() and not file.is_symlink())
+    return (files[0], "") if len(files) == 1 else (None, f"{counted(len(files), 'Python file')} in it, not 1")
 
 
 def race_all(

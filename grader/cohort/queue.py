@@ -8,21 +8,20 @@ import hashlib
 import json
 import shutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cache
-from itertools import count
 from pathlib import Path
 from typing import Any, ClassVar, Final
 
 from grader.assignment import Assignment
 from grader.evidence.findings import Findings
 from grader.grading import GradingOptions, grade_and_keep, judge_findings, level_for_untrusted
-from grader.look_alikes import outline
+from grader.look_alikes import distinct_name
 from grader.reading import read_assignment
 from grader.shown_names import readable_name
 from grader.submission import Submission, read_submission, submission_name
-from grader.submitted_files import IGNORED_NAMES, SubmissionRefused, SubmissionUnreadable
+from grader.submitted_files import SubmissionRefused, SubmissionUnreadable, is_ignored_name
 from grader.version import grader_version
 from kit.field_types import check_field_types
 from kit.host.job_executors import MAX_TRIES, read_result
@@ -129,6 +128,10 @@ class Queue(JobFolder):
         return GradingOptions(
             self.level(), bool(manifest["secret"]), bool(manifest["examples"]), may_lower_level=False
         )
+
+    def passed_over(self) -> tuple[str, ...]:
+        """The names in the folder of works that were not taken for works."""
+        return tuple(self.manifest()["passed_over"])
 
     def entries(self) -> tuple[QueueEntry, ...]:
         return tuple(QueueEntry(**each) for each in self.manifest()["entries"])
@@ -287,7 +290,8 @@ def prepare_queue(
     for folder in (queue.folder, *(queue.folder / name for name in ("jobs", "results", "findings"))):
         make_private_folder(folder)
     _copy_assignment(queue, assignment)
-    entries = tuple(_queue_entries(queue, cohort, assignment, options))
+    works, passed_over = works_in(cohort)
+    entries = tuple(_queue_entries(queue, works, assignment, options))
     level = level_for_untrusted(assignment, options.level)
     content = {
         "assignment": assignment.id,
@@ -296,21 +300,31 @@ def prepare_queue(
         "secret": options.secret,
         "examples": options.examples,
         "level": int(level),
+        "passed_over": passed_over,
         "entries": [asdict(each) for each in entries],
     }
     write_atomically(queue.folder / MANIFEST, (json.dumps(content, indent=1) + "\n").encode())
     return entries
 
 
+def works_in(cohort: Path) -> tuple[list[Path], list[str]]:
+    """Returns what was handed in, and the names of what is passed over: those that begin with a dot, and what computers leave
+    beside works. Raises OSError."""
+    works, passed_over = [], []
+    for path in sorted(cohort.iterdir()):
+        if is_ignored_name(path.name):
+            passed_over.append(readable_name(path.name))
+        else:
+            works.append(path)
+    return works, passed_over
+
+
 def _queue_entries(
-    queue: Queue, cohort: Path, assignment: Assignment, options: GradingOptions
+    queue: Queue, works: Sequence[Path], assignment: Assignment, options: GradingOptions
 ) -> Iterator[QueueEntry]:
     names: set[str] = set()
-    for path in sorted(cohort.iterdir()):
-        if path.name.startswith(".") or path.name.lower() in IGNORED_NAMES:
-            continue
-        name = _unmistakable_name(names, submission_name(path), readable_name(path.name))
-        names.add(outline(name))
+    for path in works:
+        name = distinct_name(names, submission_name(path), readable_name(path.name))
         try:
             submission = read_submission(path, assignment.submit)
         except SubmissionUnreadable as unreadable:
@@ -325,14 +339,6 @@ def _queue_entries(
             job = {"name": name, "main": submission.main, "files": files}
             write_atomically(queue.job(key), json.dumps(job).encode())
         yield QueueEntry(name, key, note=submission.note)
-
-
-def _unmistakable_name(outlines: set[str], name: str, file_name: str) -> str:
-    """Returns a submission's name, or its file's, if that looks like no other; else one with a number."""
-    for candidate in (name, file_name):
-        if outline(candidate) not in outlines:
-            return candidate
-    return next(each for number in count(2) if outline(each := f"{file_name} ({number})") not in outlines)
 
 
 def _copy_assignment(queue: Queue, assignment: Assignment) -> None:

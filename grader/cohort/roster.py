@@ -8,7 +8,8 @@ back into them.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -182,9 +183,33 @@ def _is_no_student(platform: str, student: RosterEntry) -> bool:
     return platform == "canvas" and student.name.casefold() in ("points possible", "test student")
 
 
-MOODLE_NAME: Final = re.compile(r"(?P<name>.+?)_(?P<number>\d+)_assignsubmission_(file|onlinetext)(_.*)?")
-CANVAS_NAME: Final = re.compile(r"(?P<name>[^_]+)_(LATE_)?(?P<number>\d+)_\d+_.+")
-GRADESCOPE_NAME: Final = re.compile(r"submission_(?P<number>\d+)")
+PLATFORM_NAMES: Final = MappingProxyType(
+    {
+        "moodle": re.compile(
+            r"(?P<name>((?!_\d+_assignsubmission_).)+)_(?P<number>\d+)_assignsubmission_(file|onlinetext)"
+            r"(_((?!_\d+_assignsubmission_).)*)?"
+        ),
+        "canvas": re.compile(r"(?P<name>[^_]+)_(LATE_)?(?P<number>\d+)_\d+_.+"),
+        "gradescope": re.compile(r"submission_(?P<number>\d+)"),
+    }
+)
+"""How platforms name works in their downloads. At the end may stand the name of the student's own file."""
+
+
+def _repository_prefix(works: Sequence[str], index: Mapping[str, object]) -> str | None:
+    """Returns what stands before the login in the names of GitHub Classroom's repositories, ASSIGNMENT-LOGIN; None if none
+    is such.
+
+    A login may hold hyphens, also so that it ends like another's. So it is what gives most works to students, and of those
+    that give as many the shortest.
+    """
+    counts: Counter[str] = Counter()
+    for work in works:
+        parts = work.split("-")
+        for first in range(1, len(parts)):
+            if look("-".join(parts[first:])) in index:
+                counts["-".join(parts[:first]) + "-"] += 1
+    return min(counts, key=lambda prefix: (-counts[prefix], len(prefix), prefix), default=None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,29 +224,41 @@ class WorkOwners:
 
 def owners_of(works: Iterable[str], roster: Roster) -> WorkOwners:
     """Finds whose each work is, by its name: that of a file or folder, as platforms write them in their downloads."""
+    works = tuple(works)
     index = roster.index
+    prefix = _repository_prefix(works, index)
     groups = {look(each.group) for each in roster.students.values() if each.group}
     students: dict[str, tuple[RosterEntry, ...]] = {}
     ambiguous: dict[str, tuple[RosterEntry, ...]] = {}
     for work in works:
-        key, found = next(((key, index[key]) for key in _possible_names(work) if key in index), ("", ()))
+        key, found = next(
+            ((key, index[key]) for key in _possible_names(work, roster.platform, prefix) if key in index),
+            ("", ()),
+        )
         if len(found) > 1 and key not in groups:
             ambiguous[work], found = found, ()
         students[work] = found
     return WorkOwners(students, ambiguous)
 
 
-def _possible_names(work: str) -> Iterator[str]:
-    """Yields what the name of a work may mean, the surest first."""
+def _possible_names(work: str, platform: str, prefix: str | None) -> Iterator[str]:
+    """Yields what the name of a work may mean, the surest first. ``prefix``: that of GitHub Classroom's repositories here.
+
+    No part of it that a student has chosen may mean another student: of a platform's roster only that platform's names are
+    read, and of others' those that one platform alone can have given.
+    """
     yield look(work)
-    for pattern in (MOODLE_NAME, CANVAS_NAME, GRADESCOPE_NAME):
-        if (found := pattern.fullmatch(work)) is not None:
-            yield look(found["number"])
-            if "name" in found.groupdict():
-                yield look(found["name"])
+    found = [
+        match
+        for name, pattern in PLATFORM_NAMES.items()
+        if platform in (name, "own") and (match := pattern.fullmatch(work)) is not None
+    ]
+    if len(found) == 1:
+        yield look(found[0]["number"])
+        if "name" in found[0].groupdict():
+            yield look(found[0]["name"])
     yield look(work.partition("@")[0])
-    # GitHub Classroom's repositories are called ASSIGNMENT-LOGIN, and a login may hold hyphens.
-    parts = work.split("-")
-    yield from (look("-".join(parts[first:])) for first in range(1, len(parts)))
+    if prefix is not None and work.startswith(prefix):
+        yield look(work.removeprefix(prefix))
     yield look(work.replace("_", " "))
     yield look(work.replace(".", " "))

@@ -10,7 +10,8 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from itertools import chain
-from typing import Any, Final, Protocol
+from pathlib import Path
+from typing import Any, Final, Protocol, runtime_checkable
 
 from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, Trial
 from grader.evidence.submission_clock import SubmissionClock
@@ -65,6 +66,17 @@ class Evidence(Protocol):
 
     def picture(self, check: str = "") -> str:
         """A picture of it in plain characters, for a check; may be empty."""
+
+
+@runtime_checkable
+class WatchableEvidence(Protocol):
+    """Evidence whose picture shows an episode."""
+
+    def replay_title(self) -> str:
+        """Names what the picture shows; empty if there is nothing to watch."""
+
+    def save_replay(self, file: Path) -> bool:
+        """Saves the episode for ``kit replay``; returns whether it needs the assignment's own world files. Raises OSError."""
 
 
 class EvidenceCollector(Protocol):

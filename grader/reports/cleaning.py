@@ -9,6 +9,8 @@ import re
 import unicodedata
 from typing import Final
 
+from grader.look_alikes import INVISIBLE
+
 MAX_TEXT: Final = 4000
 """Characters of one text in a report."""
 CUT_MARK: Final = " … (shortened)"
@@ -16,15 +18,16 @@ CUT_MARK: Final = " … (shortened)"
 _COMMAND: Final = re.compile(r"::|##(?=[A-Za-z]*\[)")
 _FORMULA: Final = ("=", "+", "-", "@", "\t", "\r", "|", "%", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 """The last four are the full-width forms, which a spreadsheet takes for the plain ones in some languages."""
+_UNSEEN: Final = re.compile(f"[{INVISIBLE}]")
 _MARKUP: Final = re.compile(r"([\\`*_{}\[\]()#+\-.!|~<>&@:$])")
 
 
 def plain(text: str, limit: int = MAX_TEXT) -> str:
-    """Returns lines of printable characters: no terminal escapes or other control characters, no marks that change
-    the writing direction, and nothing that a CI runner takes for a command (``::set-output``, ``##[error]``, ``##vso[``)."""
+    """Returns lines of characters that are seen: no terminal escapes or other control characters, no marks that change
+    the writing direction, no signs without a look, and nothing that a CI runner takes for a command (``::set-output``, ``##[error]``, ``##vso[``)."""
     text_left = "".join(
         c if c == "\n" or c.isprintable() or unicodedata.category(c) == "Zs" else "\N{REPLACEMENT CHARACTER}"
-        for c in text[:limit]
+        for c in _UNSEEN.sub("\N{REPLACEMENT CHARACTER}", text[:limit])
     )
     previous = ""
     while text_left != previous:  # what is left of ":::" must not be a command either

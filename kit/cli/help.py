@@ -17,7 +17,7 @@ from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row_text
 from kit.help.site import overview, write_pages
 from kit.help.topic import find_topic, topic_names
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import counted, quoted, suggestion
 
 _STYLES: Final[Mapping[str, Mapping[str, bool]]] = {
     Tone.CODE: {"bold": True},
@@ -56,7 +56,7 @@ def command(context: click.Context, topic: str | None, chapter: str | None, html
             files = write_pages(html_folder)
         except OSError as error:
             messages.fail(messages.describe_os_error(error))
-        click.echo(f"{len(files)} pages: {files[0]}")
+        click.echo(f"{counted(len(files), 'page')}: {files[0]}")
         return
     if topic is None:
         _print_document(overview())

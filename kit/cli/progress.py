@@ -68,7 +68,7 @@ def import_progress(workspace: Path | None, file: Path) -> None:
     with _open_journal(workspace) as journal:
         events = read_export(file)
         new = journal.import_events(events)
-        click.echo(f"{file}: {len(events)} entries, {new} of them new.")
+        click.echo(f"{file}: {counted(len(events), 'entry')}, {new} of them new.")
 
 
 @command.command("name")

@@ -14,7 +14,7 @@ from kit.cli.full_screen import show_screen
 from kit.learning.policies.policy import Policy
 from kit.learning.policies.policy_file import load_policy
 from kit.learning.training.run_folders import find_run
-from kit.plain_text import escape_controls
+from kit.plain_text import counted, escape_controls
 from kit.run.animation import AnimationSettings, ExportError, count_frames, export_recording
 from kit.run.recording import Recording, RecordingError, load_recording, rerun
 from kit.run.recording_file import restore_recordings
@@ -134,7 +134,8 @@ def command(
         messages.fail(str(error))
     seconds = recording.ticks * recording.step_size
     click.echo(
-        f"{scenario.title}: {recording.ticks} ticks, {seconds:.2f} s, {len(recording.inputs)} inputs, seed {recording.seed}"
+        f"{scenario.title}: {counted(recording.ticks, 'tick')}, {seconds:.2f} s, "
+        f"{counted(len(recording.inputs), 'input')}, seed {recording.seed}"
     )
     if np.array_equal(again.poses, recording.poses):
         click.echo("the same run, to the bit")
@@ -191,4 +192,4 @@ def _export_animation(
         messages.fail(str(error))
     except OSError as error:
         messages.fail(messages.describe_os_error(error))
-    click.echo(f"{file}: {count} frames, {file.stat().st_size / 1e3:,.0f} kB")
+    click.echo(f"{file}: {counted(count, 'frame')}, {file.stat().st_size / 1e3:,.0f} kB")

@@ -16,6 +16,7 @@ from kit.host.job_executors import ExecutorUnavailable
 from kit.host.job_folder import JobExecutor
 from kit.learning.training.learn_extra import require_learn_extra
 from kit.learning.training.run_config import RunError
+from kit.plain_text import counted
 from kit.study import study_document
 from kit.study.printed_tables import study_chapters
 from kit.study.recorded_results import RecordedResultError
@@ -159,7 +160,7 @@ def _check_document() -> None:
     for line in differences[:20]:
         click.echo(line, err=True)
     if differences:
-        click.echo(f"{len(differences)} lines differ.", err=True)
+        click.echo(f"{counted(len(differences), 'difference')}.", err=True)
         raise SystemExit(1)
     click.echo(f"Every number of {DOCUMENT} follows from the logs beside it.")
 
@@ -188,8 +189,8 @@ def _run_again(
         missing = run.missing_seeds(seeds)
         if missing or run.misses_fields:
             agents, runs = len(missing) * len(run.groups), run.fields_runs
-            work = [f"up to {agents} agents to train"] * (agents > 0) + [
-                f"{runs} runs of potential fields"
+            work = [f"up to {counted(agents, 'agent')} to train"] * (agents > 0) + [
+                f"{counted(runs, 'run')} of potential fields"
             ] * (runs > 0)
             expected = duration_text(run.expected_seconds(seeds, executor.jobs))
             told = " and ".join(work)

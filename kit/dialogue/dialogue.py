@@ -67,6 +67,14 @@ class DialogueAction(Generic[D]):
         return self.keys.id
 
 
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """Something that a large screen shows to the right of what is asked."""
+
+    title: str
+    blocks: tuple[Block, ...]
+
+
 class Dialogue:
     """Subclasses give ``name``, ``title``, ``actions`` and ``blocks``; everything else has a default."""
 
@@ -96,9 +104,20 @@ class Dialogue:
         """What is shown now. A screen shows all of it, line by line only what is new is said."""
         raise NotImplementedError
 
-    def beside(self) -> Sequence[Block]:
-        """What a screen shows to the right of the others where it is wide enough; line by line it is not said."""
+    @property
+    def has_panels(self) -> bool:
+        """Whether ``panels`` gives any now."""
+        return False
+
+    def panels(self) -> Sequence[Panel]:
+        """What a screen shows to the right of the others where it is wide enough, as many as there is room for, the last one
+        cut where it must be; line by line they are not said."""
         return ()
+
+    @property
+    def place_shown(self) -> str:
+        """The map of which a large screen shows a picture below what is asked; empty: none."""
+        return ""
 
     def heard(self) -> Sequence[Block]:
         """What is said line by line when one comes to a place, and stands elsewhere on a screen."""

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import bz2
+import gzip
 import io
+import lzma
 import os
 import shutil
 import tarfile
 import time
 import zipfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -31,6 +34,7 @@ from grader.submitted_files import (
     SubmittedFiles,
     reading_submission,
 )
+from tests.grader.attack import write_tar
 from tests.grader.packed import zipped
 
 
@@ -466,6 +470,46 @@ def test_a_header_of_very_many_records_is_refused_at_once(tmp_path: Path) -> Non
     with pytest.raises(SubmissionRefused, match="more than a program needs"):
         read_submission(tmp_path / "a.tar", "controller.py")
     assert time.process_time() - began < 0.5
+
+
+def _many_files(path: Path) -> None:
+    with zipfile.ZipFile(path, "w") as archive:
+        for number in range(30_000):
+            archive.writestr(f"{number}.pdf", b"")
+
+
+def _long_paths(path: Path) -> None:
+    with tarfile.open(path, "w") as archive:
+        for number in range(100):
+            archive.addfile(tarfile.TarInfo(f"{'a/' * 30_000}{number}"), io.BytesIO())
+
+
+MANY = {"files.zip": _many_files, "paths.tar": _long_paths}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", MANY)
+def test_time_grows_with_what_is_handed_in_and_not_with_its_square(name: str, tmp_path: Path) -> None:
+    """By the square, it is ten seconds or more."""
+    MANY[name](tmp_path / name)
+    began = time.process_time()
+    with pytest.raises(SubmissionRefused, match="is missing"):
+        read_submission(tmp_path / name, "controller.py")
+    assert time.process_time() - began < 4
+
+
+@pytest.mark.parametrize("compress", [gzip.compress, bz2.compress, lzma.compress])
+def test_a_file_of_very_many_empty_streams_is_a_bomb(
+    compress: Callable[[bytes], bytes], tmp_path: Path
+) -> None:
+    write_tar(tmp_path / "plain.tar", "controller.py", tarfile.REGTYPE)
+    packed = compress((tmp_path / "plain.tar").read_bytes())
+    (tmp_path / "few.tgz").write_bytes(compress(b"") * 5 + packed)
+    with pytest.raises(SubmissionRefused, match="empty"):
+        read_submission(tmp_path / "few.tgz", "controller.py")
+    (tmp_path / "many.tgz").write_bytes(compress(b"") * 20_000 + packed)
+    with pytest.raises(SubmissionRefused, match="more than a program needs"):
+        read_submission(tmp_path / "many.tgz", "controller.py")
 
 
 def test_records_of_extended_headers_are_read_where_they_lie() -> None:

@@ -68,7 +68,7 @@ def sound(evidence: EvidenceRecord, params: NoParams) -> float:
     return 1.0 if evidence.content is not None else 0.0
 
 
-@check(none=0, full=1, unit="%", params=StartAndTargetParams)
+@check(none=0, full=1, unit="%", params=StartAndTargetParams, is_explained=True)
 def places(evidence: EvidenceRecord, params: StartAndTargetParams) -> float:
     """Episodes begin and end where the exercise says in {actual} of the cases."""
     return _measure(evidence, "places", 0.0, params)

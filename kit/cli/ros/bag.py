@@ -16,6 +16,7 @@ from kit.cli.bag_storage import Storage
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
 from kit.msg.interfaces import UnknownInterface, find_message
+from kit.plain_text import counted
 from kit.ros.node.node import Node
 from kit.ros.node.publisher import Publisher
 
@@ -294,7 +295,7 @@ def _told(recorder: BagRecorder, log: Callable[[str], object], folder: Path) -> 
         with recorder:
             yield
     finally:
-        log(f"{recorder.count} messages in {folder}")
+        log(f"{counted(recorder.count, 'message')} in {folder}")
 
 
 def _read_bag(folder: Path) -> Bag:

@@ -14,7 +14,7 @@ from types import ModuleType, TracebackType
 from kit.host.child.missing_imports import import_way_out, nearest
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox import seccomp
-from kit.host.wire import MAX_TEXT
+from kit.host.wire import MAX_ID, MAX_TEXT
 
 STDERR = 2
 MAX_MESSAGE = 600
@@ -125,8 +125,13 @@ def explain(problem: BaseException, program: StudentProgram) -> Failure:
         problem.__traceback__ = None
         return _make_failure(FailureKind.MEMORY, "out of memory", frames)
     if isinstance(problem, SyntaxError) and program.relative_path(problem.filename):
-        file, line = program.relative_path(problem.filename), problem.lineno
-        return Failure(FailureKind.SYNTAX, f"{type(problem).__name__}: {problem.msg}", file, line or None)
+        line = problem.lineno  # whatever a program's own SyntaxError holds
+        return Failure(
+            FailureKind.SYNTAX,
+            f"{type(problem).__name__}: {problem.msg}",
+            program.relative_path(problem.filename),
+            line if type(line) is int and 0 < line <= MAX_ID else None,
+        )
     if (
         isinstance(problem, SyntaxError) and problem.filename is None
     ):  # null bytes, say: no line was ever read
@@ -182,7 +187,7 @@ def _way_out(problem: BaseException, program: StudentProgram) -> str:
     if not isinstance(name, str):
         return ""
     known: set[str] = set()
-    with suppress(Exception):  # a student's class may have a broken __dir__
+    with suppress(BaseException):  # a student's class may have a broken __dir__
         if isinstance(problem, AttributeError):
             known.update(word for word in dir(problem.obj) if name.startswith("_") or word[:1] != "_")
         elif isinstance(problem, NameError):
@@ -239,7 +244,7 @@ def short_repr(value: object) -> str:
 def _message_of(problem: BaseException) -> str:
     try:
         return str(problem)[:MAX_MESSAGE]
-    except Exception:  # noqa: BLE001 - likewise
+    except BaseException:  # noqa: BLE001 - likewise, also one that is an interrupt
         return ""
 
 

@@ -17,6 +17,8 @@ from kit.ros.launch.events import Event, ExecutionComplete
 
 _LIBRARY_FOLDER: Final = __file__.rpartition("/launch/")[0]
 """The folder of ``kit.ros``: frames below it are the library's, frames elsewhere the launch file's author's."""
+_CALLING_FOLDER: Final = f"{_LIBRARY_FOLDER.rpartition('/')[0]}/host/"
+"""The folder of ``kit.host``, which carries launch files out: no author's frame lies behind it."""
 
 
 class LaunchFileLocation(NamedTuple):
@@ -45,6 +47,8 @@ def calling_location() -> LaunchFileLocation | None:
         if frame.f_back is None:
             return None
         frame = frame.f_back
+    if frame.f_code.co_filename.startswith(_CALLING_FOLDER):
+        return None
     return LaunchFileLocation(frame.f_code.co_filename, frame.f_lineno)
 
 
@@ -107,6 +111,8 @@ class LaunchContext:
         """Reads a launch file in XML or YAML, given its path and content, into a launch description."""
         self.start_timer: Callable[[float, Iterable[Any], Visitable], Callable[[], None]]
         """Carries out entities after some seconds, for an action that is complete then; returns what cancels it."""
+        self.location: LaunchFileLocation | None = None
+        """The line of the launch file that is being carried out."""
         self.anonymous_names: dict[str, int] = {}
         """The numbers that make names unique."""
         self.is_shutdown = False

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Protocol
 
+from kit.ros.launch.bounds import MAX_ACTIONS
 from kit.ros.launch.context import LaunchContext, LaunchError, calling_location
 from kit.ros.launch.substitutions import (
     SomeText,
@@ -150,12 +151,18 @@ class LaunchDescription(LaunchDescriptionEntity):
         return self.entities
 
     def get_launch_arguments(self) -> list[ArgumentDeclaration]:
-        """The arguments that it and its entities declare, each name once."""
-
+        """The arguments that it and its entities declare, each name once. Raises LaunchError if they are too many to look at."""
         found: dict[str, ArgumentDeclaration] = {}
         waiting: list[Any] = [self]
+        visited = 0
         while waiting:
             entity = waiting.pop(0)
+            visited += 1
+            if visited > MAX_ACTIONS:
+                raise LaunchError(
+                    f"more than {MAX_ACTIONS:,} actions; does one contain itself?",
+                    getattr(entity, "location", None),
+                )
             if isinstance(entity, LaunchDescriptionEntity):
                 for argument in entity.declared_arguments():
                     found.setdefault(argument.name, argument)

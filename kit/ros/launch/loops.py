@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from copy import deepcopy
 from typing import Any, Final
 
+from kit.ros.launch.bounds import MAX_ACTIONS
 from kit.ros.launch.context import LaunchContext, LaunchError, SubstitutionFailure
 from kit.ros.launch.entity import (
     Action,
@@ -71,6 +72,10 @@ class ForLoop(Action):
             rounds = range(int(text))
         except ValueError:
             raise LaunchError(f"the length of a loop is '{text}', which is not a whole number") from None
+        if rounds.stop > MAX_ACTIONS:
+            raise LaunchError(
+                f"a loop of {rounds.stop:,} rounds: at most {MAX_ACTIONS:,} actions are carried out at once"
+            )
         return [entity for i in rounds for entity in to_entities(self.function(i=i))]
 
 

@@ -20,7 +20,15 @@ from itertools import count
 from types import MappingProxyType
 from typing import Any, Final
 
-from kit.ros.launch.context import LaunchContext, LaunchError, LaunchFileLocation, Visitable
+from kit.ros.launch.bounds import (
+    LOG_LINE,
+    MAX_ACTIONS,
+    MAX_DEPTH,
+    MAX_LOGGED,
+    MAX_PROCESSES,
+    NESTED_TOO_DEEPLY,
+)
+from kit.ros.launch.context import LaunchContext, LaunchError, Visitable
 from kit.ros.launch.entity import LaunchDescription, LaunchDescriptionEntity
 from kit.ros.launch.events import (
     ChangeState,
@@ -64,8 +72,10 @@ class LaunchService:
         self._process_numbers, self._timer_numbers = count(1), count(1)
         self._is_in_timer = False
         self._now_ns = 0
-        self.location: LaunchFileLocation | None = None
-        """The line of the launch file that is being carried out."""
+        self._depth = 0
+        """Levels of entities that are being visited."""
+        self._visited_count, self._process_count, self._logged_length = 0, 0, 0
+        """Entities visited, processes started and characters logged since the last answer."""
 
     @property
     def wake_ns(self) -> int | None:
@@ -97,22 +107,31 @@ class LaunchService:
         while self._events:
             self._handle(self._events.pop(0))
         requests, self._requests = self._requests, []
+        self._visited_count, self._process_count, self._logged_length = 0, 0, 0
         return requests
 
     def _visit(self, entity: LaunchDescriptionEntity) -> None:
-        location = getattr(entity, "location", None)
-        before, self.location = self.location, location or self.location
+        context = self.context
+        before, context.location = context.location, getattr(entity, "location", None) or context.location
+        depth_before, self._depth = self._depth, self._depth + 1
+        self._visited_count += 1
         try:
-            for part in entity.visit(self.context) or ():
+            if self._depth > MAX_DEPTH:
+                raise LaunchError(NESTED_TOO_DEEPLY)
+            if self._visited_count > MAX_ACTIONS:
+                raise LaunchError(
+                    f"more than {MAX_ACTIONS:,} actions are carried out at once: does a loop, or do includes, repeat too often?"
+                )
+            for part in entity.visit(context) or ():
                 self._visit(part)
         except SoftwareUnavailable as problem:
-            where = f"{self.location.file}:{self.location.line}: " if self.location else ""
+            where = f"{context.location.file}:{context.location.line}: " if context.location else ""
             self._request("log", "WARN", f"{where}skipped: {problem}")
         except LaunchError as problem:
             if problem.location is None:
-                problem.location = self.location
+                problem.location = context.location
             raise
-        self.location = before
+        context.location, self._depth = before, depth_before
 
     def _handle(self, event: Event) -> None:
         if isinstance(event, ProcessMatchingEvent):
@@ -139,7 +158,14 @@ class LaunchService:
     # Called through the context
 
     def _request(self, kind: str, *content: Any) -> None:
+        if kind == "log":
+            self._logged_length += len(content[1]) + LOG_LINE
+            if self._logged_length > MAX_LOGGED:
+                raise LaunchError(f"more than {MAX_LOGGED // 1024} KiB are logged at once")
         if kind == "process":
+            self._process_count += 1
+            if self._process_count > MAX_PROCESSES:
+                raise LaunchError(f"more than {MAX_PROCESSES} processes are started at once")
             action, specification = content
             number = next(self._process_numbers)
             self._actions[number] = (action, f"{specification['title']}-{number}")

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import ast
 import math
 import shutil
 from collections.abc import Iterable
 from pathlib import Path
+from types import CodeType
 from typing import Any, Final
 
 from kit.plain_text import nearest_name
+from kit.ros.launch.bounds import MAX_TEXT_LENGTH
 from kit.ros.launch.context import LaunchContext, SubstitutionFailure
 
 KIT_COMMANDS = frozenset({"ros2"})
@@ -46,8 +49,16 @@ def normalize_to_substitutions(text: Any) -> list[Substitution]:
 
 
 def perform_substitutions(context: LaunchContext, text: SomeText) -> str:
-    """Determines the text now."""
-    return "".join(piece.perform(context) for piece in normalize_to_substitutions(text))
+    """Determines the text now. Raises SubstitutionFailure for one of more than ``MAX_TEXT_LENGTH`` characters, and what a
+    substitution raises."""
+    parts: list[str] = []
+    length = 0
+    for piece in normalize_to_substitutions(text):
+        parts.append(piece.perform(context))
+        length += len(parts[-1])
+        if length > MAX_TEXT_LENGTH:
+            raise SubstitutionFailure(f"a text gets longer than {MAX_TEXT_LENGTH:,} characters")
+    return "".join(parts)
 
 
 def describe_substitutions(text: SomeText) -> str:
@@ -140,7 +151,7 @@ class PythonExpression(Substitution):
         expression = perform_substitutions(context, self.expression)
         try:
             # The launch file's author's own code, in the launch file's own process.
-            return str(eval(expression, {}, dict(vars(math))))
+            return str(eval(_compiled(expression, context), {}, dict(vars(math))))
         except Exception as problem:  # noqa: BLE001 - whatever the author's expression raises
             raise SubstitutionFailure(
                 f"the expression {expression!r} fails: {type(problem).__name__}: {problem}. "
@@ -149,6 +160,15 @@ class PythonExpression(Substitution):
 
     def describe(self) -> str:
         return f"PythonExpr({describe_substitutions(self.expression)})"
+
+
+def _compiled(expression: str, context: LaunchContext) -> CodeType:
+    """Compiles an expression as if it stood in its line of the launch file: one that never ends is told by that line."""
+    if context.location is None:
+        return compile(expression, "<string>", "eval")
+    file, line = context.location
+    tree = ast.parse(expression.lstrip(" \t"), filename="<string>", mode="eval")
+    return compile(ast.increment_lineno(tree, line - 1), file, "eval")
 
 
 class LocalSubstitution(Substitution):

@@ -250,9 +250,11 @@ def opened_levels_text(levels: tuple[GameLevel, ...]) -> str:
     if not levels:
         return ""
     if len(levels) == 1:
-        return f"It opens the level {levels[0].title} of the game. To drive it: kit game play {levels[0].id}"
+        return (
+            f"It opens the level {levels[0].title} of the game. To drive it: `kit game play {levels[0].id}`"
+        )
     titles = ", ".join(level.title for level in levels[:-1])
-    return f"It opens the levels {titles} and {levels[-1].title} of the game: kit game"
+    return f"It opens the levels {titles} and {levels[-1].title} of the game: `kit game`"
 
 
 def find_level(name: str, levels: tuple[GameLevel, ...] | None = None) -> GameLevel:

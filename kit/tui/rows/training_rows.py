@@ -121,7 +121,8 @@ def note(name: str, status: RunStatus, width: int) -> Row:
 def caption(moment: DemonstrationView, width: int) -> Row:
     """Names the case, the policy that drives, and how the episode ended."""
     policy = f"{'best, of' if moment.kept else 'after'} {_short_count(moment.trained)}"
-    left = row((moment.case, "bold"), (f"  {policy}", "dim"))
+    # "case": the row stands beside the names of curves.
+    left = row(("case ", "dim"), (moment.case, "bold"), (f"  {policy}", "dim"))
     if moment.outcome is None:
         return at_both_edges(left, (), width)
     names = [part.name for part in OUTCOMES]

@@ -222,7 +222,7 @@ class TrainingsScreen(RowsScreen[None]):
             self._show()
             return
         self._tell(
-            f"testing {len(marked)} runs ...",
+            f"testing {counted(len(marked), 'run')} ...",
             "Comparison",
             lambda columns: _comparison_rows(marked, self._theme, columns),
         )

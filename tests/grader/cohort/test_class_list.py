@@ -87,6 +87,23 @@ def test_works_are_given_to_their_students(roster: str, works: list[str]) -> Non
     assert not owners.ambiguous
 
 
+@pytest.mark.parametrize(
+    ("roster", "works"),
+    [
+        ("canvas", ["limaada_9001_77_x_9002_assignsubmission_file_", "sabruno_9002_78_controller"]),
+        ("own", ["limaada_100_77_x_101_assignsubmission_file_", "101"]),
+        ("moodle_worksheet", ["X_4711_assignsubmission_file_a_4712_assignsubmission_file_", "Y_4712_assignsubmission_file"]),
+        ("github", ["drive-on-eve-brunosa", "drive-on-brunosa", "drive-on-ada-lima"]),
+        ("github", ["drive-on-eve-brunosa", "drive-on-brunosa"]),
+        ("own", ["Ada@bruno", "drive-bruno"]),
+    ],
+)  # fmt: skip
+def test_what_a_student_chooses_of_a_name_means_no_other_student(roster: str, works: list[str]) -> None:
+    owners = owners_of(works, read_roster(ROSTERS / f"{roster}.csv"))
+    assert [each.name for each in owners.students[works[1]]] == ["Bruno Sá"]
+    assert all(each.name != "Bruno Sá" for each in owners.students[works[0]])
+
+
 def test_a_group_hands_in_one_work(tmp_path: Path) -> None:
     queue = graded_queue(tmp_path, {"red": 0.5, "chen": 1.0})
     table = by_name(class_table(queue, ClassRules(roster=read_roster(ROSTERS / "own.csv"))))

@@ -700,6 +700,27 @@ def test_no_two_names_of_a_class_look_alike(
         assert {each.name for each in entries} == set(names), "what looks like no other keeps its name"
 
 
+@pytest.mark.parametrize("name", [".ada.py", ".ada", "VENV"])
+def test_what_is_not_taken_for_a_work_is_said(name: str, tmp_path: Path) -> None:
+    folder, work = write_assignment(tmp_path / "quick"), tmp_path / "in"
+    (work / name).mkdir(parents=True)
+    (work / name / "controller.py").write_text(FORWARD)
+    code, told = verb(
+        "cohort",
+        work,
+        "--assignment",
+        folder,
+        "--queue",
+        tmp_path / "queue",
+        "--executor",
+        "none",
+        "--level",
+        "0",
+    )
+    assert code == 0
+    assert f"Not graded: {name}." in told
+
+
 @pytest.mark.long
 def test_a_note_gives_a_ci_service_no_command(tmp_path: Path) -> None:
     folder = write_assignment(tmp_path / "quick")

@@ -12,6 +12,7 @@ from click.testing import CliRunner
 
 from grader.cli.cohort import ladder
 from grader.cohort.program_ladder import LadderRace, find_programs, fit_elo, race_all, rank
+from grader.look_alikes import outline
 from kit.host.sandbox import probe
 from kit.school.game.levels import find_level
 
@@ -89,7 +90,9 @@ def test_programs_are_files_and_folders_with_one(tmp_path: Path) -> None:
     (tmp_path / "two").mkdir()
     for name in ("a.py", "b.py"):
         (tmp_path / "two" / name).write_text("")
-    assert set(find_programs(tmp_path)) == {"ada", "bob"}
+    programs, passed_over = find_programs(tmp_path)
+    assert set(programs) == {"ada", "bob"}
+    assert [each.partition(" ")[0] for each in passed_over] == ["two"]
 
 
 def test_one_program_is_no_ladder(tmp_path: Path) -> None:
@@ -118,7 +121,29 @@ def test_links_and_what_is_no_file_are_no_programs(tmp_path: Path) -> None:
     (tmp_path / "bob").mkdir()
     (tmp_path / "eve").symlink_to(tmp_path / "bob")
     (tmp_path / "bob" / "mine.py").write_text("")
-    assert set(find_programs(tmp_path)) == {"bob"}
+    programs, passed_over = find_programs(tmp_path)
+    assert set(programs) == {"bob"}
+    assert {each.partition(" ")[0] for each in passed_over} == {
+        "other.txt",
+        "linked.py",
+        "folder.py",
+        "pipe.py",
+        "eve",
+    }
+
+
+@pytest.mark.parametrize(
+    "others", [("ada/mine.py",), ("ADA.py",), ("\u0430da.py",), ("ada.py /mine.py",), (".ada.py", "ada/x.py")]
+)
+def test_no_program_takes_the_place_or_the_look_of_another(others: tuple[str, ...], tmp_path: Path) -> None:
+    (tmp_path / "ada.py").write_text("# the first")
+    for other in others:
+        (tmp_path / other).parent.mkdir(exist_ok=True)
+        (tmp_path / other).write_text("# another")
+    programs, passed_over = find_programs(tmp_path)
+    assert sorted(file.read_text() for file in programs.values()).count("# the first") == 1
+    assert len(programs) + len(passed_over) == 1 + len(others)
+    assert len({outline(name) for name in programs}) == len(programs)
 
 
 def test_programs_of_others_are_not_raced_at_level_0_by_silence(
@@ -155,6 +180,6 @@ def test_a_race_has_a_wall_clock(tmp_path: Path) -> None:
     slow = "import rclpy, select\nfrom rclpy.node import Node\nrclpy.init()\nnode = Node('slow')\n"
     slow += "node.create_timer(0.01, lambda: select.select([], [], [], 0.2))\nrclpy.spin(node)\n"
     (tmp_path / "slow.py").write_text(slow)
-    (race,) = race_all(find_programs(tmp_path), [find_level("left-turn")], wall_limit_s=1.0)
+    (race,) = race_all(find_programs(tmp_path)[0], [find_level("left-turn")], wall_limit_s=1.0)
     assert not race.reached
     assert "longer than 1 s" in race.failure

@@ -21,6 +21,7 @@ from kit.ros.launch.actions import (
     Shutdown,
     TimerAction,
 )
+from kit.ros.launch.bounds import MAX_DEPTH, NESTED_TOO_DEEPLY
 from kit.ros.launch.context import LaunchError, LaunchFileLocation
 from kit.ros.launch.entity import Action, Condition, IfCondition, LaunchDescription, UnlessCondition
 from kit.ros.launch.frontend.element import Element, Problems, TextPosition, Texts
@@ -90,6 +91,8 @@ def read_xml(source: bytes, problems: Problems) -> Element:
         element = Element(name.replace("-", "_"), place, problems, dict(attributes))
         (open_elements[-1].children if open_elements else roots).append(element)
         open_elements.append(element)
+        if len(open_elements) > MAX_DEPTH:
+            raise LaunchError(NESTED_TOO_DEEPLY, LaunchFileLocation(problems.file, place.line))
 
     def text(data: str) -> None:
         if data.strip() and open_elements:
@@ -99,7 +102,10 @@ def read_xml(source: bytes, problems: Problems) -> Element:
             )
 
     def declare_entity(*_: object) -> None:
-        raise LaunchError("a launch file must not define entities")
+        raise LaunchError(
+            "a launch file must not define entities",
+            LaunchFileLocation(problems.file, parser.CurrentLineNumber),
+        )
 
     parser.StartElementHandler = start
     parser.EndElementHandler = lambda name: open_elements.pop()

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Final, NamedTuple
 
 from kit.plain_text import nearest_name
+from kit.ros.launch.bounds import MAX_DEPTH, NESTED_TOO_DEEPLY
 from kit.ros.launch.file_substitutions import (
     Command,
     ExecutableInPackage,
@@ -144,6 +145,8 @@ class _Reader:
 
     def __init__(self, text: str) -> None:
         self._text, self._at = text, 0
+        self._depth = 0
+        """Calls that are open."""
 
     def read_until(self, is_end: Callable[[str], bool]) -> Texts:
         """Reads parts until a character that ends them, which stays."""
@@ -169,6 +172,9 @@ class _Reader:
         if name is None:
             raise SubstitutionSyntaxError("after '$(' comes the name of a substitution")
         self._at = name.end()
+        self._depth += 1
+        if self._depth > MAX_DEPTH:
+            raise SubstitutionSyntaxError(NESTED_TOO_DEEPLY)
         arguments: list[Texts] = []
         while True:
             while self._at < len(self._text) and self._text[self._at].isspace():
@@ -177,6 +183,7 @@ class _Reader:
                 raise SubstitutionSyntaxError(f"'$({name[0]}' is not closed: ')' is missing")
             if self._text[self._at] == ")":
                 self._at += 1
+                self._depth -= 1
                 return _make(name[0], arguments)
             arguments.append(self._read_argument())
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Self, TypeAlias
 
 from kit.document.rows import Row, row
+from kit.plain_text import counted
 from kit.school.game.board import (
     MOVES,
     Board,
@@ -61,7 +62,7 @@ class BlindTask(ChallengeTask):
             where = "1 place" if len(belief) == 1 else f"{len(belief)} places"
             return Judgement(Medal.NONE, f"The robot may be in {where} then, and has to be at G for certain.")
         count, fewest, naive = len(moves), len(fewest_moves(self)), len(naive_moves(self))
-        text = f"{count} moves; two places after another takes {naive}, and {fewest} are enough."
+        text = f"{counted(count, 'move')}; two places after another takes {naive}, and {fewest} are enough."
         return judge_count("moves", text, count, fewest, naive)
 
 

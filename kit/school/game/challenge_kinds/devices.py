@@ -10,6 +10,7 @@ from typing import Final, Self
 
 from kit.document.rows import Row, row
 from kit.layers.cover import minimum_cover
+from kit.plain_text import counted
 from kit.school.game.board import WALL, Board, Cell, History, free_cells, grid_rows
 from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
@@ -51,7 +52,7 @@ class DevicesTask(ChallengeTask):
         if missed:
             return Judgement(Medal.NONE, f"Nothing sees {', '.join(missed)}.")
         count, fewest, naive = len(lasers), len(fewest_lasers(self)), len(naive_lasers(self))
-        text = f"{count} lasers; one at every place takes {naive}, and {fewest} are enough."
+        text = f"{counted(count, 'laser')}; one at every place takes {naive}, and {fewest} are enough."
         return judge_count("lasers", text, count, fewest, naive)
 
     @property

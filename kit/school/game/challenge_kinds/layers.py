@@ -18,6 +18,7 @@ from kit.layers.planning import solve_layers
 from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import read_requirements
 from kit.plain_files import is_file_there
+from kit.plain_text import counted
 from kit.school.game.board import Board, History
 from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
@@ -195,7 +196,7 @@ def judge_assignment(task: LayersTask, plan: LayerAssignment) -> Judgement:
     if breaches:
         return Judgement(Medal.NONE, f"It does not do what is asked: {breaches[0]}.")
     count, naive = len(plan.layers), len(naive_plan(case).layers)
-    text = f"{count} layers; a layer for every line takes {naive}, and {fewest} are enough."
+    text = f"{counted(count, 'layer')}; a layer for every line takes {naive}, and {fewest} are enough."
     return judge_count("layers", text, count, fewest, naive)
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Self
 
 from kit.document.rows import Row, row
+from kit.plain_text import counted
 from kit.school.game.board import Board, Cell, distances_to, find_cell, grid_rows, shortest_way, step
 from kit.school.game.challenge import AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
@@ -50,7 +51,7 @@ class RoundTask(ChallengeTask):
         if cell != find_cell(self.grid, "S"):
             return Judgement(Medal.NONE, "It comes to all of them, but not home.")
         count, fewest, naive = len(moves), len(best_round(self)), len(naive_round(self))
-        text = f"{count} moves; in the order of the letters it takes {naive}, and {fewest} are enough."
+        text = f"{counted(count, 'move')}; in the order of the letters it takes {naive}, and {fewest} are enough."
         return judge_count("moves", text, count, fewest, naive, near=2)  # every round has an even number
 
     @property
