@@ -315,7 +315,7 @@ def _grade(assignment: Assignment, file: Path, options: GradingOptions) -> Gradi
             read_submission(file, assignment.submit),
             replace(options, show_progress=show_progress),
         )
-    except SubmissionUnreadable as error:  # the mistake may be the reader's, which is the teacher's own perhaps
+    except SubmissionUnreadable as error:  # the reader may be the teacher's own
         return f"{error}\nThe reader's error: {error.error}"
     except SubmissionRefused as error:
         return str(error)

@@ -181,7 +181,7 @@ def _outcome_counts(result: EvaluationResult) -> dict[str, Any]:
 def sweep_blocks(
     points: Sequence[SweepPoint], encoder: Encoder, columns: int = 79, rows: int = 10
 ) -> list[Block]:
-    """For each kind a chart of the success, with its interval, and the figures."""
+    """A chart of the success with its interval, and a table, for each kind of disturbance."""
     blocks: list[Block] = []
     for kind in DISTURBANCE_KINDS:
         of_kind = [point for point in points if point.kind == kind.name]
