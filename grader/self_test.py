@@ -26,7 +26,7 @@ from grader.reading import read_assignment
 from grader.scoring import required_passes, unfair_fail_probability
 from grader.seeds import SeedSet
 from grader.submission import read_submission
-from grader.submitted_files import SubmissionRefused
+from grader.submitted_files import SubmissionRefused, SubmissionUnreadable
 from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from kit.results.result_blocks import format_points
@@ -315,6 +315,8 @@ def _grade(assignment: Assignment, file: Path, options: GradingOptions) -> Gradi
             read_submission(file, assignment.submit),
             replace(options, show_progress=show_progress),
         )
+    except SubmissionUnreadable as error:  # the reader may be the teacher's own
+        return f"{error}\nThe reader's error: {error.error}"
     except SubmissionRefused as error:
         return str(error)
 

@@ -32,19 +32,19 @@ def assignment_task(name: str, folder: Path) -> TaskSpec:
     return TaskSpec(str(file))
 
 
-def read_task_choice(section: Section, folder: Path, key: str = "task") -> TaskSpec | None:
-    """Reads the key and checks the task with its worlds; notes a mistake and returns None."""
-    name = section.name(key)
+def read_task_choice(section: Section, folder: Path) -> TaskSpec | None:
+    """Reads the key ``task`` and checks the task with its worlds; notes a mistake and returns None."""
+    name = section.name("task")
     if not name:
         return None
     try:
         choice = assignment_task(name, folder)
     except UnknownTask as error:
-        section.error(str(error), key)
+        section.error(str(error), "task")
         return None
     problem = None if choice.task in task_names() else problem_of_task(Path(choice.task))
     if problem is not None:
-        section.error(problem, key)
+        section.error(problem, "task")
         return None
     return choice
 

@@ -27,7 +27,7 @@ class GradedWork:
 
 @dataclass(frozen=True, slots=True)
 class CiRunner:
-    """On what a workflow runs."""
+    """The machine and the Python that a workflow runs on."""
 
     python: str = "3.12"
     image: str = "ubuntu-24.04"

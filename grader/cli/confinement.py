@@ -1,4 +1,4 @@
-"""At which confinement level a verb runs programs."""
+"""The confinement level at which a verb runs programs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""In which format a verb writes a bag."""
+"""The format in which a verb writes a bag."""
 
 from __future__ import annotations
 

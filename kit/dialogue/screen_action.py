@@ -38,7 +38,7 @@ def digits(action: str, first: int, last: int) -> tuple[tuple[str, str], ...]:
 
 
 def letter(
-    id_: str, key: str, label: str, text: str, *, name: str = "", short: str = "", has_priority: bool = False
+    id_: str, key: str, label: str, text: str, *, name: str = "", has_priority: bool = False
 ) -> ScreenAction:
     """An action of one key that calls the Textual action of its own name. ``name``: Textual's name of the key."""
-    return ScreenAction(id_, key, label, text, ((name or key, id_),), short, has_priority)
+    return ScreenAction(id_, key, label, text, ((name or key, id_),), has_priority=has_priority)

@@ -67,7 +67,7 @@ def broken_command(line: str, room: int) -> list[str]:
 
 
 def _open_quotes(line: str) -> list[str]:
-    """For each character of a command the quotation mark that is open before it, or the backslash; "" for neither."""
+    """The quotation mark, or backslash, that is open before each character of a command; "" for neither."""
     states: list[str] = []
     state = ""
     for character in line:

@@ -49,7 +49,7 @@ class JobFolder(ABC):
 
     @property
     def limit_s(self) -> float | None:
-        """After so long [s] a worker that is at one job counts as standing still; None: never."""
+        """The time [s] after which a worker that is at one job counts as standing still; None: never."""
         return None
 
     @abstractmethod

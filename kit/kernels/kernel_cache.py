@@ -35,7 +35,7 @@ def _numba_locator(name: str) -> Any:
 
 
 class _OwnersLocator(_numba_locator("InTreeCacheLocator")):  # type: ignore[misc]
-    """Beside the source, unless everybody may write there: anyone could leave code for the others."""
+    """Keeps kernels beside the source, unless everybody may write there: anyone could leave code for the others."""
 
     def ensure_cache_path(self) -> None:
         super().ensure_cache_path()
@@ -44,7 +44,7 @@ class _OwnersLocator(_numba_locator("InTreeCacheLocator")):  # type: ignore[misc
 
 
 class _ReadOnlyLocator(_numba_locator("InTreeCacheLocator")):  # type: ignore[misc]
-    """For an account, or a confined process, that has no place of its own: it reads the installation's."""
+    """Reads the installation's kernels, for an account or a confined process that has no place of its own."""
 
     def ensure_cache_path(self) -> None:
         if not _is_shared(Path(self.get_cache_path())):

@@ -280,16 +280,12 @@ def _contradiction_text(what: str, here: str, there: str, location: SourceLocati
 # Writing
 
 
-def requirements_text(
-    case: LayerCase, *, requirements: RequirementsFile | None = None, comment: str = ""
-) -> str:
+def requirements_text(case: LayerCase, *, requirements: RequirementsFile | None = None) -> str:
     """Returns the case as the text of a requirements file, which reads as the same case.
 
-    ``requirements``: the file whose world, copies and bodies are written too. ``comment``: put before it.
+    ``requirements``: the file whose world, copies and bodies are written too.
     """
-    lines = [f"# {line}".rstrip() for line in comment.splitlines()]
-    if case.title:
-        lines.append(f"title: {format_scalar(case.title)}")
+    lines = [f"title: {format_scalar(case.title)}"] if case.title else []
     if requirements is not None and requirements.world is not None:
         lines.append(f"world: {format_scalar(str(requirements.world))}")
     lines += _entity_lines(case, requirements)

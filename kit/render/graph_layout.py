@@ -81,7 +81,7 @@ def _initial_layout(
 def _match_nodes_to_items(
     used: Mapping[str, Sequence[GraphItem]], order: Mapping[str, int]
 ) -> dict[str, str]:
-    """For as many nodes as can be an item of their own that no other node has: a maximum matching by augmenting
+    """Gives as many nodes as possible an item that no other node has: a maximum matching by augmenting
     paths (Kuhn 1955), which leaves a node on its first item where it can."""
     node_of_item: dict[str, str] = {}
 

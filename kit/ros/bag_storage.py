@@ -127,7 +127,7 @@ class BagPart:
         self._remove()
 
     def rescue(self) -> int:
-        """After an error: makes a bag of what has been written, without what was being written. Returns its number of
+        """Makes a bag, after an error, of what has been written, without what was being written. Returns its number of
         messages. Raises BagError, and then the part stays, for the next start."""
         with suppress(*WRITE_ERRORS):
             self.flush()

@@ -105,7 +105,7 @@ def scenario_in_file(file: Path, root: Path | None = None) -> Scenario:
 
 
 def _case_of_world(world: World, driven: tuple[str, ...]) -> MapCase | None:
-    """From where the robots stand to the beacon, where a world without a card has both."""
+    """The case from the robots' poses to the beacon, where a world without a card has both."""
     poses = {model.name: model.pose for model in world.models}
     if not driven or BEACON not in poses:
         return None

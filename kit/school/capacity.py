@@ -114,9 +114,9 @@ class ServerNeed:
     drive_bytes: float
 
 
-def server_need(learners: int, cost: UseCost, habits: Habits, seed: int = SEED) -> ServerNeed:
+def server_need(learners: int, cost: UseCost, habits: Habits) -> ServerNeed:
     """Simulates all hand-ins until a deadline, and finds the fewest cores with which no more than 1 of 20 waits too long."""
-    times = hand_in_times(learners * habits.hand_ins, habits, seed)
+    times = hand_in_times(learners * habits.hand_ins, habits)
     cores = fewest_cores(times, cost.check_core_s, habits.wait_s)
     at_work = most_at_once(times - habits.work_s, habits.work_s)
     return ServerNeed(

@@ -173,7 +173,7 @@ def _family_of(process: int) -> list[int]:
 
 
 def _all_processes() -> dict[int, tuple[set[int], int]]:
-    """By process: all above it, and its session."""
+    """The ancestors and the session of every process, by its number."""
     found = {}
     for name in (each.name for each in Path("/proc").iterdir() if each.name.isdigit()):
         with suppress(OSError):

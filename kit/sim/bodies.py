@@ -179,7 +179,7 @@ class PhysicalBody:
 
     @property
     def pose(self) -> Pose:
-        """In the world."""
+        """The body's pose in the world frame: m, m, rad."""
         carrier = self.rigid.pose
         if self._poses[0] is not carrier:
             self._poses = carrier, carrier.compose(self.offset)
@@ -187,7 +187,7 @@ class PhysicalBody:
 
     @property
     def velocity(self) -> tuple[float, float, float]:
-        """In the world frame: m/s, m/s, rad/s."""
+        """The body's velocity in the world frame: m/s, m/s, rad/s."""
         x, y = self._from_center()
         vx, vy = self.rigid.body.velocity
         turn = self.rigid.body.angular_velocity

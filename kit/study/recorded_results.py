@@ -75,7 +75,7 @@ class TrainingSession(NamedTuple):
 
     @property
     def share(self) -> float:
-        """Of the episodes that reached the target."""
+        """The share of the episodes that reached the target."""
         return self.reached / max(1, self.reached + self.collided + self.timed_out)
 
 
@@ -126,7 +126,7 @@ class RecordedTest:
 
     @property
     def largest_value(self) -> float | None:
-        """Of all tests during training; None where the learner has no values."""
+        """The largest value of all tests during training; None where the learner has no values."""
         known = [session.value_max for session in self.sessions if session.value_max is not None]
         return max(known, default=None)
 

@@ -47,7 +47,7 @@ def _actions_text(task: LearningTask) -> str:
 
 
 def _start_gap(task: LearningTask) -> float | None:
-    """Between the first two robots at their starts [m]; None for one."""
+    """The distance between the first two robots at their starts [m]; None for one robot."""
     if task.robots == 1:
         return None
     if task.start.gap is not None:

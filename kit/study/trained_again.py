@@ -15,7 +15,7 @@ TRAINED_AGAIN: Final = ("3.3", "4.1", "4.2", "4.5", "5.2")
 
 
 def trained_again_table() -> Table:
-    """For each kind of training: how many seeds reached an accuracy of 0.8, beside the printed one."""
+    """A row for each kind of training: how many seeds reached an accuracy of 0.8, beside the printed one."""
     columns = (
         Column("Trained again by", CellStyle.TEXT),
         Column("settings", CellStyle.TEXT),

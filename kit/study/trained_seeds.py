@@ -40,7 +40,7 @@ class TrainedSeeds:
 
     @property
     def steps_to_goal(self) -> tuple[int, ...]:
-        """After how many steps each seed that reached the goal did, in rising order."""
+        """The steps after which each seed that reached the goal did so, in rising order."""
         first = (
             next((each.steps for each in test.sessions if each.share >= ACCURACY_GOAL), None)
             for test in self.tests
@@ -49,7 +49,7 @@ class TrainedSeeds:
 
     @property
     def largest_value(self) -> float | None:
-        """Of all seeds."""
+        """The largest value of all seeds."""
         return max(
             (each.largest_value for each in self.tests if each.largest_value is not None), default=None
         )

@@ -21,5 +21,5 @@ class OneShotTimer(Timer):
 
 
 def fire_late_timers() -> None:
-    """From now on ``set_timer`` calls back even if it is late, in widgets, screens and apps, Textual's own calls among them."""
+    """Makes ``set_timer`` call back even if it is late, in widgets, screens and apps, Textual's own calls among them."""
     setattr(textual.message_pump, "Timer", OneShotTimer)  # noqa: B010  # mypy takes no assignment to a class's name

@@ -110,10 +110,10 @@ class ModelScope:
         """The name of a body of the model."""
         return _read_known_name(section, key, [body.name for body in self.model.bodies], "no body", default)
 
-    def joint(self, section: Section, key: str, default: str | Required = REQUIRED) -> str:
+    def joint(self, section: Section, key: str) -> str:
         """The name of a joint of the model."""
         return _read_known_name(
-            section, key, [joint.name for joint in self.model.joints], "no joint", default
+            section, key, [joint.name for joint in self.model.joints], "no joint", REQUIRED
         )
 
     def bodies(self, section: Section, key: str) -> tuple[str, ...]:

@@ -124,7 +124,7 @@ def _model_row(models: Sequence[Model]) -> tuple[str, str, str, str]:
 
 
 def _collision_rows(rules: CollisionRules, groups: Sequence[Sequence[CollisionBody]]) -> Iterator[ReportRow]:
-    """Between walls and models, and between one model and another."""
+    """The rows of collisions between walls and models, and between one model and another."""
     for one, other in combinations_with_replacement(groups, 2):
         pair = next(
             ((a, b) for a in one for b in other if a != b and (a.model is None or a.model != b.model)), None

@@ -9,9 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from grader import self_test
 from grader.grading import GradingOptions
 from grader.reading import read_assignment
 from grader.self_test import ENDING, EditsError, apply_edits, list_wrong_works, try_works, written_out
+from grader.submission import Submission
+from grader.submitted_files import SubmissionUnreadable
 from kit.host.sandbox.sandbox_config import Level
 from tests.grader.conftest import TEMPLATES
 
@@ -97,3 +100,15 @@ def test_works_are_graded_side_by_side_with_the_same_reports(tmp_path: Path) -> 
     options = GradingOptions(Level.LIMITED)
     assignment = replace(read_assignment(folder), level=Level.LIMITED)
     assert list(try_works(assignment, options, jobs=2)) == list(try_works(assignment, options))
+
+
+def test_where_a_reader_failed_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(path: Path, main: str) -> Submission:
+        raise SubmissionUnreadable("It cannot be read.", "TypeError in my_kind/kind.py:57")
+
+    monkeypatch.setattr(self_test, "read_submission", fail)
+    folder = tmp_path / "plan"
+    shutil.copytree(TEMPLATES / "plan", folder)
+    reports = list(try_works(read_assignment(folder), GradingOptions(Level.LIMITED)))
+    assert reports
+    assert all("my_kind/kind.py:57" in problem for each in reports for problem in each.problems)

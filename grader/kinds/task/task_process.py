@@ -44,14 +44,13 @@ class PosedTaskProcess(ReaderProcess):
         seed: int,
         level: Level,
         clock: SubmissionClock,
-        memory: int = MEMORY_LIMIT,
     ) -> None:
         super().__init__(
             "grader.kinds.task.child",
             file,
             subject="task or its world",
             advice="Look at it with the kit (`kit task check`)",
-            memory=memory,
+            memory=MEMORY_LIMIT,
             level=level,
         )
         self._clock = clock

@@ -37,9 +37,9 @@ def descendants(root: int) -> list[int]:
     return found[1:]
 
 
-def end_descendants(root: int, timeout_s: float = KILL_TIMEOUT_S) -> bool:
+def end_descendants(root: int) -> bool:
     """Kills everything below ``root`` until nothing is left alive; returns False if that took too long."""
-    deadline = time.monotonic() + timeout_s
+    deadline = time.monotonic() + KILL_TIMEOUT_S
     while living := descendants(root):
         for process in living:
             with suppress(ProcessLookupError, PermissionError):

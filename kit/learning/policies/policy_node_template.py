@@ -167,7 +167,7 @@ def heading_of(turn: Quaternion) -> float:
 
 
 def hull_distance(pose: np.ndarray, x: float, y: float) -> float:
-    """From a robot's hull to a point [m]: 0 inside it. From its axle, where that is what arrives."""
+    """The distance from a robot's hull to a point [m]: 0 inside it. From its axle, where that is what arrives."""
     dx, dy = x - pose[0], y - pose[1]
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     point = np.array([cos * dx + sin * dy, cos * dy - sin * dx])
@@ -177,7 +177,7 @@ def hull_distance(pose: np.ndarray, x: float, y: float) -> float:
 
 
 def part_distance(corners: np.ndarray, point: np.ndarray) -> float:
-    """From a convex polygon, whose corners go counter-clockwise, to a point [m]: 0 inside it."""
+    """The distance from a convex polygon, whose corners go counter-clockwise, to a point [m]: 0 inside it."""
     sides, to_point = np.roll(corners, -1, axis=0) - corners, point - corners
     if (sides[:, 0] * to_point[:, 1] - sides[:, 1] * to_point[:, 0] >= 0).all():
         return 0.0

@@ -35,6 +35,7 @@ from kit.plain_text import quoted, suggestion
 from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import Encoder
 
+CHART_ROWS = 10
 CSV_HEADER = (
     "kind",
     "unit",
@@ -178,10 +179,8 @@ def _outcome_counts(result: EvaluationResult) -> dict[str, Any]:
     }
 
 
-def sweep_blocks(
-    points: Sequence[SweepPoint], encoder: Encoder, columns: int = 79, rows: int = 10
-) -> list[Block]:
-    """For each kind a chart of the success, with its interval, and the figures."""
+def sweep_blocks(points: Sequence[SweepPoint], encoder: Encoder, columns: int = 79) -> list[Block]:
+    """A chart of the success with its interval, and a table, for each kind of disturbance."""
     blocks: list[Block] = []
     for kind in DISTURBANCE_KINDS:
         of_kind = [point for point in points if point.kind == kind.name]
@@ -191,7 +190,9 @@ def sweep_blocks(
         blocks.append(Text(f"{label}: {kind.summary}"))
         if len(of_kind) > 1:
             blocks.append(
-                Picture(tuple(_sweep_chart(of_kind, label, encoder, columns, rows)), indent=0, is_tight=True)
+                Picture(
+                    tuple(_sweep_chart(of_kind, label, encoder, columns, CHART_ROWS)), indent=0, is_tight=True
+                )
             )
         blocks.append(_sweep_table(of_kind))
     return blocks

@@ -44,7 +44,7 @@ _MARK: Final = object()
 
 @dataclass(frozen=True, slots=True)
 class _Name:
-    """Of a function or class that the pickle names, and that is never looked for."""
+    """The name of a function or class in the pickle, which is never imported."""
 
     name: str
 

@@ -18,6 +18,8 @@ from kit.learning.training.run_config import RunError
 from kit.learning.training.runs import TrainingRun
 
 EXIT_SIGNALS = (signal.SIGTERM, signal.SIGINT)
+START_S = 30.0
+"""The longest wait [s] until a process has taken over its run."""
 
 
 class ExitRequest:
@@ -54,8 +56,8 @@ def run_worker(run: TrainingRun) -> int:
     return int(ended.how == "failed")
 
 
-def start_worker(run: TrainingRun, *, patience: float = 30.0) -> subprocess.Popen[bytes]:
-    """Starts a process that trains the run, and waits until it has taken it over, up to ``patience`` seconds.
+def start_worker(run: TrainingRun) -> subprocess.Popen[bytes]:
+    """Starts a process that trains the run, and waits until it has taken it over, up to ``START_S`` seconds.
 
     RunError, with what the process printed, if it ends before it has begun. The caller need not wait for it.
     """
@@ -69,7 +71,7 @@ def start_worker(run: TrainingRun, *, patience: float = 30.0) -> subprocess.Pope
             cwd=run.folder,
             start_new_session=True,
         )
-    until = time.monotonic() + patience
+    until = time.monotonic() + START_S
     while process.poll() is None and not run.is_active and time.monotonic() < until:
         time.sleep(0.02)
     if process.poll() not in (None, 0):

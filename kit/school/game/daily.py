@@ -218,7 +218,7 @@ def _middle_of_cell(cell: Cell) -> tuple[float, float]:
 
 
 def start_pose(drawn: DailyMap) -> Pose:
-    """In the middle of the first cell, towards the second one."""
+    """The pose in the middle of the first cell, towards the second one."""
     x, y = _middle_of_cell(drawn.way[0])
     dx, dy = _direction(drawn.way[0], drawn.way[1])
     return Pose(x, y, math.atan2(dy, dx))

@@ -262,7 +262,7 @@ def _judge_shared_drive(
 def _without_copies(
     entries: Sequence[LeaderboardEntry], former: Sequence[LeaderboardEntry]
 ) -> list[LeaderboardEntry]:
-    """Without drives by hand that another user had before, a tick sooner or later: no two hands drive the same. Two programs may
+    """Leaves out drives by hand that another user had before, a tick sooner or later: no two hands drive the same. Two programs may
     well be equal, so theirs are kept, and told whose they are. The system keeps the time at which a file was last changed, so
     that no user can set it back. ``former``: every drive that was ever put on the board, by those who are on it."""
     earliest = sorted([*entries, *former], key=lambda entry: (entry.since_ns, entry.user))

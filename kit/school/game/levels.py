@@ -233,16 +233,14 @@ def all_levels(folder: Path | None = None) -> tuple[GameLevel, ...]:
     return (_read_kit_file() if folder is None else _read_file(folder))[1]
 
 
-def all_worlds(folder: Path | None = None) -> tuple[GameWorld, ...]:
+def all_worlds() -> tuple[GameWorld, ...]:
     """Reads the worlds that the levels belong to, in order. Raises WorldError likewise."""
-    return (_read_kit_file() if folder is None else _read_file(folder))[0]
+    return _read_kit_file()[0]
 
 
-def levels_of_lesson(name: str, levels: tuple[GameLevel, ...] | None = None) -> tuple[GameLevel, ...]:
+def levels_of_lesson(name: str) -> tuple[GameLevel, ...]:
     """The levels that a lesson opens. ``name``: of the lesson, ``01-drive``."""
-    return tuple(
-        each for each in (all_levels() if levels is None else levels) if each.opened_by_lesson == name
-    )
+    return tuple(each for each in all_levels() if each.opened_by_lesson == name)
 
 
 def opened_levels_text(levels: tuple[GameLevel, ...]) -> str:
@@ -257,9 +255,9 @@ def opened_levels_text(levels: tuple[GameLevel, ...]) -> str:
     return f"It opens the levels {titles} and {levels[-1].title} of the game: `kit game`"
 
 
-def find_level(name: str, levels: tuple[GameLevel, ...] | None = None) -> GameLevel:
+def find_level(name: str) -> GameLevel:
     """Finds a level by its id or its number, counted from 1. Raises UnknownLevel."""
-    levels = all_levels() if levels is None else levels
+    levels = all_levels()
     for number, level in enumerate(levels, 1):
         if name in (level.id, str(number)):
             return level

@@ -86,7 +86,7 @@ class SharedGameState:
     def next_targets(
         self, targets: Sequence[tuple[float, float]], player: int | None
     ) -> list[tuple[float, float]]:
-        """In a race the targets that are next, for one player, or for all."""
+        """The next targets in a race, for one player, or for all."""
         reached = {round(score) for score in (self.scores if player is None else [self.scores[player]])}
         return [targets[each] for each in sorted(reached) if each < len(targets)]
 
@@ -246,7 +246,7 @@ class SharedGame(SharedReferee):
             self._enter(SharedPhase.WAITING)
 
     def rematch(self) -> None:
-        """After a game that is over another one begins with its countdown, or waits for a second player; in tag the other one
+        """Begins another game after one that is over, with its countdown or by waiting for a second player; in tag the other one
         catches first. In the world's thread."""
         if self._phase is not SharedPhase.OVER:
             return

@@ -109,7 +109,7 @@ class KeyboardDrive:
 
     @property
     def timeouts(self) -> tuple[float, float] | None:
-        """In ``repeat``: the silence [s] that releases a key, after its press and after a repeat; None in other modes."""
+        """The silence [s] that releases a key in the mode ``repeat``, after its press and after a repeat; None in other modes."""
         if not isinstance(self._mode, RepeatMode):
             return None
         return self._mode.rhythm.first_timeout, self._mode.rhythm.next_timeout

@@ -14,7 +14,7 @@ CHART_ROWS: Final = 5
 _EIGHTHS: Final = " ▁▂▃▄▅▆▇█"
 
 
-def laser_chart(laser: Sequence[float], width: int, rows: int = CHART_ROWS) -> list[Row]:
+def laser_chart(laser: Sequence[float], width: int) -> list[Row]:
     """Bars of the distance [m] by direction, from behind on the left over ahead in the middle to behind on the right."""
     ranges = laser[::-1]
     bars = width - 6
@@ -23,12 +23,12 @@ def laser_chart(laser: Sequence[float], width: int, rows: int = CHART_ROWS) -> l
     for start, stop in pairwise(columns):
         seen = filter(math.isfinite, ranges[start : max(stop, start + 1)])
         heights.append(min(seen, default=0.0))
-    return _bar_rows(heights, max(heights, default=0.0) or 1.0, rows, "m")
+    return _bar_rows(heights, max(heights, default=0.0) or 1.0, CHART_ROWS, "m")
 
 
-def time_chart(values: Sequence[float], width: int, least: float, rows: int = CHART_ROWS) -> list[Row]:
+def time_chart(values: Sequence[float], width: int, least: float) -> list[Row]:
     """The newest values on the right, from the middle row up and down where some are negative."""
-    room = width - 6
+    room, rows = width - 6, CHART_ROWS
     shown = list(values)[-room * 2 :]
     # Two samples to a character where there are many.
     paired = [max(shown[i : i + 2], key=abs) for i in range(0, len(shown), 2)] if len(shown) > room else shown

@@ -33,10 +33,10 @@ MOUSE_NOTE: Final = (
 """What the mouse does, on every help page."""
 
 
-def wrapped(text: str, style: str = "") -> list[Row]:
+def wrapped(text: str) -> list[Row]:
     """The lines of a text as rows of a dialog; long lines are wrapped."""
     return [
-        row((part, style))
+        row(part)
         for line in text.splitlines()
         for part in wrap(line, WIDTH - 4, " " * (len(line) - len(line.lstrip())), "    ")
     ]

@@ -68,7 +68,7 @@ class GraphListener:
         )
 
     def stop(self) -> None:
-        """In the world's thread too."""
+        """Stops listening; may be called in the world's thread."""
         if self._topic_stats is not None:
             self._topic_stats.stop()
         self._topic_stats = self._state = None

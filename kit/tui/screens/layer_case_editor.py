@@ -169,7 +169,7 @@ class CaseEditor(RowsScreen[LayerCase]):
         self.app.push_screen(HelpDialog("A case by hand", self.screen_actions, CASE_SIGNS))
 
     def action_back(self) -> None:
-        """Out of the field, then out of the table."""
+        """Leaves the field if one is open, else the table."""
         if self.focused is not None:
             self._problem = ""
             self._ask(None)

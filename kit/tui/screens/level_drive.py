@@ -204,7 +204,7 @@ class LevelDrive(WatchScreen):
         return (*rows, *card)
 
     def _view_arrived(self, view: View) -> None:
-        """In the world's thread: the level's targets and bumps take the place of those of the map's case."""
+        """Replaces the targets and bumps of the map's case by the level's, in the world's thread."""
         referee = self._referee
         objective = self._preview if referee is None else referee.objective
         distance = objective.target_m

@@ -195,7 +195,7 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
             self.settings = replace(self.settings, task=chosen, cases=())
 
     async def _choose_cases(self) -> None:
-        """Again and again, until Esc."""
+        """Asks for cases one after the other, until Esc."""
         names = await to_thread(_case_items, self.settings.task)
         while True:
             cases = self.settings.cases

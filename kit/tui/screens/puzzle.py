@@ -103,7 +103,7 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
             self._watch.take_as_known()
 
     def _file_was_saved(self) -> None:
-        """In an editor: the board shows what it says now, and it is checked."""
+        """Shows and checks the answer that an editor has saved."""
         self._board = self._read_board()
         self._written = self._board.answer
         self._renew()

@@ -179,13 +179,13 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         self.observe_agent()
 
     def observe_agent(self) -> None:
-        """The same for a world that was opened after the agent was chosen."""
+        """Has the chosen agent observed in a world that was opened after it was chosen."""
         self.agent_view, policy = None, self._policy
         if policy is None:
             return
 
         def keep(view: AgentView) -> None:
-            """In the world's thread; nothing once another one drives."""
+            """Keeps it, in the world's thread; does nothing once another one drives."""
             if self._policy is policy:
                 self.agent_view = view
 
@@ -223,7 +223,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
             from kit.run.laser_map import LaserMapper  # of no use to the first frame
 
             def keep(cells: SceneCells) -> None:
-                """In the world's thread; nothing once another map is drawn."""
+                """Keeps it, in the world's thread; does nothing once another map is drawn."""
                 if self._mapper is mapper:
                     self.laser_cells = cells
 

@@ -18,7 +18,7 @@ from click.testing import CliRunner
 
 import kit
 from kit.cli import main
-from kit.host.sandbox.probe import highest_level
+from kit.host.sandbox.probe import highest_level_up_to
 from kit.host.sandbox.sandbox_config import Level
 from kit.learning.policies.policy import PolicyError
 from kit.learning.policies.policy_file import policy_bytes
@@ -260,7 +260,7 @@ EVIL = "open({ran!r}, 'w')\ndef reward(to_go): return 0.0\ndef metric_all(to_go)
 def test_a_policy_names_no_program_that_runs_with_ones_rights(
     has_task: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    if has_task and highest_level() is Level.LIMITED:
+    if has_task and highest_level_up_to(Level.ANOTHER_USER) is Level.LIMITED:
         pytest.skip("this machine confines nothing")
     monkeypatch.chdir(tmp_path)
     ran = tmp_path / "ran"

@@ -162,7 +162,7 @@ def read_policy(task: PolicyTask, answer: str) -> Policy:
 
 @cache
 def _transition_model(task: PolicyTask) -> dict[str, tuple[FloatArray, FloatArray]]:
-    """For each move the chances (cells, cells) of where it leads, and what it is paid on average (cells,)."""
+    """The chances (cells, cells) of where each move leads, and what it is paid on average (cells,), by move."""
     cells = task.cells
     number = {cell: at for at, cell in enumerate(cells)}
     model = {}

@@ -153,7 +153,7 @@ class League(JobFolder):
         return read_programme(content, self.folder)
 
     def confine(self, level: Confinement) -> None:
-        """From now on runs programs at this level of confinement. Raises LeagueError."""
+        """Sets the level of confinement at which programs are run. Raises LeagueError."""
         programme = self.programme()
         if programme.confinement is level:
             return
