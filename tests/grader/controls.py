@@ -545,6 +545,13 @@ CONTROLS: Final = (
         "known[:-1]",
         "grader/test_known_mistakes.py::test_a_hint_tells_nothing_of_a_criterion_that_is_shown_later",
     ),
+    Control(
+        "a name in the list of pages",
+        "grader/cohort/feedback.py",
+        "pages[name] = clean_line(row.name)",
+        "pages[name] = row.name",
+        "grader/cohort/test_class_list.py::test_no_name_leaves_as_anything_but_text",
+    ),
 )  # fmt: skip
 
 
