@@ -240,7 +240,7 @@ CONTROLS: Final = (
     Control(
         "signs in a name that show nothing",
         "grader/look_alikes.py",
-        '_INVISIBLE.sub("", name)',
+        '_UNSEEN.sub("", name)',
         "name",
         "grader/test_look_alikes.py::test_what_looks_the_same_has_one_outline",
     ),
