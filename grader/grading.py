@@ -268,11 +268,11 @@ class Grading:
 
     def worst_evidence(self) -> Evidence | None:
         """Returns the public evidence that lost the most points; in a student's own check, where that lost none, the secret; None
-        if nothing lost any."""
+        if nothing lost any. Criteria that a student sees later do not count."""
         shares: dict[int, tuple[float, Evidence]] = {}
-        examples = [(each,) for each in self._counterexamples.values() if each is not None]
-        for scored in (*self._scored.values(), *examples):
-            for each in scored:
+        examples = {name: (each,) for name, each in self._counterexamples.items() if each is not None}
+        for name, scored in (*self._scored.items(), *examples.items()):
+            for each in scored if self._criterion(name).visibility is Visibility.VISIBLE else ():
                 if not each.evidence.secret or self._looks_afterwards:
                     before = shares.get(id(each.evidence), (0.0, each.evidence))[0]
                     shares[id(each.evidence)] = before + 1.0 - each.share, each.evidence

@@ -197,7 +197,13 @@ def _read_criteria(
             hints=hints,
             feedback=check.feedback,
             share_steps=share_steps,
-            mistakes=tuple(_read_mistakes(each, known[:-1])),
+            # A hint says whether it passed, so a student must see that when the hint is seen.
+            mistakes=tuple(
+                _read_mistakes(
+                    each,
+                    [one for one in known[:-1] if visibilities[one] in (Visibility.VISIBLE, visibility)],
+                )
+            ),
         )
         each.finish()
         yield parsed

@@ -115,7 +115,9 @@ def check(
         from kit.workspace import write_atomically
 
         write_atomically(output.absolute(), text.encode())
-    raise SystemExit(EXIT_CODES[result.verdict.value])
+    # Whoever reads a report without what is shown later reads the exit code too.
+    shown = result.for_student() if is_for_student else result
+    raise SystemExit(EXIT_CODES[shown.verdict.value])
 
 
 def _own_starts(file: Path, level: str | None, *, for_student: bool) -> AbstractContextManager[None]:

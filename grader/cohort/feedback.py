@@ -42,7 +42,7 @@ def write_feedback(queue: Queue, table: Sequence[GradebookRow], folder: Path) ->
         key = keys.get(row.work)
         result = None if key is None else queue.result(key)
         name = _page_name(row, pages)
-        pages[name] = row.name
+        pages[name] = clean_line(row.name)
         _write_feedback(folder, name, student_document(assignment, row, result))
     _write_feedback(folder, CLASS_PAGE, class_document(assignment, table))
     write_atomically(folder / INDEX, (json.dumps(pages, indent=1, ensure_ascii=False) + "\n").encode())

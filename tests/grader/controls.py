@@ -261,7 +261,7 @@ CONTROLS: Final = (
     Control(
         "signs in a name that show nothing",
         "grader/look_alikes.py",
-        '_INVISIBLE.sub("", name)',
+        '_UNSEEN.sub("", name)',
         "name",
         "grader/test_look_alikes.py::test_what_looks_the_same_has_one_outline",
     ),
@@ -544,6 +544,34 @@ CONTROLS: Final = (
         "                if parts > MAX_STREAMS:\n",
         "                if parts < 0:\n",
         "grader/test_submission.py::test_a_file_of_very_many_empty_streams_is_a_bomb",
+    ),
+    Control(
+        "an exit code that tells of what is shown later",
+        "grader/cli/check.py",
+        "shown = result.for_student() if is_for_student else result",
+        "shown = result",
+        "grader/cli/test_check.py::test_nothing_tells_how_a_criterion_went_that_is_shown_later",
+    ),
+    Control(
+        "a picture that tells of what is shown later",
+        "grader/grading.py",
+        "for each in scored if self._criterion(name).visibility is Visibility.VISIBLE else ():",
+        "for each in scored:",
+        "grader/cli/test_check.py::test_nothing_tells_how_a_criterion_went_that_is_shown_later",
+    ),
+    Control(
+        "a hint that tells of what is shown later",
+        "grader/reading.py",
+        "[one for one in known[:-1] if visibilities[one] in (Visibility.VISIBLE, visibility)]",
+        "known[:-1]",
+        "grader/test_known_mistakes.py::test_a_hint_tells_nothing_of_a_criterion_that_is_shown_later",
+    ),
+    Control(
+        "a name in the list of pages",
+        "grader/cohort/feedback.py",
+        "pages[name] = clean_line(row.name)",
+        "pages[name] = row.name",
+        "grader/cohort/test_class_list.py::test_no_name_leaves_as_anything_but_text",
     ),
 )  # fmt: skip
 

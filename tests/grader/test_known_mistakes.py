@@ -41,6 +41,31 @@ SQUARE = "def twice(x): return x * x\n"
 """Right for 0, so that half of the cases agree."""
 
 
+@pytest.mark.parametrize(
+    ("first", "second", "is_read"),
+    [
+        ("visible", "visible", True),
+        ("hidden", "hidden", True),
+        ("visible", "hidden", True),
+        ("hidden", "visible", False),
+        ("after_published", "after_due", False),
+    ],
+)
+def test_a_hint_tells_nothing_of_a_criterion_that_is_shown_later(
+    first: str, second: str, is_read: bool, tmp_path: Path
+) -> None:
+    sheet = SHEET.replace("MISTAKE", "{passed: half, hint: halves}")
+    sheet = sheet.replace("{check: agrees, id: half,", f"{{check: agrees, id: half, visibility: {first},")
+    sheet = sheet.replace("    id: twice\n", f"    id: twice\n    visibility: {second}\n")
+    folder = write_assignment(tmp_path / "task", sheet)
+    (folder / "reference.py").write_text(REFERENCE)
+    if is_read:
+        read_assignment(folder)
+        return
+    with pytest.raises(WorldError, match="passed"):
+        read_assignment(folder)
+
+
 def graded(folder: Path, mistake: str, source: str) -> GradingResult:
     task = write_assignment(folder / "task", SHEET.replace("MISTAKE", mistake))
     (task / "reference.py").write_text(REFERENCE)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import sys
@@ -130,3 +131,20 @@ def _checked_with_modules(file: Path, assignment: Path) -> tuple[int, set[str]]:
     )
     code, *modules = done.stdout.split()
     return int(code), set(modules)
+
+
+@pytest.mark.parametrize("format_name", ["text", "junit", "annotations"])
+def test_nothing_tells_how_a_criterion_went_that_is_shown_later(format_name: str, tmp_path: Path) -> None:
+    """Neither the exit code nor the picture of the worst episode."""
+    sheet = QUICK[: QUICK.index("  - {check: reached")].replace("after: runs", "visibility: hidden")
+    folder = write_assignment(tmp_path / "quick", sheet)
+    work = tmp_path / "controller.py"
+    said = []
+    for speed in ("0.3", "0.0"):
+        work.write_text(FORWARD.replace("SPEED = 0.3", f"SPEED = {speed}"))
+        arguments = ["--assignment", str(folder), "--level", "0", "--format", format_name]
+        arguments += ["--for-student"] * (format_name == "text")
+        code, text = checked(str(work), *arguments)
+        said.append((code, re.sub(r"(time|timestamp|value)=\"[^\"]*\"|[0-9a-f-]{12,}", "", text)))
+    assert said[0] == said[1]
+    assert said[0][0] == 0

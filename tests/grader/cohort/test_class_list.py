@@ -310,6 +310,21 @@ def test_names_that_are_no_text_cost_a_class_nothing(tmp_path: Path) -> None:
         assert write(table, None, "Quick", 6.0, decimal_comma=False).encode()
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="names of any signs")
+def test_no_name_leaves_as_anything_but_text(tmp_path: Path) -> None:
+    names = ["a\n\n| b | c |\r\n::error::d", "\u202eevil\u2066", "\x1b[2Jada", "=1+1", '<img src=x>,"q']
+    queue = graded_queue(tmp_path, dict.fromkeys(names, 1.0))
+    table = class_table(queue, ClassRules()).rows
+    write_feedback(queue, table, tmp_path / "pages")
+    pages = {file: file.read_text() for file in (tmp_path / "pages").iterdir()}
+    assert not any("<img" in text for file, text in pages.items() if file.suffix in (".html", ".md"))
+    texts = list(pages.values())
+    texts += [write(table, None, "Quick", 6.0, decimal_comma=False) for write in EXPORTS.values()]
+    for text in texts:
+        assert all(sign.isprintable() or sign in "\r\n" for sign in text), ascii(text)
+        assert not re.search(r"^\s*(::|\| b|=1)", text, re.MULTILINE), text
+
+
 def test_every_student_has_a_page_that_needs_no_network(tmp_path: Path, queue: Queue) -> None:
     file = tmp_path / "marks.yaml"
     file.write_text("bruno@uni.example: {comment: <b>Neat</b> & short., points: {reached: 3}}\n")
