@@ -1,6 +1,6 @@
 """A reward."""
 
-# Lesson: Arriving alone tells nothing on the way. Pay each step for what it has changed.
+# Lesson: Pay for what has changed instead.
 
 
 def reward(reached, distance):
