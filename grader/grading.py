@@ -301,9 +301,7 @@ class Grading:
         )
         if broken is not None:
             return self._broken_result(criterion, str(broken.failure))
-        if criterion.after is not None and not any(
-            each.share == 1.0 for each in self._score(self._criterion(criterion.after))
-        ):
+        if criterion.after is not None and not self._is_its_turn(criterion):
             title = self._criterion(criterion.after).title
             return replace(blank, rationale=NOT_ITS_TURN.format(title), depends_on=criterion.after)
         share = _earned_share(criterion, scored)
@@ -336,6 +334,14 @@ class Grading:
             uses_secrets=any(each.evidence.secret for each in scored),
             teacher_note="" if full else self._teacher_note(criterion, scored),
         )
+
+    def _is_its_turn(self, criterion: Criterion) -> bool:
+        """Whether every criterion that it comes after, one behind the other, was earned in full in some episode: they may be
+        measured in different ones."""
+        if criterion.after is None:
+            return True
+        before = self._criterion(criterion.after)
+        return self._is_its_turn(before) and any(each.share == 1.0 for each in self._score(before))
 
     def _public_evidence(
         self, criterion: Criterion, scored: Sequence[_ScoredEvidence], *, full: bool

@@ -189,6 +189,27 @@ CONTROLS: Final = (
         "learning/policies/test_hostile_files.py::test_a_policy_names_no_program_that_runs_with_ones_rights",
     ),
     Control(
+        "a criterion whose turn comes although one before that had none",
+        "grader/grading.py",
+        "return self._is_its_turn(before) and any(",
+        "return any(",
+        "grader/test_grading.py::test_what_comes_after_what_had_not_its_turn_has_not_its_turn_either",
+    ),
+    Control(
+        "a billionth for the way beside a reward for arriving",
+        "grader/kinds/reward/behaviours.py",
+        "    margin = NOTICED * float(np.abs(rewards).max())\n",
+        "    margin = 0.0\n",
+        "grader/kinds/reward/test_kind.py::test_what_is_paid_for_the_way_is_noticed",
+    ),
+    Control(
+        "a loop that pays, beside a great reward for arriving",
+        "grader/kinds/reward/behaviours.py",
+        "        return self.round_pay > 0.0 or self.loop_return",
+        "        return self.loop_return",
+        "grader/kinds/reward/test_kind.py::test_a_loop_that_pays_is_not_hidden_by_what_arriving_pays",
+    ),
+    Control(
         "a checkpoint that unpacks to far more",
         "kit/learning/training/checkpoint_file.py",
         "            check_stored(archive, size)\n",

@@ -435,3 +435,30 @@ def test_a_starter_that_earns_too_much_is_told(tmp_path: Path) -> None:
     (folder / "starter.py").write_text(FORWARD)
     starter = next(iter(try_works(read_assignment(folder), DESK)))
     assert "it earns 3 of 6 points" in starter.problems[0]
+
+
+def test_what_comes_after_what_had_not_its_turn_has_not_its_turn_either(tmp_path: Path) -> None:
+    """Also where the criteria between are measured elsewhere, and would be met by doing nothing."""
+    sheet = """
+title: Three words
+kind: function
+submit: words.py
+level: 0
+functions: [{name: one}, {name: two}, {name: three}]
+checks:
+  - {check: agrees, id: one, points: 1, with: {function: one}}
+  - {check: agrees, id: two, points: 1, after: one, with: {function: two}}
+  - {check: agrees, id: three, points: 1, after: two, with: {function: three}}
+"""
+    names = ("one", "two", "three")
+    task = write_assignment(tmp_path / "task", sheet)
+    cases = "".join(
+        f"def {name}(x): return x\ndef {name}_cases(random): yield {{'x': 1.0}}\n" for name in names
+    )
+    (task / "reference.py").write_text(cases)
+    assignment = read_assignment(task)
+    for returned, earned in (("x", [1, 1, 1]), ("x + 1", [0, 0, 0])):
+        text = f"def one(x): return {returned}\ndef two(x): return x\ndef three(x): return x\n"
+        work = Submission("words", assignment.submit, {assignment.submit: text.encode()})
+        result = grade(assignment, work, GradingOptions(Level.LIMITED))
+        assert [each.points for each in result.tests] == earned

@@ -17,6 +17,12 @@ DETOUR = (LEFT, RIGHT) * 4
 START_COUNT = 5
 """The number of start states from which behaviours are compared."""
 
+NOTICED = 1e-3
+"""By how much of the largest reward of a step a drive that comes nearer must be paid more: nobody learns from less."""
+
+KEPT = 0.5
+"""A loop pays by itself if the rest of its round takes back less than this share of the most that it has earned in between."""
+
 
 @dataclass(frozen=True, slots=True)
 class BehaviourComparison:
@@ -26,14 +32,22 @@ class BehaviourComparison:
     worse: str
     better_return: float
     worse_return: float
+    margin: float = 0.0
+    """By which it should be larger."""
 
     @property
     def is_ordered(self) -> bool:
-        return self.better_return > self.worse_return + 1e-9 * max(
+        return self.better_return > self.worse_return + self.margin + 1e-9 * max(
             abs(self.better_return), abs(self.worse_return)
         )
 
     def __str__(self) -> str:
+        if self.better_return > self.worse_return:
+            more = self.better_return - self.worse_return
+            return (
+                f"For {self.better} it pays {more:.3g} more than for {self.worse}: next to a reward of {self.margin / NOTICED:.3g}, "
+                "nobody learns from that."
+            )
         return f"It pays {self.better_return:.3g} for {self.better}, but {self.worse_return:.3g} for {self.worse}."
 
 
@@ -44,14 +58,18 @@ class LoopComparison:
     name: str
     loop_return: float
     arrival_return: float
+    round_pay: float = 0.0
+    """What it earns by itself, each time round; 0 if it takes back what it pays."""
 
     @property
     def is_profitable(self) -> bool:
-        return self.loop_return >= self.arrival_return - 1e-9 * max(
+        return self.round_pay > 0.0 or self.loop_return >= self.arrival_return - 1e-9 * max(
             abs(self.loop_return), abs(self.arrival_return)
         )
 
     def __str__(self) -> str:
+        if self.round_pay > 0.0:
+            return f"{self.name.capitalize()} earns {self.round_pay:.3g} each time round, and can go on for ever."
         return f"{self.name.capitalize()} forever earns {self.loop_return:.3g}, driving to the target only {self.arrival_return:.3g}."
 
 
@@ -73,9 +91,9 @@ def compare_loops(
             check_time()
             if _is_free_loop(model, start, loop):
                 repeated = loop * (model.task.max_steps // len(loop))
-                drives.append(
-                    LoopComparison(name, discounted_return(model, rewards, start, repeated), arrival_return)
-                )
+                loop_return = discounted_return(model, rewards, start, repeated)
+                pay = _round_pay(model, rewards, start, loop)
+                drives.append(LoopComparison(name, loop_return, arrival_return, pay))
     return tuple(drives)
 
 
@@ -143,6 +161,7 @@ def _compare_behaviours(
 def _compare_approaches(
     model: GridModel, rewards: FloatArray, check_time: TimeCheck
 ) -> Iterator[BehaviourComparison]:
+    margin = NOTICED * float(np.abs(rewards).max())
     for start, good in _sample_drives(model, check_time):
         check_time()
         state, moves = _last_approach(model, start, good)
@@ -158,6 +177,7 @@ def _compare_approaches(
                 f"{name} as long, and neither arrives",
                 near_return,
                 discounted_return(model, rewards, state, other),
+                margin,
             )
 
 
@@ -192,6 +212,22 @@ def _leading_away(model: GridModel, start: int, move: int, count: int) -> Moves:
             return (move,) * number
         state = after
     return (move,) * count
+
+
+def _round_pay(model: GridModel, rewards: FloatArray, start: int, loop: Moves) -> float:
+    """Returns the sum of the rewards of one round, if most of what it earns on the way is kept at its end; else 0.
+
+    What a step earns is compared with turning where it begins: shaping by a potential with discount pays for being far away,
+    whatever the robot does there, and takes back in every round what the way has earned.
+    """
+    total, earned, most, state = 0.0, 0.0, 0.0, start
+    for move in loop:
+        total += float(rewards[state, move])
+        earned += float(rewards[state, move] - rewards[state, [LEFT, RIGHT]].min())
+        most = max(most, earned)
+        state = int(model.next[state, move])
+    slack = 1e-9 * float(np.abs(rewards).max())
+    return total if total > slack and most > slack and earned > KEPT * most else 0.0
 
 
 def _sample_drives(model: GridModel, check_time: TimeCheck) -> list[tuple[int, tuple[int, ...]]]:

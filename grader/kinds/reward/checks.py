@@ -43,8 +43,9 @@ def symmetric(evidence: RewardEvidence, params: NoParams) -> float:
 
 @check(none=0.5, full=1, unit="%")
 def shaped(evidence: RewardEvidence, params: NoParams) -> float:
-    """Of two drives that are equally long and do not arrive, the one that comes nearer must be paid more; that holds for
-    {actual} of the comparisons. A reward for arriving alone tells a beginner nothing on the way."""
+    """Of two drives that are equally long and do not arrive, the one that comes nearer must be paid more, and by so much that
+    it is noticed beside the largest reward; that holds for {actual} of the comparisons. A reward for arriving alone tells a
+    beginner nothing on the way."""
     return _ordered_share(evidence.approaches)
 
 
@@ -56,7 +57,8 @@ def ordered(evidence: RewardEvidence, params: NoParams) -> float:
 
 @check(none=0.5, full=1, unit="%")
 def loops(evidence: RewardEvidence, params: NoParams) -> float:
-    """Going round in a loop must not pay as well as arriving; that holds for {actual} of the loops that were tried."""
+    """Going round in a loop must not pay by itself, nor as well as arriving; that holds for {actual} of the loops that were
+    tried."""
     return (
         float(np.mean([not loop.is_profitable for loop in evidence.loops]))
         if evidence.loops

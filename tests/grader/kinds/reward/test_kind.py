@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Callable
 from dataclasses import replace
@@ -287,8 +288,39 @@ def test_better_drives_are_paid_more(examined: Callable[[str], RewardEvidence]) 
 def test_loops_that_pay_are_named(examined: Callable[[str], RewardEvidence], name: str, loop: str) -> None:
     exam = examined(name)
     assert any(loop in each.name for each in exam.loops if each.is_profitable)
-    assert "forever earns" in exam.explain("loops")
+    assert re.search(r"forever earns|each time round", exam.explain("loops"))
     assert not any(each.is_profitable for each in examined("shaped").loops)
+
+
+ARRIVING = "1000.0 * reached - collided"
+
+
+@pytest.mark.parametrize(
+    ("paid", "pays"),
+    [
+        (f"10.0 * max(0.0, previous_distance - distance) + {ARRIVING}", True),
+        (f"previous_distance - distance + {ARRIVING}", False),
+        (f"previous_distance - 0.98 * distance + {ARRIVING}", False),
+        (f"previous_distance - distance - 0.05 * (move > 2) + {ARRIVING}", False),
+        (f"max(0.0, previous_distance - distance) - 0.3 + {ARRIVING}", False),
+    ],
+    ids=["it never scolds", "change", "potential with discount", "turning costs", "every step costs more"],
+)
+def test_a_loop_that_pays_is_not_hidden_by_what_arriving_pays(tmp_path: Path, paid: str, pays: bool) -> None:
+    text = f"def reward(distance, previous_distance, reached, collided, move):\n    return {paid}\n"
+    exam = examine(tmp_path, text)
+    assert any(each.is_profitable for each in exam.loops) == pays
+    assert ("each time round" in exam.explain("loops")) == pays
+
+
+@pytest.mark.parametrize(("factor", "is_paid"), [(1e-9, False), (1e-3, False), (1.0, True)])
+def test_what_is_paid_for_the_way_is_noticed(tmp_path: Path, factor: float, is_paid: bool) -> None:
+    exam = examine(
+        tmp_path, f"def reward(reached, distance):\n    return 10.0 * reached - {factor} * distance\n"
+    )
+    assert all(each.is_ordered for each in exam.approaches) == is_paid
+    assert any(each.is_ordered for each in exam.approaches) == is_paid
+    assert is_paid or "nobody learns" in exam.explain("shaped")
 
 
 def test_a_longer_horizon_changes_what_pays() -> None:

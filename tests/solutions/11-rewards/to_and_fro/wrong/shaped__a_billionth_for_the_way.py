@@ -1,0 +1,5 @@
+"""A reward."""
+
+
+def reward(reached, distance):
+    return 10.0 * reached - 1e-9 * distance
