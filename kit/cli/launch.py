@@ -18,9 +18,9 @@ from kit.ros.graph.graph import Graph
 from kit.ros.packages import (
     Package,
     PackageError,
-    PackageExecutable,
     broken_packages,
     find_packages,
+    read_manifest_texts,
     read_package,
 )
 from kit.tui.terminal import TerminalDecision
@@ -302,53 +302,69 @@ def list_packages(opened_workspace: Workspace, folders: Sequence[Path]) -> None:
 
 @package_command.command()
 @click.argument("name", required=False, metavar="[PACKAGE]")
+@click.option("--full-path", is_flag=True, help="Print the file of each, if it has one of its own.")
 @where
 @click.pass_obj
-def executables(opened_workspace: Workspace, name: str | None = None, folders: Sequence[Path] = ()) -> None:
+def executables(
+    opened_workspace: Workspace,
+    name: str | None = None,
+    full_path: bool = False,
+    folders: Sequence[Path] = (),
+) -> None:
     """List the programs of all packages, or of one."""
     found = _found(opened_workspace, folders)
     names = [name] if name else sorted(found)
     from kit.launch.program_lookup import BUILTIN_PROGRAMS
 
     for each in names:
-        own = {program for package, program in BUILTIN_PROGRAMS if package == each and program}
-        if name is None or each in found or not own:
-            own |= {program.name for program in _package(found, each).executables}
-        else:
-            own |= {program.name for program in _brought(each)}
-        for program in sorted(own):
-            click.echo(f"{each} {program}")
+        lines = {program: f"{each} {program}" for of, program in BUILTIN_PROGRAMS if of == each and program}
+        is_found = name is None or each in found or not lines
+        package = _package(found, each) if is_found else _brought(each)
+        for program in () if package is None else package.executables:
+            lines[program.name] = f"{each} {program.name}"
+            if package and full_path:
+                try:
+                    lines[program.name] = str(package.file_of(program))
+                except PackageError as problem:
+                    messages.fail(str(problem))
+        for _, line in sorted(lines.items()):
+            click.echo(line)
 
 
 @package_command.command()
 @click.argument("name", metavar="PACKAGE")
+@click.option("--share", is_flag=True, help="The same: nothing is installed, and a package has one folder.")
 @where
 @click.pass_obj
-def prefix(opened_workspace: Workspace, name: str, folders: Sequence[Path]) -> None:
+def prefix(opened_workspace: Workspace, name: str, share: bool, folders: Sequence[Path]) -> None:
     """Print the folder of a package."""
     click.echo(_package(_found(opened_workspace, folders), name).folder)
 
 
 @package_command.command()
 @click.argument("name", metavar="PACKAGE")
+@click.option("-t", "--tag", metavar="TAG", help="Print only the texts of these tags: version, depend.")
 @where
 @click.pass_obj
-def xml(opened_workspace: Workspace, name: str, folders: Sequence[Path]) -> None:
+def xml(opened_workspace: Workspace, name: str, tag: str | None, folders: Sequence[Path]) -> None:
     """Print a package's package.xml."""
-    click.echo(
-        (_package(_found(opened_workspace, folders), name).folder / "package.xml").read_text(
-            encoding="utf-8"
-        ),
-        nl=False,
-    )
+    folder = _package(_found(opened_workspace, folders), name).folder
+    if tag is None:
+        click.echo((folder / "package.xml").read_text(encoding="utf-8"), nl=False)
+        return
+    texts = read_manifest_texts(folder, tag)
+    if not texts:
+        messages.fail(f"The package.xml of {name} has no tag <{tag}>.")
+    for each in texts:
+        click.echo(each)
 
 
-def _brought(name: str) -> tuple[PackageExecutable, ...]:
-    """The Python programs of a package that the kit brings."""
+def _brought(name: str) -> Package | None:
+    """A package with Python programs that the kit brings, if it is one of these."""
     from kit.launch.launch_file_process import SHARE_FOLDER
 
     folder = find_packages((SHARE_FOLDER,)).get(name)
-    return () if folder is None else read_package(folder).executables
+    return None if folder is None else read_package(folder)
 
 
 def _found(opened_workspace: Workspace, folders: Sequence[Path]) -> dict[str, Path]:

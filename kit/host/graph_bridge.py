@@ -159,14 +159,22 @@ class ParentBridge(GraphBridge):
         self._counted_ns = graph.now_ns
         self._message_count = 0
         self._sent_excesses: set[tuple[str, str, str]] = set()
+        self._sent_limits: dict[str, tuple[str, ...]] = {}
 
     def take_changes(self) -> list[Json]:
-        """Returns also what nodes have asked for that is more than is carried out: only the world's side knows that."""
+        """Returns also what is carried out of commands at most, and who has asked for more: only the world's side knows that."""
         if not self.has_pending:
             return []
         events, excesses = super().take_changes(), self.graph.directory.excesses
         events += [["excess", *key, *excesses[key]] for key in excesses if key not in self._sent_excesses]
         self._sent_excesses.update(excesses)
+        limits = self.graph.directory.command_limits
+        events += [
+            ["limits", topic, list(limits.get(topic, ()))]
+            for topic in sorted({*limits, *self._sent_limits})
+            if limits.get(topic) != self._sent_limits.get(topic)
+        ]
+        self._sent_limits = dict(limits)
         return events
 
     def apply_events(self, events: Sequence[GraphEvent]) -> None:
@@ -288,6 +296,7 @@ class ChildBridge(GraphBridge):
         """Whether a tick has come since the start."""
         self.graph.add_message_listener(self._record_message)
         self._handlers["excess"] = self._apply_excess
+        self._handlers["limits"] = self._apply_limits
 
     def next_tick(self, wake_ns: int | None) -> None:
         """Answers that the program waits, until ``wake_ns`` at the latest, and applies the next tick."""
@@ -370,6 +379,10 @@ class ChildBridge(GraphBridge):
     def _apply_excess(self, fields: list[Json]) -> None:
         node, topic, field, *excess = map(str, fields)
         self.graph.directory.note_excess(node, topic, field, Excess(*excess))
+
+    def _apply_limits(self, fields: list[Json]) -> None:
+        topic, most = fields
+        self.graph.directory.note_command_limits(topic, tuple(most))
 
     def _apply_request(self, fields: list[Json]) -> None:
         identity, number, content = fields

@@ -11,6 +11,7 @@ from typing import Final
 
 import kit
 from kit.inspection.graph_text import node_names, services, topics
+from kit.ros.graph.connections import find_excesses
 from kit.ros.graph.graph import Graph
 from kit.ros.node.qos import QoSCompatibility, qos_check_compatible
 from kit.ros.packages import PackageError, broken_packages, read_package
@@ -73,7 +74,8 @@ def _topic_check(graph: Graph) -> DiagnosisCheck:
             found.append(f"Publisher without subscriber detected on {name}.")
         elif subscriptions and not publishers:
             found.append(f"Subscriber without publisher detected on {name}.")
-    return DiagnosisCheck("topic", warnings=tuple(found))
+    asking = {node for node, _, _ in graph.directory.excesses}  # some may have left
+    return DiagnosisCheck("topic", warnings=(*found, *find_excesses(graph, asking)))
 
 
 def _qos_check(graph: Graph) -> DiagnosisCheck:
@@ -174,6 +176,10 @@ def _graph_reports(graph: Graph | None, world: str) -> Iterator[Report]:
         publishers, subscriptions = _count_endpoints(graph, name)
         rows += [("topic", name), ("publisher count", publishers), ("subscriber count", subscriptions)]
     yield Report("TOPIC LIST", "topic", rows or (("topic", "none"),))
+    rows = []
+    for topic, most in sorted(graph.directory.command_limits.items()):
+        rows += [("topic", topic), *(("at most", each) for each in most)]
+    yield Report("COMMAND LIMITS", "topic", rows or (("topic", "none with a limit"),))
     rows = []
     for name, _ in services(graph, hidden=False):
         servers, clients = (

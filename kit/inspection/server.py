@@ -27,8 +27,12 @@ MAX_BACKLOG: Final = 20_000
 """Messages that may wait for a client. One that is farther behind no longer reads and is disconnected."""
 
 
-MAX_LATE_TICKS: Final = 25
-"""How many ticks a client may be late and still be woken at the time at which it was to be."""
+MAX_LATE_NS: Final = 10_000_000_000
+"""How late a client may be and still be woken at the time at which it was to be [ns]: one that was stopped for longer begins
+anew at the present."""
+MAX_FALLING_BEHIND: Final = 10
+"""How many times in succession it may be later than the time before: one that takes longer than its timers allow, on any
+machine, goes on at the present."""
 HOLD_S: Final = 10.0
 """How long the world stands still for a client at most, by the wall clock [s]."""
 LOOK_S: Final = 0.05
@@ -56,8 +60,12 @@ class ClientConnection:
         self._seq = 0
         self._sent_ns = graph.now_ns
         self._wake_ns: int | None = None
-        self._ticks: deque[int] = deque(maxlen=MAX_LATE_TICKS)
-        """The times of the world's last ticks [ns]."""
+        self._ticks: deque[int] = deque()
+        """The times of the world's ticks since the last question [ns], and that of the present one."""
+        self._late_ns = 0
+        """How late it was when it was last woken [ns]."""
+        self._falling_behind = 0
+        """How many times in succession it was later than before."""
         self._is_waiting = False
         self._is_asked = True
         """Whether an answer is still to come."""
@@ -106,6 +114,8 @@ class ClientConnection:
             if self._ticks and now < self._ticks[-1]:
                 self._ticks.clear()
             self._ticks.append(now)
+            while self._ticks[0] <= self._sent_ns < now or now - self._ticks[0] > MAX_LATE_NS:
+                self._ticks.popleft()
         has_woken = (
             self._wake_ns is not None
             and self._wake_ns <= now
@@ -175,11 +185,19 @@ class ClientConnection:
 
     def _woken_ns(self) -> int:
         """The latest tick's time, or that of the tick in which it was to wake and could not, because it had not answered yet:
-        so its timers keep their instants on a busy machine, as long as it is not too far behind [ns]."""
+        so its timers keep their instants on a busy machine, and it catches up as soon as it can [ns]."""
         now, wake = self._graph.now_ns, self._wake_ns
         if wake is None or now < self._sent_ns:
             return now
-        return next((each for each in self._ticks if each >= wake and each > self._sent_ns), now)
+        due = now
+        if now - wake <= MAX_LATE_NS:
+            due = next((each for each in self._ticks if each >= wake and each > self._sent_ns), now)
+        late_ns = now - due
+        self._falling_behind = self._falling_behind + 1 if late_ns > self._late_ns else 0
+        if self._falling_behind > MAX_FALLING_BEHIND:
+            due, late_ns, self._falling_behind = now, 0, 0
+        self._late_ns = late_ns
+        return due
 
     def _serve(self) -> None:
         """Sends questions and receives answers, in the client's own thread."""

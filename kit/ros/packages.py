@@ -239,6 +239,11 @@ def _parse(file: Path) -> ElementTree.Element:
         raise PackageError(f"{file}:1: broken XML: {problem}; write it in UTF-8") from None
 
 
+def read_manifest_texts(folder: Path, tag: str) -> tuple[str, ...]:
+    """The texts of all elements of this tag in a package's manifest. Raises PackageError."""
+    return tuple("".join(each.itertext()).strip() for each in _parse(folder / "package.xml").iter(tag))
+
+
 def _broken_xml(file: Path, problem: ElementTree.ParseError) -> PackageError:
     line, column = problem.position
     # expat's own message ends with the place in a form of its own.

@@ -31,12 +31,14 @@ class CommandLimits:
         if not endpoint.limits:
             return
         self._limits[endpoint.topic] = endpoint.limits
+        self._graph.directory.note_command_limits(endpoint.topic, most_of(endpoint))
         if not self._listens:
             self._listens = True
             self._graph.add_message_listener(self._on_message)
 
     def discard(self, endpoint: TopicEndpoint) -> None:
-        self._limits.pop(endpoint.topic, None)
+        if self._limits.pop(endpoint.topic, None):
+            self._graph.directory.note_command_limits(endpoint.topic, ())
 
     def _on_message(self, _: int, node: NodeLike, topic: str, message: Any) -> None:
         if topic not in self._limits:
@@ -57,12 +59,16 @@ def _field_amount(command: Any, field: str) -> float:
         return 0.0
 
 
+def most_of(endpoint: TopicEndpoint) -> tuple[str, ...]:
+    """The most that is carried out of each field that is limited, as ``linear.x 0.5 m/s``."""
+    return tuple(f"{limit.field} {limit.largest:g} {limit.unit}" for limit in endpoint.limits)
+
+
 def describe_limits(simulation: Simulation, robots: Iterable[str]) -> Iterator[str]:
     """Yields a line for each topic on which a robot takes commands: the most that it does of each field."""
     for robot in robots:
         for endpoint in simulation.model_endpoints(robot):
-            most = [f"{limit.field} {limit.largest:g} {limit.unit}" for limit in endpoint.limits]
-            if most:
+            if most := most_of(endpoint):
                 yield f"{robot} does at most {join_names(most)} on {endpoint.topic}."
             elif endpoint.topic in simulation.command_topics(robot):
                 yield f"{robot} has no top speed: it does what is asked for on {endpoint.topic}."

@@ -11,6 +11,7 @@ from kit.cli import main
 from kit.inspection.diagnosis import checks, reports
 from kit.msg.std_msgs import String
 from kit.msg.std_srvs import Trigger
+from kit.ros.graph.directory import Excess
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from kit.ros.node.qos import QoSProfile, ReliabilityPolicy
@@ -55,6 +56,15 @@ def test_ends_that_do_not_fit_are_named_with_the_policy(graph: Graph) -> None:
     assert all(word in error for word in ("/said", "sensor", "driver", "RELIABILITY"))
     (report,) = [each for each in reports(graph, "w", {}, {}, "jazzy") if each.title.startswith("QOS")]
     assert "RELIABILITY" in str(dict(report.rows)["compatibility status"])
+
+
+def test_what_a_robot_does_at_most_is_reported_and_who_asked_for_more_is_told(graph: Graph) -> None:
+    graph.directory.note_command_limits("/cmd_vel", ("linear.x 0.22 m/s", "angular.z 2.84 rad/s"))
+    graph.directory.note_excess("/gone", "/cmd_vel", "linear.x", Excess("5 m/s", "0.22 m/s"))
+    (warning,) = found(graph)["topic"]
+    assert all(word in warning for word in ("/gone", "/cmd_vel", "5 m/s", "0.22 m/s"))
+    (report,) = [each for each in reports(graph, "w", {}, {}, "jazzy") if each.title == "COMMAND LIMITS"]
+    assert [value for _, value in report.rows] == ["/cmd_vel", "linear.x 0.22 m/s", "angular.z 2.84 rad/s"]
 
 
 def test_nodes_of_one_name_are_told(graph: Graph) -> None:

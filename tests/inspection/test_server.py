@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import select
 import socket
 import stat
 import threading
@@ -17,7 +18,13 @@ from kit.host.wire import encode
 from kit.inspection import server as server_module
 from kit.inspection import sockets
 from kit.inspection.client import InspectionClient, ServiceTimeout, WorldDisconnected
-from kit.inspection.server import MAX_CLIENTS, InspectionServer, open_inspection_server
+from kit.inspection.server import (
+    MAX_CLIENTS,
+    MAX_FALLING_BEHIND,
+    MAX_LATE_NS,
+    InspectionServer,
+    open_inspection_server,
+)
 from kit.inspection.sockets import (
     FramedSocket,
     WorldNotFound,
@@ -324,6 +331,84 @@ def test_time_stands_still_while_a_program_enters_the_graph(
         client.spin(client.node, lambda: len(fired) == 3)
         wait_until(lambda: world.graph.now_ns > began + 1_000_000_000)
     assert fired[0] == 50_000_000
+
+
+class Woken:
+    """A client with a timer, at the other end of a world that is ticked by hand."""
+
+    PERIOD_NS = 5 * TICK_NS
+
+    def __init__(self, folder: Path) -> None:
+        self.graph = Graph(log_sink=lambda record: None)
+        self.server = InspectionServer(self.graph, sockets_folder(folder), "world")
+        self._socket = connect(self.server.path)
+        self._line = FramedSocket(self._socket)
+        wait_until(lambda: self.server.exchange() or self.server.client_count)
+        self._line.receive()
+        self._seq = 0
+        self.answer(0)
+
+    def answer(self, woken_ns: int) -> None:
+        """Answers the last question: the client waits until its timer is due once more."""
+        self._line.send(["reply", self._seq, woken_ns + self.PERIOD_NS, []])
+        wait_until(self._has_taken_note)
+
+    def _has_taken_note(self) -> bool:
+        self.server.exchange()
+        asked, _, _ = select.select([self._socket], [], [], 0)
+        return bool(asked) or not any(self.server.owed_answers().values())
+
+    def pass_time(self, ticks: int) -> None:
+        for _ in range(ticks):
+            self.graph.advance(self.graph.now_ns + TICK_NS)
+            self.server.exchange()
+
+    def wait(self) -> int:
+        """The time at which it is woken next [ns]."""
+        self.server.exchange()
+        _, self._seq, now_ns, _ = self._line.receive()
+        return int(now_ns)
+
+    def close(self) -> None:
+        self._line.close()
+        self.server.close()
+
+
+@pytest.fixture
+def woken(tmp_path: Path) -> Iterator[Woken]:
+    client = Woken(tmp_path)
+    yield client
+    client.close()
+
+
+def test_a_client_that_answers_late_keeps_the_instants_of_its_timers(woken: Woken) -> None:
+    woken.pass_time(5)
+    times = [woken.wait()]
+    woken.pass_time(400)  # while the machine is busy
+    for _ in range(60):
+        woken.answer(times[-1])
+        times.append(woken.wait())
+    assert times == [number * Woken.PERIOD_NS for number in range(1, 62)]
+
+
+def test_a_client_that_is_slower_than_its_timers_goes_on_at_the_present(woken: Woken) -> None:
+    woken.pass_time(5)
+    late = []
+    for _ in range(60):
+        now_ns = woken.wait()
+        late.append(woken.graph.now_ns - now_ns)
+        woken.pass_time(10)  # twice its period
+        woken.answer(now_ns)
+    assert max(late) <= (MAX_FALLING_BEHIND + 2) * Woken.PERIOD_NS
+    assert late.count(0) > 3
+
+
+def test_a_client_that_was_stopped_begins_anew_at_the_present(woken: Woken) -> None:
+    woken.pass_time(5)
+    before_ns = woken.wait()
+    woken.pass_time(MAX_LATE_NS // TICK_NS + 100)
+    woken.answer(before_ns)
+    assert woken.wait() == woken.graph.now_ns
 
 
 def test_time_stands_still_for_no_client_for_ever(

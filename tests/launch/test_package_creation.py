@@ -98,7 +98,12 @@ def test_packages_and_programs_are_listed(kit: Callable[..., tuple[str, str, int
     assert {"my_robot", "std_msgs", "turtlesim"} <= set(listed.split())  # as ros2: all that can be imported
     assert kit("pkg", "prefix", "my_robot") == (f"{folder}\n", "", 0)
     assert "tf2_ros tf2_echo" in kit("pkg", "executables", "tf2_ros")[0].splitlines()
+    assert kit("pkg", "prefix", "my_robot", "--share") == (f"{folder}\n", "", 0)
+    (file,) = kit("pkg", "executables", "my_robot", "--full-path")[0].splitlines()
+    assert file == str(folder / "my_robot" / "driver.py")
     assert kit("pkg", "xml", "my_robot")[0] == (folder / "package.xml").read_text()
+    assert kit("pkg", "xml", "my_robot", "--tag", "name") == ("my_robot\n", "", 0)
+    assert kit("pkg", "xml", "my_robot", "-t", "nothing")[2] == 2
     out, err, code = kit("pkg", "executables", "yours")
     assert code == 2
     assert "not found; available: my_robot" in err

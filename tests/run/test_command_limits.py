@@ -12,6 +12,7 @@ import pytest
 
 from kit.host.graph_bridge import ChildBridge, ParentBridge
 from kit.msg.ackermann_msgs import AckermannDriveStamped
+from kit.msg.flatland_msgs import DeleteModel
 from kit.msg.geometry_msgs import Twist, TwistStamped
 from kit.ros.graph.connections import ConnectionsReader
 from kit.ros.graph.graph import Graph
@@ -151,6 +152,19 @@ def test_a_program_in_another_process_is_told_what_the_world_has_noted() -> None
     assert child.take_changes() == []
     runner.tick()
     assert not any(event[0] == "excess" for event in parent.take_pending())
+
+
+def test_another_process_sees_what_a_robot_does_at_most_and_when_it_has_left() -> None:
+    runner = runner_on("turtlebot")
+    parent, child = ParentBridge(runner.graph), ChildBridge(_NoCommands(), 0)
+    child.apply_events(parent.take_pending())
+    seen = child.graph.directory
+    assert seen.command_limits == {"/cmd_vel": ("linear.x 0.22 m/s", "angular.z 2.84 rad/s")}
+    client = create_graph_node(runner.graph, "teacher").create_client(DeleteModel, "/delete_model")
+    client.call_async(DeleteModel.Request(name="burger"))
+    runner.tick()
+    child.apply_events(parent.take_pending())
+    assert seen.command_limits == {}
 
 
 class _NoCommands:

@@ -299,6 +299,8 @@ class Directory:
         """The absolute names of the topics that have subscriptions."""
         self.excesses: dict[tuple[str, str, str], Excess] = {}
         """The first command that asked for more than is carried out, by node, topic and field of the message."""
+        self.command_limits: dict[str, tuple[str, ...]] = {}
+        """The most that is carried out of each field of a command, as text, by the topic on which it is taken."""
         self.services: dict[str, list[ServiceServer]] = {}
         self.clients: dict[str, list[ServiceClient]] = {}
 
@@ -331,6 +333,14 @@ class Directory:
     def note_endpoint(self) -> None:
         """To be called when a topic's new endpoint has been added to its node: others may have looked in between, since
         a mismatch of types is logged, and a log is a message."""
+        self.version += 1
+
+    def note_command_limits(self, topic: str, most: tuple[str, ...]) -> None:
+        """Notes the most that is carried out of commands on a topic; nothing, if it is empty, is known of it."""
+        if most:
+            self.command_limits[topic] = most
+        else:
+            self.command_limits.pop(topic, None)
         self.version += 1
 
     def note_excess(self, node: str, topic: str, field: str, excess: Excess) -> None:
