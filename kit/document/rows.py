@@ -41,11 +41,21 @@ def at_both_edges(left: Row, right: Row, width: int) -> Row:
     'Lesson 3: Sen…  2 of 5'
     """
     room = width - row_width(right) - 1
-    if row_width(left) > room:
-        has_sign = room > 2 * len(CUT)
-        fitting = broken(left, room - len(CUT) if has_sign else room)[0] if room > 1 else ()
-        left = (*fitting, (CUT, PLAIN)) if has_sign else fitting
+    left = fitted(left, room)
     return (*left, (" " * (max(0, room - row_width(left)) + 1), PLAIN), *right)
+
+
+def fitted(parts: Row, width: int) -> Row:
+    """A row of at most ``width`` columns: a wider one is cut, and says so.
+
+    >>> row_text(fitted(row("7 ", ("values of the state", "dim")), 16))
+    '7 values of th…'
+    """
+    if row_width(parts) <= width:
+        return parts
+    has_sign = width > 2 * len(CUT)
+    fitting = broken(parts, width - len(CUT) if has_sign else width)[0] if width > 1 else ()
+    return (*fitting, (CUT, PLAIN)) if has_sign else fitting
 
 
 def row_width(parts: Row) -> int:

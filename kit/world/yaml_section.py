@@ -107,9 +107,13 @@ class Section:
         entry = self._entries.get(key)
         return self.location if entry is None else entry.value.location
 
-    def error(self, message: str, key: str | None = None) -> None:
-        """Notes a problem at the key's value, or at the section."""
-        self._report(message, self.location if key is None else self.location_of(key))
+    def error(self, message: str, key: str | None = None, *, item: int | None = None) -> None:
+        """Notes a problem at the key's value, or at the section. ``item``: at that item of the key's list."""
+        location = self.location if key is None else self.location_of(key)
+        value = self._entries[key].value if key in self._entries and key is not None else None
+        if isinstance(value, ListNode) and item is not None and item < len(value.items):
+            location = value.items[item].location
+        self._report(message, location)
 
     def text(
         self, key: str, default: str | Required = REQUIRED, *, choices: Collection[str] | None = None
@@ -423,7 +427,7 @@ class Section:
     def _section(self, node: Node, what: str) -> Section:
         if isinstance(node, MapNode):
             return Section(node, self._problems, is_silent=self._is_silent)
-        self._report_mismatch(node, f"{what} must be a mapping")
+        self._report_mismatch(node, f"{what} must be a mapping (name: value)")
         return self._missing_section(node.location)
 
     def _missing_section(self, location: SourceLocation) -> Section:

@@ -151,7 +151,7 @@ def _read_plan(section: Section, case: LayerCase) -> SubmittedPlan:
             watched.error(f"no laser {quoted(laser)}: {suggestion(laser, tuple(case.laser))}", laser)
         watches[laser] = _known_names(watched, laser, names, "layer of yours")
     lines_given = () if section.is_blank("proof") else section.texts("proof", ())
-    lines = tuple(_requirement(section, line, case) for line in lines_given)
+    lines = tuple(_requirement(section, number, line, case) for number, line in enumerate(lines_given))
     if max(len(layers), len(lines)) > MAX_ENTRIES:
         section.error(f"at most {MAX_ENTRIES} layers and {MAX_ENTRIES} lines of proof")
     return SubmittedPlan(
@@ -168,14 +168,16 @@ def _known_names(
     section: Section, key: str, known: list[str] | tuple[str, ...], what: str
 ) -> tuple[str, ...]:
     names = () if section.is_blank(key) else section.texts(key, ())
-    for name in names:
+    for number, name in enumerate(names):
         if name not in known:
-            section.error(f"there is no {what} named {quoted(name)}: {suggestion(name, known)}", key)
+            section.error(
+                f"there is no {what} named {quoted(name)}: {suggestion(name, known)}", key, item=number
+            )
     return names
 
 
-def _requirement(section: Section, line: str, case: LayerCase) -> Requirement | None:
-    """Reads a line of the proof as a requirement of the case; notes an error for any other line."""
+def _requirement(section: Section, number: int, line: str, case: LayerCase) -> Requirement | None:
+    """Reads a line of the proof, counted from 0, as a requirement of the case; notes an error for any other line."""
     split = SIGHT_SEPARATOR if SIGHT_SEPARATOR in line else CONTACT_SEPARATOR
     one, _, other = (part.strip() for part in line.partition(split))
     plan: Requirement = (
@@ -183,7 +185,11 @@ def _requirement(section: Section, line: str, case: LayerCase) -> Requirement | 
     )
     if plan in case.requirements:
         return plan
-    section.error(f"{quoted(line)} is nothing that must happen here: write A - B, or LASER sees A", "proof")
+    section.error(
+        f"{quoted(line)} is nothing that must happen here: write `A - B`, or `LASER sees A`",
+        "proof",
+        item=number,
+    )
     return None
 
 

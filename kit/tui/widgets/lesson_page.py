@@ -11,7 +11,7 @@ from textual.app import ComposeResult
 from textual.containers import Container
 from textual.widget import Widget
 
-from kit.document.rows import Row, row
+from kit.document.rows import Row, fitted, row
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.playback_scene_view import PlaybackSceneView
 from kit.tui.widgets.text_rows import TextRows
@@ -181,7 +181,8 @@ class LessonPage(Container):
         top = max(0, min(content.file_line - room // 3, len(content.file) - room))
         more = f"  lines {top + 1} to {min(len(content.file), top + room)} of {len(content.file)}"
         head = row((content.file_title, "bold"), (more if len(content.file) > room else "", "dim"))
-        work.show([head, *content.file[top : top + room]])
+        lines = content.file[top : top + room]
+        work.show([head, *(fitted(each, work.size.width) for each in lines)])
 
     def scroll_words(self, lines: int) -> None:
         """Scrolls by lines, at most by a page so that none is skipped; by more than there are, to the end."""

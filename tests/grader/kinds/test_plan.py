@@ -107,6 +107,14 @@ def test_a_plan_that_cannot_be_read_is_an_error_with_its_place(folder: Path, tex
     assert "/tmp" not in tests[0].rationale
 
 
+def test_a_wrong_line_of_a_list_is_named_at_its_own_line(folder: Path) -> None:
+    told = graded(
+        folder, GOOD.replace("[robot - walls, walls - drone]", "\n  - robot - walls\n  - robot - wals")
+    )
+    lines = GOOD[: GOOD.index("proof")].count("\n") + 3
+    assert f"plan.yaml:{lines}:5:" in told.tests[0].rationale
+
+
 def test_an_example_of_the_kit_can_be_the_case(folder: Path) -> None:
     (folder / "secret.yaml").write_text("case: drone\n")
     assert read_assignment(folder).task.names
