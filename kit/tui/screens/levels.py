@@ -464,8 +464,9 @@ class LevelsScreen(RowsScreen[None]):
             return
         runs = {run.name: run for run in await to_thread(_runs, self._workspace.runs)}
         if not runs:
-            text = "No agent has been trained yet. `kit train turn` trains one; on the start screen it is `train`."
-            self.app.push_screen(MessageDialog("Agents", wrapped(text)))
+            from kit.tui.screens.challenge import NO_RUNS  # of no use to the first frame
+
+            self.app.push_screen(MessageDialog("Agents", wrapped(NO_RUNS)))
             return
         choices = [PickerItem(name, name, "") for name in runs]
         picked = await self.app.push_screen_wait(Picker("Which agent drives?", choices))
