@@ -16,6 +16,7 @@ from kit.arrays import FloatArray
 from kit.document.rows import Row, row
 from kit.school.game.board import (
     ARROWS,
+    GOAL,
     MOVES,
     WALL,
     Board,
@@ -31,9 +32,11 @@ from kit.school.game.challenge import AnswerSubmission, ChallengeError, Challeng
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.world.yaml_section import Section
 
-PIT, GOAL, START = "X", "G", "S"
+PIT, START = "X", "S"
 SIDES: Final = {"l": "ud", "r": "ud", "u": "lr", "d": "lr"}
 """Where a move may slip to."""
+ENDLESS: Final = 1.0 - 1e-7
+"""The discount in place of 1: without one, a policy that never ends has no value, and which one that is depends on rounding."""
 GOAL_PAY, PIT_PAY = 1.0, -1.0
 CHUNK: Final = 2048
 """The number of policies that are evaluated together."""
@@ -177,11 +180,11 @@ def _model(task: PolicyTask) -> dict[str, tuple[FloatArray, FloatArray]]:
 
 
 def value_of(task: PolicyTask, policy: Policy) -> float:
-    """The expected return of a policy from the start, exactly: a linear system."""
+    """The expected return of a policy from the start: a linear system. One that may never end is worth very little."""
     cells, model = task.cells, _model(task)
     chances = np.stack([model[policy[cell]][0][at] for at, cell in enumerate(cells)])
     pays = np.array([model[policy[cell]][1][at] for at, cell in enumerate(cells)])
-    values = np.linalg.solve(np.eye(len(cells)) - task.discount * chances, pays)
+    values = np.linalg.solve(np.eye(len(cells)) - min(task.discount, ENDLESS) * chances, pays)
     return float(values[cells.index(find_cell(task.grid, START))])
 
 
@@ -189,11 +192,11 @@ def value_of(task: PolicyTask, policy: Policy) -> float:
 def _best(task: PolicyTask) -> tuple[str, ...]:
     cells, model = task.cells, _model(task)
     if not task.looks_alike:  # policy iteration
-        arrows = ["u"] * len(cells)
+        arrows = [naive_policy(task)[cell] for cell in cells]  # which ends from everywhere
         while True:
             chances = np.stack([model[arrow][0][at] for at, arrow in enumerate(arrows)])
             pays = np.array([model[arrow][1][at] for at, arrow in enumerate(arrows)])
-            values = np.linalg.solve(np.eye(len(cells)) - task.discount * chances, pays)
+            values = np.linalg.solve(np.eye(len(cells)) - min(task.discount, ENDLESS) * chances, pays)
             worth = {move: model[move][1] + task.discount * model[move][0] @ values for move in MOVES}
             better = []
             for at, own in enumerate(arrows):
