@@ -109,6 +109,15 @@ def broken(parts: Row, width: int) -> list[Row]:
     return [tuple(each) for each in made]
 
 
+def lines_shown(first: int, count: int, total: int) -> str:
+    """Says which of ``total`` lines are shown, beginning with the number ``first``, from 0; empty where all are.
+
+    >>> lines_shown(3, 10, 15), lines_shown(0, 15, 15)
+    ('lines 4 to 13 of 15', '')
+    """
+    return f"lines {first + 1} to {first + count} of {total}" if count < total else ""
+
+
 def window(rows: Sequence[Row], top: int, room: int) -> tuple[list[Row], int]:
     """As many rows as there is room for, from ``top`` on as far as there are so many, and that top; the last one
     says if there are more."""

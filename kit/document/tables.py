@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Final, NamedTuple
 
 from kit.document.blocks import Cell, CellStyle, Column, Table, Tone, ToneText, format_cell
-from kit.document.rows import Row, row, row_text
+from kit.document.rows import Row, at_both_edges, lines_shown, row, row_text
 from kit.plain_text import COLUMN_GAP, fit_widths, longest_part, printable_text, wrap
 
 MIN_TEXT_WIDTH: Final = 8
@@ -72,6 +72,9 @@ def list_rows(table: Table, width: int, height: int, chosen: int, marked: Collec
         ]
     room = max(1, height - len(heads))
     first_row = max(0, min(at[0] + at[1] // 2 - room // 2, len(made) - room))
+    where = lines_shown(first_row, min(room, len(made)), len(made))
+    if where and heads:
+        heads[-1] = at_both_edges(heads[-1], row((where, Tone.DIM)), width)
     return [*heads, *made[first_row : first_row + room]]
 
 

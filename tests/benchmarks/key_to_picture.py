@@ -2,7 +2,7 @@
 
 The kit runs behind a real sshd on this machine, on the other side of a link of 30 KB/s and 20 ms each way. A turn key is
 pressed and released at odd moments; measured is the time from the press until the screen shows another heading, as a terminal
-that understands the bytes would. Needs OpenSSH's server and client.
+that understands the bytes would, in 16 colours and in a theme's true ones. Needs OpenSSH's server and client.
 """
 
 from __future__ import annotations
@@ -24,6 +24,8 @@ from tests.tui.widgets.test_world_view_pty import run_on
 RATE, DELAY = 30_000.0, 0.020
 """Of the link [bytes/s, s]."""
 SIZES = ((80, 24), (200, 50))
+COLOURS = {"16 colours": "16", "theme": "true"}
+"""What the kit is told of the terminal's colours, by the name of the line that is printed."""
 PRESSES = 30
 PRESS, RELEASE = (f"\x1b[1;1:{kind}D".encode() for kind in (1, 3))
 """The left arrow, as terminals that tell presses from releases send it."""
@@ -52,6 +54,21 @@ def reactions(user: User) -> list[float]:
     return times
 
 
+def measured(server: tuple[int, Path], folder: Path, size: tuple[int, int], colour: str) -> list[float]:
+    """The reactions of a kit with these colours on a screen of this size."""
+    program = ("play", "simple", "--controller", "teleop")
+    user = open_kit(server, folder, RATE, DELAY, *program, variables=[f"KIT_COLOR={colour}"])
+    try:
+        user.until(lambda: "exact" in user.text, "the terminal's answer", limit=60)
+        if size != SIZES[0]:  # in which it was opened
+            resize(user, *size)
+        user.until(lambda: bool(heading(user)), "the heading", limit=60)
+        run_on(user, 3.0)
+        return reactions(user)
+    finally:
+        user.close()
+
+
 def main() -> None:
     if not SSHD or not SSH:
         raise SystemExit("OpenSSH's server and client are not installed: apt-get install openssh-server")
@@ -59,18 +76,10 @@ def main() -> None:
         folder = Path(name)
         with private_sshd(folder) as server:
             for columns, rows in SIZES:
-                user = open_kit(server, folder, RATE, DELAY, "play", "simple", "--controller", "teleop")
-                try:
-                    user.until(lambda user=user: "exact" in user.text, "the terminal's answer", limit=60)  # type: ignore[misc]  # mypy on lambdas
-                    if (columns, rows) != SIZES[0]:  # in which it was opened
-                        resize(user, columns, rows)
-                    user.until(lambda user=user: heading(user), "the heading", limit=60)  # type: ignore[misc]
-                    run_on(user, 3.0)
-                    times = reactions(user)
-                finally:
-                    user.close()
-                shown = f"median {median(times) * 1000:.0f} ms, nine of ten within {quantiles(times, n=10)[-1] * 1000:.0f} ms"
-                print(f"{columns}x{rows}, 30 KB/s, 20 ms each way, key to picture: {shown}")
+                for told, colour in COLOURS.items():
+                    times = measured(server, folder, (columns, rows), colour)
+                    shown = f"median {median(times) * 1000:.0f} ms, nine of ten within {quantiles(times, n=10)[-1] * 1000:.0f} ms"
+                    print(f"{columns}x{rows}, {told}, 30 KB/s, 20 ms each way, key to picture: {shown}")
 
 
 if __name__ == "__main__":

@@ -69,15 +69,18 @@ def open_kit(
     *arguments: str,
     account: str | None = None,
     installation: Path = ROOT,
+    variables: Sequence[str] = (),
 ) -> User:
     """Runs ``kit`` with these arguments on the other side of a link of ``rate`` [bytes/s] and ``delay`` [s] each way.
 
     ``account``: whose terminal it is, by default this one's. ``installation``: the folder with the kit that runs.
+    ``variables``: more of its environment, each as NAME=VALUE.
     """
     relay = shlex.join([sys.executable, str(RELAY), str(server[0]), str(rate), str(delay)])
     words = [
         f"KIT_WORKSPACE={workspace}",
         f"PYTHONPATH={installation}",
+        *variables,
         sys.executable,
         "-m",
         "kit",

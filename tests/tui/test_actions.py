@@ -92,6 +92,7 @@ def test_every_screen_declares_its_actions() -> None:
         *SAY_THEIR_KEYS,
         "Dialog",
         "WatchScreen",
+        "SharedScreen",
         "DialogueScreen",
         "LessonScreen",
         "DefenceScreen",

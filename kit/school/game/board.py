@@ -14,6 +14,7 @@ from kit.school.game.judgement import Judgement
 State = TypeVar("State")
 
 WALL: Final = "#"
+GOAL: Final = "G"
 FULL: Final = "█"
 """Fills a cell."""
 MOVES: Final = {"l": (0, -1), "r": (0, 1), "u": (-1, 0), "d": (1, 0)}
@@ -152,7 +153,7 @@ def grid_rows(grid: Grid, signs: Mapping[Cell, tuple[str, str]], scale: int = 1)
 
 
 def _plain_square(sign: str) -> tuple[str, str]:
-    return (FULL, "dim") if sign == WALL else (sign, "")
+    return (FULL, "dim") if sign == WALL else (sign, "good" if sign == GOAL else "")
 
 
 def _join_by_style(cells: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:

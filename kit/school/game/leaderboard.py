@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -47,6 +48,10 @@ MAX_NAME_BYTES: Final = 4096
 """Of the file with a user's name."""
 SAME_WAY: Final = 0.005
 """Two drives that are nowhere farther apart than this are one [m]."""
+MAX_USER_DIGITS: Final = 12
+FORMER_FILE: Final = re.compile(r"\.[0-9a-f]{16}\.npz$")
+"""The end of the name of a file that tells since when a drive was on the board."""
+LEFT: Final = "a player who has left"
 MAX_FORMER: Final = 50
 """So many drives of one user by one driver on one level are compared with those of others, the oldest ones."""
 MAX_JUDGED: Final = 4096
@@ -159,12 +164,14 @@ def publish_drives(
 
 
 def remove_own_entry(folder: Path) -> None:
-    """Deletes this user's name, drives and answers of puzzles. Raises LeaderboardError."""
+    """Takes this user's name, drives and answers of puzzles off the board. What tells since when a drive was theirs is kept, so
+    that a copy of it does not become the first one. Raises LeaderboardError."""
     try:
         _name_file(folder, os.getuid()).unlink(missing_ok=True)
         for pattern in ("npz", "txt"):
             for file in folder.glob(f"{os.getuid()}.*.{pattern}"):
-                file.unlink(missing_ok=True)
+                if not FORMER_FILE.search(file.name):
+                    file.unlink(missing_ok=True)
     except OSError as error:
         raise LeaderboardError(f"{folder}: {error.strerror}.") from None
 
@@ -178,11 +185,13 @@ def read_entries(folder: Path, levels: Sequence[GameLevel] | None = None) -> lis
     """Judges the drives of all who have joined, by default on all levels and that of the day; sorted by level and time.
     Passes over what may not stand there, and what is another's drive by hand. Takes about a second for twenty drives that were not judged before."""
     entries, former = [], []
-    for user, name in _user_names(folder).items():
+    names = _user_names(folder)
+    for user in {**names, **dict.fromkeys(_drivers(folder))}:
+        name = names.get(user, LEFT)
         for level in levels if levels is not None else (*all_levels(), daily_level(today())):
             for driver in DriverKind:
                 file = _drive_file(folder, user, level.id, driver)
-                judged = _judge_shared_drive(file, user, level, driver)
+                judged = _judge_shared_drive(file, user, level, driver) if user in names else None
                 if judged is not None:
                     entries.append(_make_entry(name, user, level, driver, *judged))
                 former += [
@@ -217,8 +226,18 @@ def users_of(folder: Path) -> Iterator[int]:
     """The numbers of the users who have joined."""
     with suppress(OSError):
         for file in sorted(folder.glob("*.json")):
-            if file.stem.isdecimal() and len(file.stem) < 12:
+            if file.stem.isdecimal() and len(file.stem) < MAX_USER_DIGITS:
                 yield int(file.stem)
+
+
+def _drivers(folder: Path) -> set[int]:
+    """The numbers of the users of whom a drive was ever on the board, also of those who have left it."""
+    with suppress(OSError):
+        found = (
+            each.name.partition(".")[0] for each in folder.glob("*.npz") if FORMER_FILE.search(each.name)
+        )
+        return {int(user) for user in found if user.isdecimal() and len(user) < MAX_USER_DIGITS}
+    return set()
 
 
 def _user_names(folder: Path) -> dict[int, str]:
@@ -264,7 +283,7 @@ def _without_copies(
 ) -> list[LeaderboardEntry]:
     """Leaves out drives by hand that another user had before, a tick sooner or later: no two hands drive the same. Two programs may
     well be equal, so theirs are kept, and told whose they are. The system keeps the time at which a file was last changed, so
-    that no user can set it back. ``former``: every drive that was ever put on the board, by those who are on it."""
+    that no user can set it back. ``former``: every drive that was ever put on the board, also by those who have left it."""
     earliest = sorted([*entries, *former], key=lambda entry: (entry.since_ns, entry.user))
     since: dict[tuple[int, str, DriverKind, float], int] = {}
     for each in earliest:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from kit.document.rows import Row, row, row_text, side_by_side
+from kit.document.rows import Row, at_both_edges, lines_shown, row, row_text, side_by_side
 from kit.plain_text import wrap
 from kit.school.game.board import Board
 from kit.school.game.challenge import Challenge
@@ -46,12 +46,16 @@ def first_shown(count: int, chosen: int, room: int) -> int:
 
 
 def challenge_list(
-    challenges: Sequence[Challenge], medals: Mapping[str, Medal], chosen: str, room: int
+    challenges: Sequence[Challenge], medals: Mapping[str, Medal], chosen: str, room: int, width: int
 ) -> list[Row]:
-    """One row for each challenge, of those for which there is room. ``medals``: the best of each that has one, by its id."""
-    rows = [row((HEADER, "dim"))]
+    """One row for each challenge, of those for which there is room; the first row says which these are.
+    ``medals``: the best of each that has one, by its id."""
     number = next(number for number, each in enumerate(challenges) if each.id == chosen)
     top = first_shown(len(challenges), number, room)
+    where = lines_shown(top, min(room, len(challenges)), len(challenges))
+    rows = [
+        at_both_edges(row((HEADER, "dim")), row((where, "dim")), width) if where else row((HEADER, "dim"))
+    ]
     for each in challenges[top : top + room]:
         medal, is_chosen = medals.get(each.id, Medal.NONE), each.id == chosen
         rows.append(

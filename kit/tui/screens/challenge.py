@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 POLL_S: Final = 0.2
 """Between two looks at the answer's file and at the check [s]."""
 NO_RUNS: Final = (
-    "No agent has been trained yet. `kit train turn` trains one; on the start screen it is `train`."
+    "No agent has been trained yet. `kit train turn` trains one; on the start screen 5 opens Train."
 )
 
 
@@ -213,4 +213,4 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             self.dismiss()
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("A challenge", self.screen_actions))
+        self.app.push_screen(HelpDialog("A challenge", self.screen_actions, without=self._without()))

@@ -81,7 +81,7 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
     def _offer(self) -> str:
         """What the key for it does."""
         if self._has_joined:
-            return "You are on it; j takes your name and drives off."
+            return "You are on it; j takes your name and drives off. What you drove first stays yours."
         return f"j puts you on it as {self._player_name}: all users here see name and drives."
 
     def _keys(self) -> Row:

@@ -17,7 +17,7 @@ from textual.screen import Screen
 
 from kit.dialogue.actions import ScreenActions
 from kit.document.layout import lines_of
-from kit.document.rows import Row, at_both_edges, row
+from kit.document.rows import Row, at_both_edges, lines_shown, row
 from kit.school.game.levels import GameLevel, levels_of_lesson
 from kit.school.lessons.catalogue import LessonEntry
 from kit.school.lessons.records import Lesson
@@ -117,7 +117,7 @@ class LessonsScreen(RowsScreen[None]):
         at = next((number for number, (entry, _) in enumerate(lines) if entry is chosen), 0)
         top = max(0, min(at - room // 2, len(lines) - room))
         self._listed = [entry for entry, _ in lines[top : top + room]]
-        where = f"lines {top + 1} to {top + len(self._listed)} of {len(lines)}" if len(lines) > room else ""
+        where = lines_shown(top, len(self._listed), len(lines))
         news = (f"   {self._news}", "good")
         heading = at_both_edges(
             row(("Lessons", "bold"), (told, "dim"), news), row((where, "dim")), self.size.width

@@ -270,10 +270,14 @@ class LevelsScreen(RowsScreen[None]):
         """The list of challenges, beside it the chosen one's picture where there is room, and what is said of it."""
         medals = self._challenge_medals
         heading = self._world_heading([medals.get(each.id, Medal.NONE) for each in self._challenges])
-        listed = challenge_rows.challenge_list(self._challenges, medals, chosen.id, self._challenge_room)
         medal, width = medals.get(chosen.id, Medal.NONE), self.size.width  # the list has all of it, soon
-        if width >= challenge_rows.ROOM_FOR_PICTURE:
-            column, height = challenge_rows.LIST_COLUMNS, self._rows("map").size.height - len(heading)
+        has_picture = width >= challenge_rows.ROOM_FOR_PICTURE
+        column = challenge_rows.LIST_COLUMNS if has_picture else width
+        listed = challenge_rows.challenge_list(
+            self._challenges, medals, chosen.id, self._challenge_room, column - 1
+        )
+        if has_picture:
+            height = self._rows("map").size.height - len(heading)
             picture = challenge_rows.challenge_picture(chosen, width - column - 1, height)
             listed = side_by_side(listed, picture, column)
         listed = [*heading, *listed]
@@ -460,8 +464,9 @@ class LevelsScreen(RowsScreen[None]):
             return
         runs = {run.name: run for run in await to_thread(_runs, self._workspace.runs)}
         if not runs:
-            text = "No agent has been trained yet. `kit train turn` trains one; on the start screen it is `train`."
-            self.app.push_screen(MessageDialog("Agents", wrapped(text)))
+            from kit.tui.screens.challenge import NO_RUNS  # of no use to the first frame
+
+            self.app.push_screen(MessageDialog("Agents", wrapped(NO_RUNS)))
             return
         choices = [PickerItem(name, name, "") for name in runs]
         picked = await self.app.push_screen_wait(Picker("Which agent drives?", choices))

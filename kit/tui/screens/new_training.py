@@ -17,7 +17,7 @@ from textual.containers import Horizontal
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction
-from kit.document.rows import row
+from kit.document.rows import at_both_edges, lines_shown, row
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.setting_rows import settings
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
@@ -156,7 +156,6 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
 
     def _show(self) -> None:
         width = self.size.width
-        self.query_one("#heading", TextRows).show([row(("A new training", "bold"))])
         preview = self.query_one(TaskPreview)
         beside = LIST_WIDTH if preview.display else width
         rows = settings(self.settings.entries(), self._chosen, beside)
@@ -165,6 +164,9 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
         room = max(1, self.size.height - 3)
         chosen = next(number for number, each in enumerate(rows) if each and each[0][0] == ">")
         first = max(0, min(chosen - room // 2, len(rows) - room))
+        where = lines_shown(first, min(room, len(rows)), len(rows))
+        heading = at_both_edges(row(("A new training", "bold")), row((where, "dim")), beside)
+        self.query_one("#heading", TextRows).show([heading])
         self.query_one("#body", TextRows).show(rows[first : first + room])
         self.query_one("#note", TextRows).show([row((self._note[:width], "dim"))])
         self.query_one("#keys", TextRows).show([footer(self.screen_actions, width)])

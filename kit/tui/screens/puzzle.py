@@ -136,4 +136,4 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         super().on_unmount()
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("A puzzle", self.screen_actions))
+        self.app.push_screen(HelpDialog("A puzzle", self.screen_actions, without=self._without()))

@@ -43,6 +43,9 @@ from kit.tui.theme import Theme
 from kit.workspace import Workspace
 
 GUEST_PLAYER: Final = 1
+FOOTER: Final = ("drive_keys", "stop_robot", "restart", "help", "back", "quit")
+OFF_FOOTER: Final = ("ghosts", "drive_mode", "zoom", *VIEW_IDS)
+"""The actions of both players' screens."""
 
 
 class SharedScreen(WatchScreen):
@@ -51,13 +54,6 @@ class SharedScreen(WatchScreen):
     Ghosts do not travel: each side has its own best drives and the kit's reference, which began where the host's robot does.
     """
 
-    screen_actions = ScreenActions(
-        "shared game",
-        ("drive_keys", "stop_robot", "help", "back", "quit"),
-        ("ghosts", "drive_mode", "zoom", *VIEW_IDS),
-        drives=True,
-    )
-    BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     help_notes = (LETTER_NOTES[:3],)
     help_title = "Two players"
     has_instruments = False
@@ -123,12 +119,7 @@ class SharedScreen(WatchScreen):
 class SharedHostScreen(SharedScreen, inherit_bindings=False):
     """Runs the world, drives the first robot and lets guests in."""
 
-    screen_actions = ScreenActions(
-        "hosted game",
-        ("drive_keys", "stop_robot", "restart", "help", "back", "quit"),
-        ("ghosts", "drive_mode", "zoom", *VIEW_IDS),
-        drives=True,
-    )
+    screen_actions = ScreenActions("hosted game", FOOTER, OFF_FOOTER, drives=True)
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
 
     def __init__(
@@ -233,12 +224,7 @@ class SharedGameEnded(Message):
 class SharedGuestScreen(SharedScreen, inherit_bindings=False):
     """Shows what the host says, drawn from this machine's own files, and sends the keys of the second player."""
 
-    screen_actions = ScreenActions(
-        "joined game",
-        ("drive_keys", "stop_robot", "restart", "help", "back", "quit"),
-        ("ghosts", "drive_mode", "zoom", *VIEW_IDS),
-        drives=True,
-    )
+    screen_actions = ScreenActions("joined game", FOOTER, OFF_FOOTER, drives=True)
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = "SharedGuestScreen #panel { display: none; }"
 

@@ -11,7 +11,7 @@ from textual.app import ComposeResult
 from textual.containers import Container
 from textual.widget import Widget
 
-from kit.document.rows import Row, fitted, row
+from kit.document.rows import Row, fitted, lines_shown, row
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.playback_scene_view import PlaybackSceneView
 from kit.tui.widgets.text_rows import TextRows
@@ -179,10 +179,9 @@ class LessonPage(Container):
         work = self._rows("work")
         room = max(1, work.size.height - 1)
         top = max(0, min(content.file_line - room // 3, len(content.file) - room))
-        more = f"  lines {top + 1} to {min(len(content.file), top + room)} of {len(content.file)}"
-        head = row((content.file_title, "bold"), (more if len(content.file) > room else "", "dim"))
-        lines = content.file[top : top + room]
-        work.show([head, *(fitted(each, work.size.width) for each in lines)])
+        more = lines_shown(top, min(room, len(content.file)), len(content.file))
+        head = row((content.file_title, "bold"), (f"  {more}", "dim"))
+        work.show([head, *(fitted(each, work.size.width) for each in content.file[top : top + room])])
 
     def scroll_words(self, lines: int) -> None:
         """Scrolls by lines, at most by a page so that none is skipped; by more than there are, to the end."""

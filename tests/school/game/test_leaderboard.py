@@ -281,6 +281,17 @@ def test_a_copy_stands_nowhere_although_its_owner_has_driven_better_since(tmp_pa
 
 
 @pytest.mark.usefixtures("of_many_users")
+def test_a_copy_does_not_become_the_first_one_when_its_owner_leaves_the_board(tmp_path: Path) -> None:
+    board = join(tmp_path / "board", by_hand())
+    (board / "7.json").write_text('{"name": "Bob"}')
+    shutil.copy(own_file(board), board / f"7.{FIRST.id}.keys.npz")
+    leaderboard.remove_own_entry(board)
+    assert read_entries(board, [FIRST]) == []
+    join(board, by_hand())
+    assert [each.user for each in read_entries(board, [FIRST])] == [OWN], "what was kept is still theirs"
+
+
+@pytest.mark.usefixtures("of_many_users")
 def test_who_claims_anothers_drive_as_an_earlier_one_takes_nothing_away(tmp_path: Path) -> None:
     board = join(tmp_path / "board", by_hand())
     (board / "7.json").write_text('{"name": "Bob"}')

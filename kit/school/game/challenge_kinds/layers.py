@@ -72,7 +72,7 @@ class LayersTask(ChallengeTask):
 class LayersBoard(Board):
     """A table of entities and lasers by layers: Space puts one into a layer, and what is still wrong is counted."""
 
-    keys = "Arrows move the cursor, Space puts into a layer or out of it, u undoes it."
+    keys = "Arrows move the cursor, Space puts into a layer or out of it, u undoes it. o: a laser, which sees its layers."
 
     def __init__(self, task: LayersTask, answer: str) -> None:
         self._task = task
@@ -144,8 +144,8 @@ class LayersBoard(Board):
                 sign = ("o" if is_laser else "x") if name in members else "."
                 cells += [("  ", ""), (sign, "chosen" if is_here else "" if name in members else "dim")]
             rows.append(tuple(cells))
-        count = "everything is as asked" if not wrong else f"{len(wrong)} still wrong: {wrong[0]}"
-        return [*rows, row(), row((f"  layers {len(self._layers)}", "bold"), f"   {count}")]
+        count = "all is as asked" if not wrong else f"{len(wrong)} still wrong, first: {wrong[0]}"
+        return [*rows, row(), row((f"  {counted(len(self._layers), 'layer')}", "bold"), f"; {count}")]
 
 
 def naive_plan(case: LayerCase) -> LayerAssignment:

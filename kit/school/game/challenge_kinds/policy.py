@@ -17,6 +17,7 @@ from kit.arrays import BoolArray, FloatArray
 from kit.document.rows import Row, row
 from kit.school.game.board import (
     ARROWS,
+    GOAL,
     MOVES,
     WALL,
     Board,
@@ -32,7 +33,7 @@ from kit.school.game.challenge import AnswerSubmission, ChallengeError, Challeng
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.world.yaml_section import Section
 
-PIT, GOAL, START = "X", "G", "S"
+PIT, START = "X", "S"
 SIDES: Final = {"l": "ud", "r": "ud", "u": "lr", "d": "lr"}
 """Where a move may slip to."""
 GOAL_PAY, PIT_PAY = 1.0, -1.0

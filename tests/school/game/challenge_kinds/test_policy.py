@@ -66,6 +66,15 @@ def test_the_value_of_a_policy_is_what_its_episodes_are_paid(challenge) -> None:
     )
 
 
+@pytest.mark.parametrize("arrow", MOVES)
+def test_a_policy_that_may_never_end_is_worth_less_than_the_shortest_way(arrow: str) -> None:
+    task = next(each.task for each in POLICIES if each.task.discount == 1.0)
+    lost = dict.fromkeys(task.cells, arrow)
+    assert (
+        value_of(task, lost) < value_of(task, naive_policy(task)) < value_of(task, best_policy(task)) + 1e-9
+    )
+
+
 @pytest.mark.parametrize("looks_alike", [False, True])
 def test_no_policy_is_better_than_the_best(looks_alike: bool) -> None:
     task = PolicyTask(("#####", "#S.G#", "#X.X#", "#####"), 0.15, -0.05, 0.95, looks_alike)
