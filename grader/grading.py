@@ -347,7 +347,7 @@ class Grading:
         self, criterion: Criterion, scored: Sequence[_ScoredEvidence], *, full: bool
     ) -> Sequence[_ScoredEvidence]:
         """Returns the evidence that a student is told of: the public, or where only secret evidence lost points, a
-        counterpart that loses points too; in a student's own check, where none loses as much, the secret itself: what is told must
+        counterpart that loses points too; in a student's own check, where none loses half as much, the secret itself: what is told must
         be why the points are lost. Empty if none of these was found."""
         public = [each for each in scored if not each.evidence.secret]
         if full or any(each.share < 1.0 for each in public):
@@ -356,7 +356,8 @@ class Grading:
             self._counterexamples[criterion.id] = self._find_counterexample(criterion)
         found = self._counterexamples.get(criterion.id)
         if self._looks_afterwards:
-            if found is not None and found.share > min(each.share for each in scored):
+            lost = 1.0 - min(each.share for each in scored)
+            if found is not None and 1.0 - found.share < lost / 2.0:
                 found = self._counterexamples[criterion.id] = None
             if found is None:
                 return scored
