@@ -37,7 +37,7 @@ VERBS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
             "Test an assignment on its own solution and wrong solutions.",
         ),
         "report": ("grader.cli.check:report", "Convert a result to another format."),
-        "ci": ("grader.cli.assignments:ci", "Print a workflow file for GitHub or GitLab."),
+        "ci": ("grader.cli.ci:ci", "Print a workflow file for GitHub or GitLab."),
         "cohort": (
             "grader.cli.cohort:cohort",
             "Grade a folder of submissions (resumable).",

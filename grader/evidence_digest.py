@@ -34,16 +34,16 @@ def evidence_digest(folder: Path, test_files: Sequence[str], packages: tuple[str
         root = yaml.compose((folder / ASSIGNMENT_FILE).read_text(encoding="utf-8-sig"), Loader=YAML_LOADER)
         if isinstance(root, yaml.MappingNode):
             kept = [pair for pair in root.value if pair[0].value not in JUDGEMENT_KEYS]
-            parsed.update(repr(_content(yaml.MappingNode(root.tag, kept))).encode())
+            parsed.update(repr(_yaml_content(yaml.MappingNode(root.tag, kept))).encode())
     return parsed.hexdigest()[:16]
 
 
-def _content(node: yaml.Node) -> object:
+def _yaml_content(node: yaml.Node) -> object:
     """What a YAML node says, without how it is written."""
     if isinstance(node, yaml.MappingNode):
-        return {_content(key): _content(value) for key, value in node.value}
+        return {_yaml_content(key): _yaml_content(value) for key, value in node.value}
     if isinstance(node, yaml.SequenceNode):
-        return [_content(each) for each in node.value]
+        return [_yaml_content(each) for each in node.value]
     return str(node.value)
 
 

@@ -27,9 +27,10 @@ from grader.evidence.findings import (
     state_after,
 )
 from grader.evidence.submission_clock import SubmissionClock
+from grader.failure_status import status_of_failure
 from grader.file_formats import YAML_ENDINGS
 from grader.kinds.contract import find_kind
-from grader.scoring import DEFAULT_STEPS, round_share, status_of_failure
+from grader.scoring import DEFAULT_STEPS, round_share
 from grader.seeds import SeedSet
 from grader.submission import Submission
 from grader.submitted_files import SubmissionRefused, reading_submission
@@ -154,7 +155,7 @@ class Grading:
         self._tests: dict[str, CriterionResult] = {}
         self._counterexamples: dict[str, _ScoredEvidence | None] = {}
         self._tried_counts: dict[str, int] = {}
-        """By criterion: the counterparts that were looked at."""
+        """By criterion: the counterparts that earned everything."""
         self.has_given_secrets = False
         """Whether ``evidence`` has returned any secret evidence."""
         self._first_shown: dict[str, Criterion] = {}
@@ -173,7 +174,7 @@ class Grading:
             except SubmissionRefused:
                 raise
             except Exception:  # noqa: BLE001  # any error in here is the grader's and must not cost the student a point
-                test = self._broken(criterion, traceback.format_exc())
+                test = self._broken_result(criterion, traceback.format_exc())
             self._tests[criterion.id] = test
         return self._tests[criterion.id]
 
@@ -279,7 +280,7 @@ class Grading:
         return max(lost, key=lambda each: (not each[1].secret, each[0]), default=(0.0, None))[1]
 
     def first_public_evidence(self) -> Evidence | None:
-        """Returns what the first criterion saw first, secret evidence aside: the run to show where nothing was lost."""
+        """Returns the first evidence of the first criterion that is not secret: the run to show where nothing was lost."""
         seen = (each.evidence for scored in self._scored.values() for each in scored)
         return next((each for each in seen if not each.secret), None)
 
@@ -299,13 +300,13 @@ class Grading:
             (each for each in scored if status_of_failure(each.failure) is CriterionStatus.GRADER_ERROR), None
         )
         if broken is not None:
-            return self._broken(criterion, str(broken.failure))
+            return self._broken_result(criterion, str(broken.failure))
         if criterion.after is not None and not any(
             each.share == 1.0 for each in self._score(self._criterion(criterion.after))
         ):
             title = self._criterion(criterion.after).title
             return replace(blank, rationale=NOT_ITS_TURN.format(title), depends_on=criterion.after)
-        share = _share(criterion, scored)
+        share = _earned_share(criterion, scored)
         full = share == 1.0
         shown = self._public_evidence(criterion, scored, full=full)
         worst = min(shown, key=lambda each: each.share, default=None)
@@ -329,7 +330,7 @@ class Grading:
             if worst is None or worst.measure is None or check.is_explained
             else check.format(worst.measure, beside=criterion.anchors.full),
             metrics={"share": round(share, 6)},
-            episodes=tuple(map(_summary, scored)),
+            episodes=tuple(map(_summarize_episode, scored)),
             log="" if worst is None or worst.evidence.secret else "\n".join(worst.evidence.printed),
             replay="" if full or worst is None else worst.evidence.picture(criterion.check),
             uses_secrets=any(each.evidence.secret for each in scored),
@@ -340,15 +341,19 @@ class Grading:
         self, criterion: Criterion, scored: Sequence[_ScoredEvidence], *, full: bool
     ) -> Sequence[_ScoredEvidence]:
         """Returns the evidence that a student is told of: the public, or where only secret evidence lost points, a
-        counterpart that loses points too; else, in a student's own check, the secret itself. Empty if none of these was found."""
+        counterpart that loses points too; in a student's own check, where none loses as much, the secret itself: what is told must
+        be why the points are lost. Empty if none of these was found."""
         public = [each for each in scored if not each.evidence.secret]
         if full or any(each.share < 1.0 for each in public):
             return public
         if self._looks_afterwards and criterion.id not in self._counterexamples:
             self._counterexamples[criterion.id] = self._find_counterexample(criterion)
         found = self._counterexamples.get(criterion.id)
-        if found is None and self._looks_afterwards:
-            return scored
+        if self._looks_afterwards:
+            if found is not None and found.share > min(each.share for each in scored):
+                found = self._counterexamples[criterion.id] = None
+            if found is None:
+                return scored
         return [] if found is None else [found]
 
     @property
@@ -400,10 +405,10 @@ class Grading:
     def _find_counterexample(self, criterion: Criterion) -> _ScoredEvidence | None:
         """Returns the first public counterpart that loses points; None if all that the collector makes earn everything."""
         for number, evidence in enumerate(self._collector.counterparts(criterion), 1):
-            self._tried_counts[criterion.id] = number
             scored = self._score_counterpart(criterion, evidence)
             if scored.share < 1.0:
                 return scored
+            self._tried_counts[criterion.id] = number
         return None
 
     def _score_counterpart(self, criterion: Criterion, evidence: Evidence) -> _ScoredEvidence:
@@ -416,7 +421,7 @@ class Grading:
         if criterion.id in self._scored:
             return self._scored[criterion.id]
         self._run_public()
-        ready = self._ready(criterion)
+        ready = self._full_points_predicate(criterion)
         # An error in here was brought to light by this work: it must look like no fault of the grader's.
         with reading_submission(self.submission.name, AuthorCodeError):
             collected = self._collector.evidence(criterion)
@@ -437,7 +442,7 @@ class Grading:
         failure, steps = state_after(evidence, name, params)
         return _ScoredEvidence(evidence, measure, criterion.anchors.share(measure), failure, steps)
 
-    def _ready(self, criterion: Criterion) -> Callable[[Evidence], bool]:
+    def _full_points_predicate(self, criterion: Criterion) -> Callable[[Evidence], bool]:
         """Returns a predicate: did this evidence earn full points in the criterion that comes first?"""
         if criterion.after is None:
             return lambda evidence: True
@@ -464,7 +469,8 @@ class Grading:
                 return f"{text} {self._what_differs(criterion, shown)}".strip()
             # That a file cannot be read has nothing to do with where it would have been used.
             is_unread = failure.kind in (FailureKind.SYNTAX, FailureKind.IMPORT)
-            text = f"{failure}" if is_unread else f"{failure} ({evidence.label})"
+            is_named = evidence.label.removesuffix("()") in f"{failure}"  # a function by its own line
+            text = f"{failure}" if is_unread or is_named else f"{failure} ({evidence.label})"
             first = self._shown_before(criterion, text)
             return text if first is None else f"{SAME_MISTAKE} “{first.title}”."
         check = self._checks[criterion.check]
@@ -544,7 +550,7 @@ class Grading:
             return ""
         return self._rationale(criterion, secret, worst)
 
-    def _broken(self, criterion: Criterion, log: str) -> CriterionResult:
+    def _broken_result(self, criterion: Criterion, log: str) -> CriterionResult:
         return CriterionResult(
             criterion.id,
             criterion.title,
@@ -688,7 +694,7 @@ def judge_findings(
     return None if result.verdict is GradingVerdict.BROKEN else result
 
 
-def _share(criterion: Criterion, scored: Sequence[_ScoredEvidence]) -> float:
+def _earned_share(criterion: Criterion, scored: Sequence[_ScoredEvidence]) -> float:
     """Returns the share of a criterion's points that its evidence earns together, 0 to 1.
 
     Where secret evidence counts, the share is one of a few steps, so that its digits carry no measure of a secret
@@ -706,9 +712,9 @@ def _share(criterion: Criterion, scored: Sequence[_ScoredEvidence]) -> float:
     return round_share(share, criterion.share_steps or DEFAULT_STEPS) if any(secret) else share
 
 
-def _summary(scored: _ScoredEvidence) -> EpisodeSummary:
+def _summarize_episode(scored: _ScoredEvidence) -> EpisodeSummary:
     evidence = scored.evidence
-    measure = None if scored.measure is None else _finite(scored.measure)
+    measure = None if scored.measure is None else _finite_or_none(scored.measure)
     return EpisodeSummary(evidence.label, evidence.outcome, scored.steps, measure, evidence.secret)
 
 
@@ -722,7 +728,7 @@ def _public_failure(evidence: Evidence) -> Failure:
     return Failure(failure.kind, f"{COARSE_RATIONALES[status]} ({evidence.label}).")
 
 
-def _finite(measure: float | None) -> float | None:
+def _finite_or_none(measure: float | None) -> float | None:
     """Returns None for infinity and NaN, which JSON cannot represent."""
     return round(measure, 6) if measure is not None and math.isfinite(measure) else None
 

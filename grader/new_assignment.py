@@ -78,10 +78,10 @@ def make_assignment(example: AssignmentExample, folder: Path) -> None:
     for each in example.folders:
         shutil.copytree(each, folder, dirs_exist_ok=True, ignore=ignored)
     if not (folder / CARD).exists():
-        write_atomically((folder / CARD).absolute(), _card(folder).encode())
+        write_atomically((folder / CARD).absolute(), _default_readme(folder).encode())
 
 
-def _card(folder: Path) -> str:
+def _default_readme(folder: Path) -> str:
     """The page for students of an assignment that has none yet."""
     assignment = read_assignment(folder)
     starter = next((each.name for each in sorted(folder.glob("starter*"))), "")

@@ -81,7 +81,7 @@ def read_sheet(
     limits, submission_limit_s = read_budget(section.section("budget", None), task.trials, kind_record.limits)
     if secrets is not None:
         secrets.finish()
-    criteria = tuple(_criteria(section, kind_record.checks, task.trials))
+    criteria = tuple(_read_criteria(section, kind_record.checks, task.trials))
     return Assignment(
         folder=folder,
         id=section.name("id", folder.resolve().name),
@@ -150,7 +150,7 @@ def _file_name(section: Section, endings: tuple[str, ...]) -> str:
     return name
 
 
-def _criteria(
+def _read_criteria(
     section: Section, checks: Mapping[str, Check], trials: tuple[Trial, ...]
 ) -> Iterator[Criterion]:
     known: list[str] = []
@@ -181,14 +181,14 @@ def _criteria(
             # That it was not judged would say how the one before it went.
             visibility = visibilities.get(after, visibility)
         visibilities[identity] = visibility
-        anchors, share_steps = _share(each, check)
+        anchors, share_steps = _read_anchors(each, check)
         parsed = Criterion(
             id=identity,
             title=each.name("title", identity),
             check=name,
             points=each.number("points", minimum=0, maximum=1e6),
             anchors=anchors,
-            params=_params(each.section("with", None), check),
+            params=_read_params(each.section("with", None), check),
             trials=on,
             seeds=each.choice("seeds", {one.value: one for one in SeedSet}, SeedSet.ALL.value),
             need=each.number("need", above=0, maximum=1) if each.has("need") else None,
@@ -199,7 +199,7 @@ def _criteria(
             share_steps=share_steps,
             # A hint says whether it passed, so a student must see that when the hint is seen.
             mistakes=tuple(
-                _mistakes(
+                _read_mistakes(
                     each,
                     [one for one in known[:-1] if visibilities[one] in (Visibility.VISIBLE, visibility)],
                 )
@@ -209,7 +209,7 @@ def _criteria(
         yield parsed
 
 
-def _mistakes(section: Section, earlier: Sequence[str]) -> Iterator[KnownMistake]:
+def _read_mistakes(section: Section, earlier: Sequence[str]) -> Iterator[KnownMistake]:
     """Yields the mistakes that a criterion knows: ``{when: TEXT, from: 0, to: 1, passed: ID, hint: TEXT}``, each but the
     hint optional."""
     for each in section.sections("mistakes", ()):
@@ -227,7 +227,7 @@ def _mistakes(section: Section, earlier: Sequence[str]) -> Iterator[KnownMistake
         yield parsed
 
 
-def _share(section: Section, check: Check) -> tuple[Anchors, int | None]:
+def _read_anchors(section: Section, check: Check) -> tuple[Anchors, int | None]:
     """Reads what earns nothing and everything, and the steps in which points are paid; None where none are stated."""
     given = section.section("share", None)
     if given is None:
@@ -238,7 +238,7 @@ def _share(section: Section, check: Check) -> tuple[Anchors, int | None]:
     return anchors, steps
 
 
-def _params(section: Section | None, check: Check) -> Any:
+def _read_params(section: Section | None, check: Check) -> Any:
     """Reads the check's params record, whose fields declare names, types and defaults."""
     if section is None:
         return check.params()

@@ -1,15 +1,15 @@
-"""Partial credit between two anchors, the status of a failure, and the probability that a good work fails by bad luck."""
+"""What share of its points a measure earns, and how probably a good work loses them by bad luck."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Final
 
-from kit.host.failure import Failure, FailureKind
-from kit.results.grading_result import CriterionStatus
+DEFAULT_STEPS: Final = 4
+"""The steps in which points are paid that depend on secret seeds, where the assignment states none."""
+MAX_SHARE_STEPS: Final = 20
+"""The most steps that an assignment may state: more would carry a measure out, digit by digit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,14 +33,6 @@ class Anchors:
         return (self.none - measure) / (self.none - self.full) if measure < self.none else 0.0
 
 
-DEFAULT_STEPS: Final = 4
-"""The steps in which points are paid that depend on secret seeds, where the assignment states none."""
-
-
-MAX_SHARE_STEPS: Final = 20
-"""The most steps that an assignment may state: more would carry a measure out, digit by digit."""
-
-
 def round_share(share: float, steps: int) -> float:
     """Rounds a share of points, 0 to 1, to the nearest of ``steps`` equal steps; only a full share earns everything."""
     if share >= 1.0:
@@ -61,27 +53,4 @@ def unfair_fail_probability(success: float, count: int, passes: int) -> float:
     return math.fsum(
         math.comb(count, k) * success**k * (1.0 - success) ** (count - k)
         for k in range(min(passes, count + 1))
-    )
-
-
-STATUS_BY_FAILURE: Final[Mapping[FailureKind, CriterionStatus]] = MappingProxyType(
-    {
-        FailureKind.TIMEOUT: CriterionStatus.TIMEOUT,
-        FailureKind.MEMORY: CriterionStatus.RESOURCE_LIMIT,
-        FailureKind.DISK: CriterionStatus.RESOURCE_LIMIT,
-        FailureKind.KILLED: CriterionStatus.RESOURCE_LIMIT,
-        FailureKind.FLOOD: CriterionStatus.RESOURCE_LIMIT,
-        FailureKind.PROTOCOL: CriterionStatus.PROTOCOL_ERROR,
-        FailureKind.CONFINEMENT: CriterionStatus.GRADER_ERROR,
-    }
-)
-"""The status that a failure of the program gives a criterion; any other kind is a student error."""
-
-
-def status_of_failure(failure: Failure | None) -> CriterionStatus:
-    """Returns the status of a criterion that earns nothing, by how the program failed; None if it did not."""
-    return (
-        CriterionStatus.FAIL
-        if failure is None
-        else STATUS_BY_FAILURE.get(failure.kind, CriterionStatus.STUDENT_ERROR)
     )

@@ -47,7 +47,7 @@ def apply_edits(solution: str, edits: str) -> str:
     'speed = 0.5\\nturn = -1.0\\n'
     """
     lines, done = solution.split("\n"), 0
-    for number, part in enumerate(_parts(edits), 1):
+    for number, part in enumerate(_diff_parts(edits), 1):
         old = [line[1:] for line in part if line[:1] in ("", " ", "-")]
         new = [line[1:] for line in part if line[:1] in ("", " ", "+")]
         places = [
@@ -64,7 +64,7 @@ def apply_edits(solution: str, edits: str) -> str:
     return "\n".join(lines)
 
 
-def _parts(edits: str) -> Iterator[list[str]]:
+def _diff_parts(edits: str) -> Iterator[list[str]]:
     """The lines of each part; the names of files above the first are no part."""
     lines = edits.removesuffix("\n").split("\n")
     first = next((i for i, line in enumerate(lines) if line.startswith("@@")), len(lines))

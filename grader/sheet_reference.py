@@ -114,12 +114,15 @@ def documented_attributes(record: type) -> Iterator[tuple[str, str]]:
     assert isinstance(tree, ast.ClassDef)  # the source of a class
     for node, after in zip_longest(tree.body, tree.body[1:]):
         if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
-            yield node.target.id, f"{_plain(_text_of(after))} ({ast.unparse(node.annotation)})".strip()
+            yield (
+                node.target.id,
+                f"{_docstring_line(_text_of(after))} ({ast.unparse(node.annotation)})".strip(),
+            )
         elif isinstance(node, ast.FunctionDef) and node.decorator_list and (told := ast.get_docstring(node)):
-            yield node.name, _plain(told)
+            yield node.name, _docstring_line(told)
 
 
-def _plain(docstring: str) -> str:
+def _docstring_line(docstring: str) -> str:
     """A docstring in one line, with code between single backticks as in the kit's texts."""
     return " ".join(docstring.split()).replace("``", "`")
 

@@ -79,11 +79,11 @@ def student_version(assignment: Assignment, *, with_reference: bool = False) -> 
         positions = [i for i, each in enumerate(assignment.criteria) if each.id in hidden]
         tests = [each.name for each in assignment.teacher_test_files if each.name not in hidden_tests]
         text = out[ASSIGNMENT_FILE].decode("utf-8-sig")
-        out[ASSIGNMENT_FILE] = _without(text, positions, tests if hidden_tests else None).encode()
+        out[ASSIGNMENT_FILE] = _without_criteria(text, positions, tests if hidden_tests else None).encode()
         # A translation is a list of the same length: it would name them too.
         for name in [each for each in out if re.fullmatch(r"assignment\.[a-z]{2}\.yaml", each)]:
             del out[name]
-    found = list(_leaks(out, kept, assignment, with_reference=with_reference))
+    found = list(_find_leaks(out, kept, assignment, with_reference=with_reference))
     if found:
         raise ReleaseRefused("\n".join(found))
     names = sorted({name.split("/")[0] + "/" * ("/" in name) for name in kept})
@@ -117,7 +117,7 @@ def _content(file: Path, name: str, folder: Path) -> bytes:
     return file.read_bytes()
 
 
-def _without(text: str, positions: Sequence[int], tests: Sequence[str] | None) -> str:
+def _without_criteria(text: str, positions: Sequence[int], tests: Sequence[str] | None) -> str:
     """Returns the sheet without the criteria at these positions, and with only these files of tests where given. All else
     stays as it is written, comments too."""
     root = yaml.compose(text, Loader=YAML_LOADER)
@@ -157,7 +157,7 @@ def _next_line(root: yaml.MappingNode, key: yaml.Node, count: int) -> int:
     return min(later, default=count)
 
 
-def _leaks(
+def _find_leaks(
     out: Mapping[str, bytes], kept: Mapping[str, bytes], assignment: Assignment, *, with_reference: bool
 ) -> Iterator[str]:
     """Yields a sentence for each place where something that stays would go out."""
@@ -165,13 +165,13 @@ def _leaks(
     starters = {data for name, data in out.items() if name.partition(".")[0].split("/")[0] == "starter"}
     numbers = _secret_numbers(kept.get(SECRET_FILE, b""), assignment)
     sentences = _secret_sentences(kept.get(SECRET_FILE, b""))
-    passages = _passages(kept, out)
-    for name, data in _unpacked(out):
+    passages = _solution_passages(kept, out)
+    for name, data in _unpack_archives(out):
         if data in same and data not in starters and not _is_shared(same[data], name):
             yield f"{name}: the same as {same[data]}, which stays with you. Remove it."
             continue
         yield from (
-            f"{name}: holds the secret seed {_shown(number)} as {len(coded)} bytes. Remove it."
+            f"{name}: holds the secret seed {_abbreviate_secret(number)} as {len(coded)} bytes. Remove it."
             for number, coded in ((n, n.to_bytes(8, "little")) for n in numbers if n >= 1 << 32)
             if coded in data
         )
@@ -189,7 +189,7 @@ def _is_shared(kept_name: str, name: str) -> bool:
     return "/" in kept_name and kept_name.rpartition("/")[2] == name.rpartition("/")[2]
 
 
-def _unpacked(files: Mapping[str, bytes]) -> Iterator[tuple[str, bytes]]:
+def _unpack_archives(files: Mapping[str, bytes]) -> Iterator[tuple[str, bytes]]:
     """Yields every file, and those in archives under ``ARCHIVE:NAME``."""
     for name, data in files.items():
         yield name, data
@@ -211,7 +211,7 @@ def _unpacked(files: Mapping[str, bytes]) -> Iterator[tuple[str, bytes]]:
                 yield f"{name}:{each.filename}", archive.read(each)
 
 
-def _shown(number: int) -> str:
+def _abbreviate_secret(number: int) -> str:
     """A secret number for a message, which may be copied into a mail: its first digits."""
     return f"{str(number)[:3]}..."
 
@@ -244,27 +244,27 @@ def _leaks_of_text(name: str, text: str, numbers: Iterable[int], sentences: Iter
         )
         for at, line in enumerate(lines, 1):
             if whole.search(line.replace("_", "")):
-                yield f"{name}:{at}: holds the secret seed {_shown(number)}. Write another number, there or in {SECRET_FILE}."
+                yield f"{name}:{at}: holds the secret seed {_abbreviate_secret(number)}. Write another number, there or in {SECRET_FILE}."
     flat = " ".join(text.split())
     for sentence in sentences:
         if sentence in flat:
             yield f"{name}: holds a text of {SECRET_FILE}, which begins with {sentence[:12]!r}. Remove it."
 
 
-def _passages(kept: Mapping[str, bytes], out: Mapping[str, bytes]) -> Mapping[tuple[str, ...], str]:
+def _solution_passages(kept: Mapping[str, bytes], out: Mapping[str, bytes]) -> Mapping[tuple[str, ...], str]:
     """Every few lines in a row of a solution that the starter does not have, with the file's name."""
     common: set[tuple[str, ...]] = set()
     for name, data in out.items():
         if name.split("/")[0].partition(".")[0] == "starter":
-            common.update(key for key, _ in _runs(data))
+            common.update(key for key, _ in _line_runs(data))
     found: dict[tuple[str, ...], str] = {}
     for name, data in kept.items():
         if name.split("/")[0].partition(".")[0] in ("solution", REFERENCE):
-            found |= {key: name for key, _ in _runs(data) if key not in common}
+            found |= {key: name for key, _ in _line_runs(data) if key not in common}
     return found
 
 
-def _runs(data: bytes) -> Iterator[tuple[tuple[str, ...], int]]:
+def _line_runs(data: bytes) -> Iterator[tuple[tuple[str, ...], int]]:
     """Yields each few lines of a text in a row, without blank ones, and the number of the first."""
     try:
         written = [(line.strip(), at) for at, line in enumerate(data.decode("utf-8").split("\n"), 1)]
@@ -279,7 +279,7 @@ def _runs(data: bytes) -> Iterator[tuple[tuple[str, ...], int]]:
 def _passages_in(name: str, text: str, passages: Mapping[tuple[str, ...], str]) -> Iterator[str]:
     if not passages or name.split("/")[0].partition(".")[0] == "starter":
         return
-    for key, at in _runs(text.encode()):
+    for key, at in _line_runs(text.encode()):
         if key in passages:
             yield f"{name}:{at}: {PASSAGE} lines of {passages[key]} stand here. Remove them."
             return

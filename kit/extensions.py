@@ -72,7 +72,7 @@ class ExtensionError(Exception):
     """A part cannot be used; the message says why and which package to mend or remove."""
 
 
-def _normal(package: str) -> str:
+def _normalize_package_name(package: str) -> str:
     return re.sub(r"[-_.]+", "-", package).lower()
 
 
@@ -95,7 +95,7 @@ def installed_extensions() -> tuple[Extension, ...]:
 def admitted_packages() -> frozenset[str] | None:
     """Names of the packages whose parts may be loaded in this process; None: those of all."""
     names = os.environ.get(PACKAGES_VARIABLE)
-    return None if names is None else frozenset(map(_normal, filter(None, names.split(","))))
+    return None if names is None else frozenset(map(_normalize_package_name, filter(None, names.split(","))))
 
 
 @contextmanager
@@ -120,7 +120,7 @@ def extensions(group: str, taken: Sequence[str] = ()) -> Mapping[str, Extension]
     found = [
         each
         for each in installed_extensions()
-        if each.group == group and (admitted is None or _normal(each.package) in admitted)
+        if each.group == group and (admitted is None or _normalize_package_name(each.package) in admitted)
     ]
     names = [each.name for each in found]
     return MappingProxyType(

@@ -10,12 +10,12 @@ Point = tuple[float, float]
 
 
 def wrap_angle(angle: float) -> float:
-    """The same direction as ``angle`` [rad], in [-pi, pi)."""
+    """``angle`` [rad] wrapped to [-pi, pi)."""
     return (angle + math.pi) % math.tau - math.pi
 
 
 def whole_degrees(angle: float) -> int:
-    """The same direction as ``angle`` [rad], in degrees, rounded, in (-180, 180]: as it is shown to people.
+    """``angle`` [rad] in whole degrees, wrapped to (-180, 180]: as it is shown to people.
 
     >>> whole_degrees(-math.pi), whole_degrees(math.radians(-179.7)), whole_degrees(math.radians(269.0))
     (180, 180, -91)
@@ -60,7 +60,7 @@ def convex_hull(points: Iterable[Point]) -> tuple[Point, ...]:
     Andrew's monotone chain (Information Processing Letters 9, 1979): O(n log n).
     """
     ordered = sorted(set(points))
-    lower, upper = _chain(ordered), _chain(ordered[::-1])
+    lower, upper = _hull_chain(ordered), _hull_chain(ordered[::-1])
     return tuple(lower[:-1] + upper[:-1]) if len(ordered) > 1 else tuple(ordered)
 
 
@@ -71,16 +71,16 @@ def polygon_area(corners: tuple[Point, ...]) -> float:
     )
 
 
-def _chain(points: list[Point]) -> list[Point]:
+def _hull_chain(points: list[Point]) -> list[Point]:
     """The part of the hull that turns left all the way from the first point to the last."""
     chain: list[Point] = []
     for point in points:
-        while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= 0:
+        while len(chain) > 1 and _twice_signed_area(chain[-2], chain[-1], point) <= 0:
             chain.pop()
         chain.append(point)
     return chain
 
 
-def _turn(a: Point, b: Point, c: Point) -> float:
+def _twice_signed_area(a: Point, b: Point, c: Point) -> float:
     """Twice the area of the triangle a, b, c: positive if it turns left."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

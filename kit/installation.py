@@ -65,7 +65,7 @@ def install_command(extra: str) -> str:
     """What to type on this machine to add an extra to this installation, in any folder."""
     packages = requirements(extra)
     python = shlex.quote(sys.executable)
-    has_pip = _has_metadata("pip")
+    has_pip = _is_distribution_installed("pip")
     uv = shutil.which("uv")
     program = f"{python} -m pip install" if has_pip or uv is None else f"uv pip install --python {python}"
     pins = f"-c {shlex.quote(str(constraints_file()))}"
@@ -79,7 +79,7 @@ def foreign_distributions(*, only_named: bool = False) -> Iterator[tuple[str, st
 
     ``only_named``: looks only at distributions that are called as one of the packages is, which takes a millisecond.
     """
-    if only_named and not any(_has_metadata(name) for name in TOP_LEVEL):
+    if only_named and not any(_is_distribution_installed(name) for name in TOP_LEVEL):
         return
     from importlib.metadata import PackageNotFoundError, distribution, distributions
 
@@ -95,7 +95,7 @@ def foreign_distributions(*, only_named: bool = False) -> Iterator[tuple[str, st
             yield name, each.version
 
 
-def _has_metadata(name: str) -> bool:
+def _is_distribution_installed(name: str) -> bool:
     """Whether a folder of packages has the record of a distribution of this name."""
     for folder in sys.path:
         try:

@@ -18,8 +18,10 @@ MIN_COLUMN_WIDTH = 12
 """Table columns are not made narrower than this, even if the table exceeds its width."""
 COLUMN_GAP = "  "
 INDENT = "  "
-_WORD = re.compile(r"(?:[^\s`]|`[^`\s](?:[^`\n]*[^`\s])?`)+(?!\S)|\S+")
-"""A word, or words between backticks with what touches them."""
+_WORD = re.compile(
+    r"-?\d[\d,]*(?:\.\d+)? (?:%|(?:m|cm|s|ms|rad|m/s|rad/s)(?![\w/]))[^\s`]*(?!\S)|(?:[^\s`]|`[^`\s](?:[^`\n]*[^`\s])?`)+(?!\S)|\S+"
+)
+"""A number with its unit, a word, or words between backticks with what touches them."""
 _HELD = "\x1f"
 """In the place of a blank at which a line is not broken."""
 _PARTS_END = "/,_"
@@ -157,12 +159,14 @@ def printable_text(text: str) -> str:
 def wrap(text: str, width: int, first: str = "", rest: str = "", *, most: int | None = None) -> list[str]:
     """Wraps a text to lines of at most ``width`` characters, which begin with ``first`` and ``rest``; at least one line.
 
-    It breaks at blanks alone, so that an option or a file name is never parted, and between backticks only what is longer than
-    a line; a word that is longer than a line is broken behind a slash, a comma or an underscore where it has one. A first word
+    It breaks at blanks alone, so that an option or a file name is never parted; not between a number and its unit; and between
+    backticks only what is longer than a line; a word that is longer than a line is broken behind a slash, a comma or an underscore where it has one. A first word
     that fits on a later line alone begins there. Where there are more than ``most`` lines, the last one ends with dots.
 
     >>> wrap("see runs/turn-1/log.csv --set gamma", 12)
     ['see', 'runs/turn-1/', 'log.csv', '--set gamma']
+    >>> wrap("it kept it for 70 % of its time", 17)
+    ['it kept it for', '70 % of its time']
     """
     room, longest = max(width - len(first), 1), max(width - len(rest), 1)
     words = [

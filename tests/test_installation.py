@@ -136,7 +136,7 @@ def test_the_command_pins_the_tested_versions(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_without_pip_uv_installs(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(installation, "_has_metadata", lambda name: False)
+    monkeypatch.setattr(installation, "_is_distribution_installed", lambda name: False)
     monkeypatch.setattr(installation.shutil, "which", lambda name: "/usr/bin/uv")
     assert install_command("learn").startswith(f"uv pip install --python {shlex.quote(sys.executable)} -c ")
 

@@ -42,7 +42,7 @@ def read_tar(file: BinaryIO, files: SubmittedFiles) -> None:
             files.count_entry()
             if header.size > MAX_HEADER_BYTES:
                 raise SubmissionRefused(BOMB_MESSAGE)
-            content = stream.read(_padded(header.size))[: header.size]
+            content = stream.read(_round_up_to_block(header.size))[: header.size]
             if header.type == tarfile.GNUTYPE_LONGNAME:
                 path = content.rstrip(b"\0").decode("utf-8", "surrogateescape")
             elif header.type in (tarfile.XHDTYPE, tarfile.SOLARIS_XHDTYPE):
@@ -63,7 +63,7 @@ def _read_member(
         return
     has_content = header.isreg()
     if not files.needs(path):
-        stream.skip(_padded(length) if has_content else 0)
+        stream.skip(_round_up_to_block(length) if has_content else 0)
         return
     if not has_content or header.type == tarfile.GNUTYPE_SPARSE:
         raise SubmissionRefused(f"{shown_name(path)} is a link or a device; hand in files only.")
@@ -78,10 +78,10 @@ def _read_member(
         return content
 
     files.add(path, read)
-    stream.skip(_padded(length) - length)
+    stream.skip(_round_up_to_block(length) - length)
 
 
-def _padded(size: int) -> int:
+def _round_up_to_block(size: int) -> int:
     """Returns a size rounded up to whole blocks."""
     return -(-size // tarfile.BLOCKSIZE) * tarfile.BLOCKSIZE
 

@@ -1,10 +1,9 @@
-"""``grader new``, ``checks``, ``self-test`` and ``ci``: verbs for teachers who write an assignment."""
+"""``grader new``, ``checks`` and ``self-test``: verbs for teachers who write an assignment."""
 
 from __future__ import annotations
 
 import inspect
 import json
-import re
 import shlex
 import sys
 from dataclasses import fields
@@ -13,13 +12,9 @@ from typing import Final
 
 import click
 
-from grader.assignment import Assignment
 from grader.budgets import budget_lines
 from grader.check import Check
-from grader.ci import SERVICES
-from grader.ci.ci_service import CiRunner, GitSource, GradedWork
-from grader.ci.warnings import warnings
-from grader.cli import options
+from grader.cli import confinement, exits, loading, options
 from grader.cli.progress import shown_progress
 from grader.evidence_digest import ASSIGNMENT_FILE
 from grader.grading import GradingOptions, LevelTooLow
@@ -33,7 +28,17 @@ from kit.cli.messages import describe_os_error
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.plain_text import counted, quoted, suggestion
-from kit.workspace import write_atomically
+
+SHARE_HELP: Final = (
+    "share: {none: ..., full: ..., steps: N}: the values that earn no points and all points. With secret seeds, points are given "
+    "in N steps, by default 4, rounded to the nearest below all; of `seeds: secret` alone, each episode earns all or "
+    "nothing unless `steps` is given."
+)
+MISTAKES_HELP: Final = (
+    "mistakes: [{when: TEXT, from: 0, to: 1, passed: ID, hint: TEXT}]: a hint for a recognised mistake, shown before "
+    "the others. `when` is a part of the feedback text, `from` and `to` bound the measured value, `passed` is an "
+    "earlier criterion that earned all points; every condition that is given must hold."
+)
 
 
 @click.command()
@@ -60,17 +65,17 @@ def new(folder: Path, kind: str | None, exercise: str | None) -> None:
     Change it step by step, and run `grader self-test FOLDER` after each step.
     """
     if kind is not None and exercise is not None:
-        options.fail("Give --kind or --from, not both: an exercise has a kind of its own.")
+        exits.fail("Give --kind or --from, not both: an exercise has a kind of its own.")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        options.fail(f"{folder} already exists and is not empty; choose another folder.")
+        exits.fail(f"{folder} already exists and is not empty; choose another folder.")
     try:
         example = example_of_kind(kind or "controller") if exercise is None else example_of_exercise(exercise)
         make_assignment(example, folder)
-        assignment = options.load_assignment(folder)
+        assignment = loading.load_assignment(folder)
     except LookupError as error:
-        options.fail(str(error))
+        exits.fail(str(error))
     except OSError as error:
-        options.fail(f"Cannot create {folder}: {describe_os_error(error)}")
+        exits.fail(f"Cannot create {folder}: {describe_os_error(error)}")
     shown = shlex.quote(str(folder))
     click.echo(f"{folder}: {assignment.kind}, ready. Try it: grader self-test {shown}")
     if assignment.has_secrets:
@@ -79,18 +84,6 @@ def new(folder: Path, kind: str | None, exercise: str | None) -> None:
         )
     click.echo(f"Then edit {folder}/{ASSIGNMENT_FILE}: `grader help sheet` explains its keys,")
     click.echo(f"`grader checks {assignment.kind}` lists the checks. For students: grader release {shown}")
-
-
-SHARE_HELP: Final = (
-    "share: {none: ..., full: ..., steps: N}: the values that earn no points and all points. With secret seeds, points are given "
-    "in N steps, by default 4, rounded to the nearest below all; of `seeds: secret` alone, each episode earns all or "
-    "nothing unless `steps` is given."
-)
-MISTAKES_HELP: Final = (
-    "mistakes: [{when: TEXT, from: 0, to: 1, passed: ID, hint: TEXT}]: a hint for a recognised mistake, shown before "
-    "the others. `when` is a part of the feedback text, `from` and `to` bound the measured value, `passed` is an "
-    "earlier criterion that earned all points; every condition that is given must hold."
-)
 
 
 def _feedback(check: Check) -> str:
@@ -137,7 +130,7 @@ def checks(kind: str, machine_readable: bool) -> None:
         click.echo(_kinds_as_json())
         return
     if kind not in kind_names():
-        options.fail(f"There is no kind {quoted(kind)}: {suggestion(kind, kind_names())}")
+        exits.fail(f"There is no kind {quoted(kind)}: {suggestion(kind, kind_names())}")
     rows: list[tuple[str, str]] = []
     for name, check in find_kind(kind).checks.items():
         none, full = check.format(check.anchors.none), check.format(check.anchors.full)
@@ -183,8 +176,8 @@ def self_test(folder: Path, solutions: Path | None, level: str | None, jobs: int
 
     Exit code: 0 all tests pass; 1 some fail; 2 the assignment cannot be read.
     """
-    assignment = options.load_assignment(folder)
-    options.warn_of_short_seeds(assignment)
+    assignment = loading.load_assignment(folder)
+    loading.warn_of_short_seeds(assignment)
     works = works_of(assignment, solutions)
     click.echo(
         f"{assignment.title}: {len(assignment.tests)} criteria, {counted(len(works), 'work')} to grade"
@@ -193,7 +186,7 @@ def self_test(folder: Path, solutions: Path | None, level: str | None, jobs: int
     try:
         with shown_progress(None) as show_progress:
             grading_options = GradingOptions(
-                options.to_level(level),
+                confinement.to_level(level),
                 secret=assignment.has_secrets,
                 may_lower_level=not assignment.has_secrets,
                 show_progress=show_progress,
@@ -206,7 +199,7 @@ def self_test(folder: Path, solutions: Path | None, level: str | None, jobs: int
                 for problem in report.problems:
                     click.echo(f"     {plain(problem, 600)}")
     except LevelTooLow as error:
-        options.fail(str(error))
+        exits.fail(str(error))
     chances = tuple(unfair_fail_odds(assignment, secret=assignment.has_secrets))
     if chances:
         title = "Probability that a submission fails by bad luck, if each episode succeeds with probability"
@@ -219,87 +212,4 @@ def self_test(folder: Path, solutions: Path | None, level: str | None, jobs: int
             for each in chances
         )
         click.echo("\n" + "\n".join(lines_of([Table("odds", title, columns, odds, is_ruled=False)])))
-    raise SystemExit(options.EXIT_FAILED if failed else 0)
-
-
-PLAIN_PATH: Final = re.compile(r"[A-Za-z0-9_./-]+")
-
-
-@click.command()
-@click.argument("service", type=click.Choice([*SERVICES]))
-@click.option(
-    "--assignment",
-    "folders",
-    multiple=True,
-    required=True,
-    metavar="FOLDER[=WORK]",
-    help="Assignment folder; repeat for more. WORK: where the student's work lies, if not at the repository's top.",
-)
-@click.option(
-    "--kit",
-    required=True,
-    metavar="ADDRESS[@VERSION]",
-    help="Repository to clone the kit from: https://..., optionally with a branch or tag.",
-)
-@click.option("--python", default=CiRunner().python, show_default=True, help="Version of Python.")
-@click.option("--runner", default=CiRunner().image, show_default=True, help="GitHub's runner.")
-@click.option(
-    "--write",
-    is_flag=True,
-    help="Write the file to its place below the current folder instead of printing it; always so for an archive.",
-)
-def ci(service: str, folders: tuple[str, ...], kit: str, python: str, runner: str, write: bool) -> None:
-    """Print a workflow that grades every push: for GitHub Actions, GitLab CI or Classroom 50; or make Gradescope's
-    autograder.zip.
-
-    Give the assignments' folders relative to the repository, and the address of the kit's source:
-
-    \b
-    grader ci github --assignment tasks/one --kit https://HOST/PATH@v1
-    grader ci github --assignment a=a.py --assignment b=b --kit https://HOST/PATH
-    grader ci gradescope --assignment tasks/one --kit https://HOST/PATH@v1
-
-    Anyone who can push can change the workflow and the assignment in a repository, so these results are only for practice.
-    For the grade, run `grader cohort` on the submissions.
-    """
-    chosen = SERVICES[service]
-    works, assignments = zip(*map(_graded_work, folders), strict=True)
-    if len(works) > 1 and not chosen.is_in_students_repository:
-        options.fail(f"{service} takes one assignment.")
-    if len({each.work for each in works}) < len(works):
-        options.fail(
-            "Two assignments have one work: say where each lies, such as tasks/one=one/controller.py."
-        )
-    if not PLAIN_PATH.fullmatch(python) or not PLAIN_PATH.fullmatch(runner):
-        options.fail("Give Python's version and the runner in letters, digits, _ . - and /.")
-    try:
-        source = GitSource.read(kit)
-        for assignment in assignments:
-            for warning in warnings(assignment, chosen):
-                click.echo(warning, err=True)
-        data = chosen.write(works, source, CiRunner(python, runner))
-    except (ValueError, OSError) as error:
-        options.fail(f"{error}.")
-    if not write and chosen.is_text:
-        click.echo(data.decode(), nl=False)
-        return
-    file = Path(chosen.place)
-    if file.exists():
-        options.fail(f"{file} already exists; remove it first. One workflow takes several --assignment.")
-    file.parent.mkdir(parents=True, exist_ok=True)
-    write_atomically(file.absolute(), data)
-    click.echo(f"{file}: written")
-
-
-def _graded_work(text: str) -> tuple[GradedWork, Assignment]:
-    """Reads ``FOLDER[=WORK]``; ends with what is wrong with it."""
-    name, _, work = text.partition("=")
-    folder = Path(name)
-    for each in filter(None, (name, work)):
-        if not PLAIN_PATH.fullmatch(each) or Path(each).is_absolute() or ".." in Path(each).parts:
-            options.fail(f"{each}: give it relative to the repository, in letters, digits, _ . - and /.")
-    if not folder.is_dir():
-        options.fail(f"{name}: there is no such folder.")
-    assignment = options.load_assignment(folder)
-    known = "-".join(folder.parts) or "assignment"
-    return GradedWork(known, work or assignment.submit, folder.as_posix()), assignment
+    raise SystemExit(exits.EXIT_FAILED if failed else 0)

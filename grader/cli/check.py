@@ -6,20 +6,19 @@ import json
 import shlex
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeGuard
+from typing import TYPE_CHECKING
 
 import click
 
-from grader.cli import options
+from grader.cli import confinement, exits, loading, options
 from kit.cli.existing_path import ExistingPath
 
 if TYPE_CHECKING:
-    from grader.driving.drive_record import GradedDrive
-    from grader.evidence.contract import Evidence
+    from grader.evidence.contract import Evidence, WatchableEvidence
     from grader.grading import Grading
     from kit.results.grading_result import GradingResult
 
-EXIT_CODES = {"pass": 0, "fail": options.EXIT_FAILED, "broken": options.EXIT_BROKEN}
+EXIT_CODES = {"pass": 0, "fail": exits.EXIT_FAILED, "broken": exits.EXIT_BROKEN}
 
 
 _format_option = click.option(
@@ -83,19 +82,19 @@ def check(
 
     format_name = "json" if as_json else format_name
     if format_name not in FORMATS:
-        options.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")
+        exits.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")
     with (
         shown_progress(progress_descriptor) as show_progress,
         _own_starts(file, level, for_student=for_student),
     ):
         show_progress("reading the exercise")
-        assignment = options.load_assignment(folder)
-        options.warn_of_unused_secrets(assignment, secret=secret)
-        grading_level = options.level_for_untrusted(assignment, level, secret=secret)
+        assignment = loading.load_assignment(folder)
+        loading.warn_of_unused_secrets(assignment, secret=secret)
+        grading_level = confinement.level_for_untrusted(assignment, level, secret=secret)
         try:
             submission = read_submission(file, assignment.submit)
             if submission.note:
-                options.warn(f"Note: {submission.note}")
+                exits.warn(f"Note: {submission.note}")
             is_for_student = for_student or FORMATS[format_name].is_for_students
             grading_options = GradingOptions(
                 grading_level, secret, secret and is_for_student, show_progress=show_progress
@@ -106,7 +105,7 @@ def check(
                 if not picture and replay is not None:
                     picture = _keep_passed_run(grading, replay)
         except (SubmissionRefused, LevelTooLow) as error:
-            options.fail(str(error))
+            exits.fail(str(error))
     if for_student:
         result = result.for_student()
     text = _report(result, format_name, hints, picture)
@@ -148,60 +147,38 @@ def _worst_picture(grading: Grading, replay: Path | None) -> str:
     shown = "" if worst is None else worst.picture()
     if worst is None or not shown:
         return ""
-    title, moves = _picture_title(worst)
-    if not moves:
-        return f"\n{title}:\n{shown}\n"
-    watch = "To watch it: add --replay worst.npz" if replay is None else _save_replay(worst, replay, grading)
-    return f"\n{title}:\n{shown}\n{watch}\n"
+    watchable = _watchable(worst)
+    if watchable is None:
+        return f"\nPicture of {worst.label} ({worst.outcome}):\n{shown}\n"
+    watch = (
+        "To watch it: add --replay worst.npz" if replay is None else _save_replay(watchable, replay, grading)
+    )
+    return f"\n{watchable.replay_title()}:\n{shown}\n{watch}\n"
 
 
 def _keep_passed_run(grading: Grading, replay: Path) -> str:
     """Saves an episode of a work that lost nothing, where its kind has any."""
     went_wrong = grading.worst_evidence() is not None
-    run = None if went_wrong else grading.first_public_evidence()
-    if run is None or not _is_drive(run):
+    run = None if went_wrong else _watchable(grading.first_public_evidence())
+    if run is None:
         why = "There is no episode" if went_wrong else "No episode went wrong, and there is none"
         return f"\n{why} to save as a replay.\n"
     return f"\n{_save_replay(run, replay, grading)}\n"
 
 
-def _is_drive(evidence: Evidence) -> TypeGuard[GradedDrive]:
-    from grader.evidence.contract import EvidenceRecord
+def _watchable(evidence: Evidence | None) -> WatchableEvidence | None:
+    from grader.evidence.contract import WatchableEvidence
 
-    if isinstance(evidence, EvidenceRecord):
-        return False  # without the next import, which brings numpy
-    from grader.driving.drive_record import GradedDrive
-
-    return isinstance(evidence, GradedDrive)
+    return evidence if isinstance(evidence, WatchableEvidence) and evidence.replay_title() else None
 
 
-def _picture_title(worst: Evidence) -> tuple[str, bool]:
-    """Returns the title of the picture, and whether a replay can be saved."""
-    from grader.evidence.contract import EvidenceRecord
-
-    if _is_drive(worst):
-        return f"The worst episode, {worst.label} ({worst.outcome})", True
-    if isinstance(worst, EvidenceRecord):
-        return f"Picture of {worst.label} ({worst.outcome})", False
-    return "What a robot does that has learnt this reward perfectly", True
-
-
-def _save_replay(worst: Evidence, replay: Path, grading: Grading) -> str:
+def _save_replay(run: WatchableEvidence, replay: Path, grading: Grading) -> str:
     """Saves an episode; returns how to watch it."""
-    from grader.kinds.reward.evidence import RewardEvidence
-    from kit.run.recording import save_recording
-    from kit.world.catalogue import map_names
-
-    root = ""
     try:
-        if _is_drive(worst):
-            save_recording(worst.recording, replay.absolute())
-            if worst.recording.place not in map_names():
-                root = f" --root {shlex.quote(str(grading.assignment.folder))}"
-        elif isinstance(worst, RewardEvidence):
-            worst.save_exploit(replay.absolute())
+        is_own_place = run.save_replay(replay.absolute())
     except OSError as error:
-        options.fail(f"Cannot write {replay}: {error.strerror or error}.")
+        exits.fail(f"Cannot write {replay}: {error.strerror or error}.")
+    root = f" --root {shlex.quote(str(grading.assignment.folder))}" if is_own_place else ""
     return f"To watch it: kit replay {shlex.quote(str(replay))}{root}"
 
 
@@ -223,13 +200,13 @@ def report(file: Path, format_name: str, output: Path | None, for_student: bool,
     from kit.workspace import write_atomically
 
     if format_name not in FORMATS:
-        options.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")
+        exits.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")
     if work and format_name != "annotations":
-        options.fail("--work is for annotations.")
+        exits.fail("--work is for annotations.")
     try:
         result = GradingResult.from_dict(json.loads(file.read_bytes()))
     except (KeyError, TypeError, ValueError, RecursionError):
-        options.fail(f"{file}: not a result of the grader.")
+        exits.fail(f"{file}: not a result of the grader.")
     if for_student:
         result = result.for_student()
     text = write_annotations(result, work) if work else FORMATS[format_name].write(result)

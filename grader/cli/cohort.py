@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from grader.cli import options
+from grader.cli import confinement, exits, loading, options
 from grader.cli.progress import counted_progress
 from grader.cohort.class_findings import (
     attention_blocks,
@@ -80,19 +80,17 @@ def cohort(
     grader failed for some, or a worker left no result for some.
     """
 
-    assignment = options.load_assignment(folder)
+    assignment = loading.load_assignment(folder)
     if secret:
-        options.warn_of_short_seeds(assignment)
+        loading.warn_of_short_seeds(assignment)
     queue = Queue(queue_folder.absolute())
-    wanted = options.level_for_untrusted(
+    wanted = confinement.level_for_untrusted(
         assignment, level, secret=secret, for_class=True, runs_here=executor.name == "local"
     )
     grading_options = GradingOptions(wanted, secret, secret and examples, may_lower_level=False)
     if secret and wanted < assignment.level:
-        options.fail(
-            f"Secret seeds are used at level {int(assignment.level)} or higher, not at {int(wanted)}."
-        )
-    options.warn_of_unused_secrets(assignment, secret=secret)
+        exits.fail(f"Secret seeds are used at level {int(assignment.level)} or higher, not at {int(wanted)}.")
+    loading.warn_of_unused_secrets(assignment, secret=secret)
     try:
         entries = prepare_queue(queue, submissions, assignment, grading_options)
         judged = judge_anew(queue)
@@ -102,7 +100,7 @@ def cohort(
         with counted_progress(len(waiting), "graded") as count_one:
             executor.run(queue, waiting, lambda key: count_one())
     except (QueueError, ExecutorUnavailable, OSError) as error:
-        options.fail(describe_error(error))
+        exits.fail(describe_error(error))
     raise SystemExit(publish(queue, is_graded=executor.name != "none"))
 
 
@@ -126,10 +124,10 @@ def publish(queue: Queue, *, is_graded: bool) -> int:
         click.echo(
             "A worker left no result for some, one that cannot be read, or another job's: run the same command to grade them."
         )
-        return options.EXIT_BROKEN
+        return exits.EXIT_BROKEN
     if "broken" in verdicts:
-        return options.EXIT_BROKEN
-    return options.EXIT_FAILED if UNREADABLE in verdicts else 0
+        return exits.EXIT_BROKEN
+    return exits.EXIT_FAILED if UNREADABLE in verdicts else 0
 
 
 @click.command()
@@ -148,15 +146,15 @@ def work(folder: Path, shard: str, jobs: int) -> None:
     """Grade the jobs in the queue FOLDER that have no result yet."""
     share = read_shard(shard)
     if share is None:
-        options.fail(f"{shard}: give the share and the number of shares, counting from 0, such as 0/4.")
+        exits.fail(f"{shard}: give the share and the number of shares, counting from 0, such as 0/4.")
     queue = Queue(folder.absolute())
     try:
         secret = queue.grading_options().secret
-        options.level_for_untrusted(queue.assignment(), str(int(queue.level())), secret=secret)
+        confinement.level_for_untrusted(queue.assignment(), str(int(queue.level())), secret=secret)
         keys = queue.waiting(share)
         JobExecutor(jobs=jobs).run(queue, keys, lambda key: None)
     except (QueueError, OSError) as error:
-        options.fail(describe_error(error))
+        exits.fail(describe_error(error))
     click.echo(f"{len(keys)} graded")
 
 
@@ -198,13 +196,13 @@ def ladder(folder: Path, names: tuple[str, ...], as_csv: bool, unconfined: bool)
     Exit code: 0 success; 2 an argument is wrong, or this machine does not reach that level.
     """
     if not unconfined and not probe.is_level_available(Level.FILTERED):
-        options.fail(
+        exits.fail(
             "This machine does not reach confinement level 1; `kit doctor` says why. To race without it, use --unconfined: "
             "a submitted program can then read and change anything that you can."
         )
     programs, passed_over = find_programs(folder)
     if told := passed_over_line(passed_over, "raced"):
-        options.warn(told)
+        exits.warn(told)
     if len(programs) < 2:
         raise click.UsageError(f"{folder}: a ladder needs at least two programs; it has {len(programs)}.")
     try:

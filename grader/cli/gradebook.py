@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from grader.cli import options
+from grader.cli import exits
 from grader.cohort.choice_rules import RULES
 from grader.cohort.class_findings import attention_blocks, class_blocks
 from grader.cohort.class_list import ClassRules, class_table
@@ -119,12 +119,12 @@ def gradebook(
         assignment = queue.assignment()
         before = None if against is None else read_json(against.read_text(encoding="utf-8"))
     except (WorldError, QueueError, ValueError, OSError) as error:
-        options.fail(describe_error(error))
+        exits.fail(describe_error(error))
     table = found.rows
     if policy is not None:
         click.echo(policy.due_text, err=True)
     for remark in found.remarks:
-        options.warn(remark)
+        exits.warn(remark)
     if before is not None:
         lines = list(changes(before, table))
         text = ("\n".join(lines) if lines else "nothing has changed") + "\n"
@@ -139,7 +139,7 @@ def gradebook(
     if (look := [*attention_blocks(table), *class_blocks(table)]) and (
         roster is not None or feedback is not None
     ):
-        options.warn("\n".join(lines_of(look)))
+        exits.warn("\n".join(lines_of(look)))
     try:
         if feedback is not None:
             count = write_feedback(queue, table, feedback.absolute())
@@ -149,4 +149,4 @@ def gradebook(
         elif feedback is None:
             click.echo(text, nl=False)
     except OSError as error:
-        options.fail(describe_error(error))
+        exits.fail(describe_error(error))

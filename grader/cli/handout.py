@@ -16,7 +16,7 @@ import click
 from grader.budgets import budget_lines
 from grader.ci import REPOSITORY_SERVICES, SERVICES
 from grader.ci.ci_service import CiRunner, GitSource, GradedWork
-from grader.cli import options
+from grader.cli import exits, loading
 from grader.evidence_digest import ASSIGNMENT_FILE
 from grader.kinds.contract import kind_names
 from grader.new_assignment import CARD
@@ -78,11 +78,11 @@ def release(
 
     Exit code: 0 written; 2 refused, or an argument is wrong.
     """
-    assignment = options.load_assignment(folder)
+    assignment = loading.load_assignment(folder)
     if repository and kit is None:
-        options.fail("--repository needs --kit ADDRESS: where the workflow clones the kit from.")
+        exits.fail("--repository needs --kit ADDRESS: where the workflow clones the kit from.")
     if target.exists() and (target.is_file() or any(target.iterdir())):
-        options.fail(f"{target} already exists; choose another name.")
+        exits.fail(f"{target} already exists; choose another name.")
     try:
         version = student_version(assignment, with_reference=with_reference)
         files = version.files
@@ -92,13 +92,13 @@ def release(
             workflow = SERVICES[service].write([work], source, CiRunner())
             files = repository_files(version, str(SERVICES[service].place), workflow, assignment.submit)
     except ReleaseRefused as refused:
-        options.fail(f"Not released.\n{refused}")
+        exits.fail(f"Not released.\n{refused}")
     except (ValueError, OSError) as error:
-        options.fail(f"{error}.")
+        exits.fail(f"{error}.")
     try:
         _write_handout(files, target)
     except OSError as error:
-        options.fail(f"Cannot write {target}: {error.strerror or error}.")
+        exits.fail(f"Cannot write {target}: {error.strerror or error}.")
     click.echo(f"{target}: {counted(len(files), 'file')} for students")
     if version.kept_back:
         click.echo(f"With you stay: {join_names(version.kept_back, 8)}.")
@@ -167,7 +167,7 @@ def _check_readable(folder: Path) -> None:
     try:
         read_assignment(folder)
     except WorldError as error:
-        options.warn(f"WARNING: students cannot check their work with it: {error}")
+        exits.warn(f"WARNING: students cannot check their work with it: {error}")
 
 
 @click.command()
@@ -229,10 +229,10 @@ def sheet_blocks(kind: str) -> list[Block]:
 
 
 def _key_table(title: str, keys: Iterable[SheetKey]) -> Table:
-    return labelled_table(((key.path.removeprefix("secret."), _told(key)) for key in keys), title)
+    return labelled_table(((key.path.removeprefix("secret."), _describe_key(key)) for key in keys), title)
 
 
-def _told(key: SheetKey) -> str:
+def _describe_key(key: SheetKey) -> str:
     """What a key means, what it holds, and what it is without being given."""
     default = key.key.default
     if "by default" in key.meaning:

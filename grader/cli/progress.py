@@ -32,15 +32,15 @@ def shown_progress(descriptor: int | None) -> Iterator[Callable[[str], None]]:
     if descriptor is not None:
         with suppress(OSError):  # there is no such descriptor: then nobody is told
             os.set_inheritable(descriptor, False)
-        yield _limited(lambda text: _write_line(descriptor, text), first_after_s=0.0)
+        yield _limit_rate(lambda text: _write_line(descriptor, text), first_after_s=0.0)
     elif sys.stderr.isatty():
         with _status_line() as show:
-            yield _limited(show, first_after_s=FIRST_AFTER_S)
+            yield _limit_rate(show, first_after_s=FIRST_AFTER_S)
     else:
         yield lambda text: None
 
 
-def _limited(show: Callable[[str], None], *, first_after_s: float) -> Callable[[str], None]:
+def _limit_rate(show: Callable[[str], None], *, first_after_s: float) -> Callable[[str], None]:
     """Limits how often the text of one kind is shown: the part before its first colon says the kind."""
     due = time.monotonic() + first_after_s
     shown_kind = ""

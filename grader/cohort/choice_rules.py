@@ -13,7 +13,7 @@ from grader.cohort.submission_times import SubmissionTime
 SortKey = tuple[float, float, str]
 
 
-def _latest(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
+def _rank_by_time(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
     return submitted.at.timestamp(), 0.0, row.name
 
 
@@ -21,16 +21,16 @@ def _latest_in_time(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
     return row.kept, submitted.at.timestamp(), row.name
 
 
-def _best(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
+def _rank_by_points(row: GradebookRow, submitted: SubmissionTime) -> SortKey:
     # A missing grade ranks first: the teacher must see it before another submission counts.
     return float("inf") if row.final is None else row.final, submitted.at.timestamp(), row.name
 
 
 RULES: Final[Mapping[str, tuple[str, Callable[[GradebookRow, SubmissionTime], SortKey]]]] = MappingProxyType(
     {
-        "latest": ("the latest", _latest),
+        "latest": ("the latest", _rank_by_time),
         "in-time": ("the latest of those that lost least by lateness", _latest_in_time),
-        "best": ("the best", _best),
+        "best": ("the best", _rank_by_points),
     }
 )
 """Description of the chosen submission, and the sort key that is largest for it, by rule."""
@@ -44,10 +44,10 @@ def choose_submissions(
     A time that belongs to no submission changes nothing. Raises KeyError for an unknown rule, ValueError for a student's name
     that is also that of a submission without a time.
     """
-    return tuple(sorted(_chosen(table, submission_times, rule), key=lambda row: row.name))
+    return tuple(sorted(_choose_rows(table, submission_times, rule), key=lambda row: row.name))
 
 
-def _chosen(
+def _choose_rows(
     table: Sequence[GradebookRow], submission_times: Mapping[str, SubmissionTime], rule: str
 ) -> Iterator[GradebookRow]:
     rule_text, rank = RULES[rule]

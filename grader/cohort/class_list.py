@@ -192,11 +192,11 @@ def with_marks(
         else:
             for i in at:
                 found[i] = _with_mark(found[i], mark, most)
-        remarks += _unfit(mark, most)
+        remarks += _mark_errors(mark, most)
     return found, list(dict.fromkeys(remarks))
 
 
-def _unfit(mark: ManualMark, most: Mapping[str, float]) -> Iterator[str]:
+def _mark_errors(mark: ManualMark, most: Mapping[str, float]) -> Iterator[str]:
     """Yields what a mark says of criteria that there are not, and points above the most."""
     for criterion in (*mark.points, *mark.comments):
         if criterion not in most:

@@ -78,7 +78,7 @@ def gradebook_rows(
 ) -> tuple[GradebookRow, ...]:
     """Returns one row per submission, sorted by name. ``owners``: whose each is, by a roster."""
     students = {} if owners is None else owners.students
-    rows = sorted(_rows(queue, policy, submission_times or {}, students), key=lambda row: row.name)
+    rows = sorted(_gradebook_rows(queue, policy, submission_times or {}, students), key=lambda row: row.name)
     errors = Counter(row.error for row in rows if row.error)
     return tuple(
         _as_grader_fault(row, errors[row.error]) if errors[row.error] >= SAME_ERRORS else row for row in rows
@@ -104,7 +104,7 @@ def time_of(
     return next((known[key] for key in keys if key in known), None)
 
 
-def _rows(
+def _gradebook_rows(
     queue: Queue,
     policy: LatePolicy | None,
     submission_times: Mapping[str, SubmissionTime],

@@ -291,7 +291,7 @@ def prepare_queue(
         make_private_folder(folder)
     _copy_assignment(queue, assignment)
     works, passed_over = works_in(cohort)
-    entries = tuple(_entries(queue, works, assignment, options))
+    entries = tuple(_queue_entries(queue, works, assignment, options))
     level = level_for_untrusted(assignment, options.level)
     content = {
         "assignment": assignment.id,
@@ -319,7 +319,7 @@ def works_in(cohort: Path) -> tuple[list[Path], list[str]]:
     return works, passed_over
 
 
-def _entries(
+def _queue_entries(
     queue: Queue, works: Sequence[Path], assignment: Assignment, options: GradingOptions
 ) -> Iterator[QueueEntry]:
     names: set[str] = set()

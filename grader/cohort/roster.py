@@ -51,7 +51,7 @@ class RosterForm:
 
     platform: str
     told_by: tuple[str, ...]
-    """The column titles that only this form has, as ``_title`` writes them."""
+    """The column titles that only this form has, as ``_normalize_title`` writes them."""
     columns: Mapping[str, tuple[str, ...]]
     """Titles of the columns of each field of ``RosterEntry``; more than one are put together with a blank."""
 
@@ -134,10 +134,10 @@ def read_roster(file: Path) -> Roster:
     if not lines:
         raise ValueError(f"{file}: it is empty; a roster begins with a line of column titles")
     titles = tuple(lines[0])
-    columns = {_title(each): i for i, each in reversed([*enumerate(titles)])}
+    columns = {_normalize_title(each): i for i, each in reversed([*enumerate(titles)])}
     form = next((each for each in FORMS if all(told in columns for told in each.told_by)), FORMS[-1])
     places = {
-        name: [at for each in parts if (at := _place(each, columns)) is not None]
+        name: [at for each in parts if (at := _column_index(each, columns)) is not None]
         for name, parts in form.columns.items()
     }
     if not any(places.values()):
@@ -159,11 +159,11 @@ def read_roster(file: Path) -> Roster:
     return Roster(form.platform, titles, tuple(map(tuple, lines[1:])), MappingProxyType(students))
 
 
-def _title(text: str) -> str:
+def _normalize_title(text: str) -> str:
     return " ".join(text.strip().casefold().replace("_", " ").split())
 
 
-def _place(names: str, columns: Mapping[str, int]) -> int | None:
+def _column_index(names: str, columns: Mapping[str, int]) -> int | None:
     """The index of a column that has one of these titles, separated by ``|``."""
     return next((columns[each] for each in names.split("|") if each in columns), None)
 
@@ -232,7 +232,8 @@ def owners_of(works: Iterable[str], roster: Roster) -> WorkOwners:
     ambiguous: dict[str, tuple[RosterEntry, ...]] = {}
     for work in works:
         key, found = next(
-            ((key, index[key]) for key in _readings(work, roster.platform, prefix) if key in index), ("", ())
+            ((key, index[key]) for key in _possible_names(work, roster.platform, prefix) if key in index),
+            ("", ()),
         )
         if len(found) > 1 and key not in groups:
             ambiguous[work], found = found, ()
@@ -240,7 +241,7 @@ def owners_of(works: Iterable[str], roster: Roster) -> WorkOwners:
     return WorkOwners(students, ambiguous)
 
 
-def _readings(work: str, platform: str, prefix: str | None) -> Iterator[str]:
+def _possible_names(work: str, platform: str, prefix: str | None) -> Iterator[str]:
     """Yields what the name of a work may mean, the surest first. ``prefix``: that of GitHub Classroom's repositories here.
 
     No part of it that a student has chosen may mean another student: of a platform's roster only that platform's names are

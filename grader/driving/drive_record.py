@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,9 @@ from kit.render.world_text import scene_rows
 from kit.ros.graph.connections import NodeConnections
 from kit.ros.node.timer import TIMER_WITHOUT_CALLBACK
 from kit.run.metrics import DriveMetrics
-from kit.run.recording import ACCEPT, Recording
+from kit.run.recording import ACCEPT, Recording, save_recording
 from kit.run.scenario import Scenario
+from kit.world.catalogue import map_names
 from kit.world.records import Circle, Polygon
 
 CLEARANCE_INTERVAL = 5
@@ -211,6 +213,14 @@ class GradedDrive:
     def picture(self, check: str = "") -> str:
         """Draws the robot's path and its last pose in plain characters; the same for every check."""
         return self._picture
+
+    def replay_title(self) -> str:
+        return f"The worst episode, {self.label} ({self.outcome})"
+
+    def save_replay(self, file: Path) -> bool:
+        """Saves the recording; returns whether its world is none of the kit's. Raises OSError."""
+        save_recording(self.recording, file)
+        return self.recording.place not in map_names()
 
     @cached_property
     def _picture(self) -> str:

@@ -69,13 +69,13 @@ def run_episode(
     clock, loading = clock or SubmissionClock(), loading or ProgramLoading()
     if loading.failure is not None:
         return _not_loaded(spec, loading.failure)
-    scenario, home = _scenario(spec.trial), shifted_start(spec.trial, spec.seed)
+    scenario, home = _scenario_of_trial(spec.trial), shifted_start(spec.trial, spec.seed)
     graph = Graph(log_sink=lambda record: None)
     try:
         program = NodeProcess(
             graph,
             file,
-            args=[*controller_arguments(scenario, home), *_parameters(spec.trial)],
+            args=[*controller_arguments(scenario, home), *_parameter_arguments(spec.trial)],
             seed=spec.seed,
             limits=clock.shorten(limits),
             level=level,
@@ -229,7 +229,7 @@ def shifted_start(trial: Trial, seed: int) -> Pose:
     )
 
 
-def _scenario(trial: Trial) -> Scenario:
+def _scenario_of_trial(trial: Trial) -> Scenario:
     scenario = trial.scenario
     if trial.noise is None and trial.laser_range is None:
         return scenario
@@ -258,6 +258,6 @@ def _with_laser_settings(model: Model, changes: Mapping[str, Any]) -> Model:
     return replace(model, plugins=plugins)
 
 
-def _parameters(trial: Trial) -> list[str]:
+def _parameter_arguments(trial: Trial) -> list[str]:
     words = [word for parameter in trial.parameters for word in ("-p", parameter)]
     return ["--ros-args", *words] if words else []

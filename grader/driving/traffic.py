@@ -16,7 +16,7 @@ from kit.host.wire import printable
 from kit.msg.message import Message, type_name
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import Bool
-from kit.ros.graph.directory import GraphNode
+from kit.ros.graph.directory import NodeLike
 from kit.ros.graph.graph import Graph
 
 MAX_PRINTED_LINES: Final = 200
@@ -27,7 +27,7 @@ class TrafficRecorder:
     """Counts the messages on each topic that nodes other than the world's own publish, second by second, and notes what the
     lasers of the world measured ahead, what the program's booleans said and how much it told was left."""
 
-    def __init__(self, graph: Graph, world_node: GraphNode | None) -> None:
+    def __init__(self, graph: Graph, world_node: NodeLike | None) -> None:
         self._world_node = world_node
         self._counts: dict[tuple[str, str], Counter[int]] = {}
         self._nodes: dict[tuple[str, str], set[str]] = {}
@@ -36,7 +36,7 @@ class TrafficRecorder:
         self._remaining: dict[str, dict[int, float]] = {}
         self.stop = graph.add_message_listener(self._on_message)
 
-    def _on_message(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
+    def _on_message(self, time_ns: int, node: NodeLike, name: str, message: Message) -> None:
         if node is self._world_node:
             if isinstance(message, LaserScan) and message.ranges:
                 self._ahead.setdefault(name, []).append((time_ns / 1e9, *_ranges_ahead(message)))
@@ -62,14 +62,14 @@ class TrafficRecorder:
 
     def flags(self) -> Mapping[str, FloatArray]:
         """Returns (k, 2) for each topic of booleans; see ``GradedDrive``."""
-        return _by_time(self._flags)
+        return _time_series(self._flags)
 
     def remaining(self) -> Mapping[str, FloatArray]:
         """Returns (k, 2) for each topic of an action's feedback; see ``GradedDrive``."""
-        return _by_time(self._remaining)
+        return _time_series(self._remaining)
 
 
-def _by_time(values: Mapping[str, Mapping[int, float]]) -> Mapping[str, FloatArray]:
+def _time_series(values: Mapping[str, Mapping[int, float]]) -> Mapping[str, FloatArray]:
     return {
         name: np.array([(time_ns / 1e9, value) for time_ns, value in said.items()], dtype=np.float64)
         for name, said in values.items()

@@ -10,7 +10,8 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from itertools import chain
-from typing import Any, Final, Protocol
+from pathlib import Path
+from typing import Any, Final, Protocol, runtime_checkable
 
 from grader.assignment import MAX_COUNTERPARTS, Assignment, Criterion, Trial
 from grader.evidence.submission_clock import SubmissionClock
@@ -50,7 +51,7 @@ class Evidence(Protocol):
 
     @property
     def outcome(self) -> str:
-        """A few words on what happened."""
+        """How the episode ended, in a few words."""
 
     @property
     def steps(self) -> int:
@@ -65,6 +66,17 @@ class Evidence(Protocol):
 
     def picture(self, check: str = "") -> str:
         """A picture of it in plain characters, for a check; may be empty."""
+
+
+@runtime_checkable
+class WatchableEvidence(Protocol):
+    """Evidence whose picture shows an episode."""
+
+    def replay_title(self) -> str:
+        """Names what the picture shows; empty if there is nothing to watch."""
+
+    def save_replay(self, file: Path) -> bool:
+        """Saves the episode for ``kit replay``; returns whether it needs the assignment's own world files. Raises OSError."""
 
 
 class EvidenceCollector(Protocol):
@@ -284,10 +296,10 @@ class EpisodeCollector(CachingCollector):
         self._criteria = assignment.criteria if criteria is None else criteria
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
-        return [self._evidence_of(spec) for spec in self._specs(criterion)]
+        return [self._evidence_of(spec) for spec in self._episode_specs(criterion)]
 
     def public_evidence(self, criterion: Criterion) -> Sequence[Evidence]:
-        return [self._evidence_of(spec) for spec in self._specs(criterion) if not spec.secret]
+        return [self._evidence_of(spec) for spec in self._episode_specs(criterion) if not spec.secret]
 
     def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
         specs = counterpart_specs(self._assignment, criterion)
@@ -295,7 +307,7 @@ class EpisodeCollector(CachingCollector):
             ((spec.trial.name, spec.seed), spec.label, partial(self._run, spec)) for spec in specs
         )
 
-    def _specs(self, criterion: Criterion) -> Iterator[EpisodeSpec]:
+    def _episode_specs(self, criterion: Criterion) -> Iterator[EpisodeSpec]:
         return episode_specs(self._assignment, criterion, secret=self._secret)
 
     def _evidence_of(self, spec: EpisodeSpec) -> Evidence:
@@ -317,5 +329,5 @@ class EpisodeCollector(CachingCollector):
     @cached_property
     def _episode_count(self) -> int:
         """How many episodes all criteria need."""
-        specs = chain.from_iterable(map(self._specs, self._criteria))
+        specs = chain.from_iterable(map(self._episode_specs, self._criteria))
         return len({(spec.trial.name, spec.secret, spec.seed) for spec in specs})

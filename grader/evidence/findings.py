@@ -218,7 +218,7 @@ class FindingsRecorder:
         return [each for _, each in noted]
 
     def _noted_of(self, evidence: Evidence) -> tuple[int, NotedEvidence]:
-        """Its number and its noting twin, the same each time: criteria compare evidence by identity."""
+        """The number of a piece of evidence and the object that notes its measures, always the same object: criteria compare by identity."""
         known = self._noted.get(id(evidence))
         if known is None:
             finding = KeptFinding(evidence.label, evidence.secret, "", 0, (), None)
@@ -241,17 +241,17 @@ class KeptEvidence:
         self.failure = None if finding.failure is None else _failure_from(finding.failure)
 
     def explain(self, check: str, params: Any) -> str:
-        return _kept(self._finding.explained, _answer_key(check, params))
+        return _stored_answer(self._finding.explained, _answer_key(check, params))
 
     def picture(self, check: str = "") -> str:
-        return _kept(self._finding.pictures, check)
+        return _stored_answer(self._finding.pictures, check)
 
     def measure(self, check: str, params: Any, measure: Measure) -> float:
         """The measure that it had. Raises StudentCodeError if measuring it failed."""
         key = _answer_key(check, params)
         if key in self._finding.failed_measures:
             raise StudentCodeError(_failure_from(self._finding.failed_measures[key]))
-        return float(_kept(self._finding.measures, key))
+        return float(_stored_answer(self._finding.measures, key))
 
     def has_measured(self, check: str, params: Any) -> bool:
         key = _answer_key(check, params)
@@ -260,8 +260,10 @@ class KeptEvidence:
     def state_of(self, check: str, params: Any) -> tuple[Failure | None, int]:
         """How the program had failed, and the steps that had been simulated, when it had been measured."""
         key = _answer_key(check, params)
-        failure = _kept(self._finding.failures, key)
-        return None if failure is None else _failure_from(failure), _kept(self._finding.steps_then, key)
+        failure = _stored_answer(self._finding.failures, key)
+        return None if failure is None else _failure_from(failure), _stored_answer(
+            self._finding.steps_then, key
+        )
 
 
 class KeptFindings:
@@ -273,22 +275,22 @@ class KeptFindings:
         self._pieces = [KeptEvidence(each) for each in findings.pieces]
 
     def evidence(self, criterion: Criterion) -> Sequence[Evidence]:
-        return self._at(_kept(self._findings.evidence, evidence_key(criterion)))
+        return self._pieces_at(_stored_answer(self._findings.evidence, evidence_key(criterion)))
 
     def public_evidence(self, criterion: Criterion) -> Sequence[Evidence]:
-        return self._at(_kept(self._findings.public, evidence_key(criterion)))
+        return self._pieces_at(_stored_answer(self._findings.public, evidence_key(criterion)))
 
     def collected(self) -> Sequence[Evidence]:
-        return self._at(self._findings.collected)
+        return self._pieces_at(self._findings.collected)
 
     def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
-        yield from self._at(_kept(self._findings.counterparts, evidence_key(criterion)))
+        yield from self._pieces_at(_stored_answer(self._findings.counterparts, evidence_key(criterion)))
 
-    def _at(self, indices: Sequence[int]) -> Sequence[Evidence]:
+    def _pieces_at(self, indices: Sequence[int]) -> Sequence[Evidence]:
         return [self._pieces[at] for at in indices]
 
 
-def _kept(answers: Mapping[str, Answer], key: str) -> Answer:
+def _stored_answer(answers: Mapping[str, Answer], key: str) -> Answer:
     if key not in answers:
         raise NotKept(key)
     return answers[key]

@@ -152,12 +152,14 @@ class TrainingResults:
         skipped = max(0, len(worst.tests) - PICTURE_ROWS)
         for test in worst.tests[skipped:]:
             bars = "  ".join(
-                f"{_bar(test.counts[case].share)} {test.counts[case].share:4.2f}" for case in cases
+                f"{_share_bar(test.counts[case].share)} {test.counts[case].share:4.2f}" for case in cases
             )
             rows.append(f"{test.steps:18,}  {bars}{'  best so far' if test.kept else ''}")
-        bars = "  ".join(f"{_bar(worst.exam[case].share)} {worst.exam[case].share:4.2f}" for case in cases)
+        bars = "  ".join(
+            f"{_share_bar(worst.exam[case].share)} {worst.exam[case].share:4.2f}" for case in cases
+        )
         return "\n".join([*rows, f"{'exam':>18}  {bars}"])
 
 
-def _bar(share: float) -> str:
+def _share_bar(share: float) -> str:
     return f"{'#' * round(7 * share):7}"

@@ -14,7 +14,7 @@ from grader.assignment import TeacherTest
 from grader.author_code import AuthorCodeError, run_author_code
 from grader.evidence.contract import EvidenceSource
 from grader.evidence.submission_clock import SubmissionClock
-from grader.scoring import status_of_failure
+from grader.failure_status import status_of_failure
 from grader.teacher_tests.deadline import TestDeadline, TestTimeUsedUp
 from grader.teacher_tests.reading import MARK_HELP
 from kit.host.failure import Failure
@@ -102,7 +102,7 @@ def _run_pytest(session: _Session, folder: Path, files: Sequence[Path]) -> dict[
         options += ["-c", os.devnull, "--rootdir", str(folder), "--confcutdir", str(folder)]
         options += ["--import-mode=importlib"]
         options += ["--noconftest"]  # one above the assignment's folder may be a student's
-        pytest.main([*options, *map(str, files)], plugins=[_plugin(session)])
+        pytest.main([*options, *map(str, files)], plugins=[_make_plugin(session)])
     _forget_modules(files)
     return {
         name: [[each.status.value, each.message, each.uses_secrets] for each in outcomes]
@@ -132,7 +132,7 @@ def _isolated_environment() -> Iterator[None]:
         os.environ.update(before)
 
 
-def _plugin(session: _Session) -> object:
+def _make_plugin(session: _Session) -> object:
     """Makes the plugin. A function, so that pytest is only imported where a teacher test runs."""
     import pytest
 

@@ -153,7 +153,7 @@ class Bridge:
         for route, channel in self._channels.items():
             for endpoint in remote:
                 theirs = InterfaceId(endpoint.type_name, endpoint.type_hash or channel.interface.type_hash)
-                if _matches(endpoint, route) and theirs != channel.interface:
+                if _matches_route(endpoint, route) and theirs != channel.interface:
                     what = endpoint.type_name
                     if what == channel.interface.name:
                         what = f"another definition of {what}"
@@ -183,7 +183,7 @@ class Bridge:
         self, route: BridgeRoute, state: GraphState, remote: tuple[RemoteEndpoint, ...]
     ) -> Channel | None:
         """Opens a route; None while its type is not known. BridgeError for a type that cannot pass."""
-        there = [each for each in remote if _matches(each, route)]
+        there = [each for each in remote if _matches_route(each, route)]
         here = tuple(_types_here(route, state, self._node.get_fully_qualified_name()))
         names = tuple(dict.fromkeys([*here, *(each.type_name for each in there)]))
         if not names:
@@ -210,7 +210,7 @@ class Bridge:
         cls = find_message(type_name)
         interface = self._context.codec.topic_interface(cls)
         self._check_hashes(route, interface, there)
-        guard, qos = self._make_guard(cls), _quality(route, state, there)
+        guard, qos = self._make_guard(cls), _route_qos(route, state, there)
         channel = TOPIC_CHANNELS[route.direction](route, interface, self._context, cls, qos, guard)
         limits = self._settings.limit
         about = (
@@ -329,7 +329,7 @@ def _report_plainly(report: Report, text: str) -> None:
     report(shown if len(shown) <= MAX_LINE else f"{shown[:MAX_LINE]}...")
 
 
-def _matches(endpoint: RemoteEndpoint, route: BridgeRoute) -> bool:
+def _matches_route(endpoint: RemoteEndpoint, route: BridgeRoute) -> bool:
     is_topic = endpoint.role in ("publisher", "subscription")
     return endpoint.name == route.wire_name and is_topic == route.direction.is_topic
 
@@ -347,7 +347,7 @@ def _types_here(route: BridgeRoute, state: GraphState, own: str) -> Iterator[str
             yield from service.types
 
 
-def _quality(route: BridgeRoute, state: GraphState, there: list[RemoteEndpoint]) -> QoSProfile:
+def _route_qos(route: BridgeRoute, state: GraphState, there: list[RemoteEndpoint]) -> QoSProfile:
     """The quality of service of a route: it keeps what its publishers keep, and asks no more than they give."""
     publishers: list[EndpointState] = []
     for topic in state.topics:

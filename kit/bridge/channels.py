@@ -168,7 +168,7 @@ class SentTopic(Channel):
         context.node.create_subscription(cls, route.name, self._pass, qos, callback_group=context.group)
 
     def deliver(self) -> None:
-        """Nothing arrives from the wire."""
+        """Does nothing: on this channel nothing arrives from the wire."""
 
     def send_stop(self) -> None:
         self._send(self._stop_bytes)

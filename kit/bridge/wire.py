@@ -191,7 +191,7 @@ class DryRunWire:
     def open_subscription(
         self, name: str, interface: InterfaceId, qos: QoSProfile, on_message: OnMessage
     ) -> None:
-        """Nothing arrives."""
+        """Does nothing: on this wire nothing arrives."""
 
     def open_service(
         self, name: str, interface: InterfaceId, on_request: Callable[[bytes, Reply], None]
@@ -202,7 +202,7 @@ class DryRunWire:
         return lambda data, on_answer: on_answer(None)
 
     def close(self) -> None:
-        """There is nothing to take back."""
+        """Does nothing: this wire has announced nothing."""
 
 
 class DelayMeasure:

@@ -259,7 +259,9 @@ class ZenohWire:
         pattern = f"@ros2_lv/{self._address.domain}/**"
         self._open.append(self._session.liveliness().declare_subscriber(pattern, note, history=True))
 
-    def _new_endpoint(self, kind: EntityKind, name: str, interface: InterfaceId, qos: QoSProfile) -> _Sender:
+    def _new_endpoint(
+        self, kind: EntityKind, name: str, interface: InterfaceId, qos: QoSProfile
+    ) -> _MessageCounter:
         """Announces an endpoint."""
         with self._lock:
             self._number += 1
@@ -267,7 +269,7 @@ class ZenohWire:
         endpoint = WireEndpoint(kind, self._node_name, name, interface.name, interface.type_hash)
         token = endpoint_token(self._address.domain, self._id, 0, number, endpoint, qos)
         self._announce(token)
-        return _Sender(make_gid(token))
+        return _MessageCounter(make_gid(token))
 
     def _announce(self, token: str) -> None:
         with self._lock:
@@ -278,7 +280,7 @@ class ZenohWire:
         return data_key(self._address.domain, name, interface.name, interface.type_hash)
 
 
-class _Sender:
+class _MessageCounter:
     """Numbers the messages of one endpoint."""
 
     def __init__(self, gid: bytes) -> None:

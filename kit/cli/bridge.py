@@ -23,7 +23,7 @@ from kit.bridge.motion_guard import SpeedLimit
 from kit.bridge.shutdown import ShutdownDeadline
 from kit.bridge.wire import BridgeError, BridgeRoute, Direction, DryRunWire, RemoteEndpoint, Wire
 from kit.bridge.zenoh_wire import DEFAULT_ENDPOINT, ZenohAddress, ZenohWire
-from kit.cli import messages, options
+from kit.cli import messages, opening, options
 from kit.cli.ros.world_client import connect_to_world
 from kit.plain_text import escape_controls
 
@@ -54,7 +54,7 @@ def stop(workspace: Path | None) -> None:
 
     Exit code: 0 all bridges stopped; 1 no bridge runs, or one does not answer.
     """
-    answers = stop_bridges(options.open_existing_workspace(workspace).folder)
+    answers = stop_bridges(opening.open_existing_workspace(workspace).folder)
     for name, answer in answers:
         click.echo(f"{name}: stopped {answer}")
     if not answers:
@@ -276,7 +276,7 @@ def _run_bridge(request: BridgeRequest, where: str, open_wire: Callable[[], Wire
             _list_endpoints(open_wire)
             return
         settings = request.settings()
-        folder = options.open_existing_workspace(request.workspace).folder
+        folder = opening.open_existing_workspace(request.workspace).folder
         with connect_to_world(request.world, request.workspace) as client:
             for line in _describe_plan(settings, where, client.world):
                 click.echo(line)
@@ -287,7 +287,7 @@ def _run_bridge(request: BridgeRequest, where: str, open_wire: Callable[[], Wire
                 bridge = opened.enter_context(Bridge(node, wire, settings, click.echo))
                 deadline.at_begin(bridge.stop)
                 opened.enter_context(StopSocket(bridge, folder, client.world, click.echo))
-                opened.enter_context(_keys(bridge, deadline))
+                opened.enter_context(_stop_keys(bridge, deadline))
                 opened.enter_context(_status_printer(bridge, request.every))
                 opened.callback(deadline.begin)  # first of all: whatever takes long or hangs comes after it
                 client.spin(node)
@@ -341,7 +341,7 @@ def _status_printer(bridge: Bridge, every: float) -> Iterator[None]:
 
 
 @contextmanager
-def _keys(bridge: Bridge, deadline: ShutdownDeadline) -> Iterator[None]:
+def _stop_keys(bridge: Bridge, deadline: ShutdownDeadline) -> Iterator[None]:
     """Lets keys stop the robot and go on, where there is a terminal."""
     if not sys.stdin.isatty():
         yield

@@ -76,7 +76,7 @@ def report(
                 err=True,
             )
             raise SystemExit(EMPTY)
-        data = build_class_data(roster, read_form(), _items())
+        data = build_class_data(roster, read_form(), _quiz_items())
         made = build_report(prepare_report(data, method=division), roster.file_count, wanted)
         report_output.write_outputs(made, outputs)
 
@@ -98,7 +98,7 @@ def guide(lessons: tuple[str, ...]) -> None:
         click.echo(messages.replace_unencodable(teachers_guide(names)), nl=False)
 
 
-def _items() -> Mapping[str, ReportItem]:
+def _quiz_items() -> Mapping[str, ReportItem]:
     """The questions of the kit's quiz with their options; none where the lessons are not there."""
     try:
         bank = read_bank()

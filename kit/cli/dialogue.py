@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, opening, options, terminal_options
 from kit.cli.full_screen import show_dialogue
 from kit.cli.input_lines import InputBuffer, InputLines
 from kit.dialogue.dialogue import Dialogue, DialogueAction, Turn
@@ -52,11 +52,11 @@ def dialogue_command(name: str, make: Any) -> click.Command:
     @click.command(name, help=inspect.getdoc(make))
     @options.workspace
     @click.option("--plain", is_flag=True, help="Ask line by line instead of on a full screen.")
-    @options.glyphs
-    @options.color
+    @terminal_options.glyphs
+    @terminal_options.color
     def command(workspace: Path | None, plain: bool, glyphs: str | None, color: str | None) -> None:
-        terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
-        dialogue = make(options.open_existing_workspace(workspace))
+        terminal = terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
+        dialogue = make(opening.open_existing_workspace(workspace))
         if terminal.plain.value:
             run_dialogue(dialogue)
         else:
@@ -84,7 +84,7 @@ class _Conversation:
         self._is_left = False
 
     def run(self) -> None:
-        _say(self._dialogue.opening())
+        _print_blocks(self._dialogue.opening())
         try:
             self._show()
             while not (self._is_left or self._dialogue.is_over):
@@ -96,7 +96,7 @@ class _Conversation:
             click.echo("")
         finally:
             self._dialogue.close()
-            _say(self._dialogue.farewell())
+            _print_blocks(self._dialogue.farewell())
 
     # What is said
 
@@ -112,12 +112,12 @@ class _Conversation:
             self._said = []  # two questions may have the same words
             click.echo("")
             if dialogue.position:
-                _echo(wrap(dialogue.position[0].upper() + dialogue.position[1:], HEARD.width))
+                _print_lines(wrap(dialogue.position[0].upper() + dialogue.position[1:], HEARD.width))
         new = [block for block, said in zip(blocks, lines, strict=True) if said not in self._said]
         note = dialogue.note
         if note is not None and note != self._note:
             new.append(note)
-        _say([*heard, *new])
+        _print_blocks([*heard, *new])
         self._said, self._note = lines, note
         if with_keys:
             self._say_keys()
@@ -127,22 +127,22 @@ class _Conversation:
         if self._dialogue.is_over or self._dialogue.busy:
             return
         keys = [
-            f"{_keys(each, self._dialogue)} {_word(each, self._dialogue)}"
+            f"{_typed_keys(each, self._dialogue)} {_action_word(each, self._dialogue)}"
             for each in self._turn.possible()
             if each.is_for_lines and each.is_listed
         ]
         if keys != self._keys_said:
             self._keys_said = keys
             held = " \0".join(each.replace(" ", "\0") for each in keys)  # a key stays with its word
-            _echo(["", *(line.replace("\0", " ").strip() for line in wrap(held, HEARD.width))])
+            _print_lines(["", *(line.replace("\0", " ").strip() for line in wrap(held, HEARD.width))])
 
     def _say_help(self) -> None:
         rows = [
-            (_keys(each, self._dialogue), _word(each, self._dialogue), each.keys.help)
+            (_typed_keys(each, self._dialogue), _action_word(each, self._dialogue), each.keys.help)
             for each in self._turn.possible()
             if each.is_for_lines
         ]
-        _say([labelled_table([*rows, (*AGAIN, "say everything here again")])])
+        _print_blocks([labelled_table([*rows, (*AGAIN, "say everything here again")])])
         click.echo("Type a key or its word, and Enter.")
 
     # What is done
@@ -184,7 +184,7 @@ class _Conversation:
         said = ""
         while busy := self._dialogue.busy:
             if busy != said and (not said or sys.stdout.isatty()):
-                _echo([busy])
+                _print_lines([busy])
                 said = busy
             try:
                 time.sleep(POLL_S / 4)
@@ -202,7 +202,7 @@ class _Conversation:
         attempt = self._turn.attempt
         match effect:
             case Remark(text):
-                _echo(wrap(text, HEARD.width))
+                _print_lines(wrap(text, HEARD.width))
             case Leave():
                 self._is_left = True
             case Help():
@@ -210,11 +210,11 @@ class _Conversation:
             case StartTyping():
                 click.echo("Type your answer, and Enter.")
             case Tell(_, blocks):
-                _say(blocks)
+                _print_blocks(blocks)
             case Choose(title, choices, chose):
                 click.echo(f"{title}:")
                 for number, (name, text) in enumerate(choices, 1):
-                    _echo(wrap(f"{name}  {text}", HEARD.width, f"  {number}  ", "     "))
+                    _print_lines(wrap(f"{name}  {text}", HEARD.width, f"  {number}  ", "     "))
                 self._prompt()
                 line = (self._lines.read_line() or "").strip()
                 chosen = int(line) - 1 if line.isdecimal() and 1 <= int(line) <= len(choices) else None
@@ -224,7 +224,7 @@ class _Conversation:
                 self._place, self._said, self._keys_said = self, [], []
                 return attempt(closed)
             case Work(note, job, done):
-                _echo(wrap(note, HEARD.width) if note else [])
+                _print_lines(wrap(note, HEARD.width) if note else [])
                 return attempt(lambda: done(job()))
             case Show(request, shown):
                 way = self._ways[type(request)]
@@ -232,7 +232,7 @@ class _Conversation:
         return None
 
 
-def _keys(action: DialogueAction[Any], dialogue: Dialogue) -> str:
+def _typed_keys(action: DialogueAction[Any], dialogue: Dialogue) -> str:
     """The keys of an action as they are typed in a line."""
     if action.shown_keys is not None:
         return action.shown_keys(dialogue)
@@ -241,15 +241,15 @@ def _keys(action: DialogueAction[Any], dialogue: Dialogue) -> str:
     return typed[0] if shown in NOT_TYPED and typed else shown
 
 
-def _word(action: DialogueAction[Any], dialogue: Dialogue) -> str:
+def _action_word(action: DialogueAction[Any], dialogue: Dialogue) -> str:
     return action.word(dialogue) if action.word is not None else action.keys.label
 
 
-def _say(blocks: Sequence[Block]) -> None:
+def _print_blocks(blocks: Sequence[Block]) -> None:
     """Prints blocks, with an empty line between two that are not tight."""
-    _echo(lines_of(blocks))
+    _print_lines(lines_of(blocks))
 
 
-def _echo(lines: Sequence[str]) -> None:
+def _print_lines(lines: Sequence[str]) -> None:
     for line in lines:
         click.echo(messages.replace_unencodable(line))

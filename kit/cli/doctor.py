@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 import kit
-from kit.cli import messages, options
+from kit.cli import messages, terminal_options
 from kit.cli.full_screen import show_screen
 from kit.document.blocks import labelled_table
 from kit.document.layout import lines_of
@@ -56,14 +56,14 @@ class Finding:
     meaning: str = ""
 
 
-def _machine() -> Iterator[Finding]:
+def _check_machine() -> Iterator[Finding]:
     yield Finding("Machine", "kit", kit.__version__)
     yield Finding("Machine", "python", platform.python_version(), sys.executable)
     yield Finding("Machine", "system", f"{platform.system()} {platform.release()} {platform.machine()}")
     yield Finding("Machine", "processors", str(os.cpu_count() or "unknown"))
 
 
-def _terminal(decision: TerminalDecision) -> Iterator[Finding]:
+def _check_terminal(decision: TerminalDecision) -> Iterator[Finding]:
     section = "Terminal"
     plain, between = decision.plain, decision.between
     for name in ("TERM", "COLORTERM"):
@@ -75,7 +75,7 @@ def _terminal(decision: TerminalDecision) -> Iterator[Finding]:
     yield Finding(section, "size", decision.room.value, decision.room.reason)
     yield Finding(section, "link", "remote" if decision.remote.value else "local", decision.remote.reason)
     yield Finding(section, "in between", between.value or "nothing", between.reason)
-    yield _keyboard(decision)
+    yield _check_keyboard(decision)
     motion = "reduced" if decision.reduce_motion.value else "full"
     yield Finding(section, "motion", motion, decision.reduce_motion.reason)
     mouse = "the kit's" if decision.mouse.value else "the terminal's"
@@ -89,7 +89,7 @@ def _terminal(decision: TerminalDecision) -> Iterator[Finding]:
         )
 
 
-def _keyboard(decision: TerminalDecision) -> Finding:
+def _check_keyboard(decision: TerminalDecision) -> Finding:
     name = "key release"
     if decision.plain.value:
         return Finding("Terminal", name, "not asked", "Plain mode reads lines, not keys.")
@@ -124,7 +124,7 @@ def _keyboard(decision: TerminalDecision) -> Finding:
     )
 
 
-def _packages() -> Iterator[Finding]:
+def _check_packages() -> Iterator[Finding]:
     """Finds which of the declared packages are installed. Imports none of them: torch alone takes seconds."""
     for name, its_version in foreign_distributions():
         yield Finding("Packages", name, its_version, overwritten_text(name, its_version))
@@ -150,7 +150,7 @@ def _packages() -> Iterator[Finding]:
         )
 
 
-def _extensions() -> Iterator[Finding]:
+def _check_extensions() -> Iterator[Finding]:
     """Finds the parts that other packages bring, and tries each."""
     if not installed_extensions():
         return  # nothing heavy is imported to compare names with
@@ -172,7 +172,7 @@ def own_names() -> dict[str, tuple[str, ...]]:
     return {**dict.fromkeys(GROUPS, ()), "verbs": verbs, "dialogues": verbs, "devices": devices}
 
 
-def _confinement() -> Iterator[Finding]:
+def _check_confinement() -> Iterator[Finding]:
     """Finds which confinement levels this machine has, and what each keeps a program from. One's own runs at 0."""
     for support in probe_levels():
         value = "available" if support.is_available else "not available"
@@ -185,7 +185,7 @@ def _confinement() -> Iterator[Finding]:
         yield Finding("Student code cannot", name, f"{actions}.", meaning)
 
 
-def _kernels() -> Finding:
+def _check_kernels() -> Finding:
     """Finds whether all accounts share what is compiled for this machine."""
     folder = shared_folders()[0]
     section, name, made = "Compiled kernels", "for all accounts", "sudo kit warm --shared"
@@ -210,7 +210,7 @@ def _class_findings(students: int) -> Iterator[Finding]:
         messages.fail(f"--class: {error}.")
     section = "Measured here"
     yield Finding(
-        section, "machine", f"{counted(machine.cores, 'core')}, {_gigabytes(machine.memory_bytes)} free"
+        section, "machine", f"{counted(machine.cores, 'core')}, {_gigabytes_text(machine.memory_bytes)} free"
     )
     yield Finding(
         section,
@@ -246,10 +246,10 @@ def _class_findings(students: int) -> Iterator[Finding]:
         yield Finding(
             section,
             f"{learners:,} learners",
-            f"{counted(need.check_cores, 'core')}, {_gigabytes(need.check_bytes)} for checks alone",
+            f"{counted(need.check_cores, 'core')}, {_gigabytes_text(need.check_bytes)} for checks alone",
             f"{need.last_hour:,} hand-ins in the last hour; 95 of 100 wait at most {need.waits_s:.0f} s. With their drives on "
             f"the servers too, {need.most_at_work:,} at once: {need.drive_cores:,} cores and "
-            f"{_gigabytes(need.drive_bytes)} more.",
+            f"{_gigabytes_text(need.drive_bytes)} more.",
         )
     yield Finding(
         section,
@@ -259,11 +259,11 @@ def _class_findings(students: int) -> Iterator[Finding]:
     )
 
 
-def _gigabytes(size: float) -> str:
+def _gigabytes_text(size: float) -> str:
     return f"{size / GIGA:,.1f} GB"
 
 
-def _workspace() -> Finding:
+def _check_workspace() -> Finding:
     folder = open_workspace(make=False).folder
     if not folder.exists():
         return Finding(
@@ -285,13 +285,13 @@ def findings() -> list[Finding]:
     # `kit doctor > file` asks about the terminal as `kit` would find it, not about the file.
     decision = decide_terminal(os.environ, replace(facts, stdout_tty=facts.stderr_tty))
     return [
-        *_machine(),
-        *_terminal(decision),
-        *_packages(),
-        *_extensions(),
-        *_confinement(),
-        _kernels(),
-        _workspace(),
+        *_check_machine(),
+        *_check_terminal(decision),
+        *_check_packages(),
+        *_check_extensions(),
+        *_check_confinement(),
+        _check_kernels(),
+        _check_workspace(),
     ]
 
 
@@ -338,7 +338,7 @@ def command(students: int | None, machine_readable: bool) -> None:
 @click.command()
 def keys_command() -> None:
     """Show what this terminal sends for each key, and how you can drive with it. Ctrl-C leaves."""
-    terminal = options.full_screen("The key test")
+    terminal = terminal_options.full_screen("The key test")
 
     def make_screen(app: KitApp) -> KeyTestScreen:
         from kit.tui.screens.key_test import KeyTestScreen

@@ -120,7 +120,7 @@ def command(
         if sweep:
             journal = learning_options.sweep_journal(policy, workspace)
             chosen = learning_options.split_names(kinds)
-            _sweep(
+            _run_sweep(
                 PolicySweep(
                     found,
                     place,
@@ -153,7 +153,7 @@ def command(
             _show_paths(found, place, paths or 10, pictures, seed, greedy=not sampled)
 
 
-def _sweep(sweep: PolicySweep, title: str, csv_file: Path | None, as_json: bool) -> None:
+def _run_sweep(sweep: PolicySweep, title: str, csv_file: Path | None, as_json: bool) -> None:
     with click.progressbar(
         sweep.points(), length=len(sweep.places), label="sweep", file=sys.stderr
     ) as progress:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, options, terminal_options
 from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import show_screen
 from kit.controllers import find_controller, prepare_workspace
@@ -69,8 +69,8 @@ def command() -> None:
 )
 @options.seed
 @options.workspace
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def show(
     place: str,
     case: str | None,
@@ -94,7 +94,7 @@ def show(
             messages.fail(str(error))
         scenario = replace(_place(place, case), charges=charges)
         setup = _open_setup(scenario, derived)
-        terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+        terminal = terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
         find_controller(controller, opened_workspace.controllers)
     if terminal.plain.value:
         for line in _describe_field(scenario, setup):
@@ -213,19 +213,19 @@ def table(runs: int, seed: int, as_json: bool) -> None:
 
 
 def _table_row(row: PrintedPairResult, ours: tuple[PairSummary, ...]) -> str:
-    theirs = f"{_number(row.accuracy):>5} {_number(row.adjacency):>6}"
-    cells = "  ".join(map(_measured, ours))
+    theirs = f"{_number_text(row.accuracy):>5} {_number_text(row.adjacency):>6}"
+    cells = "  ".join(map(_measures_text, ours))
     return f"  {row.title:<14}  {theirs}  {cells}"
 
 
-def _measured(each: PairSummary) -> str:
+def _measures_text(each: PairSummary) -> str:
     """Success and adjacency by both measures; none where a program failed, which is no result of the method."""
     if each.broken:
         return " ".join([f"{'-':>6}"] * 3)
     return f"{each.accuracy:6.2f} {each.by_rays:6.2f} {each.by_geometry:6.2f}"
 
 
-def _number(value: float | None) -> str:
+def _number_text(value: float | None) -> str:
     return "-" if value is None else f"{value:.2f}"
 
 

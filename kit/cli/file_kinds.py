@@ -76,7 +76,7 @@ class FileKind:
     def takes(self, line: str) -> bool:
         """Whether a command line, without the names of files, begins with a command that takes it."""
         begins = (*(command.partition("{")[0].strip() for command in self.commands), *self.others)
-        return any(f"{line} ".startswith(f"{_verb(begin)} ") for begin in begins)
+        return any(f"{line} ".startswith(f"{_command_words(begin)} ") for begin in begins)
 
     def describe(self, path: Path) -> str:
         """What the file is, and what to do with it."""
@@ -86,7 +86,7 @@ class FileKind:
         return f"{path} is {self.name}. {takes}".rstrip()
 
 
-def _verb(begin: str) -> str:
+def _command_words(begin: str) -> str:
     """A command without its options, and without the words in capitals that stand for others."""
     words = begin.split()
     return " ".join(
@@ -98,7 +98,7 @@ def _verb(begin: str) -> str:
     )
 
 
-def _has(*keys: str) -> Callable[[FileLook], bool]:
+def _has_keys(*keys: str) -> Callable[[FileLook], bool]:
     return lambda look: look.keys.issuperset(keys)
 
 
@@ -153,13 +153,16 @@ FILE_KINDS: Final = (
     ),
     FileKind(
         "an assignment's sheet",
-        _has("submit", "checks"),
+        _has_keys("submit", "checks"),
         ("grader check WORK --assignment {folder}", "grader self-test {folder}"),
         ("grader",),
     ),
-    FileKind("a lesson", _has("title", "steps"), ("kit lesson --from {folder}",), ("grader check",)),
+    FileKind("a lesson", _has_keys("title", "steps"), ("kit lesson --from {folder}",), ("grader check",)),
     FileKind(
-        "a lesson's questions", _has("items"), ("kit lesson --from {folder}",), ("kit quiz", "grader check")
+        "a lesson's questions",
+        _has_keys("items"),
+        ("kit lesson --from {folder}",),
+        ("kit quiz", "grader check"),
     ),
     FileKind(
         "a task",
@@ -222,7 +225,7 @@ FILE_KINDS: Final = (
     ),
     FileKind(
         "a result of the grader",
-        _has("verdict", "tests"),
+        _has_keys("verdict", "tests"),
         ("grader report {}",),
         ("grader gradebook", "grader check"),
     ),

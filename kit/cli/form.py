@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, opening, options, terminal_options
 from kit.cli.dialogue import run_dialogue
 from kit.cli.full_screen import show_dialogue
 from kit.document.blocks import Block, Text
@@ -29,8 +29,8 @@ from kit.world.problems import WorldError
 @click.option("--show", is_flag=True, help="Show your answers without asking anything.")
 @click.option("--plain", is_flag=True, help="Print lines of text instead of a full screen.")
 @options.workspace
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def command(
     phase: str | None,
     again: bool,
@@ -51,10 +51,10 @@ def command(
     Enter leaves a question blank, and blank answers are counted only as blank. Your teacher sees your answers only
     if you export your progress and hand it in.
     """
-    terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+    terminal = terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
     with _explained_errors():
         form = read_form()
-        with options.open_journal(open_workspace(workspace)) as journal:
+        with opening.open_journal(open_workspace(workspace)) as journal:
             chosen = SurveyPhase(phase) if phase else current_phase(form, journal)
             session = FormSession(form, chosen, journal, again=again)
             if show:

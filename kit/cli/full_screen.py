@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
 
-from kit.cli import options
+from kit.cli import terminal_options
 from kit.cli.process import ScreenClosed
 from kit.tui.terminal import TerminalDecision
 from kit.workspace import Workspace, open_workspace
@@ -53,7 +53,7 @@ def run_screen(
 
 
 def show_screen(terminal: TerminalDecision, make_screen: Callable[[KitApp], Screen[Any]]) -> NoReturn:
-    """The same, for a verb that ends with its screen; at SIGTERM and SIGHUP too, after the screen has saved what it keeps."""
+    """Runs a screen as ``run_screen``, and ends the verb with it; at SIGTERM and SIGHUP too, after the screen has saved its state."""
     _, code = run_screen(terminal, make_screen)
     raise ScreenClosed(code)
 
@@ -117,7 +117,7 @@ def show_layers(task: PlanningTask, title: str, terminal: TerminalDecision | Non
     """Goes through a layer case; ends the verb with a message where there is no full screen."""
     if terminal is None:
         instead = f"`kit layers explain {title} --pictures` prints the same as text."
-        terminal = options.full_screen("The screen", instead)
+        terminal = terminal_options.full_screen("The screen", instead)
 
     def make_screen(app: KitApp) -> LayersScreen:
         from kit.tui.screens.layers import LayersScreen

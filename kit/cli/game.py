@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, opening, options, terminal_options
 from kit.cli.full_screen import show_levels, show_screen
 from kit.cli.shared_game import guest, host
 from kit.controllers import find_controller, prepare_workspace
@@ -45,7 +45,7 @@ def _open_journal(workspace: Path | None) -> Iterator[tuple[ProgressJournal, Wor
 
     try:
         opened_workspace = prepare_workspace(workspace)
-        with options.open_journal(opened_workspace) as journal:
+        with opening.open_journal(opened_workspace) as journal:
             yield journal, opened_workspace
     except (
         ProgressError,
@@ -107,7 +107,7 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
     if context.invoked_subcommand is not None:
         return
     with _open_journal(workspace) as (journal, opened_workspace):
-        terminal = options.terminal(plain=plain)
+        terminal = terminal_options.decide(plain=plain)
         if not terminal.plain.value:
             show_levels(journal, opened_workspace, terminal)
         _print_levels(_read_summary(journal))
@@ -124,7 +124,7 @@ def play(workspace: Path | None, level: str, plain: bool) -> None:
 
     with _open_journal(workspace) as (journal, opened_workspace):
         chosen = find_playable_level(level)
-        terminal = options.terminal(plain=plain)
+        terminal = terminal_options.decide(plain=plain)
         if not terminal.plain.value:
             show_levels(journal, opened_workspace, terminal, chosen)
         _require_open(journal, chosen)
@@ -222,7 +222,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
         if name is None:
             medals = challenge_medals(journal.events())
             rows = [
-                (_sign(medals.get(each.id, Medal.NONE)), each.id, f"{each.title}. {each.story}")
+                (_medal_letter(medals.get(each.id, Medal.NONE)), each.id, f"{each.title}. {each.story}")
                 for each in all_challenges()
             ]
             click.echo("\n".join(lines_of([labelled_table(rows, indent=2)])))
@@ -287,7 +287,7 @@ def replay(workspace: Path | None, level: str, driver: str | None) -> None:
             messages.fail(f"{chosen.title} has no reference drive.")
         drive, scenario = recording, film_scenario(chosen, recording.seed)
         who = name if name == "reference" else DriverKind(name).phrase
-        terminal = options.terminal()
+        terminal = terminal_options.decide()
         if terminal.plain.value:
             seconds = drive.ticks * drive.step_size
             click.echo(f"{chosen.title}, {who}: {seconds:.2f} s. Replaying it needs a full-screen terminal.")
@@ -412,7 +412,7 @@ def _print_levels(summary: GameSummary) -> None:
             if each.level.world != world.id:
                 continue
             level = each.level
-            medals = "".join(_sign(each.medals.get(driver, Medal.NONE)) for driver in DriverKind)
+            medals = "".join(_medal_letter(each.medals.get(driver, Medal.NONE)) for driver in DriverKind)
             stars = f"{STAR * each.star_count:{NO_STAR}<{len(ExtraRule)}}"
             times = ", ".join(f"{driver.phrase} {time:.2f} s" for driver, time in each.best_times.items())
             lesson = f", or after lesson {level.lesson_number}" if level.lesson_number else ""
@@ -428,7 +428,7 @@ def _print_levels(summary: GameSummary) -> None:
     click.echo("\n".join(lines_of([*blocks, Text(challenges), Text(ways)])))
 
 
-def _sign(medal: Medal) -> str:
+def _medal_letter(medal: Medal) -> str:
     """The first letter of a medal."""
     from kit.school.game.medal import Medal
 

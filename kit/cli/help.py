@@ -17,7 +17,7 @@ from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row_text
 from kit.help.site import overview, write_pages
 from kit.help.topic import find_topic, topic_names
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import counted, quoted, suggestion
 
 _STYLES: Final[Mapping[str, Mapping[str, bool]]] = {
     Tone.CODE: {"bold": True},
@@ -56,17 +56,17 @@ def command(context: click.Context, topic: str | None, chapter: str | None, html
             files = write_pages(html_folder)
         except OSError as error:
             messages.fail(messages.describe_os_error(error))
-        click.echo(f"{len(files)} pages: {files[0]}")
+        click.echo(f"{counted(len(files), 'page')}: {files[0]}")
         return
     if topic is None:
-        _print(overview())
+        _print_document(overview())
     elif topic in topic_names():
-        _print(_part(topic, chapter))
+        _print_document(_topic_document(topic, chapter))
     else:
         _print_command_help(context, topic)
 
 
-def _part(name: str, chapter: str | None) -> Document:
+def _topic_document(name: str, chapter: str | None) -> Document:
     """A topic's page, or one chapter of it."""
     document = find_topic(name).document()
     if chapter is None:
@@ -89,7 +89,7 @@ def _print_command_help(context: click.Context, name: str) -> None:
     click.echo(found.get_help(found.context_class(found, info_name=name, parent=context.find_root())))
 
 
-def _print(document: Document) -> None:
+def _print_document(document: Document) -> None:
     click.echo(document.title)
     for each in document.chapters:
         click.echo("\n".join(("", _heading(each), "=" * len(each.title), "")))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, opening, options, terminal_options
 from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen
 from kit.host.failure import StudentCodeError
@@ -66,8 +66,8 @@ INTERRUPTED = 128 + signal.SIGINT
 )
 @options.seed
 @options.workspace
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def command(
     where: str,
     words: Sequence[str],
@@ -104,7 +104,7 @@ def command(
     if show_args:
         _show_arguments(target)
         return
-    terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+    terminal = terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
     run_launch(
         target, arguments, opened_workspace, terminal, seed=seed, steps=steps, until=until, speed=speed
     )
@@ -243,7 +243,7 @@ def package_command(ctx: click.Context, workspace: Path | None) -> None:
     kit pkg create my_robot
     kit launch my_robot
     """
-    ctx.obj = options.open_existing_workspace(workspace)
+    ctx.obj = opening.open_existing_workspace(workspace)
     if ctx.invoked_subcommand is None:
         ctx.invoke(executables)
 

@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, options, terminal_options
 from kit.cli.full_screen import show_layers
 from kit.document.blocks import labelled_table
 from kit.document.layout import lines_of
@@ -96,7 +96,7 @@ _READING: Final = (
 )
 
 
-def _reading(function: Callable[..., None]) -> Callable[..., None]:
+def _reading_options(function: Callable[..., None]) -> Callable[..., None]:
     """Adds the options for reading files to a verb, as its argument ``reading``."""
 
     @wraps(function)
@@ -128,7 +128,7 @@ def command(context: click.Context) -> None:
       kit layers check my.world.yaml         for CI: exit code 3 if not minimal
     """
     if context.invoked_subcommand is None:
-        terminal = options.terminal()
+        terminal = terminal_options.decide()
         if terminal.plain.value:
             click.echo(context.get_help())
             return
@@ -161,7 +161,7 @@ def command(context: click.Context) -> None:
     help="exact proves the minimum, greedy does not.",
 )
 @_JSON
-@_reading
+@_reading_options
 def plan(
     target: str,
     show_patch: bool,
@@ -197,7 +197,7 @@ def plan(
             show_greedy(task.case, as_json=as_json, graph=graph)
             return
         found, world_plan = solve_task(task, time_limit=reading.time_limit)
-        patch = _patch(task, world_plan, also_shared) if show_patch or do_apply else None
+        patch = _make_patch(task, world_plan, also_shared) if show_patch or do_apply else None
         assignment = found.assignment if world_plan is None else world_plan.assignment
         if as_json:
             click.echo(json.dumps(plan_data(found, world_plan, patch, reading.time_limit), indent=2))
@@ -208,7 +208,7 @@ def plan(
             if patch is not None:
                 print_patch(patch)
         if do_apply and patch is not None and world_plan is not None:
-            _apply(task, world_plan, patch, quiet=as_json)
+            _apply_patch(task, world_plan, patch, quiet=as_json)
         raise SystemExit(REQUIREMENTS_NOT_MET if len(assignment.layers) > MAX_LAYERS else 0)
 
 
@@ -217,7 +217,7 @@ def plan(
 @click.argument("requirements", required=False, type=click.Path(dir_okay=False, path_type=Path))
 @click.option("--lenient", is_flag=True, help="Report unneeded layers, but do not fail.")
 @_JSON
-@_reading
+@_reading_options
 def check(
     world: str,
     requirements: Path | None,
@@ -274,7 +274,7 @@ def check(
     show_default=True,
     help="Characters used to draw pictures.",
 )
-@_reading
+@_reading_options
 def explain(
     target: str,
     pictures: bool,
@@ -343,7 +343,7 @@ def _explained_errors() -> Iterator[None]:
         messages.fail(str(error))
 
 
-def _apply(task: PlanningTask, world_plan: WorldPlan, patch: WorldPatch, *, quiet: bool) -> None:
+def _apply_patch(task: PlanningTask, world_plan: WorldPlan, patch: WorldPatch, *, quiet: bool) -> None:
     assert task.source is not None  # there is a patch
     try:
         apply_patch(patch, make_recheck(world_plan, task.source.read, requirements=task.requirements))
@@ -356,7 +356,7 @@ def _apply(task: PlanningTask, world_plan: WorldPlan, patch: WorldPatch, *, quie
         )
 
 
-def _patch(task: PlanningTask, world_plan: WorldPlan | None, also_shared: bool) -> WorldPatch:
+def _make_patch(task: PlanningTask, world_plan: WorldPlan | None, also_shared: bool) -> WorldPatch:
     if world_plan is None or task.source is None:
         raise click.UsageError(
             "There are no files to patch: give a world, or write `world: FILE` in the requirements."

@@ -23,19 +23,21 @@ class WholeWordFormatter(click.HelpFormatter):
     """Breaks the text of a command's help at blanks alone."""
 
     def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
-        super().write_usage(prog, _held(args), prefix)
+        super().write_usage(prog, _keep_hyphens_together(args), prefix)
 
     def write_text(self, text: str) -> None:
-        super().write_text(_held(text))
+        super().write_text(_keep_hyphens_together(text))
 
     def write_dl(self, rows: Iterable[tuple[str, str]], col_max: int = 30, col_spacing: int = 2) -> None:
-        super().write_dl([(first, _held(second)) for first, second in rows], col_max, col_spacing)
+        super().write_dl(
+            [(first, _keep_hyphens_together(second)) for first, second in rows], col_max, col_spacing
+        )
 
     def getvalue(self) -> str:
         return super().getvalue().replace(_HELD, "-")
 
 
-def _held(text: str) -> str:
+def _keep_hyphens_together(text: str) -> str:
     return text.replace("-", _HELD)
 
 
@@ -57,14 +59,14 @@ class WordType(StringParamType):
 WORD: Final = WordType()
 
 
-def _prepared(command: click.Command) -> click.Command:
+def _prepare_help(command: click.Command) -> click.Command:
     """The command, with its own commands: its help is broken at blanks alone, and a shell completes its words with files."""
     command.context_class = CommandContext
     for parameter in command.params:
         if parameter.type is click.STRING:
             parameter.type = WORD
     for each in command.commands.values() if isinstance(command, click.Group) else ():
-        _prepared(each)
+        _prepare_help(each)
     return command
 
 
@@ -89,21 +91,21 @@ class LazyGroup(click.Group):
         self._has_others = has_others
         self._absent = absent
 
-    def _others(self) -> dict[str, Extension]:
+    def _extension_commands(self) -> dict[str, Extension]:
         """The verbs and dialogues of other packages, by the names that the kit itself does not use."""
         if not self._has_others:
             return {}
         return {**extensions("dialogues", list(self._verbs)), **extensions("verbs", list(self._verbs))}
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return [*self._verbs, *self._others()]
+        return [*self._verbs, *self._extension_commands()]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in self._verbs:
-            other = self._others().get(cmd_name)
-            return None if other is None else _prepared(_command_of(other))
+            other = self._extension_commands().get(cmd_name)
+            return None if other is None else _prepare_help(_command_of(other))
         module, _, name = self._verbs[cmd_name][0].partition(":")
-        return _prepared(getattr(import_module(module), name or "command"))
+        return _prepare_help(getattr(import_module(module), name or "command"))
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -131,13 +133,13 @@ class LazyGroup(click.Group):
             for name, (_, text) in self._verbs.items()
             if text and name.startswith(incomplete)
         )
-        others = (CompletionItem(name) for name in self._others() if name.startswith(incomplete))
+        others = (CompletionItem(name) for name in self._extension_commands() if name.startswith(incomplete))
         return [*verbs, *others, *click.Command.shell_complete(self, ctx, incomplete)]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):
             formatter.write_dl([(name, text) for name, (_, text) in self._verbs.items() if text])
-        others = self._others()
+        others = self._extension_commands()
         if others:
             with formatter.section("Commands of other packages"):
                 formatter.write_dl([(name, f"From {each.source}.") for name, each in others.items()])

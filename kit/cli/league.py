@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, options, terminal_options
 from kit.cli.executor_options import executor_options
 from kit.cli.full_screen import show_screen
 from kit.controllers import find_controller, prepare_workspace
@@ -78,7 +78,7 @@ def command(context: click.Context, workspace: Path | None, folder: Path | None,
     if context.invoked_subcommand is not None:
         return
     with _open_league(context) as (league, opened):
-        terminal = options.terminal(plain=plain)
+        terminal = terminal_options.decide(plain=plain)
         if not terminal.plain.value:
 
             def make_screen(app: KitApp) -> Screen[None]:
@@ -232,7 +232,7 @@ def replay(context: click.Context, number: int) -> None:
         if number > len(found):
             messages.fail(f"There are only matches 1 to {len(found)}; `kit league matches` lists them.")
         match = found[number - 1]
-        terminal = options.terminal()
+        terminal = terminal_options.decide()
         if terminal.plain.value:
             click.echo(f"{match_sentence(match)} Watching it needs a full-screen terminal.")
             return

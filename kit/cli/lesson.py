@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from kit.cli import VERBS, messages, options
+from kit.cli import VERBS, messages, opening, options, terminal_options
 from kit.cli.dialogue import Way, run_dialogue
 from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import show_lesson, show_lessons
@@ -84,8 +84,8 @@ TRAIL_POINTS = 100
     is_flag=True,
     help="Check your work at the confinement level used for class grading (default: level 0, which is faster).",
 )
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def command(
     name: str | None,
     workspace: Path | None,
@@ -114,8 +114,8 @@ def command(
         if folder is not None and name is None and (name := _only_lesson(folder)) is None:
             return
         opened_workspace = prepare_workspace(workspace)
-        with options.open_journal(opened_workspace) as journal:
-            terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+        with opening.open_journal(opened_workspace) as journal:
+            terminal = terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
             if name is None:
                 if not terminal.plain.value:
                     show_lessons(opened_workspace, terminal)
@@ -347,7 +347,7 @@ def _drive_scene(request: Drive, opened_workspace: Workspace, input_buffer: Inpu
                 find_controller("teleop", opened_workspace.controllers),
                 seed=scene.seed,
                 folder=opened_workspace.controllers,
-                record=options.recording_file(request.file),
+                record=opening.open_recording_file(request.file),
                 input_buffer=input_buffer,
             )
         )

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, options, terminal_options
 from kit.cli.dialogue import run_dialogue
 from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen
@@ -106,7 +106,7 @@ def _own_maps() -> list[Path]:
 
 @command.command()
 @click.argument("name", metavar="MAP or FOLDER")
-@options.glyphs
+@terminal_options.glyphs
 def show(name: str, glyphs: str | None) -> None:
     """Draw a map with its starts and targets."""
     try:
@@ -131,7 +131,7 @@ def _show_card(card: MapCard, glyphs: str | None, paths: tuple[ScenePath, ...] =
     from kit.run.session import Session
     from kit.run.view import ViewBuilder
 
-    chosen = options.terminal(glyphs=glyphs).glyphs.value
+    chosen = terminal_options.decide(glyphs=glyphs).glyphs.value
     columns, rows = shutil.get_terminal_size()
     with Session(scenario_on_map(card)) as session:
         scene = ViewBuilder(session).build().scene
@@ -173,8 +173,8 @@ def _show_card(card: MapCard, glyphs: str | None, paths: tuple[ScenePath, ...] =
 )
 @click.option("--pair", is_flag=True, help="Two robots start side by side and drive as one.")
 @options.workspace
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def new(
     name: str,
     drawing: Path | None,
@@ -231,7 +231,7 @@ def _draw(
     from kit.mapmaking.new_map import write_map
     from kit.mapmaking.sketch_draft import SketchDraft
 
-    terminal = options.full_screen(
+    terminal = terminal_options.full_screen(
         "Drawing on the screen",
         f"`kit maps new {folder.name} --from FILE` reads a drawing in characters: # wall, S start, T target.",
         glyphs=glyphs,
@@ -310,8 +310,8 @@ def _draw(
     help="Take this kind of doubtful lines for walls too, or all, or none; may be repeated (default: a terminal asks).",
 )
 @options.workspace
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def from_photo(
     picture: Path,
     name: str | None,
@@ -401,7 +401,7 @@ def _kept_doubts(
     from kit.mapmaking.doubts_dialogue import DoubtsDialogue
     from kit.render.encode import ENCODERS
 
-    terminal = options.terminal(glyphs=glyphs, color=color)
+    terminal = terminal_options.decide(glyphs=glyphs, color=color)
     dialogue = DoubtsDialogue(found.strokes, ENCODERS[terminal.glyphs.value](True))
     code = 0
     if terminal.plain.value:
@@ -435,7 +435,7 @@ def _say_doubts(found: PhotoPlan) -> None:
 
 def _clicked(photo: Image, name: str, glyphs: str | None, color: str | None) -> Corners:
     """Shows the photograph until its sheet's corners have been put; ends without them if it is left before."""
-    terminal = options.full_screen("--click", "--corners takes numbers.", glyphs=glyphs, color=color)
+    terminal = terminal_options.full_screen("--click", "--corners takes numbers.", glyphs=glyphs, color=color)
 
     def make_screen(app: KitApp) -> PhotoCornersScreen:
         from kit.tui.screens.photo_corners import PhotoCornersScreen

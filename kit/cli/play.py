@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, opening, options, terminal_options
 from kit.cli.full_screen import run_screen
 from kit.cli.process import ScreenClosed
 from kit.controllers import find_controller, prepare_workspace
@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Print lines of text instead of a full screen: for screen readers and pipes.",
 )
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def command(
     place: str,
     case: str | None,
@@ -66,7 +66,7 @@ def command(
         driver = find_controller(controller, opened_workspace.controllers)
     except (LookupError, WorkspaceError) as error:
         messages.fail(str(error))
-    terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+    terminal = terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
     socket_dir = sockets_folder(opened_workspace.folder)
     if terminal.plain.value:
         from kit.cli.plain import PlainSession, run_plain_session
@@ -78,7 +78,7 @@ def command(
             where = find_scenario(place, case, root)
         except (LookupError, WorldError) as error:
             messages.fail(str(error))
-        kept = options.recording_file(record)
+        kept = opening.open_recording_file(record)
         line_by_line = PlainSession(
             where,
             driver,
@@ -93,7 +93,7 @@ def command(
         except OSError as error:
             messages.fail(messages.describe_os_error(error))
         return
-    kept = options.recording_file(record)
+    kept = opening.open_recording_file(record)
 
     def make_screen(app: KitApp) -> PlayScreen:
         from kit.tui.screens.play import PlayScreen

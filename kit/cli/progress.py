@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, opening, options
 from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text
 from kit.document.layout import lines_of
 from kit.document.rows import row_text
@@ -28,7 +28,7 @@ from kit.world.problems import WorldError
 def _open_journal(workspace: Path | None) -> Iterator[ProgressJournal]:
     """Opens the journal; every error of the user's ends the verb with a message."""
     try:
-        with options.open_journal(open_workspace(workspace)) as journal:
+        with opening.open_journal(open_workspace(workspace)) as journal:
             yield journal
     except (ProgressError, WorkspaceError, WorldError, FileNotFoundError) as error:
         messages.fail(str(error))
@@ -68,7 +68,7 @@ def import_progress(workspace: Path | None, file: Path) -> None:
     with _open_journal(workspace) as journal:
         events = read_export(file)
         new = journal.import_events(events)
-        click.echo(f"{file}: {len(events)} entries, {new} of them new.")
+        click.echo(f"{file}: {counted(len(events), 'entry')}, {new} of them new.")
 
 
 @command.command("name")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, opening, options, terminal_options
 from kit.cli.dialogue import run_dialogue
 from kit.cli.full_screen import show_dialogue
 from kit.document.blocks import Text
@@ -48,8 +48,8 @@ from kit.world.problems import WorldError
 @click.option("--again", is_flag=True, help="Start a finished quiz again; earlier answers are kept.")
 @click.option("--plain", is_flag=True, help="Print lines of text instead of a full screen.")
 @options.workspace
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def command(
     lesson: str | None,
     today: bool,
@@ -73,7 +73,7 @@ def command(
     """
     if sum((lesson is not None, today, scores)) > 1:
         raise click.UsageError("Give only one of LESSON, --today and --scores.")
-    terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+    terminal = terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
     bank = _read_bank()
     if scores:
         _print_scores(bank, workspace)
@@ -110,7 +110,7 @@ def _choose_plan(bank: QuestionBank, lesson: str | None, today: bool) -> Questio
 
 def _open_journal(workspace: Path | None) -> ProgressJournal:
     try:
-        return options.open_journal(open_workspace(workspace))
+        return opening.open_journal(open_workspace(workspace))
     except WorkspaceError as error:
         messages.fail(str(error))
 
@@ -124,7 +124,7 @@ def _start_session(
 def _print_scores(bank: QuestionBank, workspace: Path | None) -> None:
     events: list[ProgressEvent] = []
     try:
-        if (options.open_existing_workspace(workspace).folder / FILE).exists():  # else looking would make it
+        if (opening.open_existing_workspace(workspace).folder / FILE).exists():  # else looking would make it
             with _open_journal(workspace) as journal:
                 events = journal.events()
     except ProgressError as error:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Literal
 import click
 import numpy as np
 
-from kit.cli import learning_options, messages, options
+from kit.cli import learning_options, messages, options, terminal_options
 from kit.cli.full_screen import show_screen
 from kit.learning.policies.policy import Policy
 from kit.learning.policies.policy_file import load_policy
 from kit.learning.training.run_folders import find_run
-from kit.plain_text import escape_controls
+from kit.plain_text import counted, escape_controls
 from kit.run.animation import AnimationSettings, ExportError, count_frames, export_recording
 from kit.run.recording import Recording, RecordingError, load_recording, rerun
 from kit.run.recording_file import restore_recordings
@@ -72,8 +72,8 @@ if TYPE_CHECKING:
 )
 @options.root
 @options.workspace
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def command(
     file: Path,
     check: bool,
@@ -109,15 +109,15 @@ def command(
     except OSError as error:
         messages.fail(messages.describe_os_error(error))
     if exported is not None:
-        _export(
+        _export_animation(
             recording,
             scenario,
             exported,
-            AnimationSettings(speed, fps, _size(size, exported.suffix), background),
+            AnimationSettings(speed, fps, _parse_size(size, exported.suffix), background),
         )
         return
-    policy = None if agent is None else _policy(agent, workspace)
-    terminal = options.terminal(plain=check, glyphs=glyphs, color=color)
+    policy = None if agent is None else _best_policy(agent, workspace)
+    terminal = terminal_options.decide(plain=check, glyphs=glyphs, color=color)
     if not terminal.plain.value:
 
         def make_screen(app: KitApp) -> ReplayScreen:
@@ -134,7 +134,8 @@ def command(
         messages.fail(str(error))
     seconds = recording.ticks * recording.step_size
     click.echo(
-        f"{scenario.title}: {recording.ticks} ticks, {seconds:.2f} s, {len(recording.inputs)} inputs, seed {recording.seed}"
+        f"{scenario.title}: {counted(recording.ticks, 'tick')}, {seconds:.2f} s, "
+        f"{counted(len(recording.inputs), 'input')}, seed {recording.seed}"
     )
     if np.array_equal(again.poses, recording.poses):
         click.echo("the same run, to the bit")
@@ -150,7 +151,7 @@ def command(
     raise SystemExit(1)
 
 
-def _policy(agent: str, workspace: Path | None) -> Policy:
+def _best_policy(agent: str, workspace: Path | None) -> Policy:
     """The best policy of a run; ends with a message where there is none, or it drives another number of robots."""
     with learning_options.explained_errors():
         if Path(agent).suffix == ".npz":
@@ -165,7 +166,7 @@ def _scenario(recording: Recording, file: Path, root: Path | None) -> Scenario:
     return recorded_scenario(find_playable_level(recording.level), recording)
 
 
-def _size(text: str | None, ending: str) -> tuple[int, int] | None:
+def _parse_size(text: str | None, ending: str) -> tuple[int, int] | None:
     """The size as two numbers, within what a terminal or a picture can have."""
     if text is None:
         return None
@@ -180,7 +181,9 @@ def _size(text: str | None, ending: str) -> tuple[int, int] | None:
     return size
 
 
-def _export(recording: Recording, scenario: Scenario, file: Path, settings: AnimationSettings) -> None:
+def _export_animation(
+    recording: Recording, scenario: Scenario, file: Path, settings: AnimationSettings
+) -> None:
     count = count_frames(recording, settings)
     try:
         with click.progressbar(length=count, label=file.name, file=sys.stderr) as progress:
@@ -189,4 +192,4 @@ def _export(recording: Recording, scenario: Scenario, file: Path, settings: Anim
         messages.fail(str(error))
     except OSError as error:
         messages.fail(messages.describe_os_error(error))
-    click.echo(f"{file}: {count} frames, {file.stat().st_size / 1e3:,.0f} kB")
+    click.echo(f"{file}: {counted(count, 'frame')}, {file.stat().st_size / 1e3:,.0f} kB")

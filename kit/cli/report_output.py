@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, terminal_options
 from kit.school.progress import ProgressError
 from kit.workspace import write_atomically
 from kit.world.problems import WorldError
@@ -149,7 +149,7 @@ def _write_reports(files: Mapping[Path, str]) -> None:
 
 def _can_encode_blocks() -> bool:
     """Whether standard output can encode block characters."""
-    decided = options.terminal().glyphs.value
+    decided = terminal_options.decide().glyphs.value
     encoding = getattr(sys.stdout, "encoding", None) or "ascii"
     try:
         "█▒░·".encode(encoding)

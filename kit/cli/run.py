@@ -9,8 +9,8 @@ from pathlib import Path
 
 import click
 
-from kit.cli import messages, options
-from kit.cli.options import Storage
+from kit.cli import bag_storage, messages, opening, options
+from kit.cli.bag_storage import Storage
 from kit.controllers import find_controller
 from kit.document.blocks import Picture, labelled_table
 from kit.document.layout import lines_of
@@ -67,7 +67,7 @@ INTERRUPTED = 130
     type=click.Path(path_type=Path),
     help="Record all topics in this new folder, as `ros2 bag record` does.",
 )
-@options.storage
+@bag_storage.storage
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @options.workspace
 def command(
@@ -110,7 +110,7 @@ def command(
             lambda graph: InspectionServer(graph, sockets_folder(opened_workspace.folder), Path(place).stem)
         )
     if bag is not None:
-        options.explain_storage(storage)
+        bag_storage.explain_storage(storage)
         participants.append(lambda graph: _record_bag(graph, bag, storage))
     try:
         with ExitStack() as stack:
@@ -127,7 +127,7 @@ def command(
                 seed=seed,
                 factor=speed or (REAL_TIME if serve else MAXIMUM),
                 until_reached=until_reached,
-                record=options.recording_file(record),
+                record=opening.open_recording_file(record),
                 participants=participants,
                 on_message=lambda record: click.echo(format_log(record), err=True),
                 streams=streams,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, terminal_options
 from kit.cli.full_screen import run_screen
 from kit.cli.process import ScreenClosed
 from kit.controllers import prepare_workspace
@@ -56,7 +56,7 @@ def host(
         audience = Audience.of_group(group) if group is not None else Audience(everybody=everybody)
     except (UnknownLevel, WorkspaceError, WorldError, CannotShare, SharedGameError) as error:
         messages.fail(str(error))
-    terminal = options.full_screen("A shared game")
+    terminal = terminal_options.full_screen("A shared game")
     mode = SharedMode.TAG if tag else SharedMode.RACE
 
     def make_screen(app: KitApp) -> SharedHostScreen:
@@ -108,11 +108,11 @@ def join_shared_game(
     from kit.world.problems import WorldError
 
     if plays:
-        terminal = options.full_screen(
+        terminal = terminal_options.full_screen(
             "Playing a shared game", "`kit watch GAME` prints its progress line by line."
         )
     else:
-        terminal = options.terminal(plain=plain)
+        terminal = terminal_options.decide(plain=plain)
     own_name = name or own_user_name()
     try:
         with SharedGameClient(find_game(games_folder(), game), own_name, plays=plays) as client:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, options, terminal_options
 from kit.cli.full_screen import show_screen
 from kit.document.blocks import labelled_table
 from kit.document.layout import lines_of
@@ -33,8 +33,8 @@ SUGGESTED_COMMANDS: Final = (
 @options.seed
 @options.workspace
 @click.option("--plain", is_flag=True, help="Print where you are and what to type, instead of a full screen.")
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def command(seed: int, workspace: Path | None, plain: bool, glyphs: str | None, color: str | None) -> None:
     """Open the kit: a robot to drive with W, A, S and D, and a menu of everything in it.
 
@@ -46,7 +46,7 @@ def command(seed: int, workspace: Path | None, plain: bool, glyphs: str | None, 
         opened_workspace = prepare_workspace(workspace)
     except WorkspaceError as error:
         messages.fail(str(error))
-    terminal = options.terminal(plain=plain, glyphs=glyphs, color=color)
+    terminal = terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
     if terminal.plain.value:
         click.echo(f"The kit, line by line. {terminal.plain.reason}")
         _print_overview(opened_workspace)

@@ -8,7 +8,7 @@ from typing import Final
 
 import click
 
-from kit.cli import learning_options, messages, options, report_output
+from kit.cli import learning_options, messages, opening, options, report_output
 from kit.cli.executor_options import executor_options
 from kit.cli.sweep import run_sweep
 from kit.document.blocks import Document
@@ -16,6 +16,7 @@ from kit.host.job_executors import ExecutorUnavailable
 from kit.host.job_folder import JobExecutor
 from kit.learning.training.learn_extra import require_learn_extra
 from kit.learning.training.run_config import RunError
+from kit.plain_text import counted
 from kit.study import study_document
 from kit.study.printed_tables import study_chapters
 from kit.study.recorded_results import RecordedResultError
@@ -98,17 +99,17 @@ def command(
     2 there is no such table; 130 interrupted by Ctrl-C.
     """
     with learning_options.explained_errors(), report_output.explained_errors():
-        opened = options.open_existing_workspace(workspace)
+        opened = opening.open_existing_workspace(workspace)
         try:
             if check:
-                _check()
+                _check_document()
                 return
             kind, wanted = _read_number(number)
             if again:
                 if by_kit and no_limit:
                     messages.fail("--kit and --no-limit are two ways to train: give one of them.")
                 variant: StudyVariant = "kit" if by_kit else "no-limit" if no_limit else "seed"
-                for each in _variants(wanted, variant):
+                for each in _wanted_variants(wanted, variant):
                     _run_again(
                         f"figure-{wanted}" if kind == "figure" or wanted in FIGURES_ALONE else wanted,
                         opened,
@@ -136,7 +137,7 @@ FIGURES_ALONE: Final = tuple(
 """Figures that are none of the dissertation's: their names need no word before them."""
 
 
-def _variants(wanted: str, variant: StudyVariant) -> tuple[StudyVariant, ...]:
+def _wanted_variants(wanted: str, variant: StudyVariant) -> tuple[StudyVariant, ...]:
     """How a number is trained again: a figure that compares is trained both ways."""
     return ("seed", "no-limit") if wanted in FIGURES_ALONE else (variant,)
 
@@ -153,13 +154,13 @@ def _read_number(words: tuple[str, ...]) -> tuple[str, str]:
     return "", kind
 
 
-def _check() -> None:
+def _check_document() -> None:
     """Prints what differs between the document that comes with the kit and what its logs give; exits with 1 then."""
     differences = check_document()
     for line in differences[:20]:
         click.echo(line, err=True)
     if differences:
-        click.echo(f"{len(differences)} lines differ.", err=True)
+        click.echo(f"{counted(len(differences), 'difference')}.", err=True)
         raise SystemExit(1)
     click.echo(f"Every number of {DOCUMENT} follows from the logs beside it.")
 
@@ -177,7 +178,7 @@ def _run_again(
     trainings = (figure.training for chapter in study_chapters() for figure in chapter.figures)
     tables |= {each.id: each for each in trainings if each is not None}
     studies = {each.id: StudyRun.of(each, workspace, variant, steps) for each in tables.values()}
-    able = {name: run for name, run in studies.items() if run.groups or run.has_fields}
+    able = {name: run for name, run in studies.items() if run.groups or run.has_potential_fields}
     run = able.get(number)
     if run is None:
         words = VARIANT_OPTIONS[variant]
@@ -188,8 +189,8 @@ def _run_again(
         missing = run.missing_seeds(seeds)
         if missing or run.misses_fields:
             agents, runs = len(missing) * len(run.groups), run.fields_runs
-            work = [f"up to {agents} agents to train"] * (agents > 0) + [
-                f"{runs} runs of potential fields"
+            work = [f"up to {counted(agents, 'agent')} to train"] * (agents > 0) + [
+                f"{counted(runs, 'run')} of potential fields"
             ] * (runs > 0)
             expected = duration_text(run.expected_seconds(seeds, executor.jobs))
             told = " and ".join(work)

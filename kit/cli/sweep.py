@@ -30,6 +30,7 @@ from kit.learning.training.run_folders import NAME_PATTERN
 from kit.learning.training.sweep_table import problems, sweep_rows, sweep_table, sweep_table_csv
 from kit.learning.training.training_sweep import TrainingSweep, combine
 from kit.learning.training.tuning import SettingRange, check_ranges, require_optuna, tune
+from kit.plain_text import counted
 from kit.study.printed_tables import printed_means
 from kit.workspace import write_atomically
 
@@ -267,7 +268,7 @@ def run_sweep(sweep: TrainingSweep, executor: JobExecutor) -> None:
     keys = sweep.waiting()
     if executor.name == "none" or not keys:
         return
-    click.echo(f"{len(sweep.entries())} trainings, {len(keys)} to do, in {sweep.folder}", err=True)
+    click.echo(f"{counted(len(sweep.entries()), 'training')}, {len(keys)} to do, in {sweep.folder}", err=True)
     with click.progressbar(length=len(keys), label="trained", file=sys.stderr) as bar:
         executor.run(sweep, keys, lambda key: bar.update(1))
 
@@ -297,4 +298,4 @@ def _print_crosstable(sweep: TrainingSweep, failed: Sequence[str], *, as_json: b
         if compare:
             messages.say(f"dissertation: means of its Table {number}; `kit study {number}` shows every cell.")
     if waiting := len(sweep.waiting()) - len(failed):
-        click.echo(f"{waiting} of {len(sweep.entries())} trainings have no result yet.")
+        click.echo(f"{waiting} of {counted(len(sweep.entries()), 'training')} without a result yet.")

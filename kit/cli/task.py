@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import learning_options, messages, options
+from kit.cli import learning_options, messages, terminal_options
 from kit.cli.existing_path import ExistingPath
 from kit.document.blocks import Text, labelled_table
 from kit.document.layout import Page, lines_of
@@ -152,26 +152,26 @@ def unpack(archive: Path, dest: Path) -> None:
 @command.command()
 @click.argument("task")
 @learning_options.on
-@options.glyphs
+@terminal_options.glyphs
 def show(task: str, on: str | None, glyphs: str | None) -> None:
     """Show TASK. Print starts (S) and targets on each map, observations, actions, reward, and how episodes end."""
     with learning_options.explained_errors():
         found = find_task(task)
         if on is not None:
             found = found.on(*learning_options.split_names(on))
-        encoder = ENCODERS[options.terminal(glyphs=glyphs).glyphs.value](True)
+        encoder = ENCODERS[terminal_options.decide(glyphs=glyphs).glyphs.value](True)
         columns, rows = shutil.get_terminal_size()
         for card, case in found.map_cases():
             click.echo("\n".join(wrap(describe_case(found, case), columns - 1)))
             scene = build_case_scene(found, card, case)
             click.echo("\n".join(scene_rows(scene, columns - 1, max(8, rows // 2), encoder)) + "\n")
-        click.echo("\n".join(lines_of(task_blocks(found), _page())))
+        click.echo("\n".join(lines_of(task_blocks(found), _terminal_page())))
 
 
 @command.command()
 def keys() -> None:
     """Print every key of a task file, and every name that a reward may use."""
-    click.echo("\n".join(lines_of(key_tables(), _page())))
+    click.echo("\n".join(lines_of(key_tables(), _terminal_page())))
 
 
 @command.command(name="list")
@@ -193,6 +193,6 @@ def _say_whether_it_can_be_raced(task: LearningTask) -> None:
         messages.say(f"Its agents can be neither raced nor exported as a node or a package: {reason}.")
 
 
-def _page() -> Page:
+def _terminal_page() -> Page:
     """As wide as the terminal, at most 100 columns."""
     return Page(width=min(100, shutil.get_terminal_size().columns - 1))

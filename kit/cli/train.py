@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from kit.cli import learning_options, messages, options
+from kit.cli import learning_options, messages, options, terminal_options
 from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen
 from kit.cli.shared_game import join_shared_game
@@ -56,8 +56,8 @@ PROGRESS_INTERVAL_S = 2.0
 @click.option("--once", is_flag=True, help="Print what has happened so far, and exit.")
 @options.workspace
 @learning_options.plain
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def watch_command(
     run: str | None, once: bool, workspace: Path | None, plain: bool, glyphs: str | None, color: str | None
 ) -> None:
@@ -71,7 +71,7 @@ def watch_command(
     with learning_options.explained_errors():
         found = find_run(learning_options.runs_folder(workspace), run)
         found.config()
-        terminal = options.terminal(plain=plain or once, glyphs=glyphs, color=color)
+        terminal = terminal_options.decide(plain=plain or once, glyphs=glyphs, color=color)
         if terminal.plain.value:
             follow(found, once=once)
         else:
@@ -224,8 +224,8 @@ def _suggest_race(run: TrainingRun) -> None:
 )
 @options.workspace
 @learning_options.plain
-@options.glyphs
-@options.color
+@terminal_options.glyphs
+@terminal_options.color
 def command(
     task: str | None,
     algo: str | None,
@@ -288,9 +288,9 @@ def command(
     (domain randomisation).
     """
     if listed and task is None:
-        click.echo("\n".join(_list()))
+        click.echo("\n".join(_list_tasks()))
         return
-    terminal = None if detach else options.terminal(plain=plain, glyphs=glyphs, color=color)
+    terminal = None if detach else terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
     with learning_options.explained_errors():
         if resume is not None:
             _go_on(resume, workspace, terminal)
@@ -338,7 +338,7 @@ def command(
             imitate=tuple(map(str, demonstrations)),
             settings=tuple((name, number) for name, (number,) in settings.items()),
         )
-        _begin(config, name, workspace, terminal)
+        _begin_run(config, name, workspace, terminal)
 
 
 def _usual_algorithm(demonstrations: tuple[Path, ...]) -> str:
@@ -347,12 +347,12 @@ def _usual_algorithm(demonstrations: tuple[Path, ...]) -> str:
     return "bc" if any(map(is_recording, demonstrations)) else "dagger"
 
 
-def _begin(
+def _begin_run(
     config: RunConfig, name: str | None, workspace: Path | None, terminal: TerminalDecision | None
 ) -> None:
     """Checks everything that can be wrong before anything is written."""
     check_run_config(config)
-    _start(create_run(learning_options.runs_folder(workspace), config, name), terminal)
+    _start_run(create_run(learning_options.runs_folder(workspace), config, name), terminal)
 
 
 def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None) -> None:
@@ -370,10 +370,10 @@ def _go_on(name: str, workspace: Path | None, terminal: TerminalDecision | None)
             f"{run.name} has finished: {summary.reason}. `kit evaluate {run.name}` tests it; train again with "
             "another --seed."
         )
-    _start(run, terminal)
+    _start_run(run, terminal)
 
 
-def _start(run: TrainingRun, terminal: TerminalDecision | None) -> None:
+def _start_run(run: TrainingRun, terminal: TerminalDecision | None) -> None:
     """``terminal``: where to watch it; None: nowhere."""
     reader = EventReader(run.events_file, from_now=True)
     process = start_worker(run)
@@ -412,7 +412,7 @@ def _list_settings(task: str, algo: str, preset: PresetName) -> list[str]:
     return lines
 
 
-def _list() -> list[str]:
+def _list_tasks() -> list[str]:
     tasks = all_tasks()
     lines = ["Tasks:", *(f"  {task.name:20} {task.summary}" for task in tasks)]
     lines.append("\nCases, by group:")
@@ -473,9 +473,9 @@ def runs_command(
             renamed = rename_run(find_run(folder, run), new_name)
             click.echo(f"{run} is now called {renamed.name}.")
         elif deleted:
-            _delete(find_run(folder, run), yes)
+            _delete_run(find_run(folder, run), yes)
         elif order is not None:
-            _ask(find_run(folder, run), order)
+            _send_order(find_run(folder, run), order)
         elif run is not None:
             _show_run(find_run(folder, run), as_json)
         elif as_json:
@@ -493,7 +493,7 @@ def runs_command(
             )
 
 
-def _delete(run: TrainingRun, yes: bool) -> None:
+def _delete_run(run: TrainingRun, yes: bool) -> None:
     if not yes and not click.confirm(
         f"Delete {run.name} with its policies and curves ({format_size(disk_bytes(run))})?", default=False
     ):
@@ -502,7 +502,7 @@ def _delete(run: TrainingRun, yes: bool) -> None:
     click.echo(f"{run.name} is deleted; this frees {format_size(delete_run(run))}.")
 
 
-def _ask(run: TrainingRun, order: Literal["pause", "go", "stop"]) -> None:
+def _send_order(run: TrainingRun, order: Literal["pause", "go", "stop"]) -> None:
     if not run.is_active:
         raise RunError(f"{run.name} is not training. `kit train --resume {run.name}` resumes it.")
     run.send_command(order)

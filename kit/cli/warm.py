@@ -63,7 +63,7 @@ def command(shared: bool) -> None:
 
 
 def uses_of_kernels() -> Iterator[tuple[str, Callable[[], object]]]:
-    """Yields what is done, and how, until every kernel has been used as all of the kit uses it."""
+    """Yields each step's description and function; after all of them every kernel has been compiled for all its uses."""
     for place, controller in DRIVES:
         yield f"a drive of {controller} in {place}", partial(_drive, place, controller)
     # Only here: tasks import Gymnasium, which takes longer than a light verb may.

@@ -56,7 +56,9 @@ def check(world: str, root: Path | None, variables: tuple[str, ...], as_json: bo
         )
     except WorldError as error:
         if as_json:
-            click.echo(json.dumps({"ok": False, "problems": [_problem(p) for p in error.problems]}, indent=2))
+            click.echo(
+                json.dumps({"ok": False, "problems": [_problem_as_dict(p) for p in error.problems]}, indent=2)
+            )
         else:
             click.echo(error)
             count = len(error.problems)
@@ -90,7 +92,7 @@ def _find_world(world: str) -> tuple[Path, Path | None]:
     return card.world_file, card.root
 
 
-def _problem(problem: Problem) -> dict[str, str | int]:
+def _problem_as_dict(problem: Problem) -> dict[str, str | int]:
     location = problem.location
     return {
         "file": str(location.file),

@@ -67,6 +67,14 @@ class DialogueAction(Generic[D]):
         return self.keys.id
 
 
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """Something that a large screen shows to the right of what is asked."""
+
+    title: str
+    blocks: tuple[Block, ...]
+
+
 class Dialogue:
     """Subclasses give ``name``, ``title``, ``actions`` and ``blocks``; everything else has a default."""
 
@@ -96,9 +104,20 @@ class Dialogue:
         """What is shown now. A screen shows all of it, line by line only what is new is said."""
         raise NotImplementedError
 
-    def beside(self) -> Sequence[Block]:
-        """What a screen shows to the right of the others where it is wide enough; line by line it is not said."""
+    @property
+    def has_panels(self) -> bool:
+        """Whether ``panels`` gives any now."""
+        return False
+
+    def panels(self) -> Sequence[Panel]:
+        """What a screen shows to the right of the others where it is wide enough, as many as there is room for, the last one
+        cut where it must be; line by line they are not said."""
         return ()
+
+    @property
+    def place_shown(self) -> str:
+        """The map of which a large screen shows a picture below what is asked; empty: none."""
+        return ""
 
     def heard(self) -> Sequence[Block]:
         """What is said line by line when one comes to a place, and stands elsewhere on a screen."""
@@ -234,12 +253,12 @@ class Turn:
     def find(self, key: str) -> tuple[DialogueAction[Any], tuple[object, ...]] | None:
         """The action that a key means now, and what the key stands for."""
         candidates = [
-            (action, _arguments(call))
+            (action, _call_arguments(call))
             for action in self.dialogue.actions
             for keys, call in action.keys.bindings
             if key in keys.split(",")
         ]
-        return min(candidates, key=lambda each: _rank(self.allowed(each[0])), default=None)
+        return min(candidates, key=lambda each: _availability_rank(self.allowed(each[0])), default=None)
 
     def hidden_by_others(self) -> list[DialogueAction[Any]]:
         """The actions all of whose keys now mean another one."""
@@ -315,12 +334,12 @@ class Turn:
         return remark
 
 
-def _rank(allowed: bool | str) -> int:
+def _availability_rank(allowed: bool | str) -> int:
     """Orders actions of one key: what is possible, what could become possible, what does not belong here."""
     return 0 if allowed is True else 1 if allowed else 2
 
 
-def _arguments(call: str) -> tuple[object, ...]:
+def _call_arguments(call: str) -> tuple[object, ...]:
     """``(1,)`` of ``answer(1)``."""
     inside = call.partition("(")[2].rstrip(")")
     return tuple(ast.literal_eval(f"({inside},)")) if inside else ()

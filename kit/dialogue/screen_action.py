@@ -1,4 +1,4 @@
-"""One thing that a key does on a screen."""
+"""The actions that keys of a screen have."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class ScreenAction:
-    """One thing that a key does."""
+    """An action that a key of a screen has."""
 
     id: str
     keys: str

@@ -113,10 +113,10 @@ def block_rows(block: Block, page: Page) -> list[Row]:
         case Marked():
             return _marked_rows(block, page)
         case _:
-            return [(row(margin) + each if margin and each else each) for each in _rows(block, page)]
+            return [(row(margin) + each if margin and each else each) for each in _block_rows(block, page)]
 
 
-def _rows(block: Block, page: Page) -> list[Row]:
+def _block_rows(block: Block, page: Page) -> list[Row]:
     """The rows of a block that the margin is put before."""
     match block:
         case Text():

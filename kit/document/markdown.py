@@ -70,11 +70,11 @@ def table_to_markdown(table: Table) -> Iterator[str]:
     if table.title:
         yield f"**{_markdown_text(table.title)}**"
         yield ""
-    yield _row(_markdown_text(column.title) for column in table.columns)
-    yield _row("---" if column.style is CellStyle.TEXT else "---:" for column in table.columns)
+    yield _table_line(_markdown_text(column.title) for column in table.columns)
+    yield _table_line("---" if column.style is CellStyle.TEXT else "---:" for column in table.columns)
     for number, row in enumerate(table.rows):
         shown = (row[0] if table.shows_first_cell(number) else "", *row[1:])
-        yield _row(
+        yield _table_line(
             _markdown_text(format_cell(cell, column))
             for cell, column in zip(shown, table.columns, strict=True)
         )
@@ -83,7 +83,7 @@ def table_to_markdown(table: Table) -> Iterator[str]:
         yield _markdown_text(table.note)
 
 
-def _row(cells: Iterator[str]) -> str:
+def _table_line(cells: Iterator[str]) -> str:
     return f"| {' | '.join(cells)} |"
 
 

@@ -141,13 +141,13 @@ def _wrap_styled(pieces: Sequence[StyledText], width: int, first: str, rest: str
         for number, word in enumerate(line.removeprefix(lead).split()):
             start = held.index(word, end)
             at, end = (at if number else start), start + len(word)
-        row += _cut(placed, at, end)
+        row += _slice_pieces(placed, at, end)
         at = end
         rows.append(_join_equal_styles(row))
     return rows
 
 
-def _cut(pieces: Sequence[StyledText], begin: int, end: int) -> Iterator[StyledText]:
+def _slice_pieces(pieces: Sequence[StyledText], begin: int, end: int) -> Iterator[StyledText]:
     """The characters ``begin`` to ``end`` of all pieces together."""
     at = 0
     for piece in pieces:

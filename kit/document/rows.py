@@ -34,10 +34,10 @@ def row_text(parts: Row) -> str:
     return "".join(text for text, _ in parts).rstrip()
 
 
-def spread(left: Row, right: Row, width: int) -> Row:
+def at_both_edges(left: Row, right: Row, width: int) -> Row:
     """``left`` at the left edge and ``right`` at the right one; the left is cut where they meet, and says so.
 
-    >>> row_text(spread(row("Lesson 3: ", ("Sensors", "bold")), row("2 of 5"), 22))
+    >>> row_text(at_both_edges(row("Lesson 3: ", ("Sensors", "bold")), row("2 of 5"), 22))
     'Lesson 3: Sen…  2 of 5'
     """
     room = width - row_width(right) - 1
@@ -60,7 +60,7 @@ def side_by_side(left: Sequence[Row], right: Sequence[Row], column: int) -> list
     [(('one', ''), ('   ', ''), ('three', '')), (('two', ''),)]
     """
     return [
-        (*spread(here, (), column), *there) if there else here
+        (*at_both_edges(here, (), column), *there) if there else here
         for here, there in zip_longest(left, right, fillvalue=())
     ]
 

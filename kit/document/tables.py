@@ -42,7 +42,7 @@ def table_rows(table: Table, width: int) -> TableRows:
     if table.grouped and cells:
         _share_first_cells(table, cells, widths[0])
     entries = (
-        tuple(_placed_rows(texts, widths, table.columns, tuple(map(_tone, told))))
+        tuple(_placed_rows(texts, widths, table.columns, tuple(map(_cell_tone, told))))
         for texts, told in zip(cells, table.rows, strict=True)
     )
     return TableRows(tuple(head), tuple(entries))
@@ -132,7 +132,7 @@ def _cell_text(cell: Cell, column: Column) -> str:
     return text if len(text) <= MAX_CELL_LENGTH else text[: MAX_CELL_LENGTH - 3] + "..."
 
 
-def _tone(cell: Cell) -> Tone:
+def _cell_tone(cell: Cell) -> Tone:
     return cell.tone if isinstance(cell, ToneText) else Tone.PLAIN
 
 
@@ -162,10 +162,10 @@ def _placed_rows(
             gap = COLUMN_GAP if number else ""
             before, after = (gap, "" if number == last else blanks) if is_text else (gap + blanks, "")
             pieces += [(before, ""), (word, tone), (after, "")]
-        yield _joined(pieces)
+        yield _join_by_tone(pieces)
 
 
-def _joined(pieces: Sequence[tuple[str, str]]) -> Row:
+def _join_by_tone(pieces: Sequence[tuple[str, str]]) -> Row:
     """The pieces without empty ones, neighbours of one tone as one."""
     joined: list[tuple[str, str]] = []
     for text, tone in pieces:

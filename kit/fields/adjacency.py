@@ -71,5 +71,5 @@ def adjacency_score(left: ArrayLike, right: ArrayLike) -> Array:
 
 
 def wrap_angles(angle: Array) -> Array:
-    """The same direction, in [-pi, pi)."""
+    """Angles [rad] wrapped to [-pi, pi)."""
     return (angle + np.pi) % (2 * np.pi) - np.pi

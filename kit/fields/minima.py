@@ -51,7 +51,7 @@ class ForceFlow:
     def from_forces(
         cls, forces: FloatArray, grid: OccupancyGrid, target: tuple[float, float], radius: float = 0.25
     ) -> ForceFlow:
-        """The same for any forces (rows, columns, 2) at the floor's cells.
+        """The flow of any forces (rows, columns, 2) at the floor's cells.
 
         Every cell points to the one a step along its force; pointing twice as far again and again leads to the end.
         """

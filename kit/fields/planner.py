@@ -226,7 +226,7 @@ def interpolate_grid(grid: OccupancyGrid, values: FloatArray, places: FloatArray
 
 
 def resample_path(way: FloatArray, spacing: float) -> FloatArray:
-    """The same way with points at even distances, about ``spacing`` [m]; its ends stay."""
+    """A path with points at even distances, about ``spacing`` [m]; its ends stay."""
     steps = np.hypot(*np.diff(way, axis=0).T)
     kept = np.concatenate(([True], steps > 1e-9))
     way, along = way[kept], np.concatenate(([0.0], np.cumsum(steps[steps > 1e-9])))

@@ -20,21 +20,21 @@ def key_tables(name: str, keys: Iterable[FormatKey], *documentation: str) -> Ite
     ``documentation``: docstrings with tables of meanings. A unit in brackets at the end of a meaning moves to the type.
     """
     meanings = {key: text for each in documentation for key, text in key_meanings(each).items()}
-    for mapping, found in groupby(sorted(keys, key=_mapping), _mapping):
+    for mapping, found in groupby(sorted(keys, key=_mapping_of_key), _mapping_of_key):
         title = (
             f"In every entry of {mapping}" if mapping.endswith("[]") else f"In {mapping}" if mapping else ""
         )
-        rows = tuple(_row(each, meanings) for each in found)
+        rows = tuple(_key_row(each, meanings) for each in found)
         yield Table(
             f"{name}-{mapping.replace('[]', '').replace('.', '-')}".rstrip("-"), title, _COLUMNS, rows
         )
 
 
-def _mapping(key: FormatKey) -> str:
+def _mapping_of_key(key: FormatKey) -> str:
     return key.key.rpartition(".")[0]
 
 
-def _row(key: FormatKey, meanings: Mapping[str, str]) -> tuple[str, str, str]:
+def _key_row(key: FormatKey, meanings: Mapping[str, str]) -> tuple[str, str, str]:
     documented = meanings.get(key.key, "")
     meaning = documented.replace("``", "")
     units = _UNITS.findall(meaning)

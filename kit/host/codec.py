@@ -90,13 +90,13 @@ def _kind_packer(kind: FieldKind, strict: bool, finite: bool) -> Pack:
         return lambda values: [item(value) for value in values]
     assert isinstance(kind, ScalarKind)
     if kind.python_type is float:
-        return _finite if finite else _number_or_word
+        return _encode_float if finite else _number_or_word
     if kind.python_type is bytes:
         return lambda value: value[0]
     return lambda value: value
 
 
-def _finite(value: float) -> Json:
+def _encode_float(value: float) -> Json:
     if value - value != 0:
         raise NotFiniteError("")
     return value

@@ -92,7 +92,7 @@ def timed_out(budget: Budget, limit_s: float, where: StackPosition | None) -> Fa
         "total": f"the program used up its total time of {limit_s:g} s.",
     }[budget]
     hint = "Is it very slow?" if budget == "total" else "Is there a loop or a wait that never ends?"
-    return _at(FailureKind.TIMEOUT, f"{message} {hint}", where)
+    return _failure_at(FailureKind.TIMEOUT, f"{message} {hint}", where)
 
 
 def process_ended(status: int, where: StackPosition | None, limits: Limits) -> Failure:
@@ -105,9 +105,11 @@ def process_ended(status: int, where: StackPosition | None, limits: Limits) -> F
         return Failure(FailureKind.DISK, _disk_text(limits))
     number = status - 128 if status > 128 else -status
     if number == signal.SIGXCPU:
-        return _at(FailureKind.TIMEOUT, f"the program used up its {limits.cpu_s} s of processor time.", where)
+        return _failure_at(
+            FailureKind.TIMEOUT, f"the program used up its {limits.cpu_s} s of processor time.", where
+        )
     if number == signal.SIGKILL:
-        return _at(
+        return _failure_at(
             FailureKind.KILLED,
             "the program was killed from outside; perhaps the machine ran out of memory.",
             where,
@@ -115,7 +117,7 @@ def process_ended(status: int, where: StackPosition | None, limits: Limits) -> F
     if 0 < number < signal.NSIG:
         name = (signal.strsignal(number) or f"signal {number}").lower()
         text = f"the program crashed ({name}) inside compiled code, in a package or called through ctypes."
-        return _at(FailureKind.CRASH, text, where)
+        return _failure_at(FailureKind.CRASH, text, where)
     return Failure(
         FailureKind.EXIT, f"the program exited with os._exit({status}). Let main() return instead."
     )
@@ -180,5 +182,5 @@ def unreadable_file(file: Path, reason: str) -> Failure:
     return Failure(FailureKind.IMPORT, f"cannot be read ({reason}).", file.name)
 
 
-def _at(kind: FailureKind, message: str, where: StackPosition | None) -> Failure:
+def _failure_at(kind: FailureKind, message: str, where: StackPosition | None) -> Failure:
     return Failure(kind, message, where.file, where.line) if where else Failure(kind, message)

@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 from kit.host.codec import Codec, NotFiniteError
 from kit.host.proxy_nodes import GraphDiff, NameScope, ProxyClient, ProxyNodes
 from kit.host.waiter import AllThreadsWaiter, TickSource
-from kit.host.wire import Json, ProtocolError, integer, items, kept_size
+from kit.host.wire import Json, ProtocolError, integer, items, memory_size
 from kit.msg.message import Message, is_request_or_response
-from kit.ros.graph.directory import Excess, GraphNode
+from kit.ros.graph.directory import Excess, NodeLike
 from kit.ros.graph.graph import Graph, Waiter
 from kit.ros.node.publisher import Publisher
 from kit.ros.node.service import Call, Service
@@ -208,7 +208,7 @@ class ParentBridge(GraphBridge):
         publisher = self._proxies.endpoint(identity, Publisher)
         message = self._codec.unpack(publisher.msg_type, content)
         if self._max_kept is not None and publisher.qos_profile.is_transient_local:
-            self._count_history(identity, publisher.qos_profile.queue_length, kept_size(content))
+            self._count_history(identity, publisher.qos_profile.queue_length, memory_size(content))
         # The child's own subscriptions have received it already.
         self._is_publishing = True
         try:
@@ -240,7 +240,7 @@ class ParentBridge(GraphBridge):
     def on_request(self, service: int, call: Call) -> None:
         number = self.graph.next_number()
         content = self._codec.pack(call.request)
-        size = 0 if self._max_kept is None else kept_size(content)
+        size = 0 if self._max_kept is None else memory_size(content)
         self._requests[number] = _PendingRequest(service, call, size)
         self._kept += (
             size  # checked in ``apply_events``: this runs in the call of whoever has made the request
@@ -334,7 +334,7 @@ class ChildBridge(GraphBridge):
             self.has_had_nodes = True
             self._add(*event)
 
-    def _record_message(self, _: int, node: GraphNode, topic: str, message: Message) -> None:
+    def _record_message(self, _: int, node: NodeLike, topic: str, message: Message) -> None:
         """Queues every message of the program's own nodes, whether or not anything subscribes."""
         if not is_request_or_response(type(message)):
             self._add_changes()

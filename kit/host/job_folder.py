@@ -54,7 +54,7 @@ class JobFolder(ABC):
 
     @abstractmethod
     def keys(self) -> Sequence[str]:
-        """Those of all jobs, hexadecimal, each once, in the order in which they are run."""
+        """The keys of all jobs, hexadecimal, each once, in the order in which they are run."""
 
     @abstractmethod
     def is_waiting(self, key: str) -> bool:

@@ -236,7 +236,7 @@ class StudentProcess:
         inherited = [None if each is None else os.dup(each) for each in descriptors]
         try:
             self._process = _STARTS[-1](
-                _command(config),
+                _start_command(config),
                 stdin=theirs.fileno(),
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
@@ -570,7 +570,7 @@ def interpreter_command() -> list[str]:
     return [sys.executable, "-s", "-S", "-P", "-c", _START]
 
 
-def _command(config: SandboxConfig) -> list[str]:
+def _start_command(config: SandboxConfig) -> list[str]:
     """Returns the command that starts a process with this confinement."""
     if config.in_bubblewrap:
         return bubblewrap.wrap_command(

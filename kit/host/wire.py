@@ -54,7 +54,7 @@ def decode(data: bytes) -> Json:
     opening = data.count(b"[") + data.count(b"{")
     if opening + data.count(b",") > MAX_ITEMS:
         raise ProtocolError(f"a frame with more than {MAX_ITEMS} items")
-    if opening > MAX_DEPTH and _depth(data) > MAX_DEPTH:
+    if opening > MAX_DEPTH and _nesting_depth(data) > MAX_DEPTH:
         raise ProtocolError(f"a frame nested deeper than {MAX_DEPTH}")
     try:
         return _DECODER.decode(data.decode("ascii"))
@@ -63,7 +63,7 @@ def decode(data: bytes) -> Json:
         raise ProtocolError(f"a frame that is not plain JSON ({type(problem).__name__})") from None
 
 
-def _depth(data: bytes) -> int:
+def _nesting_depth(data: bytes) -> int:
     depth = deepest = 0
     for bracket in _STRING.sub(b"", data).translate(None, _NO_BRACKETS):
         depth += 1 if bracket in b"[{" else -1
@@ -152,11 +152,11 @@ def printable(value: str) -> str:
     )
 
 
-def kept_size(value: Json) -> int:
+def memory_size(value: Json) -> int:
     """Returns about how many bytes a message with this content takes in memory: rather too many than too few."""
     if isinstance(value, (list, dict)):
         inner = value.values() if isinstance(value, dict) else value
-        return 100 + sum(map(kept_size, inner))
+        return 100 + sum(map(memory_size, inner))
     return 50 + (4 * len(value) if isinstance(value, str) else 0)
 
 

@@ -23,9 +23,9 @@ def bag_info(bag: Bag) -> str:
         ("Bag size", [format_size(bag.size)]),
         ("Storage id", [bag.storage]),
         ("ROS Distro", [bag.distro]),
-        ("Duration", [f"{_seconds(bag.duration_ns)}s"]),
-        ("Start", [_instant(bag.start_ns)]),
-        ("End", [_instant(end_ns)]),
+        ("Duration", [f"{_seconds_text(bag.duration_ns)}s"]),
+        ("Start", [_utc_text(bag.start_ns)]),
+        ("End", [_utc_text(end_ns)]),
         ("Messages", [str(bag.count)]),
         ("Topic information", topics),
     )
@@ -37,11 +37,11 @@ def bag_info(bag: Bag) -> str:
     return "\n".join(lines)
 
 
-def _seconds(time_ns: int) -> str:
+def _seconds_text(time_ns: int) -> str:
     return f"{time_ns // 1_000_000_000}.{time_ns % 1_000_000_000:09d}"
 
 
-def _instant(time_ns: int) -> str:
+def _utc_text(time_ns: int) -> str:
     """A time in UTC, since simulated time begins with 1970."""
     moment = datetime.fromtimestamp(time_ns // 1_000_000_000, UTC)
-    return f"{moment:%b} {moment.day:2d} {moment:%Y %H:%M:%S}.{time_ns % 1_000_000_000:09d} ({_seconds(time_ns)})"
+    return f"{moment:%b} {moment.day:2d} {moment:%Y %H:%M:%S}.{time_ns % 1_000_000_000:09d} ({_seconds_text(time_ns)})"

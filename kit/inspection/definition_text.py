@@ -30,10 +30,10 @@ def definition_text(cls: Interface, comments: CommentOptions = CommentOptions())
 
     Raises DefinitionError.
     """
-    return "".join(f"{line}\n" for line in _lines(cls, comments.own, comments.nested, 0))
+    return "".join(f"{line}\n" for line in _definition_lines(cls, comments.own, comments.nested, 0))
 
 
-def _lines(cls: Interface, comments: bool, nested_comments: bool, depth: int) -> Iterator[str]:
+def _definition_lines(cls: Interface, comments: bool, nested_comments: bool, depth: int) -> Iterator[str]:
     text, kind, messages = _source(cls)
     sections = parse_definition(text, kind, cls.__ros_type__)
     fields = {
@@ -53,7 +53,7 @@ def _lines(cls: Interface, comments: bool, nested_comments: bool, depth: int) ->
         yield "\t" * depth + shown if shown else ""
         item = item_kind(fields[number]) if number in fields else None
         if isinstance(item, MessageKind):
-            yield from _lines(item.cls, nested_comments, nested_comments, depth + 1)
+            yield from _definition_lines(item.cls, nested_comments, nested_comments, depth + 1)
 
 
 def _source(cls: Interface) -> tuple[str, str, tuple[type[Message], ...]]:

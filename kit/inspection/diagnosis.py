@@ -68,7 +68,7 @@ def _node_check(graph: Graph) -> DiagnosisCheck:
 def _topic_check(graph: Graph) -> DiagnosisCheck:
     found = []
     for name in _checked_topics(graph):
-        publishers, subscriptions = _ends(graph, name)
+        publishers, subscriptions = _count_endpoints(graph, name)
         if publishers and not subscriptions:
             found.append(f"Publisher without subscriber detected on {name}.")
         elif subscriptions and not publishers:
@@ -82,7 +82,7 @@ def _qos_check(graph: Graph) -> DiagnosisCheck:
         errors=tuple(
             f"QoS compatibility error found on topic '{name}', from {publisher} to {subscriber}: "
             f"{status.removeprefix('ERROR: ')}"
-            for name, _, publisher, subscriber, status in _pairs(graph)
+            for name, _, publisher, subscriber, status in _endpoint_pairs(graph)
             if status != "OK"
         ),
     )
@@ -92,14 +92,14 @@ def _checked_topics(graph: Graph) -> Iterator[str]:
     return (name for name, _ in topics(graph, hidden=False) if name not in UNCHECKED_TOPICS)
 
 
-def _ends(graph: Graph, topic: str) -> tuple[int, int]:
+def _count_endpoints(graph: Graph, topic: str) -> tuple[int, int]:
     """The numbers of publishers and subscriptions of a topic."""
     return sum(1 for _ in graph.directory.publishers(topic)), sum(
         1 for _ in graph.directory.subscriptions(topic)
     )
 
 
-def _pairs(graph: Graph) -> Iterator[tuple[str, str, str, str, str]]:
+def _endpoint_pairs(graph: Graph) -> Iterator[tuple[str, str, str, str, str]]:
     """Topic, type, names of the two nodes, and ``OK`` or the reason, of each publisher with each subscription."""
     for name, types in topics(graph, hidden=False):
         for publisher in graph.directory.publishers(name):
@@ -129,7 +129,7 @@ def reports(
             ("python", platform.python_version()),
         ),
     )
-    pairs = [] if graph is None else list(_pairs(graph))
+    pairs = [] if graph is None else list(_endpoint_pairs(graph))
     names = ("topic [type]", "publisher node", "subscriber node", "compatibility status")
     rows = [
         row for topic, kind, *rest in pairs for row in zip(names, (f"{topic} [{kind}]", *rest), strict=True)
@@ -171,7 +171,7 @@ def _graph_reports(graph: Graph | None, world: str) -> Iterator[Report]:
     yield Report("NODE LIST", "node", [("node", name) for name in names] or (("node", "none"),))
     rows: list[tuple[str, object]] = []
     for name in _checked_topics(graph):
-        publishers, subscriptions = _ends(graph, name)
+        publishers, subscriptions = _count_endpoints(graph, name)
         rows += [("topic", name), ("publisher count", publishers), ("subscriber count", subscriptions)]
     yield Report("TOPIC LIST", "topic", rows or (("topic", "none"),))
     rows = []

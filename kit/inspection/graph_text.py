@@ -46,8 +46,8 @@ def node_info(handle: NodeEntry, *, hidden: bool) -> Iterator[str]:
         ("Publishers", ((end.topic_name, type_name(end.msg_type)) for end in handle.publishers)),
         ("Service Servers", ((end.service_name, type_name(end.srv_type)) for end in handle.services)),
         ("Service Clients", ((end.service_name, type_name(end.srv_type)) for end in handle.clients)),
-        ("Action Servers", _flat(served_actions(handle))),
-        ("Action Clients", _flat(called_actions(handle))),
+        ("Action Servers", _flatten_types(served_actions(handle))),
+        ("Action Clients", _flatten_types(called_actions(handle))),
     )
     for title, ends in sections:
         yield f"  {title}:"
@@ -58,7 +58,7 @@ def node_info(handle: NodeEntry, *, hidden: bool) -> Iterator[str]:
         yield "\n".join(f"    {name}: {', '.join(sorted(types[name]))}" for name in sorted(types))
 
 
-def _flat(names_and_types: NamesAndTypes) -> Iterator[tuple[str, str]]:
+def _flatten_types(names_and_types: NamesAndTypes) -> Iterator[tuple[str, str]]:
     return ((name, each) for name, types in names_and_types for each in types)
 
 
@@ -89,12 +89,12 @@ def topic_info(graph: Graph, name: str, types: list[str], *, verbose: bool) -> I
         if verbose:
             for end in ends:
                 yield ""
-                yield from _endpoint(TopicEndpointInfo.of(end, kind))
+                yield from _endpoint_lines(TopicEndpointInfo.of(end, kind))
     if verbose:
         yield ""
 
 
-def _endpoint(info: TopicEndpointInfo) -> Iterator[str]:
+def _endpoint_lines(info: TopicEndpointInfo) -> Iterator[str]:
     qos = info.qos_profile
     history = qos.history.name + (f" ({qos.depth})" if qos.history == HistoryPolicy.KEEP_LAST else "")
     liveliness = qos.liveliness
@@ -110,13 +110,13 @@ def _endpoint(info: TopicEndpointInfo) -> Iterator[str]:
     yield f"  Reliability: {qos.reliability.name}"
     yield f"  History (Depth): {history}"
     yield f"  Durability: {qos.durability.name}"
-    yield f"  Lifespan: {_time(qos.lifespan)}"
-    yield f"  Deadline: {_time(qos.deadline)}"
+    yield f"  Lifespan: {_duration_text(qos.lifespan)}"
+    yield f"  Deadline: {_duration_text(qos.deadline)}"
     yield f"  Liveliness: {liveliness.name}"
-    yield f"  Liveliness lease duration: {_time(qos.liveliness_lease_duration)}"
+    yield f"  Liveliness lease duration: {_duration_text(qos.liveliness_lease_duration)}"
 
 
-def _time(duration: Duration) -> str:
+def _duration_text(duration: Duration) -> str:
     return "Infinite" if duration.nanoseconds == 0 else f"{duration.nanoseconds} nanoseconds"
 
 

@@ -97,14 +97,14 @@ class BandwidthMeter:
             return None
         sizes = [size for _, size in self._messages]
         rate = sum(sizes) / ((now_ns - self._messages[0][0]) / 1e9)
-        shown = [_bytes(size, rate) for size in (rate, sum(sizes) / len(sizes), min(sizes), max(sizes))]
+        shown = [_bytes_text(size, rate) for size in (rate, sum(sizes) / len(sizes), min(sizes), max(sizes))]
         return (
             f"{shown[0]}/s from {len(sizes)} messages\n"
             f"\tMessage size mean: {shown[1]} min: {shown[2]} max: {shown[3]}"
         )
 
 
-def _bytes(size: float, rate: float) -> str:
+def _bytes_text(size: float, rate: float) -> str:
     """A number of bytes, in a unit that suits the rate."""
     if rate < 1000:
         return f"{size:.0f} B"

@@ -32,14 +32,14 @@ class FramedSocket:
     @property
     def peer_user(self) -> int | None:
         """The user id of the other process; None where the system does not tell (only Linux does)."""
-        return self._peer(1)
+        return self._peer_credential(1)
 
     @property
     def peer_process(self) -> int | None:
         """Its process id, likewise."""
-        return self._peer(0)
+        return self._peer_credential(0)
 
-    def _peer(self, field: int) -> int | None:
+    def _peer_credential(self, field: int) -> int | None:
         if sys.platform != "linux":
             return None
         credentials = self._connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
@@ -95,7 +95,7 @@ class WorldNotFound(LookupError):
 
 @dataclass(frozen=True, slots=True)
 class RunningWorld:
-    """A world that other terminals can connect to."""
+    """A running world that other terminals can connect to."""
 
     path: Path
     started_s: float

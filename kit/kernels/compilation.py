@@ -1,150 +1,18 @@
-"""How kernels are compiled: on first use, kept on disk, called without working out types, or handed to C code.
-
-What numba keeps on disk holds until one of the files of this folder is edited. What the installation keeps for all accounts
-(``shared_cache``) is read first, then an account's own, which it also writes; ``NUMBA_CACHE_DIR`` names one folder instead.
-"""
+"""How kernels are compiled: on first use, called without working out types, or handed to C code."""
 
 from __future__ import annotations
 
-import os
-import stat
-import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import chdir, contextmanager, nullcontext, suppress
-from functools import cache
-from pathlib import Path
+from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, TypeVar, cast
 
-from kit.kernels.compilation_progress import PROGRESS
-from kit.kernels.shared_cache import unshared_reason
-
-NUMBA_SETTINGS = Path(".numba_config.yaml")
-"""numba reads it in the current folder, at its import and whenever it compiles. It names the cache, whose files can run code,
-and the current folder may be a student's."""
-UNUSED = ("scipy", "cffi")
-"""What numba would import for linear algebra and for C functions that cffi declares, of which kernels have neither: with all that
-these import, they take 14 MB of every drive (``tests/benchmarks/memory.py``)."""
-
-
-@contextmanager
-def _absent(names: Sequence[str]) -> Iterator[None]:
-    """Has packages be as if they were not installed, unless they are imported already."""
-    hidden = [name for name in names if name not in sys.modules]
-    sys.modules.update(dict.fromkeys(hidden))  # type: ignore[arg-type] # None is Python's own mark for it
-    try:
-        yield
-    finally:
-        for name in hidden:
-            sys.modules.pop(name, None)
-
-
-# Not compiled, kernels take a hundred times as long, and what a budget of time allows depends on the caller's environment.
-os.environ.pop("NUMBA_DISABLE_JIT", None)
-with _absent(UNUSED), chdir("/") if NUMBA_SETTINGS.exists() else nullcontext():
-    import numba
-    from numba.core import caching, ccallback, config, event
-    from numba.core.registry import cpu_target
-
-    cpu_target.target_context.refresh()  # imports the rest, which the first kernel would do
-
-config._config_fname = ""  # no file has this name
-
-
-class _ProgressListener(event.Listener):
-    def on_start(self, event: Any) -> None:
-        PROGRESS.begin(event.data["dispatcher"].py_func.__name__)
-
-    def on_end(self, event: Any) -> None:
-        PROGRESS.end()
-
-
-_register: Any = event.register  # numba has no types
-_register("numba:compile", _ProgressListener())
-
-SOURCE_STAMP = tuple(
-    (file.name, file.stat().st_mtime, file.stat().st_size)
-    for file in sorted(Path(__file__).parent.glob("*.py"))
-)
-"""Changes when a file of kernels does."""
-
-
-_UNTYPED: Any = numba.core
-"""numba's own modules, which have no types."""
-
-
-@cache
-def _is_shared(folder: Path) -> bool:
-    """Whether a folder holds kernels for all accounts: its hundred files are looked at once, not for each kernel."""
-    return not unshared_reason(folder)
-
-
-def _locator(name: str) -> Any:
-    """A class of numba's, which older versions call by a name with an underscore."""
-    return getattr(caching, name, None) or getattr(caching, f"_{name}")
-
-
-class _OwnersLocator(_locator("InTreeCacheLocator")):  # type: ignore[misc]
-    """Beside the source, unless everybody may write there: anyone could leave code for the others."""
-
-    def ensure_cache_path(self) -> None:
-        super().ensure_cache_path()
-        if Path(self.get_cache_path()).stat().st_mode & stat.S_IWOTH:
-            raise OSError("everybody may write there")
-
-
-class _ReadOnlyLocator(_locator("InTreeCacheLocator")):  # type: ignore[misc]
-    """For an account, or a confined process, that has no place of its own: it reads the installation's."""
-
-    def ensure_cache_path(self) -> None:
-        if not _is_shared(Path(self.get_cache_path())):
-            raise OSError("no kernels for all accounts")
-
-
-class _KernelCacheImpl(_UNTYPED.caching.CompileResultCacheImpl):  # type: ignore[misc]
-    _locator_classes = (
-        _locator("UserProvidedCacheLocator"),
-        _OwnersLocator,
-        _locator("UserWideCacheLocator"),
-        _ReadOnlyLocator,
-    )
-
-
-class _KernelFiles(_UNTYPED.caching.IndexDataCacheFile):  # type: ignore[misc]
-    """The files of one kernel, in both places."""
-
-    def __init__(self, own: str, shared: Path, base: str, stamp: object) -> None:
-        super().__init__(own, base, stamp)
-        self._shared: Any = None
-        if str(shared) != own and not _UNTYPED.config.CACHE_DIR and _is_shared(shared):
-            self._shared = _UNTYPED.caching.IndexDataCacheFile(str(shared), base, stamp)
-
-    def load(self, key: object) -> Any:
-        with suppress(PermissionError):  # one that may not be read is compiled
-            if self._shared is not None and (found := self._shared.load(key)) is not None:
-                return found
-            return super().load(key)
-        return None
-
-    def save(self, key: object, data: object) -> None:
-        with suppress(PermissionError):  # only read: it is compiled at each start
-            super().save(key, data)
-
-
-class KernelCache(_UNTYPED.caching.FunctionCache):  # type: ignore[misc]
-    """The compiled forms of one kernel. Raises RuntimeError where there is no place for them."""
-
-    _impl_class = _KernelCacheImpl
-
-    def __init__(self, function: Callable[..., Any], stamp: object | None = None) -> None:
-        """``stamp``: what must still be the same when they are read; by default the content of the function's file."""
-        super().__init__(function)
-        if stamp is None:
-            stamp = self._impl.locator.get_source_stamp()
-        shared = Path(function.__code__.co_filename).parent / "__pycache__"
-        self._cache_file = _KernelFiles(self.cache_path, shared, self._impl.filename_base, stamp)
-
+from kit.kernels.kernel_cache import SOURCE_STAMP, KernelCache
+from kit.kernels.numba_import import UNTYPED, ccallback, numba
 
 FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
+
+_KEPT: list[Any] = []
+"""C functions: their code lives as long as they do."""
 
 
 def _compile_on_use(function: FunctionT, **options: bool) -> FunctionT:
@@ -226,7 +94,7 @@ def c_function(function: Callable[..., Any], signature: str) -> int:
     """
     compiled: Any = ccallback.CFunc(
         function,
-        _UNTYPED.sigutils.normalize_signature(signature),
+        UNTYPED.sigutils.normalize_signature(signature),
         locals={},
         options={"error_model": "numpy"},
     )
@@ -235,7 +103,3 @@ def c_function(function: Callable[..., Any], signature: str) -> int:
     compiled.compile()
     _KEPT.append(compiled)
     return int(compiled.address)
-
-
-_KEPT: list[Any] = []
-"""C functions: their code lives as long as they do."""

@@ -210,5 +210,9 @@ def _names(files: Sequence[Path]) -> str:
 
 
 def _search_order(folder: Path, extra_folders: Iterable[Path]) -> tuple[Path, ...]:
-    """The package itself, then its parent folder, then the other folders."""
-    return tuple(dict.fromkeys([folder, folder.parent, *extra_folders]))
+    """The package itself, then the folder that it lies in, whose other packages are its siblings; then the other folders.
+
+    A folder that is no package has no siblings: above it may lie anything, up to the whole disk.
+    """
+    siblings = [folder.parent] if (folder / "package.xml").is_file() else []
+    return tuple(dict.fromkeys([folder, *siblings, *extra_folders]))

@@ -233,9 +233,9 @@ class Launch:
 
     @property
     def has_programs(self) -> bool:
-        """True if a process runs or waits that can end by itself."""
+        """True if a process runs or waits that can end by itself, or the launch file is still to hear of an end."""
         return any(not running.process.is_builtin for running in self._running.values()) or bool(
-            self._waiting
+            self._waiting or self._events
         )
 
     @property
@@ -310,6 +310,7 @@ class Launch:
                 # Time stands still until they are there: they are in step from the tick in which they were due.
                 for started in self._start_waiting():
                     started.wait_until_started()
+                    self._has_sent = True  # it may have ended already: its end counts in this tick
             except ProcessStartError as problem:
                 self._record_failure(str(problem))
                 self._end_all_processes()
@@ -382,6 +383,7 @@ class Launch:
         running = self._running.get(number)
         if running is not None:
             running.process.close()
+            self._pass_on_output(running)
             self._record_exit(number, running, ProcessExit(0))
         self._waiting = [request for request in self._waiting if request.number != number]
 
@@ -389,6 +391,7 @@ class Launch:
         for running in self._running.values():
             self._pass_on_output(running)
             running.process.close()
+            self._pass_on_output(running)
         self._running.clear()
         self._waiting.clear()
         self.is_over = True

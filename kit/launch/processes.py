@@ -220,6 +220,7 @@ class CommandProcess(_UnsteppedProcess):
         assert self._process.stderr is not None
         self._streams = {"out": self._process.stdout, "err": self._process.stderr}
         self._partial_lines = {"out": b"", "err": b""}
+        self._last_lines: list[PrintedLine] = []
         for stream in self._streams.values():
             os.set_blocking(stream.fileno(), False)
 
@@ -228,7 +229,7 @@ class CommandProcess(_UnsteppedProcess):
         return None if code is None else ProcessExit(code if code >= 0 else 128 - code)
 
     def take_lines(self) -> list[PrintedLine]:
-        lines: list[PrintedLine] = []
+        lines, self._last_lines = self._last_lines, []
         for name, stream in self._streams.items():
             if stream.closed:
                 continue
@@ -251,6 +252,7 @@ class CommandProcess(_UnsteppedProcess):
             with suppress(subprocess.TimeoutExpired):
                 self._process.wait(EXIT_TIMEOUT_S)
                 break
+        self._last_lines = self.take_lines()  # what it has said because of its end
         for stream in self._streams.values():
             stream.close()
 

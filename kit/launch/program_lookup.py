@@ -263,11 +263,11 @@ def _start_command(request: StartRequest, context: StartContext) -> Process:
                 installed[1], installed[2], replace(request, command=tuple(command[1:])), context
             )
     is_ros2 = name == "ros2" and not request.shell
-    names_ros2 = request.shell and _NAMES_ROS2.search(" ".join(command)) is not None
+    names_ros2 = _NAMES_ROS2.search(" ".join(command)) is not None
     if is_ros2:
         context.log(f"{request.name}: `kit ros` replaces `ros2`")
         command = python_command("kit", "ros", *command[1:])
-    elif names_ros2:
+    elif names_ros2 and request.shell:
         context.log(f"{request.name}: `kit ros` replaces `ros2`")
         command = [f'ros2() {{ {shlex.join(python_command("kit", "ros"))} "$@"; }};', *command]
     try:

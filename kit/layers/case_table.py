@@ -82,7 +82,7 @@ class CaseTable:
         }[self.case.relation(one, other)]
 
     def with_cursor_moved(self, down: int, right: int) -> CaseTable:
-        """The cursor elsewhere, within the table."""
+        """The table with the cursor moved, within its rows and columns."""
         row = min(max(self.row + down, 0), max(0, self.rows - 1))
         count = len(self.written_case.entities)
         last = min(row, count - 1) if row < count else count - 1
@@ -106,7 +106,7 @@ class CaseTable:
         )
 
     def with_row_added(self, kind: RowKind, name: str) -> CaseTable:
-        """Another entity or laser, apart from all others, and the cursor in its row."""
+        """The table with one more entity or laser, which has contact with none, and the cursor in its row."""
         if not _NAME_PATTERN.fullmatch(name):
             raise LayerCaseError(
                 f"{name!r}: a name is letters, digits, _ and -; MODEL.PART for a part of a model"

@@ -197,7 +197,7 @@ def _weights_text(case: LayerCase, weights: dict[Requirement, Fraction], width: 
     say = partial(paragraph, width=width)
     total = sum(weights.values(), Fraction(0))
     lines = say(
-        f"Give these {len(weights)} requirements weights. No layer there can be collects more than 1, and together "
+        f"Give these {counted(len(weights), 'requirement')} weights. No layer there can be collects more than 1, and together "
         f"they weigh {_mixed_number(total)}: they need {counted(-(-total.numerator // total.denominator), 'layer')}."
     )
     for requirement, weight in weights.items():

@@ -88,7 +88,7 @@ class JudgedStrokes:
         return union(self.walls.shape, (each.strokes for each in self.doubts))
 
     def keeping(self, kinds: Collection[str]) -> JudgedStrokes:
-        """The same with the doubtful strokes of these kinds taken for walls."""
+        """A copy with the doubtful strokes of these kinds taken for walls."""
         kept = union(self.walls.shape, (each.strokes for each in self.doubts if each.kind in kinds))
         left = tuple(each for each in self.doubts if each.kind not in kinds)
         return JudgedStrokes(self.walls | kept, left, self.notes)

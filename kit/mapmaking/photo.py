@@ -78,7 +78,7 @@ class PhotoPlan:
         return WallPlan(self.strokes.walls, self.scale.resolution(self.strokes.walls))
 
     def keeping(self, kinds: Collection[str]) -> PhotoPlan:
-        """The same with the doubtful strokes of these kinds taken for walls."""
+        """A copy with the doubtful strokes of these kinds taken for walls."""
         return replace(self, strokes=self.strokes.keeping(kinds))
 
     @property

@@ -58,11 +58,10 @@ def find_strokes(sheet: Image.Image, options: StrokeOptions = StrokeOptions()) -
     """The strokes of a flat sheet, ``PLAN_PIXELS`` columns wide. Raises NoStrokes."""
     depth = stroke_depth(sheet)
     mask = _stroke_pixels(depth)
-    everything = _plan_of(mask, sheet, options)
-    _check_share(everything)
     lifted = depth - float(np.median(depth))
-    deep = mask & (lifted > PALE * usual_depth(lifted, mask))
-    return judge_strokes(everything, _plan_of(deep, sheet, options))
+    deep = _plan_of(mask & (lifted > PALE * usual_depth(lifted, mask)), sheet, options)
+    _check_share(deep)
+    return judge_strokes(_plan_of(mask, sheet, options), deep)
 
 
 def _plan_of(mask: BoolArray, sheet: Image.Image, options: StrokeOptions) -> BoolArray:

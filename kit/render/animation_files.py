@@ -11,7 +11,9 @@ import numpy as np
 from kit.arrays import FloatArray
 from kit.render.encode import Frame, changed_spans
 from kit.render.image import IMAGE_THEMES, Color, path_role
-from kit.render.roles import ROBOT_ROLES, ROLE_LOOKS, LineStyle, Palette, Role, RoleStyle
+from kit.render.palettes import Palette
+from kit.render.role_looks import ROLE_LOOKS, LineStyle, RoleStyle
+from kit.render.roles import ROBOT_ROLES, Role
 from kit.render.scene import Disc, Scene, SceneBody, SceneBounds, SceneMark, ScenePath
 
 _ANSI_NAMES = ("black", "red", "green", "yellow", "blue", "magenta", "cyan", "white")
@@ -143,11 +145,11 @@ def svg_animation(
         f'<svg xmlns="http://www.w3.org/2000/svg" {shape} role="img" fill="none" stroke-linejoin="round">',
         f"<title>{escape(title)}</title>",
         f'<rect width="{width}" height="{height}" fill="{drawing.color(Role.EMPTY)}"/>',
-        *(drawing.way(way, number) for number, way in enumerate(_ways(shown))),
+        *(drawing.way(way, number) for number, way in enumerate(_driven_paths(shown))),
         *(drawing.target(target) for target in first.targets),
         f'<path d="{drawing.segments(first.walls)}" stroke="{drawing.color(Role.WALL)}" stroke-width="1.5"/>',
     ]
-    for model, robot in _models(shown):
+    for model, robot in _numbered_models(shown):
         role = Role.BODY if robot is None else ROBOT_ROLES[robot % len(ROBOT_ROLES)]
         style = f'stroke="{drawing.color(role)}" stroke-width="1.5"'
         if robot is not None:
@@ -176,10 +178,12 @@ class _Drawing:
 
     def segments(self, segments: FloatArray) -> str:
         finite = segments[np.isfinite(segments).all(axis=1)]
-        return "".join(f"M{self._point(x1, y1)}L{self._point(x2, y2)}" for x1, y1, x2, y2 in finite.tolist())
+        return "".join(
+            f"M{self._path_point(x1, y1)}L{self._path_point(x2, y2)}" for x1, y1, x2, y2 in finite.tolist()
+        )
 
     def line(self, points: FloatArray) -> str:
-        return "M" + "L".join(self._point(x, y) for x, y in points.tolist())
+        return "M" + "L".join(self._path_point(x, y) for x, y in points.tolist())
 
     def way(self, points: FloatArray, number: int) -> str:
         role = (Role.TRAIL, Role.TRAIL_2)[number % 2]
@@ -191,14 +195,14 @@ class _Drawing:
         return f'<path d="{self.line(path.points)}" stroke="{self.color(path_role(path))}" stroke-width="1.5"{dash}/>'
 
     def mark(self, mark: SceneMark) -> str:
-        x, y = self._point(mark.x, mark.y).split()
+        x, y = self._path_point(mark.x, mark.y).split()
         return (
             f'<text x="{x}" y="{y}" fill="{self.color(mark.role)}" font-family="sans-serif" font-size="11" '
             f'text-anchor="middle" dominant-baseline="central">{escape(mark.label)}</text>'
         )
 
     def cross(self, x: float, y: float) -> str:
-        column, row = map(float, self._point(x, y).split())
+        column, row = map(float, self._path_point(x, y).split())
         left, right, top, bottom = column - 5, column + 5, row - 5, row + 5
         lines = (
             f"M{left:.1f} {top:.1f}L{right:.1f} {bottom:.1f}M{left:.1f} {bottom:.1f}L{right:.1f} {top:.1f}"
@@ -206,7 +210,7 @@ class _Drawing:
         return f'<path d="{lines}" stroke="{self.color(Role.CONTACT)}" stroke-width="2.5"/>'
 
     def target(self, target: Disc) -> str:
-        x, y = self._point(target.x, target.y).split()
+        x, y = self._path_point(target.x, target.y).split()
         radius = max(2.0, target.radius * self._scale)
         return f'<circle cx="{x}" cy="{y}" r="{radius:.1f}" stroke="{self.color(Role.TARGET)}" stroke-width="2"/>'
 
@@ -216,7 +220,7 @@ class _Drawing:
         shapes = [self.line(polygon) + "Z" for polygon in body.polygons]
         for x, y, radius in body.discs:
             r = f"{radius * self._scale:.1f}"
-            left, right = self._point(x - radius, y), self._point(x + radius, y)
+            left, right = self._path_point(x - radius, y), self._path_point(x + radius, y)
             shapes.append(f"M{left}A{r} {r} 0 1 0 {right}A{r} {r} 0 1 0 {left}Z")
         return "".join(shapes) or _NOWHERE
 
@@ -236,14 +240,14 @@ class _Drawing:
         yield f'<path d="{shapes[0]}" {style}><animate attributeName="d" calcMode="discrete"'
         yield f'dur="{duration_s:.2f}s" repeatCount="indefinite" values="{";".join(shapes)}"/></path>'
 
-    def _point(self, x: float, y: float) -> str:
+    def _path_point(self, x: float, y: float) -> str:
         return (
             f"{(x - self._left) * self._scale + self._margin:.1f} "
             f"{(self._top - y) * self._scale + self._margin:.1f}"
         )
 
 
-def _models(scenes: Sequence[Scene]) -> list[tuple[str, int | None]]:
+def _numbered_models(scenes: Sequence[Scene]) -> list[tuple[str, int | None]]:
     """All models there ever are, with the number of each robot from 0; None for what is no robot."""
     robots = list(dict.fromkeys(body.model for scene in scenes for body in scene.robots))
     every = dict.fromkeys(body.model for scene in scenes for body in scene.bodies)
@@ -251,21 +255,21 @@ def _models(scenes: Sequence[Scene]) -> list[tuple[str, int | None]]:
     return [*((model, None) for model in others), *((model, number) for number, model in enumerate(robots))]
 
 
-def _body(scene: Scene, model: str) -> SceneBody | None:
+def _body_of_model(scene: Scene, model: str) -> SceneBody | None:
     return next((body for body in scene.bodies if body.model == model), None)
 
 
 def _outlines(scenes: Sequence[Scene], model: str, drawing: _Drawing) -> list[str]:
-    bodies = (_body(scene, model) for scene in scenes)
+    bodies = (_body_of_model(scene, model) for scene in scenes)
     return [_NOWHERE if body is None else drawing.outline(body) for body in bodies]
 
 
 def _headings(scenes: Sequence[Scene], model: str, drawing: _Drawing) -> list[str]:
-    bodies = (_body(scene, model) for scene in scenes)
+    bodies = (_body_of_model(scene, model) for scene in scenes)
     return [_NOWHERE if body is None else drawing.heading(body) for body in bodies]
 
 
-def _ways(scenes: Sequence[Scene]) -> list[FloatArray]:
+def _driven_paths(scenes: Sequence[Scene]) -> list[FloatArray]:
     """Each robot's way, (k, 2) [m], of those that have moved."""
     ways: dict[str, list[tuple[float, float]]] = {}
     for scene in scenes:

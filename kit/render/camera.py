@@ -79,7 +79,7 @@ class Camera:
         return SceneBounds(self.x - across, self.y - up, self.x + across, self.y + up)
 
     def resized(self, columns: int, rows: int) -> Camera:
-        """The same place at the same scale in another window."""
+        """A camera that shows the same place at the same scale in another window."""
         return replace(self, columns=max(1, columns), rows=max(1, rows))
 
     def zoomed(self, steps: int) -> Camera:

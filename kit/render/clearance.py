@@ -65,12 +65,12 @@ def side_wall_distances(
     mirror = np.array([1.0, 1.0 if left else -1.0])  # the other side is the left one of a mirrored world
     polygons = [polygon * mirror for polygon in hull.polygons] or [np.zeros((1, 2))]
     shape = SceneBody(
-        hull.model, hull.pose, tuple(polygons), tuple(_mirrored(each, mirror) for each in hull.discs)
+        hull.model, hull.pose, tuple(polygons), tuple(_mirror_disc(each, mirror) for each in hull.discs)
     )
     found = []
     for first in range(0, len(poses), POSES_AT_ONCE):
         chunk = poses[first : first + POSES_AT_ONCE]
-        is_near = (_distances(chunk[:, :2], walls)[0] <= within + _reach(shape)).any(axis=0)
+        is_near = (_distances(chunk[:, :2], walls)[0] <= within + _outer_radius(shape)).any(axis=0)
         found.append(_left_distances(shape, chunk, walls[is_near], mirror))
     distances = np.concatenate(found)
     return np.where(distances <= within, distances, math.inf)
@@ -111,21 +111,21 @@ def _hull_distances(hull: SceneBody, segments: FloatArray) -> FloatArray:
     return shortest
 
 
-def _mirrored(disc: Disc, mirror: FloatArray) -> Disc:
+def _mirror_disc(disc: Disc, mirror: FloatArray) -> Disc:
     return Disc(disc.x, disc.y * float(mirror[1]), disc.radius)
 
 
 def _may_be_nearest(robots: Sequence[SceneBody], walls: FloatArray) -> BoolArray:
     """(n,) whether a wall may be the one that is nearest to the hull of a robot, by its distance from the robots' poses:
     few may, and the rest need not be compared with every corner and edge."""
-    reach = np.array([_reach(robot) for robot in robots])
+    reach = np.array([_outer_radius(robot) for robot in robots])
     distance, _ = _distances(np.array([robot.pose[:2] for robot in robots]), walls)
     limit = distance.min(axis=1) + 2.0 * reach + 1e-6
     may: BoolArray = (distance <= limit[:, None]).any(axis=0)
     return may
 
 
-def _reach(robot: SceneBody) -> float:
+def _outer_radius(robot: SceneBody) -> float:
     """The distance of the hull's farthest point from the robot's pose [m]."""
     corners = (float(np.hypot(*(polygon - robot.pose[:2]).T).max()) for polygon in robot.polygons)
     rims = (math.hypot(disc.x - robot.pose.x, disc.y - robot.pose.y) + disc.radius for disc in robot.discs)

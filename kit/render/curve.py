@@ -16,7 +16,8 @@ from kit.arrays import FloatArray
 from kit.render import raster
 from kit.render.encode import Encoder, Frame, GlyphSet
 from kit.render.frame_text import paste_frame, write_text
-from kit.render.roles import CURVE_ROLES, LINE_DASHES, LineStyle, Role
+from kit.render.role_looks import LINE_DASHES, LineStyle
+from kit.render.roles import CURVE_ROLES, Role
 
 
 class CurveStyle(NamedTuple):

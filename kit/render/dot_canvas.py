@@ -11,10 +11,12 @@ from kit.render import raster
 from kit.render.camera import Camera
 from kit.render.encode import Encoder
 from kit.render.raster import Grid
-from kit.render.roles import LINE_DASHES, ROLE_LOOKS, TRAIL_ROLES, Role
-from kit.render.scene import CellState, SceneBody, SceneCells, ScenePath
+from kit.render.role_looks import LINE_DASHES, ROLE_LOOKS
+from kit.render.roles import TRAIL_ROLES, Role
+from kit.render.scene import CellState, Disc, SceneBody, SceneCells, ScenePath
 from kit.render.shading import sampled_cells
 from kit.render.sprites import MIN_OUTLINE_ROWS, size_in_rows
+from kit.world.connected_parts import connected_parts
 
 HEADING_LINE_SHARE = 0.25
 """Length of a robot's heading line beyond its hull: this share of its length, or two characters' widths
@@ -22,6 +24,9 @@ if that is more."""
 
 MIN_HOLLOW_ROWS = 4.0
 """A robot shorter than this many rows is filled: its outline alone would be a tangle of dots."""
+
+LEAST_RING_ROWS = 0.75
+"""A target's ring with a smaller radius [rows] is left out: the symbol in its middle would fill it."""
 
 NO_LINES: FloatArray = np.empty((0, 4))
 
@@ -107,6 +112,9 @@ class DotCanvas:
         corners = raster.circle_corners(*middle, radius / self._dot[0], radius / self._dot[1])
         self._put_lines(raster.polyline(corners, closed=True), role)
 
+    def draw_dots(self, dots: raster.Dots, role: Role) -> None:
+        raster.draw_dots(self.grid, dots, role)
+
     def draw_outline(self, body: SceneBody, role: Role) -> None:
         edges = [raster.polyline(polygon, closed=True) for polygon in body.polygons]
         self.draw_lines(np.concatenate((NO_LINES, *edges)), role)
@@ -138,6 +146,43 @@ class DotCanvas:
             kept = np.arange(len(rows)) % period < drawn
             rows, columns = rows[kept], columns[kept]
         raster.draw_dots(self.grid, (rows, columns), role)
+
+
+def ring_dots(target: Disc, walls: Grid, camera: Camera, encoder: Encoder) -> raster.Dots:
+    """The dots of a target's ring: the rim of the part of its disc that is in characters without a wall, so that the ring is
+    closed and of dots everywhere. None where it would be smaller than the symbol in its middle, or that is in a wall.
+
+    ``walls``: (rows * down, columns * across), the camera's grid of walls alone.
+    """
+    nothing = np.empty(0, dtype=np.intp)
+    across, down = encoder.across, encoder.down
+    radius_x = target.radius / camera.cell_width * across
+    radius_y = target.radius / camera.cell_height * down
+    middle = camera.project(np.array((target.x, target.y)), across, down)
+    if radius_y < LEAST_RING_ROWS * down or not (np.isfinite(middle).all() and math.isfinite(radius_x)):
+        return nothing, nothing
+    height, width = walls.shape
+    # About the middle of a dot, it is as round as dots can be. One more dot on each side shows where it leaves the picture.
+    column, row = np.floor(middle)
+    left, right = np.clip((column - radius_x - 1, column + radius_x + 2), -1, width + 1).astype(np.intp)
+    top, bottom = np.clip((row - radius_y - 1, row + radius_y + 2), -1, height + 1).astype(np.intp)
+    if not (left <= column < right and top <= row < bottom):
+        return nothing, nothing
+    rows, columns = np.arange(top, bottom), np.arange(left, right)
+    away_x, away_y = (columns - column) / (radius_x + 0.5), (rows - row) / (radius_y + 0.5)
+    inside = away_x**2 + (away_y**2)[:, None] < 1.0
+    cells: BoolArray = walls.reshape(height // down, down, width // across, across).max(axis=(1, 3)) > 0
+    at = np.clip(rows // down, 0, len(cells) - 1)[:, None], np.clip(columns // across, 0, cells.shape[1] - 1)
+    inside &= ~cells[at]
+    parts = connected_parts(inside)
+    here = parts[int(row) - top, int(column) - left]
+    inside = (parts == here) & (here > 0)
+    padded = np.pad(inside, 1)
+    within = padded[:-2, 1:-1] & padded[2:, 1:-1] & padded[1:-1, :-2] & padded[1:-1, 2:]
+    rim = inside & ~within
+    rim &= ((rows >= 0) & (rows < height))[:, None] & ((columns >= 0) & (columns < width))
+    rim_rows, rim_columns = np.nonzero(rim)
+    return rim_rows + top, rim_columns + left
 
 
 def _heading_line(robot: SceneBody, camera: Camera, encoder: Encoder) -> FloatArray:

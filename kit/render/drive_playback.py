@@ -66,12 +66,12 @@ class DrivePlayback:
         robots = range(self.poses.shape[1])
         return Scene(
             walls=self.place.walls,
-            bodies=tuple(self._robot(robot, Pose(*now[robot].tolist())) for robot in robots),
+            bodies=tuple(self._robot_at(robot, Pose(*now[robot].tolist())) for robot in robots),
             targets=() if self.place.target is None else (self.place.target,),
-            trails=tuple(_trail(way[:, robot, :2]) for robot in robots),
+            trails=tuple(_make_trail(way[:, robot, :2]) for robot in robots),
         )
 
-    def _robot(self, number: int, pose: Pose) -> SceneBody:
+    def _robot_at(self, number: int, pose: Pose) -> SceneBody:
         outlines = (
             np.array([pose.transform_point(*corner) for corner in part.tolist()]) for part in self.place.hull
         )
@@ -88,12 +88,12 @@ class DrivePlayback:
             "case": self.case[:MAX_TEXT],
             "result": self.result[:MAX_TEXT],
             "seconds": round(self.duration_s, 3),
-            "poses": _integers(self.poses[at] * POSE_UNITS),
-            "target": None if place.target is None else _integers(np.array(place.target) * CENTIMETRES),
+            "poses": _to_integers(self.poses[at] * POSE_UNITS),
+            "target": None if place.target is None else _to_integers(np.array(place.target) * CENTIMETRES),
         }
         if with_place:
-            content["walls"] = _integers(place.walls * CENTIMETRES)
-            content["hull"] = [_integers(part * CENTIMETRES) for part in place.hull]
+            content["walls"] = _to_integers(place.walls * CENTIMETRES)
+            content["hull"] = [_to_integers(part * CENTIMETRES) for part in place.hull]
         return json.dumps(content, separators=(",", ":"))
 
     @classmethod
@@ -103,14 +103,16 @@ class DrivePlayback:
         try:
             content = json.loads(text)
             known = content if "walls" in content else _with_place_of(content["case"], earlier)
-            walls = _numbers(known["walls"], -1, 4) / CENTIMETRES
-            hull = tuple(_numbers(part, -1, 2) / CENTIMETRES for part in known["hull"])
+            walls = _parse_numbers(known["walls"], -1, 4) / CENTIMETRES
+            hull = tuple(_parse_numbers(part, -1, 2) / CENTIMETRES for part in known["hull"])
             told = content["target"]
-            target = None if told is None else Disc(*(_numbers(told, 3) / CENTIMETRES).tolist())
-            poses = _numbers(content["poses"], -1, len(content["poses"][0]), 3) / POSE_UNITS
-            seconds = float(_numbers(content["seconds"], 1)[0])
+            target = None if told is None else Disc(*(_parse_numbers(told, 3) / CENTIMETRES).tolist())
+            poses = _parse_numbers(content["poses"], -1, len(content["poses"][0]), 3) / POSE_UNITS
+            seconds = float(_parse_numbers(content["seconds"], 1)[0])
             place = DrivenPlace(walls, hull, target)
-            return cls(_words(content["case"]), _words(content["result"]), poses, seconds, place)
+            return cls(
+                _printable_text(content["case"]), _printable_text(content["result"]), poses, seconds, place
+            )
         except (KeyError, TypeError, IndexError, OverflowError, RecursionError) as error:
             raise ValueError(f"not a drive: {error}") from None
 
@@ -125,11 +127,11 @@ def _with_place_of(case: str, texts: Sequence[str]) -> dict[str, Any]:
     raise KeyError(case)
 
 
-def _integers(values: FloatArray) -> Any:
+def _to_integers(values: FloatArray) -> Any:
     return np.clip(values, -MAX_NUMBER, MAX_NUMBER).round().astype(np.int64).tolist()
 
 
-def _numbers(values: Any, *shape: int) -> FloatArray:
+def _parse_numbers(values: Any, *shape: int) -> FloatArray:
     """ValueError where they are not numbers of this shape, within ``MAX_NUMBER``."""
     found = np.array(values, dtype=np.float64).reshape(shape)
     if not found.size or not (np.abs(found) <= MAX_NUMBER).all():
@@ -137,11 +139,11 @@ def _numbers(values: Any, *shape: int) -> FloatArray:
     return found
 
 
-def _words(text: Any) -> str:
+def _printable_text(text: Any) -> str:
     return "".join(filter(str.isprintable, str(text)))[:MAX_TEXT]
 
 
-def _trail(points: FloatArray) -> FloatArray:
+def _make_trail(points: FloatArray) -> FloatArray:
     trail = Trail()
     for x, y in points.tolist():
         trail.add(x, y)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from kit.arrays import Uint8Array
 from kit.render.raster import Grid
-from kit.render.roles import ROLE_LOOKS, SHADES, Role
+from kit.render.role_looks import ROLE_LOOKS
+from kit.render.roles import SHADES, Role
 
 BLANK = ord(" ")
 
@@ -210,16 +211,9 @@ class BrailleEncoder:
         if coarse:  # quarter blocks would close narrow ways
             solid[:] = False
         glyphs[solid] = self._blocks[quarters[solid]]
-        ring = solid & (fg == Role.TARGET)
-        fg[ring] = Role.WALL
+        fg[solid & (fg == Role.TARGET)] = Role.WALL
         if self._mono:
             glyphs[(fg == Role.HIT) | (fg == Role.WALL_HIT)] = self._bullet
-        else:
-            # A target's ring goes on beside a wall, in the quarters that the wall leaves free.
-            targets = np.bitwise_or.reduce(
-                ((dots == Role.TARGET)[0::2] | (dots == Role.TARGET)[1::2]) * self._quarter_bits, axis=(0, 1)
-            )
-            bg[ring & ((targets & ~quarters) > 0)] = Role.TARGET
         return Frame(glyphs, fg, bg)
 
 

@@ -171,7 +171,7 @@ class GraphDrawing:
         start, end = min(len(node), columns.node_width - 2) + 2, columns.item_start - 1
         lane = self.layout.senders.lanes.get(node)
         lane_column = None if lane is None else columns.node_width + lane * columns.lane_pitch[0]
-        return _route(start, end, lane_column, node_row, row)
+        return _route_link(start, end, lane_column, node_row, row)
 
     def _receiver_route(self, node: str, item: GraphItem) -> _LinkRoute:
         columns, node_row, row = self.columns, self.layout.receivers.rows[node], self.layout.items[item.label]
@@ -181,10 +181,10 @@ class GraphDrawing:
         lane_column = (
             None if lane is None else columns.receiver_start - ARROW_WIDTH - 1 - lane * columns.lane_pitch[1]
         )
-        return _route(start, end, lane_column, row, node_row)
+        return _route_link(start, end, lane_column, row, node_row)
 
 
-def _route(start: int, end: int, lane: int | None, first: int, last: int) -> _LinkRoute:
+def _route_link(start: int, end: int, lane: int | None, first: int, last: int) -> _LinkRoute:
     """A way along row ``first`` to the lane, along that, and on row ``last`` to the end (exclusive)."""
     if lane is None:
         cells = [(GraphCell(column, first), HORIZONTAL) for column in range(start, end)]
@@ -248,22 +248,22 @@ class _GraphPainter:
     def draw_lines(self) -> None:
         for cell, glyph in _line_glyphs(self._drawing, self._selected_links, self._glyphs):
             is_selected = glyph in self._glyphs.heavy.values()
-            self._put(cell, glyph, SELECTED_ROLE if is_selected else LINE_ROLE)
+            self._put_glyph(cell, glyph, SELECTED_ROLE if is_selected else LINE_ROLE)
         columns, layout = self._drawing.columns, self._drawing.layout
         for item in self._drawing.graph.items:
             if item.senders:
-                self._put(
+                self._put_glyph(
                     GraphCell(columns.item_start - 2, layout.items[item.label]), self._glyphs.arrow, LINE_ROLE
                 )
         for row in layout.receivers.rows.values():
-            self._put(GraphCell(columns.receiver_start - 2, row), self._glyphs.arrow, LINE_ROLE)
+            self._put_glyph(GraphCell(columns.receiver_start - 2, row), self._glyphs.arrow, LINE_ROLE)
 
     def draw_mismatches(self) -> None:
         """Marks the lines on which something is not delivered, where they leave the common one."""
         for item in self._drawing.graph.items:
             for _, receiver in item.undelivered:
                 route = self._drawing.routes[GraphLink(receiver, item.label, is_sender=False)]
-                self._put(route.branch_cell, self._glyphs.mismatch, MISMATCH_ROLE)
+                self._put_glyph(route.branch_cell, self._glyphs.mismatch, MISMATCH_ROLE)
                 self._text_cells.add(route.branch_cell)
 
     def draw_rates(self) -> None:
@@ -278,7 +278,7 @@ class _GraphPainter:
     def draw_messages(self) -> None:
         for cell in self._view.message_cells:
             if cell not in self._text_cells:
-                self._put(cell, self._glyphs.message, MESSAGE_ROLE)
+                self._put_glyph(cell, self._glyphs.message, MESSAGE_ROLE)
 
     def draw_names(self) -> None:
         columns, selected = self._drawing.columns, self._view.selected
@@ -294,16 +294,16 @@ class _GraphPainter:
             start = starts[element.column] + 1
             self._write(GraphCell(start, row), text, SELECTED_ROLE if is_selected else NAME_ROLE)
             if is_selected:
-                self._put(GraphCell(start - 1, row), "[", SELECTED_ROLE)
-                self._put(GraphCell(start + len(text), row), "]", SELECTED_ROLE)
+                self._put_glyph(GraphCell(start - 1, row), "[", SELECTED_ROLE)
+                self._put_glyph(GraphCell(start + len(text), row), "]", SELECTED_ROLE)
 
     def _write(self, start: GraphCell, text: str, role: Role) -> None:
         for column, glyph in enumerate(text, start.column):
             cell = GraphCell(column, start.row)
-            self._put(cell, glyph, role)
+            self._put_glyph(cell, glyph, role)
             self._text_cells.add(cell)
 
-    def _put(self, cell: GraphCell, glyph: str, role: Role) -> None:
+    def _put_glyph(self, cell: GraphCell, glyph: str, role: Role) -> None:
         rows, columns = self.frame.shape
         row = cell.row - self._view.first_row
         if 0 <= row < rows and 0 <= cell.column < columns:

@@ -12,8 +12,9 @@ from PIL import Image, ImageDraw
 
 from kit.arrays import FloatArray, Uint8Array
 from kit.render.camera import Camera
+from kit.render.palettes import COLOR_SCHEMES
 from kit.render.raster import circle_corners, polyline
-from kit.render.roles import COLOR_SCHEMES, ROBOT_ROLES, TRAIL_ROLES, Role
+from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role
 from kit.render.scene import Scene, SceneBody, SceneBounds, ScenePath
 
 Pixels = Uint8Array

@@ -48,14 +48,14 @@ def _field_rows(
     if not data:
         yield MessageRow("", f"{indent}{{}}")
     for name, value in data.items():
-        yield from _value_rows(f"{indent}{name}:", value, width, indent, compact, f"{prefix}{name}")
+        yield from _rows_of_value(f"{indent}{name}:", value, width, indent, compact, f"{prefix}{name}")
 
 
-def _value_rows(
+def _rows_of_value(
     head: str, value: Any, width: int, indent: str, compact: bool, path: str
 ) -> Iterator[MessageRow]:
     if isinstance(value, Mapping):
-        line = f"{head} {_inline(value)}"
+        line = f"{head} {_inline_yaml(value)}"
         if compact and len(line) <= width:
             yield MessageRow("", line)
         else:
@@ -68,13 +68,13 @@ def _value_rows(
             yield first._replace(text=f"{indent}- {first.text.lstrip()}")
             yield from rest
     elif isinstance(value, list):
-        yield from (MessageRow(path, text) for text in _numbers(head, value, width, indent))
+        yield from (MessageRow(path, text) for text in _number_lines(head, value, width, indent))
     else:
-        yield MessageRow(path, f"{head} {_scalar(value)}")
+        yield MessageRow(path, f"{head} {_scalar_text(value)}")
 
 
-def _numbers(head: str, values: list[Any], width: int, indent: str) -> Iterator[str]:
-    text = f"{head} {_inline(values)}"
+def _number_lines(head: str, values: list[Any], width: int, indent: str) -> Iterator[str]:
+    text = f"{head} {_inline_yaml(values)}"
     blanks = " " * (len(text) - len(text.lstrip()))
     rows = wrap(text, width, blanks, indent + INDENT)
     if len(rows) > MAX_NUMBER_ROWS:
@@ -84,31 +84,31 @@ def _numbers(head: str, values: list[Any], width: int, indent: str) -> Iterator[
     yield from rows
 
 
-def _inline(value: Any) -> str:
+def _inline_yaml(value: Any) -> str:
     if isinstance(value, Mapping):
-        return f"{{{', '.join(f'{name}: {_inline(entry)}' for name, entry in value.items())}}}"
+        return f"{{{', '.join(f'{name}: {_inline_yaml(entry)}' for name, entry in value.items())}}}"
     if isinstance(value, list):
-        return f"[{', '.join(_inline(entry) for entry in value)}]"
-    return _scalar(value)
+        return f"[{', '.join(_inline_yaml(entry) for entry in value)}]"
+    return _scalar_text(value)
 
 
-def _scalar(value: Any) -> str:
+def _scalar_text(value: Any) -> str:
     """A number or a text as YAML has it; a float in no more than six digits after the point."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float):
-        return _float(value)
-    return _text(value) if isinstance(value, str) else str(value)
+        return _float_text(value)
+    return _quote_if_needed(value) if isinstance(value, str) else str(value)
 
 
-def _float(value: float) -> str:
+def _float_text(value: float) -> str:
     if value != value or value in (float("inf"), float("-inf")):
         return ".nan" if value != value else ".inf" if value > 0 else "-.inf"
     short = repr(round(value, 6))
     return short if float(short) or not value else repr(value)
 
 
-def _text(value: str) -> str:
+def _quote_if_needed(value: str) -> str:
     """Quotes a text unless it can only be a text."""
     if _PLAIN.fullmatch(value) and value.lower() not in _RESERVED_WORDS:
         return value

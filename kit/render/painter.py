@@ -9,11 +9,12 @@ import numpy as np
 from kit.arrays import BoolArray, FloatArray
 from kit.render import raster
 from kit.render.camera import Camera
-from kit.render.dot_canvas import NO_LINES, DotCanvas
+from kit.render.dot_canvas import NO_LINES, DotCanvas, ring_dots
 from kit.render.encode import Encoder, Frame
 from kit.render.raster import Grid
-from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role, nearest_pen_role
-from kit.render.scene import Scene
+from kit.render.role_looks import nearest_pen_role
+from kit.render.roles import ROBOT_ROLES, TRAIL_ROLES, Role
+from kit.render.scene import Disc, Scene
 from kit.render.shading import FloorMap, lit_cells, seen_surfaces, shade_roles
 from kit.render.sprites import SpriteLayer
 
@@ -40,6 +41,8 @@ class Painter:
         self._walls: FloatArray | None = None
         self._view: tuple[Camera, float] | None = None
         self._wall_grid = raster.empty_grid(0, 0)
+        self._rings: dict[Disc, raster.Dots] = {}
+        """The rings of targets on these walls."""
 
     def paint(self, scene: Scene, camera: Camera) -> Frame:
         canvas = DotCanvas(self._static_grid(scene, camera).copy(), camera, self.encoder)
@@ -56,7 +59,7 @@ class Painter:
             canvas.draw_points(trail, TRAIL_ROLES[number % len(TRAIL_ROLES)])
         canvas.draw_hits(scene.hits, seen_surfaces(scene.beams) if self.shaded else NO_LINES)
         for target in scene.targets:
-            canvas.draw_circle(target.x, target.y, target.radius, Role.TARGET)
+            canvas.draw_dots(self._ring(target, camera), Role.TARGET)
         for body in scene.bodies:
             if body.is_target:
                 canvas.draw_outline(body, Role.TARGET)
@@ -74,6 +77,11 @@ class Painter:
             np.copyto(frame.bg, shades, where=frame.bg == Role.EMPTY)
         return frame
 
+    def _ring(self, target: Disc, camera: Camera) -> raster.Dots:
+        if target not in self._rings:
+            self._rings[target] = ring_dots(target, self._wall_grid, camera, self.encoder)
+        return self._rings[target]
+
     def _is_coarse(self, scene: Scene, camera: Camera) -> bool:
         """Whether a gap that a robot just fits through is narrower than ``FINE_DOTS``."""
         passage = _narrowest_robot(scene)
@@ -89,6 +97,7 @@ class Painter:
             grid = _draw_walls(scene.walls, *view, self.encoder)
             grid[self._floor_map.solid_dots(camera, across, down)] = Role.WALL
             self._wall_grid, self._walls, self._view = grid, scene.walls, view
+            self._rings.clear()
             if self.shaded:
                 self._floor = self._floor_map.cells(camera, grid, across, down)
                 dots = grid.reshape(camera.rows, down, camera.columns, across)

@@ -13,7 +13,8 @@ import numpy as np
 
 from kit.arrays import FloatArray, Uint8Array
 from kit.geometry import Pose
-from kit.render.roles import LineStyle, Role
+from kit.render.role_looks import LineStyle
+from kit.render.roles import Role
 
 
 @cache

@@ -72,14 +72,14 @@ class FloorMap:
 
     def solid_dots(self, camera: Camera, across: int, down: int) -> BoolArray:
         """(rows * down, columns * across): the dots of the picture that are inside something."""
-        dots: BoolArray = self._sampled(camera, across, down) == _SOLID
+        dots: BoolArray = self._sample_dots(camera, across, down) == _SOLID
         return dots
 
     def cells(self, camera: Camera, walls: Grid, across: int, down: int) -> BoolArray:
         """(rows, columns): whether the free part of a character is floor. ``walls``: the camera's own grid of walls, of
         ``across`` x ``down`` dots in a character: what they cover does not count."""
-        sampled = self._sampled(camera, 2, 2)
-        covered = _quarters(walls > 0, across, down)
+        sampled = self._sample_dots(camera, 2, 2)
+        covered = _quarter_blocks(walls > 0, across, down)
         floor = _count_of_four((sampled == _FLOOR) & ~covered)
         outside = _count_of_four((sampled == _OUTSIDE) & ~covered)
         # Where walls cover all of a character, what is below them tells: a narrow way may lead through.
@@ -87,7 +87,7 @@ class FloorMap:
         cells: BoolArray = (floor > outside) | ((floor + outside == 0) & (below > 0))
         return cells
 
-    def _sampled(self, camera: Camera, across: int, down: int) -> Grid:
+    def _sample_dots(self, camera: Camera, across: int, down: int) -> Grid:
         """Returns the value at the middle of each dot of a picture."""
         bounds = camera.bounds
         x = bounds.left + (np.arange(camera.columns * across) + 0.5) * camera.cell_width / across
@@ -108,7 +108,7 @@ def _with_margin(bounds: SceneBounds) -> SceneBounds:
     )
 
 
-def _quarters(dots: BoolArray, across: int, down: int) -> BoolArray:
+def _quarter_blocks(dots: BoolArray, across: int, down: int) -> BoolArray:
     """Quarters of characters, (2 * rows, 2 * columns), of which at least a dot is set."""
     wide = dots if across == 2 else np.repeat(dots, 2, axis=1)
     if down == 4:
@@ -151,11 +151,11 @@ def lit_cells(beams: FloatArray, camera: Camera, hit: BoolArray | None = None) -
     cuts = np.flatnonzero((beams[1:, :2] != beams[:-1, :2]).any(axis=1)) + 1
     for rays in np.split(beams, cuts):
         if len(rays) > 2:
-            _light(lit, rays, camera, hit)
+            _light_rays(lit, rays, camera, hit)
     return lit
 
 
-def _light(lit: Uint8Array, rays: FloatArray, camera: Camera, hit: BoolArray | None) -> None:
+def _light_rays(lit: Uint8Array, rays: FloatArray, camera: Camera, hit: BoolArray | None) -> None:
     origin = rays[0, :2]
     ends = rays[:, 2:] - origin
     lengths = np.hypot(ends[:, 0], ends[:, 1])

@@ -44,15 +44,15 @@ class SpriteLayer:
         """Draws every part of the scene, the least important first."""
         self._put_field(scene.arrows)
         for target in scene.targets:
-            self._put(self._cell(target.x, target.y), self._symbols.target, Role.TARGET)
+            self._put_text(self._cell_at(target.x, target.y), self._symbols.target, Role.TARGET)
         for mark in scene.marks:
-            self._put(self._cell(mark.x, mark.y), mark.label, mark.role)
+            self._put_text(self._cell_at(mark.x, mark.y), mark.label, mark.role)
         robots = scene.robots
         middles = [robot.pose.transform_point(*robot.extent.middle) for robot in robots]
         for x, y in scene.contacts.tolist():
             self._put_contact(x, y, middles)
         for number, (robot, middle) in enumerate(zip(robots, middles, strict=True)):
-            self._put_robot(robot, self._cell(*middle), number, named=len(robots) > 1)
+            self._put_robot(robot, self._cell_at(*middle), number, named=len(robots) > 1)
 
     def _put_field(self, arrows: FloatArray) -> None:
         """Arrows where nothing else is."""
@@ -66,13 +66,13 @@ class SpriteLayer:
                     else self._symbols.field_arrows
                 )
                 glyph = _arrow_glyph(glyphs, math.atan2(dy, dx))
-            self._put(self._cell(x, y), glyph, Role.FIELD, over=Role.FIELD)
+            self._put_text(self._cell_at(x, y), glyph, Role.FIELD, over=Role.FIELD)
 
     def _put_contact(self, x: float, y: float, middles: Sequence[tuple[float, float]]) -> None:
         """Draws a contact at its place, or beside it if a robot's arrow would cover it."""
-        cell = self._cell(x, y)
+        cell = self._cell_at(x, y)
         for middle_x, middle_y in middles:
-            if cell is not None and cell == self._cell(middle_x, middle_y):
+            if cell is not None and cell == self._cell_at(middle_x, middle_y):
                 right = (x - middle_x) / self._camera.cell_width
                 down = (middle_y - y) / self._camera.cell_height
                 row, column = cell
@@ -80,7 +80,7 @@ class SpriteLayer:
                     cell = row, column + (1 if right > 0 else -1)
                 else:
                     cell = row + (1 if down > 0 else -1), column
-        self._put(cell, self._symbols.contact, Role.CONTACT)
+        self._put_text(cell, self._symbols.contact, Role.CONTACT)
 
     def _put_robot(self, robot: SceneBody, cell: SpriteCell | None, number: int, named: bool) -> None:
         if cell is None:
@@ -94,25 +94,27 @@ class SpriteLayer:
             front = (
                 extent.right if size_in_rows(robot, self._camera) >= MIN_OUTLINE_ROWS else extent.middle[0]
             )
-            base = self._cell(*robot.pose.transform_point(front, extent.middle[1]))
+            base = self._cell_at(*robot.pose.transform_point(front, extent.middle[1]))
             if base is not None:
                 eighth = round(theta / math.tau * 8) * math.tau / 8
                 ahead = base[0] - round(math.sin(eighth)), base[1] + round(math.cos(eighth))
-                self._put(ahead, _arrow_glyph(self._symbols.heading_strokes, theta), role, over=Role.ROBOT)
-        self._put(cell, _arrow_glyph(arrows, theta), role)
+                self._put_text(
+                    ahead, _arrow_glyph(self._symbols.heading_strokes, theta), role, over=Role.ROBOT
+                )
+        self._put_text(cell, _arrow_glyph(arrows, theta), role)
         if named:
             # Below, or above if it would cover the heading line there.
             row = cell[0] + (1 if math.sin(theta) > -0.5 else -1)
-            self._put((row, cell[1]), str(number + 1), role)
+            self._put_text((row, cell[1]), str(number + 1), role)
 
-    def _cell(self, x: float, y: float) -> SpriteCell | None:
+    def _cell_at(self, x: float, y: float) -> SpriteCell | None:
         """Returns the cell of a point [m], on the picture or off; None if it is not finite."""
         column, row = self._camera.project(np.array((x, y))).tolist()
         if not (math.isfinite(column) and math.isfinite(row)):
             return None
         return math.floor(row), math.floor(column)
 
-    def _put(self, cell: SpriteCell | None, text: str, role: Role, over: Role = Role.TEXT) -> None:
+    def _put_text(self, cell: SpriteCell | None, text: str, role: Role, over: Role = Role.TEXT) -> None:
         """Puts text from the cell on, as far as it is on the picture and what is there is not more important
         than ``over``."""
         rows, columns = self._frame.shape

@@ -268,7 +268,7 @@ class GradingResult:
 
 
 def _timing_from_dict(content: Mapping[str, Any]) -> GradingTiming:
-    timing = _checked(GradingTiming, content)
+    timing = _checked_record(GradingTiming, content)
     if timing.started:
         datetime.fromisoformat(timing.started)
     return timing
@@ -282,7 +282,7 @@ def _criterion_from_dict(content: Mapping[str, Any]) -> CriterionResult:
         **content,
         "status": CriterionStatus(content["status"]),
         "visibility": Visibility(content["visibility"]),
-        "episodes": tuple(_checked(EpisodeSummary, each) for each in content["episodes"]),
+        "episodes": tuple(_checked_record(EpisodeSummary, each) for each in content["episodes"]),
     }
     check_field_types(CriterionResult, read)
     criterion = CriterionResult(**{**read, "hints": tuple(content["hints"])})
@@ -291,6 +291,6 @@ def _criterion_from_dict(content: Mapping[str, Any]) -> CriterionResult:
     return criterion
 
 
-def _checked(record: type[R], content: Mapping[str, Any]) -> R:
+def _checked_record(record: type[R], content: Mapping[str, Any]) -> R:
     check_field_types(record, content)
     return record(**content)

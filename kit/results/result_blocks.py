@@ -66,15 +66,15 @@ def criterion_blocks(
     ``hints``: how many of its hints to show. ``more_hints``: how to see more, shown where there are more.
     ``log_lines``: how many of the last lines that a crashed program printed to show.
     """
-    blocks: list[Text | Picture] = [_heading(criterion)]
+    blocks: list[Text | Picture] = [_criterion_heading(criterion)]
     if criterion.is_passed:
         return blocks
-    blocks.append(_paragraph(_shortened(criterion.rationale, MAX_RATIONALE)))
+    blocks.append(_paragraph(_shorten(criterion.rationale, MAX_RATIONALE)))
     if any(map(str.isdigit, criterion.actual)):  # words alone say no more than the title
         is_said = criterion.actual in criterion.rationale
         values = (("expected:", criterion.expected), ("actual:  ", criterion.actual))
         blocks += [
-            _paragraph(_shortened(text), Tone.DIM, lead=name)
+            _paragraph(_shorten(text), Tone.DIM, lead=name)
             for name, text in values
             if text and not (is_said and (text in criterion.rationale or text == EVERYTHING))
         ]
@@ -99,7 +99,7 @@ def replay_lines(criteria: Sequence[CriterionResult]) -> list[str]:
     return picture.rstrip().splitlines()
 
 
-def _heading(criterion: CriterionResult) -> Text:
+def _criterion_heading(criterion: CriterionResult) -> Text:
     tone = Tone.GOOD if criterion.is_passed else Tone.BAD if criterion.is_judged else Tone.DIM
     points = "" if criterion.is_withheld else f": {points_text(criterion.points, criterion.max_points)}"
     return Text(
@@ -117,5 +117,5 @@ def _paragraph(text: str, tone: Tone = Tone.PLAIN, lead: str = "") -> Text:
     return Text(text, tone, lead=lead, lead_tone=tone, indent=INDENT, is_tight=True)
 
 
-def _shortened(text: str, limit: int = MAX_VALUE) -> str:
+def _shorten(text: str, limit: int = MAX_VALUE) -> str:
     return text if len(text) <= limit else f"{text[:limit]} ... (shortened)"

@@ -23,6 +23,7 @@ from rosbags.rosbag2.storage_mcap import McapReader, McapWriter
 from rosbags.rosbag2.storage_sqlite3 import Sqlite3Reader, Sqlite3Writer
 
 from kit.part_file import BeingWrittenError, lock_part, part_path, parts_in, path_of_part, unused_path
+from kit.plain_text import counted
 from kit.ros.serialization import Distro
 
 Storage = Literal["mcap", "sqlite3"]
@@ -194,7 +195,9 @@ def _restore(part: Path, wanted: Path | None) -> str:
     except (*WRITE_ERRORS, ReaderError, ValueError) as problem:
         return f"{part}: what a recording that was killed has left cannot be restored ({reason(problem)})."
     return (
-        f"{restored}: restored from a recording that was killed; {count} messages are there." if count else ""
+        f"{restored}: restored from a recording that was killed; {counted(count, 'message')} kept."
+        if count
+        else ""
     )
 
 

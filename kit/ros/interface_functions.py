@@ -95,7 +95,7 @@ def get_interfaces(package_names: Sequence[str] = ()) -> dict[str, list[str]]:
     }
 
 
-def _of_section(section: str, package_names: Sequence[str]) -> dict[str, list[str]]:
+def _interfaces_of_section(section: str, package_names: Sequence[str]) -> dict[str, list[str]]:
     found = {
         package: [name for name in names if name.startswith(f"{section}/")]
         for package, names in get_interfaces(package_names).items()
@@ -105,17 +105,17 @@ def _of_section(section: str, package_names: Sequence[str]) -> dict[str, list[st
 
 def get_message_interfaces(package_names: Sequence[str] = ()) -> dict[str, list[str]]:
     """The messages of packages."""
-    return _of_section("msg", package_names)
+    return _interfaces_of_section("msg", package_names)
 
 
 def get_service_interfaces(package_names: Sequence[str] = ()) -> dict[str, list[str]]:
     """The services of packages."""
-    return _of_section("srv", package_names)
+    return _interfaces_of_section("srv", package_names)
 
 
 def get_action_interfaces(package_names: Sequence[str] = ()) -> dict[str, list[str]]:
     """The actions of packages."""
-    return _of_section("action", package_names)
+    return _interfaces_of_section("action", package_names)
 
 
 def get_interface_path(interface_name: str) -> str:

@@ -132,7 +132,7 @@ class LifecycleStateMachine:
 
     @property
     def available_transitions(self) -> tuple[StateMachineTransition, ...]:
-        """Those that begin in the present state."""
+        """The transitions that begin in the present state."""
         return tuple(each for each in TRANSITIONS if each.start == self.state)
 
     def find(self, wanted: int | str) -> StateMachineTransition:

@@ -40,7 +40,7 @@ def get_package_share_path(package_name: str, print_warning: bool = True) -> Pat
 
 
 def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
-    """The same, as a text."""
+    """The package's share folder, as a text."""
     return str(get_package_share_path(package_name))
 
 

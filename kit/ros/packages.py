@@ -253,7 +253,7 @@ def missing_package(name: str, folders: Sequence[Path], for_what: str = "") -> P
 
 
 def interface_packages(packages: Mapping[str, Path]) -> dict[str, Path]:
-    """Those of some packages, by name, that define messages, services or actions of their own."""
+    """The packages, by name, that define messages, services or actions of their own."""
     return {
         name: folder
         for name, folder in packages.items()

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from kit.msg.sensor_msgs import PointCloud2, PointField
 from kit.msg.std_msgs import Header
+from kit.plain_text import counted
 
 DUMMY_FIELD_PREFIX: Final = "unnamed_field"
 
@@ -141,7 +142,9 @@ def create_cloud(
         if not rows.size:
             rows = rows.reshape(0, len(layout.names or ()))
         if rows.shape[-1] != len(layout.names or ()):
-            raise ValueError(f"a point has {len(layout.names or ())} values here, not {rows.shape[-1]}")
+            raise ValueError(
+                f"a point has {counted(len(layout.names or ()), 'value')} here, not {rows.shape[-1]}"
+            )
         values = unstructured_to_structured(rows, dtype=layout)
     if values.ndim not in (1, 2):
         raise ValueError("Too many dimensions! Points can only be organized in max. two dimensions")

@@ -125,7 +125,7 @@ class _Frame:
         old = bisect_right(self.times, self.times[-1] - keep_ns - 1)
         del self.times[:old], self.transforms[:old]
 
-    def at(self, time_ns: int, name: str) -> Rigid:
+    def transform_at(self, time_ns: int, name: str) -> Rigid:
         """Its transform at a time, interpolated between known times. Raises ExtrapolationException."""
         times = self.times
         if self.is_static:
@@ -324,7 +324,7 @@ class Buffer(BufferInterface):
         """The transform of the first frame of a path in the parent of its last."""
         transform = Rigid()
         for name in path:
-            transform = self._frames[name].at(time_ns, name).then(transform)
+            transform = self._frames[name].transform_at(time_ns, name).then(transform)
         return transform
 
     def _paths(self, target: str, source: str) -> tuple[list[str], list[str]]:

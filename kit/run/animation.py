@@ -15,7 +15,8 @@ from kit.render.camera import Camera
 from kit.render.encode import BrailleEncoder, Frame
 from kit.render.image import IMAGE_THEMES, Pixels, draw_image, image_camera, save_animation
 from kit.render.painter import Painter
-from kit.render.roles import ANSI_PALETTE, COLOR_SCHEMES, Role
+from kit.render.palettes import ANSI_PALETTE, COLOR_SCHEMES
+from kit.render.roles import Role
 from kit.render.scene import Scene
 from kit.run.episode import run_until
 from kit.run.recording import Recording
@@ -144,7 +145,7 @@ def export_recording(
             write_atomically(file, drawn.encode())
         case _:
             data = io.BytesIO()
-            save_animation(data, _pictures(scenes(), columns, rows, settings), settings.fps)
+            save_animation(data, _draw_pictures(scenes(), columns, rows, settings), settings.fps)
             write_atomically(file, data.getvalue())
 
 
@@ -170,7 +171,7 @@ def _text_frames(
         yield shown, frame
 
 
-def _pictures(
+def _draw_pictures(
     scenes: Iterator[RecordedScene], width: int, height: int, settings: AnimationSettings
 ) -> Iterator[Pixels]:
     camera = None

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from kit.msg.geometry_msgs import TwistStamped
 from kit.plain_text import join_names
-from kit.ros.graph.directory import Excess, GraphNode
+from kit.ros.graph.directory import Excess, NodeLike
 from kit.ros.graph.graph import Graph
 from kit.sim.plugin import CommandLimit, TopicEndpoint
 from kit.sim.simulation import Simulation
@@ -38,18 +38,18 @@ class CommandLimits:
     def discard(self, endpoint: TopicEndpoint) -> None:
         self._limits.pop(endpoint.topic, None)
 
-    def _on_message(self, _: int, node: GraphNode, topic: str, message: Any) -> None:
+    def _on_message(self, _: int, node: NodeLike, topic: str, message: Any) -> None:
         if topic not in self._limits:
             return
         command = message.twist if isinstance(message, TwistStamped) else message
         for limit in self._limits[topic]:
-            asked = _value(command, limit.field)
+            asked = _field_amount(command, limit.field)
             if limit.largest * EXCESS <= asked < math.inf:
                 excess = Excess(f"{asked:g} {limit.unit}", f"{limit.largest:g} {limit.unit}")
                 self._graph.directory.note_excess(node.get_fully_qualified_name(), topic, limit.field, excess)
 
 
-def _value(command: Any, field: str) -> float:
+def _field_amount(command: Any, field: str) -> float:
     """The amount of a command's field; 0 for a message of another type, which the world does not take."""
     try:
         return abs(float(operator.attrgetter(field)(command)))

@@ -48,7 +48,7 @@ class _RobotMetrics:
 
     def __init__(self, model: Model) -> None:
         self.name = model.name
-        self.reach = _reach(model)
+        self.reach = _outer_radius(model)
         self.bump_steps: list[int] = []
         self.contact_steps = 0
         self.restart()
@@ -128,12 +128,12 @@ class MetricsRecorder(Observer):
         self._time_s = simulation.time_ns / 1e9
         are_inside = bool(self._robots)
         for robot in self._robots:
-            are_inside = self._measure(robot, simulation) and are_inside
+            are_inside = self._measure_robot(robot, simulation) and are_inside
         if are_inside and self.all_reached_s is None:
             self.all_reached_s = self._time_s
         self._steps += 1
 
-    def _measure(self, robot: _RobotMetrics, simulation: Simulation) -> bool:
+    def _measure_robot(self, robot: _RobotMetrics, simulation: Simulation) -> bool:
         """Adds a step of one robot's. Returns whether it is in the target."""
         if robot.name not in simulation.model_names:
             robot.is_touching = False
@@ -173,7 +173,7 @@ def is_in_target(simulation: Simulation, robot: str, target: tuple[float, float]
     return simulation.hull_distance(robot, target) <= radius
 
 
-def _reach(model: Model) -> float:
+def _outer_radius(model: Model) -> float:
     """No part of the model gets farther [m] from its first body's origin, however its joints turn."""
     reach = 0.0
     for body in model.bodies:

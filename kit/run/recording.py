@@ -144,7 +144,7 @@ class RecordingStore(Protocol):
         """Starts anew, with a recording that has no ticks yet."""
 
     def offer(self, recorder: Recorder) -> None:
-        """Called after every tick."""
+        """Records a tick where one is due; called after every tick."""
 
 
 class Recorder(Observer):
@@ -293,11 +293,11 @@ def recording_from_header(header: Mapping[str, Any], poses: NDArray[Any], counts
         counts,
         None if header["level"] is None else str(header["level"]),
     )
-    _check(recording)
+    _check_parts_fit(recording)
     return recording
 
 
-def _check(recording: Recording) -> None:
+def _check_parts_fit(recording: Recording) -> None:
     """ValueError where the parts do not fit together."""
     counts = recording.counts
     if not 0 < recording.step_size < math.inf:

@@ -126,11 +126,11 @@ def restore_recordings(folder: Path, wanted: Path | None = None) -> Iterator[str
     ``wanted``: a name that is to stay free. What another program writes now is left alone; so is what cannot be written, of which the sentence says why.
     """
     for part in parts_in(folder):
-        if part.is_file() and (notice := _restore(part, wanted)):
+        if part.is_file() and (notice := _restore_part(part, wanted)):
             yield notice
 
 
-def _restore(part: Path, wanted: Path | None) -> str:
+def _restore_part(part: Path, wanted: Path | None) -> str:
     """The sentence about one part; empty for one that is none, has nothing in it, or is being written."""
     file = path_of_part(part)
     try:

@@ -139,7 +139,7 @@ class ViewBuilder:
             ),
             strokes=tuple(stroke for addition in self._session.additions for stroke in addition.strokes),
             hits=np.concatenate([np.empty((0, 2)), *(scan.hits for scan in snapshot.scans)]),
-            beams=np.concatenate([np.empty((0, 4)), *(_beams(scan) for scan in snapshot.scans)])
+            beams=np.concatenate([np.empty((0, 4)), *(_beam_segments(scan) for scan in snapshot.scans)])
             if self.shows_beams
             else NO_BEAMS,
             targets=(Disc(*case.target, case.target_radius),) if case else (),
@@ -150,7 +150,7 @@ class ViewBuilder:
         )
 
 
-def _beams(scan: LatestScan) -> FloatArray:
+def _beam_segments(scan: LatestScan) -> FloatArray:
     hits = scan.hits
     return np.column_stack([np.full_like(hits, scan.pose[:2]), hits])
 

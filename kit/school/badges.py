@@ -84,18 +84,20 @@ def badges(
     )
     return (
         *of_units,
-        _badge(
+        _make_badge(
             "At the first try", "exercises passed by their first check", _first_tries(events), FIRST_TRIES
         ),
-        _badge("Foresight", "predictions that came true", _sum(started, _foreseen), FORESEEN),
-        _badge("Unaided", "lessons finished without a hint", _sum(started, _is_unaided), UNAIDED),
-        _badge(
+        _make_badge(
+            "Foresight", "predictions that came true", _sum_over(started, _count_right_predictions), FORESEEN
+        ),
+        _make_badge("Unaided", "lessons finished without a hint", _sum_over(started, _is_unaided), UNAIDED),
+        _make_badge(
             "Knows why",
             "programs defended",
-            _sum(started, lambda each: len(each.defended_exercises)),
+            _sum_over(started, lambda each: len(each.defended_exercises)),
             DEFENDED,
         ),
-        _badge("A week", "days in a row", days.longest, DAYS),
+        _make_badge("A week", "days in a row", days.longest, DAYS),
     )
 
 
@@ -115,11 +117,11 @@ def badge_table(earned: Sequence[Badge]) -> Table:
     return Table("badges", "", columns, tuple(map(cells, shown)), is_ruled=False)
 
 
-def _badge(title: str, how: str, done: int, needed: int) -> Badge:
+def _make_badge(title: str, how: str, done: int, needed: int) -> Badge:
     return Badge(title, f"{needed} {how}", min(done, needed), needed)
 
 
-def _sum(started: Iterable[LessonProgress], count: Callable[[LessonProgress], int]) -> int:
+def _sum_over(started: Iterable[LessonProgress], count: Callable[[LessonProgress], int]) -> int:
     return sum(map(count, started))
 
 
@@ -132,7 +134,7 @@ def _first_tries(events: Iterable[ProgressEvent]) -> int:
     return sum(event.content.get("verdict") == "pass" for event in first.values())
 
 
-def _foreseen(progress: LessonProgress) -> int:
+def _count_right_predictions(progress: LessonProgress) -> int:
     """Predictions that were right."""
     return sum(
         0 <= chosen < len(step.options) and step.options[chosen].is_right

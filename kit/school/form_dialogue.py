@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from types import MappingProxyType
 from typing import Any, ClassVar, Final
 
-from kit.dialogue.dialogue import Dialogue, DialogueAction, Refused, help_action, leave_action
+from kit.dialogue.dialogue import Dialogue, DialogueAction, Panel, Refused, help_action, leave_action
 from kit.dialogue.effects import Effect, Leave, StartTyping
 from kit.dialogue.screen_action import ScreenAction, digits, letter
 from kit.dialogue.shared_actions import ACTIONS
@@ -23,6 +23,8 @@ KEPT: Final = (
     ("blank", "counts only as blank; Enter without an answer"),
     ("who sees it", "your teacher, if you hand in your progress"),
 )
+BEFORE_CURRENT: Final = 3
+"""Answered questions that are listed before the one that is asked."""
 MOST_POINTS: Final = 7
 """Of a scale."""
 
@@ -119,9 +121,45 @@ class FormDialogue(Dialogue):
         if question is None:
             return (Text(self.session.closing_text if self._has_asked else self.session.answered_text),)
         lead = [Text(question.group_text)] if question.group_text else []
-        return (*lead, Text(question.text, Tone.BOLD), *self._answers(question))
+        return (*lead, Text(question.text, Tone.BOLD), *self._answer_blocks(question))
 
-    def _answers(self, question: SurveyQuestion) -> list[Block]:
+    @property
+    def has_panels(self) -> bool:
+        return self.session.question is not None
+
+    def panels(self) -> Sequence[Panel]:
+        session = self.session
+        kept = (Text(f"{lead}: {words}.", Tone.DIM, hang=2, is_tight=True) for lead, words in KEPT)
+        first = max(0, session.number - 1 - BEFORE_CURRENT)
+        entries = [
+            block
+            for number, each in enumerate(session.questions[first:], first + 1)
+            for block in self._entry_of(number, each)
+        ]
+        return Panel("your answers", tuple(kept)), Panel(
+            f"the questions {PHASE_LABELS[session.phase]}", tuple(entries)
+        )
+
+    def _entry_of(self, number: int, question: SurveyQuestion) -> tuple[Block, ...]:
+        """A question in the list of all, and below it what was answered."""
+        session = self.session
+        is_current = question == session.question
+        value = None if is_current else session.answers.value(question.id, session.phase)
+        is_left_blank = (
+            not is_current and value is None and session.answers.is_answered(question.id, session.phase)
+        )
+        lead = f"{'>' if is_current else ' '} {number:>2} "
+        tone = Tone.BOLD if is_current else Tone.PLAIN if value is not None or is_left_blank else Tone.DIM
+        shown = [Text(question.text, tone, lead=lead, lead_tone=tone, hang=6, is_tight=True)]
+        if value is not None or is_left_blank:
+            shown.append(Text(shown_answer(value, question), Tone.GOOD, indent=6, is_tight=True))
+        return tuple(shown)
+
+    @property
+    def place_shown(self) -> str:
+        return "maze"
+
+    def _answer_blocks(self, question: SurveyQuestion) -> list[Block]:
         match question.shape:
             case AnswerShape.TEXT:
                 return []

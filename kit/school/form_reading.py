@@ -43,7 +43,7 @@ def read_form(file: Path | None = None) -> SurveyForm:
 
 
 def _translated_form(form: SurveyForm, file: Path) -> SurveyForm:
-    """The same form in the words of a translation. The options of a choice stay: an answer is kept as one of them."""
+    """The form in the words of a translation. The options of a choice stay: an answer is kept as one of them."""
     with open_document(file) as section:
         words = translated_words(section)
 

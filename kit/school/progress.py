@@ -21,6 +21,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, Final, Self
 
+from kit.plain_text import counted
 from kit.workspace import write_atomically
 
 FILE: Final = "progress.db"
@@ -265,7 +266,7 @@ class ProgressJournal:
                     left.unlink()
         self.notice = (
             f"{self._file.name} was damaged. It was saved as {backup.name}; "
-            f"{len(saved)} events could be read from it and were kept."
+            f"{counted(len(saved), 'event')} could be read from it and kept."
         )
 
     def _unusable_error(self, error: Exception) -> ProgressError:

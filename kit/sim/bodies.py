@@ -216,7 +216,7 @@ class PhysicalBody:
         )
 
     def set_pose(self, pose: Pose) -> None:
-        """Puts the body, and what is stiffly welded to it, there. Velocities stay."""
+        """Moves the body, and all bodies stiffly welded to it, to a pose. Velocities stay."""
         self.rigid.set_pose(pose.compose(self.offset.relative(Pose())))
 
     def hold(self, pose: Pose) -> None:
@@ -374,7 +374,7 @@ def _build_rigid_body(
         outer_radius=max(
             (_farthest_distance(shape, body.center_of_gravity) for s in shapes for shape in s), default=0.0
         ),
-        max_travel=_TRAVEL_SHARE * min((_thickness(footprint) for footprint in solid), default=math.inf),
+        max_travel=_TRAVEL_SHARE * min((_narrowest_gap(footprint) for footprint in solid), default=math.inf),
         max_speed=MAX_TRAVEL / step_size,
         max_turn_rate=MAX_ROTATION / step_size,
         is_static=first.kind == "static",
@@ -446,7 +446,7 @@ def _farthest_distance(shape: pymunk.Shape, center: tuple[float, float]) -> floa
     return max(math.dist(corner, center) for corner in shape.get_vertices())
 
 
-def _thickness(footprint: Footprint) -> float:
+def _narrowest_gap(footprint: Footprint) -> float:
     """The narrowest gap it fits through [m]."""
     form = footprint.shape
     if isinstance(form, Circle):
@@ -481,14 +481,14 @@ def _constraints(joint: Joint, a: PhysicalBody, b: PhysicalBody, step_size: floa
     elif joint.kind == "weld" and joint.frequency == 0:
         found.append(pymunk.GearJoint(first, second, joint.angle + twisted, 1.0))
     elif joint.kind == "weld":
-        found.append(_spring(joint, first, second, joint.angle + twisted, step_size))
+        found.append(_make_spring(joint, first, second, joint.angle + twisted, step_size))
     for constraint in found:
         constraint.error_bias = ERROR_BIAS
         constraint.max_bias = MAX_TRAVEL / step_size
     return found
 
 
-def _spring(
+def _make_spring(
     joint: Joint, a: pymunk.Body, b: pymunk.Body, angle: float, step_size: float
 ) -> pymunk.DampedRotarySpring:
     """A soft weld, which swings about ``angle`` with its frequency and damping ratio.

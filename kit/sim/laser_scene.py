@@ -132,7 +132,7 @@ class Scanner:
     def __init__(
         self, scene: LaserScene, beams: Beams, max_range: float, bits: int, also_bits: int = ALL_BITS
     ) -> None:
-        """It sees what is within ``max_range`` [m] and has one of the layer ``bits`` and one of ``also_bits``, except sensor
+        """The laser sees what is within ``max_range`` [m] and has one of the layer ``bits`` and one of ``also_bits``, except sensor
         footprints and a footprint around the sensor."""
         self._scene, self._physics = scene, scene.physics
         self._beams, self._max_range, self._layers = beams, float(max_range), (bits, also_bits)

@@ -170,7 +170,7 @@ class Odometry:
 
     def step(self, twist: BodyTwist, dt: float) -> list[OutgoingMessage]:
         """Returns the messages that are due, before the body moves with ``twist`` for ``dt``."""
-        sent = self._publish(twist) if self._timer.is_due() else []
+        sent = self._make_messages(twist) if self._timer.is_due() else []
         if self._params.use_encoders:
             self._update_encoder_pose(twist, dt)
         return sent
@@ -198,16 +198,16 @@ class Odometry:
         slip = self._slip_stream.normal(2 * self._clock.tick + wheel, self._params.wheel_slip)
         return distance * (1.0 + self._wheel_errors[wheel]) + slip * math.sqrt(abs(distance))
 
-    def _publish(self, twist: BodyTwist) -> list[OutgoingMessage]:
+    def _make_messages(self, twist: BodyTwist) -> list[OutgoingMessage]:
         has_subscribers = self._has_subscribers
         wanted = [publisher for publisher, topic in self._enabled if has_subscribers(topic)]
         if not wanted:
             return []
         true = self._body.pose
-        pose = self._with_noise(
+        pose = self._add_noise(
             0, self._encoder_pose if self._params.use_encoders else true, self._params.pose_noise
         )
-        noisy_twist = self._with_noise(3, twist, self._params.twist_noise)
+        noisy_twist = self._add_noise(3, twist, self._params.twist_noise)
         header = Header(stamp=self._clock.stamp, frame_id=self._base_frame)
         makers: dict[PluginPublisher, Callable[[], object]] = {
             self._odom: lambda: self._odometry_message(
@@ -221,9 +221,7 @@ class Odometry:
         }
         return [OutgoingMessage(publisher.topic, makers[publisher]()) for publisher in wanted]
 
-    def _with_noise(
-        self, first_index: int, values: BodyTwist | Pose, variances: Sequence[float]
-    ) -> BodyTwist:
+    def _add_noise(self, first_index: int, values: BodyTwist | Pose, variances: Sequence[float]) -> BodyTwist:
         """Three values with normal noise; ``first_index`` numbers them within a step."""
         a, b, c = (
             value + self._noise_stream.normal(6 * self._clock.tick + first_index + i, math.sqrt(variance))

@@ -54,7 +54,7 @@ class ContactTracker:
         self._shape_bodies: dict[pymunk.Shape, PhysicalBody] = {}
         self._touching_pairs: dict[ShapePair, None] = {}
         self._never_touching: set[frozenset[PhysicalBody]] = set()
-        space.on_collision(begin=self._begin, separate=self._separate)
+        space.on_collision(begin=self._on_contact_begin, separate=self._on_contact_end)
 
     def add_wall(self, layer: str, number: int, segments: Iterable[pymunk.Shape]) -> None:
         self._shape_owners |= dict.fromkeys(segments, ShapeOwner(True, number, layer, layer))
@@ -93,11 +93,12 @@ class ContactTracker:
         for body in bodies:
             body.each_arbiter(_record_arbiter, details)
         pairs = sorted(
-            map(self._ordered, self._touching_pairs), key=lambda pair: [self._shape_owners[s] for s in pair]
+            map(self._order_pair, self._touching_pairs),
+            key=lambda pair: [self._shape_owners[s] for s in pair],
         )
-        return tuple(self._contact(pair, details, dt) for pair in pairs)
+        return tuple(self._make_contact(pair, details, dt) for pair in pairs)
 
-    def _contact(self, pair: ShapePair, details: dict[ShapePair, _ContactDetail], dt: float) -> Contact:
+    def _make_contact(self, pair: ShapePair, details: dict[ShapePair, _ContactDetail], dt: float) -> Contact:
         a, b = (self._shape_owners[shape] for shape in pair)
         points: tuple[tuple[float, float], ...] = ()
         normal, impulse = (0.0, 0.0), 0.0
@@ -108,11 +109,11 @@ class ContactTracker:
             normal = (-x, -y)
         return Contact(a.entity, a.body, b.entity, b.body, points, normal, impulse / dt)
 
-    def _ordered(self, pair: ShapePair) -> ShapePair:
+    def _order_pair(self, pair: ShapePair) -> ShapePair:
         a, b = pair
         return pair if self._shape_owners[a] <= self._shape_owners[b] else (b, a)
 
-    def _begin(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
+    def _on_contact_begin(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
         pair = arbiter.shapes
         bodies = frozenset(self._shape_bodies[shape] for shape in pair if shape in self._shape_bodies)
         pushable = any(body.description.kind == "dynamic" for body in bodies)
@@ -121,7 +122,7 @@ class ContactTracker:
         else:  # as in Box2D, two that cannot be pushed do not touch
             arbiter.process_collision = False
 
-    def _separate(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
+    def _on_contact_end(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
         a, b = arbiter.shapes
         self._touching_pairs.pop((a, b), None)
         self._touching_pairs.pop((b, a), None)

@@ -28,7 +28,7 @@ class WorldClock:
 
     @property
     def stamp(self) -> Time:
-        """Now, as messages carry it."""
+        """The present simulated time, as the stamp of a message."""
         time_ns = self.time_ns
         return Time(sec=time_ns // 1_000_000_000, nanosec=time_ns % 1_000_000_000)
 

@@ -95,9 +95,11 @@ class WorldInstance:
         model_plugins = [plugin for instance in self.models.values() for plugin in instance.plugins]
         self.plugins = (*model_plugins, *self._world_plugins)
         self.before_step_plugins = tuple(
-            plugin for plugin in self.plugins if _overrides(plugin, "before_step")
+            plugin for plugin in self.plugins if _overrides_method(plugin, "before_step")
         )
-        self.after_step_plugins = tuple(plugin for plugin in self.plugins if _overrides(plugin, "after_step"))
+        self.after_step_plugins = tuple(
+            plugin for plugin in self.plugins if _overrides_method(plugin, "after_step")
+        )
         self.subscribers: dict[str, list[Plugin]] = {}
         for plugin in self.plugins:
             for endpoint in plugin.endpoints:
@@ -114,7 +116,7 @@ def _params_of(spec: PluginSpec) -> object:
     return spec.params
 
 
-def _overrides(plugin: Plugin, method: str) -> bool:
+def _overrides_method(plugin: Plugin, method: str) -> bool:
     return getattr(type(plugin), method) is not getattr(Plugin, method)
 
 
@@ -227,7 +229,7 @@ class Simulation:
         return [endpoint for plugin in self._instance.plugins for endpoint in plugin.endpoints]
 
     def model_endpoints(self, model: str) -> Sequence[TopicEndpoint]:
-        """Those of one model's plugins; none if it is not there."""
+        """The endpoints of one model's plugins; none if there is no such model."""
         instance = self._instance.models.get(model)
         return [] if instance is None else [end for plugin in instance.plugins for end in plugin.endpoints]
 

@@ -39,7 +39,7 @@ class Contact:
 
     @property
     def reversed(self) -> Contact:
-        """The same, seen from the other side."""
+        """The contact with a and b exchanged."""
         x, y = self.normal
         return Contact(
             self.entity_b, self.body_b, self.entity_a, self.body_a, self.points, (-x, -y), self.force

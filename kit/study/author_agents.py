@@ -85,7 +85,7 @@ def author_agents_table() -> Table:
         Column("episodes", CellStyle.TEXT),
         Column("where", CellStyle.TEXT),
     )
-    rows = tuple(map(_cells, read_author_agents()))
+    rows = tuple(map(_result_cells, read_author_agents()))
     return Table("author-agents", "", columns, rows, note=AUTHOR_NOTE)
 
 
@@ -97,7 +97,7 @@ AUTHOR_NOTE: Final = (
 )
 
 
-def _cells(each: AuthorAgentResult) -> tuple[Cell, ...]:
+def _result_cells(each: AuthorAgentResult) -> tuple[Cell, ...]:
     printed = (each.printed_success, each.printed_adjacency)
     here = (each.jitter_s, each.success, each.adjacency)
     return (each.agent, each.table, *printed, *here, each.episodes, each.where)

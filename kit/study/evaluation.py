@@ -33,7 +33,7 @@ from kit.study.evaluation_data import EvaluationData
 from kit.study.evaluation_tables import (
     PrintDifference,
     TableRows,
-    print_differences,
+    differences_from_print,
     recompute_tables,
     score_order,
     setting_of,
@@ -65,7 +65,7 @@ def evaluation_table(study: EvaluationData, number: str) -> tuple[Block, ...]:
         raise LookupError(f"The evaluation has no Table {number}.")
     ours = recompute_tables(study)[number]
     slips = (Text(f"Slip: {each.why}") for each in study.misprints if each.table == number)
-    return (_comparison_table(table, ours, print_differences(study), setting_of(study)), *slips)
+    return (_comparison_table(table, ours, differences_from_print(study), setting_of(study)), *slips)
 
 
 def evaluation_plots(study: EvaluationData) -> dict[str, Plot]:
@@ -134,16 +134,16 @@ def _comparison_table(
 
 def _misprint_chapter(study: EvaluationData) -> Chapter:
     total = sum(len(row) for table in study.printed for row in table.rows.values())
-    wrong, unknown = print_differences(study), unexplained_differences(study)
+    wrong, unknown = differences_from_print(study), unexplained_differences(study)
     blocks: list[Block] = [
         Text(
-            f"{total - len(wrong)} of {total} printed entries are exact; {len(wrong)} differ, all in {_places(wrong)}."
+            f"{total - len(wrong)} of {total} printed entries are exact; {len(wrong)} differ, all in {_places_text(wrong)}."
         )
     ]
     rows: list[tuple[Cell, ...]] = []
     for slip in study.misprints:
         cells = [each for each in wrong if each.table == slip.table]
-        rows += [(_named(each), each.row, each.column, each.printed, each.ours) for each in cells]
+        rows += [(_place_name(each), each.row, each.column, each.printed, each.ours) for each in cells]
     blocks.append(
         Table(
             "slips",
@@ -164,7 +164,7 @@ def _misprint_chapter(study: EvaluationData) -> Chapter:
     ]
     blocks += [
         Caution(
-            f"{_named(each)}, {each.row}, {each.column}: {each.printed} printed, {each.ours:.4f} ours, and not known."
+            f"{_place_name(each)}, {each.row}, {each.column}: {each.printed} printed, {each.ours:.4f} ours, and not known."
         )
         for each in unknown
     ]
@@ -186,12 +186,12 @@ def _misprint_chapter(study: EvaluationData) -> Chapter:
     return Chapter("slips", "Where the print is wrong", tuple(blocks))
 
 
-def _places(wrong: Sequence[PrintDifference]) -> str:
+def _places_text(wrong: Sequence[PrintDifference]) -> str:
     names = ("the text" if each.table == "text" else f"table {each.table}" for each in wrong)
     return join_with_and(dict.fromkeys(names)) or "no table"
 
 
-def _named(each: PrintDifference) -> str:
+def _place_name(each: PrintDifference) -> str:
     return "text" if each.table == "text" else f"table {each.table}"
 
 

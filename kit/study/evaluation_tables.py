@@ -64,7 +64,7 @@ def recompute_tables(study: EvaluationData) -> Mapping[str, TableRows]:
     return {printed.id: _TABLES[printed.id](context) for printed in study.printed}
 
 
-def print_differences(study: EvaluationData) -> tuple[PrintDifference, ...]:
+def differences_from_print(study: EvaluationData) -> tuple[PrintDifference, ...]:
     """All numbers that differ by more than rounding, known slips and others."""
     ours = recompute_tables(study)
     return tuple(
@@ -83,7 +83,7 @@ def unexplained_differences(study: EvaluationData) -> tuple[PrintDifference, ...
     }
     return tuple(
         each
-        for each in print_differences(study)
+        for each in differences_from_print(study)
         if abs(known.get((each.table, each.row, each.column), np.inf) - each.ours) > ROUNDING_TOLERANCE
     )
 

@@ -18,13 +18,13 @@ def kit_commit() -> str:
     """
     results = f":!{SHIPPED_FOLDER.relative_to(Path(__file__).parents[2])}"
     try:
-        commit = _git("describe", "--always", "--abbrev=12", "--exclude=*")
-        return commit + ("+" if _git("status", "--porcelain", "-uno", "--", "kit", results) else "")
+        commit = _run_git("describe", "--always", "--abbrev=12", "--exclude=*")
+        return commit + ("+" if _run_git("status", "--porcelain", "-uno", "--", "kit", results) else "")
     except (OSError, subprocess.SubprocessError):
         return ""
 
 
-def _git(*words: str) -> str:
+def _run_git(*words: str) -> str:
     """Asks the repository that the folder of the kit's source is, and has git run none of the programs that it names.
 
     A repository above an installed kit, or one that the user's variables name, may be anybody's.

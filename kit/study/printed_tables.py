@@ -93,9 +93,13 @@ class PrintedTable:
         return tuple(dict.fromkeys(each for each in groups if each != POTENTIAL_FIELDS))
 
     @property
-    def has_fields(self) -> bool:
+    def has_potential_fields(self) -> bool:
         """Whether potential fields drove in some of its columns."""
         return POTENTIAL_FIELDS in self.groups
+
+    @property
+    def rows_without_means(self) -> list[str]:
+        return list(self.rows)[: len(self.cases) or self.attempts]
 
     @property
     def attempts(self) -> int:

@@ -97,17 +97,17 @@ def chapters(
     known = study_chapters()
     chosen = [each for each in known if not wanted or str(each.number) == wanted]
     if chosen and not kind:
-        lists = tuple(_overview(each, workspace) for each in chosen)
+        lists = tuple(_overview_chapter(each, workspace) for each in chosen)
         if not to_files:
             return lists, ()
-        tables = [_table(number, workspace) for each in chosen for number in _table_numbers(each)]
+        tables = [_table_chapter(number, workspace) for each in chosen for number in _table_numbers(each)]
         figures = [
-            _figure(figure, workspace, with_plots=with_plots)
+            _figure_chapter(figure, workspace, with_plots=with_plots)
             for each in chosen
             for figure in each.figures
             if with_plots or not figure.plots
         ]
-        failures = _failures(chosen, workspace)
+        failures = _failure_chapters(chosen, workspace)
         head = () if wanted else (summary_chapter(),)
         return lists, (*head, *lists, *failures, *tables, *_evaluation_chapters(chosen, with_class), *figures)
     if wanted == AUTHOR and not kind:
@@ -120,7 +120,9 @@ def chapters(
         what = kind or "table or figure"
         raise UnknownStudyNumber(f"There is no {what} {wanted!r}: {suggestion(wanted, sorted(allowed))}")
     is_table = wanted in numbers and kind != "figure"
-    return (), (_table(wanted, workspace) if is_table else _figure(pictures[wanted], workspace),)
+    return (), (
+        _table_chapter(wanted, workspace) if is_table else _figure_chapter(pictures[wanted], workspace),
+    )
 
 
 def _evaluation_chapters(chosen: list[StudyChapter], with_class: bool) -> tuple[Chapter, ...]:
@@ -130,7 +132,7 @@ def _evaluation_chapters(chosen: list[StudyChapter], with_class: bool) -> tuple[
     return evaluation_chapters(_evaluation(), with_class=with_class)
 
 
-def _failures(chosen: list[StudyChapter], workspace: Workspace | None) -> Iterator[Chapter]:
+def _failure_chapters(chosen: list[StudyChapter], workspace: Workspace | None) -> Iterator[Chapter]:
     """Every recorded cell of these chapters that lies below the print."""
     tables = [table for chapter in chosen for table in chapter.tables]
     rows = [
@@ -163,13 +165,13 @@ def recorded_study_document() -> str:
 
 
 def _table_numbers(chapter: StudyChapter) -> Iterator[str]:
-    """Those of its own data, then those of the evaluation."""
+    """The numbers of the tables of its own data, then of the evaluation's."""
     yield from (each.id for each in chapter.tables)
     if chapter.number == 5:
         yield from (each.id for each in _evaluation().printed)
 
 
-def _overview(chapter: StudyChapter, workspace: Workspace | None) -> Chapter:
+def _overview_chapter(chapter: StudyChapter, workspace: Workspace | None) -> Chapter:
     items = [
         (f"Table {table.id}", table.title, table_status(find_recorded_results(table, workspace), table))
         for table in chapter.tables
@@ -218,7 +220,7 @@ def _is_recorded(figure: PrintedFigure, workspace: Workspace | None) -> bool:
     return recorded is not None and any(recorded.paths_of(figure.group, case) for _, case in figure.paths)
 
 
-def _table(number: str, workspace: Workspace | None) -> Chapter:
+def _table_chapter(number: str, workspace: Workspace | None) -> Chapter:
     for chapter in study_chapters():
         for table in chapter.tables:
             if table.id == number:
@@ -239,13 +241,15 @@ def _durations(table: PrintedTable, workspace: Workspace | None, results: Result
         run = StudyRun.of(table, workspace or Workspace(Path()), variant)
         if variant == "no-limit" and not table.prints_best_test:
             continue
-        if variant not in results and (run.groups or run.has_fields):
+        if variant not in results and (run.groups or run.has_potential_fields):
             cores = 1 if workspace is None else os.cpu_count() or 1
             found[variant] = run.expected_seconds(1, cores)
     return found
 
 
-def _figure(figure: PrintedFigure, workspace: Workspace | None, *, with_plots: bool = True) -> Chapter:
+def _figure_chapter(
+    figure: PrintedFigure, workspace: Workspace | None, *, with_plots: bool = True
+) -> Chapter:
     if figure.paths:
         recorded = find_recorded_result(workspace, printed_table(figure.results_of))
         return figure_chapter(figure, _figure_paths(figure, recorded, with_plots=with_plots), recorded)
@@ -290,5 +294,5 @@ def _evaluation() -> EvaluationData:
 
 @cache
 def _evaluation_plots() -> dict[str, Plot]:
-    """Those of the evaluation, by name."""
+    """The plots of the evaluation, by name."""
     return evaluation_plots(_evaluation())

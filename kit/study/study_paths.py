@@ -42,7 +42,7 @@ def agent_paths(
     found: list[RecordedPath] = []
     for _, case in figure.paths:
         chosen = _one_of_each([way for way in ways if way.case == case])
-        found += [_recorded(figure.group, seed, way) for way in chosen[: figure.episodes]]
+        found += [_thin_path(figure.group, seed, way) for way in chosen[: figure.episodes]]
     return tuple(found)
 
 
@@ -63,10 +63,10 @@ def controller_path(case: str, target: tuple[float, float], outcome: PairRunResu
     way = EpisodePath(
         case, ended.get(outcome.end, EpisodeOutcome.TIMED_OUT), np.array(outcome.poses), target, SAMPLE_S
     )
-    return _recorded(POTENTIAL_FIELDS, 0, way)
+    return _thin_path(POTENTIAL_FIELDS, 0, way)
 
 
-def _recorded(group: str, seed: int, way: EpisodePath) -> RecordedPath:
+def _thin_path(group: str, seed: int, way: EpisodePath) -> RecordedPath:
     """A way with fewer places, to the centimetre."""
     every = max(1, round(PATH_INTERVAL_S / way.interval))
     kept = way.poses[::every, :, :2]

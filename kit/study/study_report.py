@@ -78,8 +78,8 @@ def table_chapter(
     for variant, result in results.items():
         blocks += _recorded_blocks(table, variant, result, cells[variant])
     if any(cells.values()):
-        blocks.append(_picture(table, cells))
-    blocks += [Text(note) for note in _notes(table, cells)]
+        blocks.append(_bar_plot(table, cells))
+    blocks += [Text(note) for note in _table_notes(table, cells)]
     blocks += [Text(f"Slip: {each.why}{_right_values(each)}") for each in misprints]
     blocks += [Text(text) for text in _how_to_run(table, missing)]
     return Chapter(f"table-{table.id}", f"Table {table.id}. {table.title}", tuple(blocks))
@@ -91,7 +91,7 @@ def figure_chapter(
     """``plots``: ours, from the raw answers or from what was ``recorded``."""
     blocks = [*map(Text, (f"Section {figure.section}.", *figure.settings)), *plots]
     if recorded is not None and plots:
-        blocks.append(Text(_origin(recorded)))
+        blocks.append(Text(_origin_text(recorded)))
     elif figure.run:
         blocks.append(Text(f"No recorded result; run it with `{figure.run}`."))
     if figure.missing:
@@ -143,12 +143,12 @@ def table_status(results: Results, table: PrintedTable) -> str:
             found.append(f"{VARIANT_NAMES[variant]} {len(tests)}")
     if found:
         return f"recorded: {', '.join(found)}"
-    if table.repeat_task or table.results_of or table.has_fields:
+    if table.repeat_task or table.results_of or table.has_potential_fields:
         return f"none; {table.results_of or table.id} --again"
     return "none" if table.run else "-"
 
 
-def _picture(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> Plot:
+def _bar_plot(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> Plot:
     """Bars: printed shares and ours beside them; where rows are cases, the mean of a column, ours if there is one of each case."""
     rows: list[tuple[str, tuple[float, ...]]] = []
     own = list(table.rows)[: len(table.cases) or None]
@@ -181,12 +181,12 @@ def _recorded_blocks(
 ) -> list[Block]:
     """How ours were made, and every cell whose interval lies below the printed number."""
     name = VARIANT_NAMES[variant]
-    blocks: list[Block] = [Text(f"{VARIANT_TITLES[variant]}: {_origin(recorded)}")]
-    groups = table.groups if table.has_fields else (*table.trained_groups, *table.row_groups)
+    blocks: list[Block] = [Text(f"{VARIANT_TITLES[variant]}: {_origin_text(recorded)}")]
+    groups = table.groups if table.has_potential_fields else (*table.trained_groups, *table.row_groups)
     for group in () if table.prints_best_test and variant != "kit" else dict.fromkeys(groups):
         told = [_test_text(each) for each in recorded.tests_of(group)]
         blocks.append(Text(f"{name}, {group}: {'; '.join(told) or 'no agent yet'}."))
-    if table.has_fields and variant in CONTROLLERS:
+    if table.has_potential_fields and variant in CONTROLLERS:
         blocks.append(Text(f"{name}: where the print has potential fields, `{CONTROLLERS[variant]}` drives."))
         if (sides := _sides_table(table, recorded, variant)) is not None:
             blocks.append(sides)
@@ -206,7 +206,7 @@ def _recorded_blocks(
     return blocks
 
 
-def _notes(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> Iterator[str]:
+def _table_notes(table: PrintedTable, cells: Mapping[StudyVariant, RecordedCells]) -> Iterator[str]:
     """What the recorded numbers of a table mean, once for all of them."""
     if any(cell.interval is not None for found in cells.values() for cell in found.values()):
         yield INTERVALS_NOTE
@@ -256,7 +256,7 @@ def _test_text(test: RecordedTest) -> str:
     return f"seed {test.seed}: {test.steps:,} steps in {format_seconds(test.seconds)}"
 
 
-def _origin(recorded: RecordedResult) -> str:
+def _origin_text(recorded: RecordedResult) -> str:
     """How a result was made: command, commit, settings; the log has the versions of packages."""
     settings = recorded.settings
     commit = f" at commit {settings.commit}" if settings.commit else ""

@@ -127,8 +127,8 @@ class StudyRun:
         return self.variant != "no-limit" or self.algorithm == "boltzmann-dqn"
 
     @property
-    def has_fields(self) -> bool:
-        return self.table.has_fields and self.variant in CONTROLLERS and not self.only
+    def has_potential_fields(self) -> bool:
+        return self.table.has_potential_fields and self.variant in CONTROLLERS and not self.only
 
     @property
     def settings(self) -> RecordedSettings:
@@ -154,7 +154,7 @@ class StudyRun:
     def recorded(self) -> RecordedResult | None:
         """Reads the results that there are so far. Raises RecordedResultError; RunError if it was made by other settings."""
         found = read_recorded_result(self.log)
-        if found is not None and _comparable(found.settings) != _comparable(self.settings):
+        if found is not None and _comparable_settings(found.settings) != _comparable_settings(self.settings):
             raise RunError(f"{found.file} was made by other settings. Rename it; then a new one is begun.")
         return found
 
@@ -184,7 +184,7 @@ class StudyRun:
         return tuple(found)
 
     def missing_seeds(self, seeds: int) -> tuple[int, ...]:
-        """Those of the seeds from 0 on of which an agent has not been tested yet."""
+        """The seeds, counted from 0, whose agent has not been tested yet."""
         found = self.recorded()
         return tuple(
             seed
@@ -201,14 +201,14 @@ class StudyRun:
     @property
     def fields_cases(self) -> tuple[tuple[str, str], ...]:
         """The map and name of every case that the dissertation gives potential fields a result for."""
-        if not self.has_fields:
+        if not self.has_potential_fields:
             return ()
         printed = self.table.case_cells(self.table.columns[self.table.groups.index(POTENTIAL_FIELDS)])
         return tuple((place, case) for place, case in self.table.cases if case in printed)
 
     @property
     def missing_fields_cases(self) -> tuple[tuple[str, str], ...]:
-        """Those that are not in the log."""
+        """The cases that are not in the log."""
         found = self.recorded()
         done = (
             {case for each in found.tests_of(POTENTIAL_FIELDS) for case in each.reached} if found else set()
@@ -281,9 +281,9 @@ class StudyRun:
                 {case: round(float(np.mean(shares)), 4)},
                 adjacency_sd=spread,
                 by_poses={case: round(float(np.mean([each.by_geometry for each in outcomes])), 4)},
-                reached_by_rays=_known({case: by_rays.mean}),
-                reached_by_rays_sd=_known({case: by_rays.sd}),
-                reached_by_poses=_known({case: by_poses.mean}),
+                reached_by_rays=_known_shares({case: by_rays.mean}),
+                reached_by_rays_sd=_known_shares({case: by_rays.sd}),
+                reached_by_poses=_known_shares({case: by_poses.mean}),
             )
             append_event(self.log, test)
 
@@ -349,7 +349,7 @@ class StudyRun:
         return fields + missing * steps / at_once, fields + missing * most / at_once
 
 
-def _comparable(settings: RecordedSettings) -> RecordedSettings:
+def _comparable_settings(settings: RecordedSettings) -> RecordedSettings:
     """Returns settings without what may differ from one part of a log to the next."""
     return replace(settings, versions={}, command="", commit="")
 
@@ -383,20 +383,20 @@ def _test_agent(group: str, sweep: TrainingSweep, entry: SweepEntry, episodes: i
         {case.case: case.reached for case in found.cases},
         {case.case: round(case.adjacency, 4) for case in found.cases if not np.isnan(case.adjacency)},
         tuple(case.name for _, case in config.choice.resolve().map_cases()),
-        _sessions(run),
+        _training_sessions(run),
         {case.case: round(case.adjacency_sd, 4) for case in found.cases if not np.isnan(case.adjacency_sd)},
-        reached_by_rays=_known({case.case: case.reached_by_rays.mean for case in found.cases}),
-        reached_by_rays_sd=_known({case.case: case.reached_by_rays.sd for case in found.cases}),
-        reached_by_poses=_known({case.case: case.reached_by_poses.mean for case in found.cases}),
+        reached_by_rays=_known_shares({case.case: case.reached_by_rays.mean for case in found.cases}),
+        reached_by_rays_sd=_known_shares({case.case: case.reached_by_rays.sd for case in found.cases}),
+        reached_by_poses=_known_shares({case.case: case.reached_by_poses.mean for case in found.cases}),
     )
 
 
-def _known(shares: dict[str, float]) -> dict[str, float]:
-    """Those that are numbers, rounded."""
+def _known_shares(shares: dict[str, float]) -> dict[str, float]:
+    """The shares that are numbers, rounded."""
     return {case: round(share, 4) for case, share in shares.items() if not np.isnan(share)}
 
 
-def _sessions(run: TrainingRun) -> tuple[TrainingSession, ...]:
+def _training_sessions(run: TrainingRun) -> tuple[TrainingSession, ...]:
     """The tests while it was trained."""
     found = []
     for event in EventReader(run.events_file).read_new():

@@ -23,22 +23,22 @@ def test_differences(one: LearningTask, other: LearningTask) -> list[str]:
     >>> test_differences(find_task("wheelchairs"), find_task("wheelchairs-seed-49"))[-1]
     'gap between two robots: 0.4 and 0.3'
     """
-    parts, others = dict(_parts(one)), dict(_parts(other))
+    parts, others = dict(_compared_parts(one)), dict(_compared_parts(other))
     return [f"{name}: {value} and {others[name]}" for name, value in parts.items() if value != others[name]]
 
 
-def _parts(task: LearningTask) -> Iterator[tuple[str, Any]]:
+def _compared_parts(task: LearningTask) -> Iterator[tuple[str, Any]]:
     yield "cases", ", ".join(case.name for _, case in task.map_cases())
     yield "goal", task.goal.description
-    yield "actions", _actions(task)
+    yield "actions", _actions_text(task)
     yield "seconds of a step", task.step_time
     yield "steps of an episode", task.max_steps
     yield "target radius", task.target_radius
     yield "target measured to", task.measured_to
-    yield "gap between two robots", _gap(task)
+    yield "gap between two robots", _start_gap(task)
 
 
-def _actions(task: LearningTask) -> str:
+def _actions_text(task: LearningTask) -> str:
     if not isinstance(task.actions, DiscreteActions):
         return f"continuous, {task.actions.linear} and {task.actions.angular}"
     return ", ".join(
@@ -46,7 +46,7 @@ def _actions(task: LearningTask) -> str:
     )
 
 
-def _gap(task: LearningTask) -> float | None:
+def _start_gap(task: LearningTask) -> float | None:
     """Between the first two robots at their starts [m]; None for one."""
     if task.robots == 1:
         return None

@@ -11,7 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.filter import DimFilter, LineFilter
 from textual.screen import Screen
 
-from kit.render.roles import COLOR_SCHEMES
+from kit.render.palettes import COLOR_SCHEMES
 from kit.tui.input.driver import KeyDriver
 from kit.tui.late_timers import fire_late_timers
 from kit.tui.terminal import TerminalDecision

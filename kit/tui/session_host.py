@@ -103,7 +103,7 @@ class SessionHost:
             live.post(lambda runner: job(session))
 
     def drive_with(self, controller: ControllerFile) -> None:
-        """Another controller, in the world that is open by then."""
+        """Lets another controller drive, in the world that is open when the request is carried out."""
         self._jobs.put(lambda: self.post(lambda session: session.drive_with(controller)))
 
     def observe(self, make_observer: Callable[[Session], Observer]) -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from kit.workspace import Workspace
 
 if TYPE_CHECKING:  # reading lessons takes a moment to import: the frame is drawn first
+    from kit.school.game.levels import GameLevel
     from kit.school.lessons.catalogue import LessonEntry
     from kit.school.lessons.lesson_session import LessonSession
     from kit.school.lessons.records import Lesson
@@ -31,6 +32,8 @@ class StudentOverview:
     """Whether today's run of it is over."""
     next_medal: str = ""
     """The medal that is nearest to what was driven, and its level; empty where none is in sight."""
+    next_level: GameLevel | None = None
+    """The first open level without a medal; None where there is none."""
     won: tuple[tuple[str, int, int], ...] = ()
     """Of each world of the game its title, how many of its levels have a medal, and how many it has."""
     running: tuple[str, ...] = ()
@@ -84,7 +87,7 @@ class StudentStore:
         from kit.school.game.daily import DAILY_PREFIX, streak, today
 
         day = today()
-        next_medal, won = self._game(events)
+        next_medal, next_level, won = self._game(events)
         return StudentOverview(
             shelf,
             next_lesson(shelf),
@@ -92,6 +95,7 @@ class StudentStore:
             streak(events, day),
             any(event.subject == f"{DAILY_PREFIX}{day.isoformat()}" for event in events),
             next_medal,
+            next_level,
             won,
             self._running(),
             self._take_news(),
@@ -109,8 +113,11 @@ class StudentStore:
                 self._progress.close()
                 self._progress = None
 
-    def _game(self, events: list[ProgressEvent]) -> tuple[str, tuple[tuple[str, int, int], ...]]:
-        """The medal in reach, and what was won of each world; nothing where the game's files cannot be read."""
+    def _game(
+        self, events: list[ProgressEvent]
+    ) -> tuple[str, GameLevel | None, tuple[tuple[str, int, int], ...]]:
+        """The medal in reach, the next level, and what was won of each world; nothing where the game's files cannot be
+        read."""
         from kit.school.game.challenges import game_summary
         from kit.school.game.levels import all_levels
         from kit.school.game.medal import Medal
@@ -121,12 +128,13 @@ class StudentStore:
         try:
             summary = game_summary(events, completed_lessons(all_levels(), events))
         except (WorldError, FileNotFoundError):
-            return "", ()
+            return "", None, ()
         won = tuple(
             (title, sum(medal is not Medal.NONE for medal in best), len(best))
             for title, best in summary.best_by_world.items()
         )
-        return medal_in_reach(summary.levels), won
+        is_next = (each.level for each in summary.levels if each.is_open and each.best_medal is Medal.NONE)
+        return medal_in_reach(summary.levels), next(is_next, None), won
 
     def _take_news(self) -> str:
         """Taken once; what was taken stands for as long as the store is open."""

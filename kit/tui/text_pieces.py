@@ -11,6 +11,15 @@ from rich.segment import Segment
 from rich.style import Style
 
 NULL_STYLE: Final = Style.null()
+_ATTRIBUTES: Final = {
+    "1": "bold", "2": "dim", "3": "italic", "4": "underline", "5": "blink", "7": "reverse", "9": "strike",
+}  # fmt: skip
+_SEEN_ON_BLANKS: Final = frozenset("479")
+_WEIGHTS: Final = frozenset("12")
+"""Attributes that one short code takes away, leaving the colours."""
+_NORMAL_WEIGHT: Final = "22"
+_UNSURE_WIDTHS: Final = "\u2900"
+"""From here on, behind letters, boxes and braille, terminals do not agree how wide a character is."""
 
 
 class _StyleCodes(NamedTuple):
@@ -38,16 +47,6 @@ def style_codes(style: Style, system: ColorSystem, is_blank: bool) -> _StyleCode
     if is_blank and _SEEN_ON_BLANKS.isdisjoint(attributes):
         return _StyleCodes(background, (), None)
     return _StyleCodes(background, attributes, foreground)
-
-
-_ATTRIBUTES: Final = {
-    "1": "bold", "2": "dim", "3": "italic", "4": "underline", "5": "blink", "7": "reverse", "9": "strike",
-}  # fmt: skip
-_SEEN_ON_BLANKS: Final = frozenset("479")
-
-_WEIGHTS: Final = frozenset("12")
-"""Attributes that one short code takes away, leaving the colours."""
-_NORMAL_WEIGHT: Final = "22"
 
 
 class TextPiece(NamedTuple):
@@ -115,10 +114,6 @@ def _written(pieces: Iterable[TextPiece], screen_width: int) -> str:
     if held != _DEFAULT_CODES:
         sequences.append("\x1b[0m")
     return "".join(sequences)
-
-
-_UNSURE_WIDTHS: Final = "\u2900"
-"""From here on, behind letters, boxes and braille, terminals do not agree how wide a character is."""
 
 
 def _move(cursor: tuple[int, int] | None, y: int, x: int) -> str:

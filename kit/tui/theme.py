@@ -6,7 +6,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Self
 
-from kit.render.roles import COLOR_SCHEMES, PALETTES, ColorScheme, Rgb, Role, RoleStyle
+from kit.render.palettes import COLOR_SCHEMES, PALETTES, ColorScheme
+from kit.render.role_looks import RoleStyle
+from kit.render.roles import Role
+from kit.render.xterm_colors import Rgb
 from kit.tui.terminal import TerminalDecision
 
 if TYPE_CHECKING:

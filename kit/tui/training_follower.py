@@ -64,7 +64,7 @@ class TrainingFollower:
         self._jobs.put(job)
 
     def show_case(self, case: str | None) -> None:
-        """The case to drive from now on; None: one after the other."""
+        """Sets the case that is driven from now on; None: all in turn."""
         self._case = case
         self.skip_episode()
 
@@ -115,7 +115,7 @@ class TrainingFollower:
             self._run_jobs()
 
     def _run_jobs(self) -> None:
-        """Waits for one, but not for long."""
+        """Waits up to ``POLL_S`` seconds for a job, and carries it out."""
         from kit.learning.training.run_config import RunError
 
         try:

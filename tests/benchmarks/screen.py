@@ -26,7 +26,8 @@ from kit.arrays import FloatArray
 from kit.render.camera import Camera
 from kit.render.encode import ENCODERS, BrailleEncoder
 from kit.render.painter import Painter
-from kit.render.roles import ANSI_PALETTE, COLOR_SCHEMES, SHADES, Palette
+from kit.render.palettes import ANSI_PALETTE, COLOR_SCHEMES, Palette
+from kit.render.roles import SHADES
 from kit.render.scene import Scene
 from tests.render.scenes import drive
 from tests.tui.tape import ViewApp, painted, run_in

@@ -17,7 +17,7 @@ import sys
 from pathlib import Path
 import click
 from textual.screen import Screen
-from kit.cli import options
+from kit.cli import terminal_options
 from kit.cli.process import run_as_process
 from kit.cli.full_screen import show_screen
 
@@ -29,7 +29,7 @@ class Kept(Screen):
         Path(folder, "kept").touch()
 
 def show():
-    show_screen(options.full_screen("The screen"), lambda app: Kept())
+    show_screen(terminal_options.full_screen("The screen"), lambda app: Kept())
 
 sys.argv, folder = sys.argv[:1], sys.argv[1]
 run_as_process(click.Command("show", callback=show), "show")

@@ -216,7 +216,7 @@ class SubmittedYamlTarget:
 def _submitted_failure(assignment: Assignment, file: Path) -> Failure | None:
     """Returns why a submitted file is refused; None if it is read. Nothing is trained."""
     if assignment.kind == "training":
-        read = read_submitted_yaml(file, lambda section: training._settings(section, assignment.task))
+        read = read_submitted_yaml(file, lambda section: training._read_settings(section, assignment.task))
         return read if isinstance(read, Failure) else None
     with find_kind(assignment.kind).collect(assignment, file, OPTIONS) as collector:
         evidence = collector.evidence(assignment.criteria[0])

@@ -168,6 +168,27 @@ CONTROLS: Final = (
         "test_plain_files.py::test_a_recording_names_no_file_elsewhere",
     ),
     Control(
+        "a model whose tensors are larger than what is stored",
+        "kit/learning/policies/torch_weights.py",
+        "        if 4 * sum(math.prod(tensor.shape) for tensor in tensors.values()) > MAX_UNPACKED_BYTES:\n",
+        "        if False:\n",
+        "learning/policies/test_hostile_files.py::test_no_model_takes_memory_or_says_more_than_a_sentence",
+    ),
+    Control(
+        "a policy whose task names a program",
+        "kit/learning/tasks/task_reader.py",
+        'if self._is_kept and name != _named_in(self._file, "file", "reward"):',
+        "if False:",
+        "learning/policies/test_hostile_files.py::test_a_policy_names_no_program_that_runs_with_ones_rights",
+    ),
+    Control(
+        "a program that a policy's task names, with one's own rights",
+        "kit/learning/policies/evaluation.py",
+        "    with StudentReward(file, level=highest_level_up_to(max(Level))) as reward:",
+        "    with StudentReward(file) as reward:",
+        "learning/policies/test_hostile_files.py::test_a_policy_names_no_program_that_runs_with_ones_rights",
+    ),
+    Control(
         "a checkpoint that unpacks to far more",
         "kit/learning/training/checkpoint_file.py",
         "            check_stored(archive, size)\n",
@@ -281,7 +302,7 @@ CONTROLS: Final = (
     ),
     Control(
         "a command of a CI service in a note",
-        "grader/cli/options.py",
+        "grader/cli/exits.py",
         "    click.echo(plain(message), err=True)\n",
         "    click.echo(message, err=True)\n",
         "grader/cohort/test_cohort.py::test_a_note_gives_a_ci_service_no_command",
@@ -449,7 +470,7 @@ CONTROLS: Final = (
     ),
     Control(
         "kernels that are not compiled",
-        "kit/kernels/compilation.py",
+        "kit/kernels/numba_import.py",
         'os.environ.pop("NUMBA_DISABLE_JIT", None)\n',
         "\n",
         "grader/test_surroundings.py::test_no_environment_decides_a_grade",

@@ -42,7 +42,7 @@ def named(thing: tuple[str, str]) -> str:
     return thing[0] or "walls"
 
 
-@pytest.mark.parametrize("pair", sorted(set(keys_of(YARD)) - {"lidar_sees"}))
+@pytest.mark.parametrize("pair", sorted(set(keys_of(YARD)) - {"laser_sees"}))
 def test_who_collides_in_the_yard(yard: WorldFacts, pair: str) -> None:
     (collides,) = {
         meeting.collides
@@ -54,7 +54,7 @@ def test_who_collides_in_the_yard(yard: WorldFacts, pair: str) -> None:
 
 def test_what_the_truck_sees(yard: WorldFacts) -> None:
     sees = {named(view.thing) for view in yard.sights if view.sees and view.laser == "truck/lidar"}
-    assert set(keys_of(YARD)["lidar_sees"].right) == sees
+    assert set(keys_of(YARD)["laser_sees"].right) == sees
 
 
 def test_every_plugin_asked_about_is_tried() -> None:

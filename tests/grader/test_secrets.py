@@ -198,6 +198,23 @@ def test_where_secret_runs_alone_lose_points_ones_own_check_says_what_was_seen(
         assert worst is None
 
 
+def test_an_example_that_loses_less_than_the_secret_run_is_not_told_as_why_points_are_lost(
+    function_assignment: Assignment, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    almost = comparison(1, label="another seed", explain_with=lambda *_: "explained 1")
+    monkeypatch.setattr(MeasuredOnly, "counterparts", lambda *_: iter([almost]), raising=True)
+    found = MeasuredOnly(comparison(0, label="nearest()"), secret_comparison(10_000))
+    submission = Submission("ada", "scans.py", {"scans.py": b""})
+    grading = Grading(
+        function_assignment, submission, found, secret=True, clock=SubmissionClock(), examples=True
+    )
+    [test] = grading.result().tests
+    assert test.points == test.max_points / 2
+    assert "explained 10000" in test.rationale
+    assert "explained 1" not in test.rationale.replace("explained 10000", "")
+    assert grading.worst_evidence() is found.evidence(function_assignment.criteria[0])[1]
+
+
 def test_a_broken_grader_tells_students_no_secret(function_assignment: Assignment) -> None:
     failure = Failure(FailureKind.CONFINEMENT, f"seed {SECRET_SEED}")
     result = measured(function_assignment, EvidenceRecord(failure=failure, label="it", secret=True))

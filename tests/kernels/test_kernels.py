@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from kit.kernels import compilation, grids, kernels, world_kernels
+from kit.kernels import compilation, grids, kernel_cache, kernels, world_kernels
 from kit.kernels.lidar_index import make_beams, make_wall_blocks
 from kit.sim import motors
 from tests.cases import every_case
@@ -345,10 +345,10 @@ def test_shapes_go_with_their_bodies() -> None:
 @pytest.mark.long
 def test_what_is_kept_on_disk_holds_until_any_file_of_kernels_is_edited() -> None:
     files = {file.name for file in Path(kernels.__file__).parent.glob("*.py")}
-    assert {"kernels.py", "world_kernels.py"} <= files == {name for name, *_ in compilation.SOURCE_STAMP}
+    assert {"kernels.py", "world_kernels.py"} <= files == {name for name, *_ in kernel_cache.SOURCE_STAMP}
     for kernel in (kernels.scan_with, world_kernels.step_worlds, grids.interpolate_tables):
         kept: Any = kernel
-        assert kept._cache._cache_file._source_stamp == compilation.SOURCE_STAMP
+        assert kept._cache._cache_file._source_stamp == kernel_cache.SOURCE_STAMP
 
 
 @pytest.mark.long
@@ -421,9 +421,9 @@ print(repr(config.CACHE_DIR))
 def test_what_kernels_do_not_use_is_not_imported_and_can_be_later() -> None:
     code = """
 import sys
-from kit.kernels import compilation
+from kit.kernels import compilation, numba_import
 assert compilation.jit(lambda x: x + 1.0)(1.0) == 2.0
-print({*compilation.UNUSED, "pycparser", "unittest"} & {*sys.modules})
+print({*numba_import.UNUSED, "pycparser", "unittest"} & {*sys.modules})
 import cffi, scipy.linalg
 print(scipy.linalg.det([[2.0]]), cffi.FFI().typeof("int").cname)
 """

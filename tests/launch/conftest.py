@@ -91,7 +91,8 @@ class Workshop:
             (folder / name / f"{program}.py").write_text(text)
         (folder / "launch" / f"{name}.launch.py").write_text(
             "from launch import LaunchDescription\nfrom launch.actions import *\nfrom launch.conditions import *\n"
-            "from launch.event_handlers import *\nfrom launch.substitutions import *\n"
+            "from launch.event_handlers import *; from launch.events import matches_action; from launch.events.process import *\n"
+            "from launch.substitutions import *\n"
             "from launch_ros.actions import *\nfrom launch_ros.substitutions import *\n\n\n"
             f"def generate_launch_description():\n    return LaunchDescription([\n{indent(dedent(launch), ' ' * 8)}\n    ])\n"
         )

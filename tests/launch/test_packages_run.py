@@ -165,6 +165,23 @@ def test_what_follows_from_what(launch: Launched, workshop: Workshop) -> None:
     assert code == 1, "one process has failed"
 
 
+def test_the_last_process_may_be_ended_by_an_event_and_something_follow(
+    launch: Launched, workshop: Workshop
+) -> None:
+    folder = workshop.package(
+        "ended",
+        """
+        last := ExecuteProcess(cmd=['sh', '-c', 'trap "echo last words; exit" INT; echo ready; while :; do sleep 0.01; done']),
+        RegisterEventHandler(OnProcessIO(target_action=last, on_stdout=lambda event, context:
+            EmitEvent(event=SignalProcess(signal_number='SIGINT', process_matcher=matches_action(last)))
+            if b'ready' in event.text else None)),
+        RegisterEventHandler(OnProcessExit(target_action=last, on_exit=[LogInfo(msg='what follows')])),
+        """,
+    )
+    out, err, _ = launch(folder, "--plain")
+    assert out.index("last words") < out.index("what follows"), out + err
+
+
 @pytest.mark.long
 def test_a_line_for_the_shell_may_call_ros2(launch: Launched, workshop: Workshop) -> None:
     """As ROS 2's own tutorials do, with what the nodes of the same launch offer, whatever its name."""

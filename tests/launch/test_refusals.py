@@ -270,3 +270,19 @@ def test_a_word_after_a_launch_file_is_no_argument_and_is_refused(tmp_path: Path
     assert find_launch_file(str(file), None, ()).file == file
     with pytest.raises(PackageError, match="NAME:=VALUE"):
         find_launch_file(str(file), "who=x", ())
+
+
+@pytest.mark.parametrize(
+    ("manifest", "has_siblings"), [("<package format='3'><name>one</name></package>", True), (None, False)]
+)
+def test_only_a_package_has_siblings(tmp_path: Path, manifest: str | None, has_siblings: bool) -> None:
+    """Above a launch file that lies in no package may lie anything, up to the whole disk."""
+    folder = tmp_path / "one"
+    folder.mkdir()
+    file = folder / "drive.launch.py"
+    file.write_text("")
+    if manifest is not None:
+        (folder / "package.xml").write_text(manifest)
+    search = find_launch_file(str(file), None, ()).search
+    assert folder in search
+    assert (tmp_path in search) == has_siblings

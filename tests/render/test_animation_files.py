@@ -13,7 +13,8 @@ import pytest
 from kit.geometry import Pose
 from kit.render.animation_files import asciicast_lines, svg_animation
 from kit.render.encode import Frame
-from kit.render.roles import PALETTES, Palette, Role
+from kit.render.palettes import PALETTES, Palette
+from kit.render.roles import Role
 from kit.render.scene import Disc, Scene, SceneBody
 from tests.render.scenes import robot
 

@@ -14,7 +14,7 @@ from kit.render import painter as painter_module
 from kit.render.camera import Camera
 from kit.render.encode import BLANK, ENCODERS, AsciiEncoder, BrailleEncoder, Encoder, Frame, HalfBlockEncoder
 from kit.render.painter import Painter
-from kit.render.roles import GHOST_ROLES, Role
+from kit.render.roles import Role
 from kit.render.scene import (
     CellState,
     Disc,
@@ -32,6 +32,7 @@ from tests.render.scenes import box_walls, maze, robot, scan
 every_encoder = pytest.mark.parametrize(
     "encoder", [BrailleEncoder(), HalfBlockEncoder(), AsciiEncoder()], ids=list(ENCODERS)
 )
+GHOST_ROLES = [role for role in Role if role.name.startswith("GHOST_")]
 
 
 def room() -> Scene:
@@ -55,7 +56,7 @@ GOLDEN = {
     "braille": """
  ▐████████████████████████████▌
  ▐█▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀▀█▌
- ▐█                  ⢠⠃ ◎ ⢣  █▌
+ ▐█                  ⢠⠋⠉◎⠉⢣  █▌
  ▐█      ⡠⠔⠁    ▄▖   ⠈⢆⡀ ⣀⠎  █▌
  ▐█ ⠁⠁⠈⠈◥       █▌     ⠈⠉    █▌
  ▐█             ×▌           █▌
@@ -64,8 +65,8 @@ GOLDEN = {
 """,
     "block": """
  ██████████████████████████████
- █▒▒▒▒▒▒▒▒▒▒▒▒▒▒▒▒▒▀▒▀▀▀▀▀▀▀▀▒█
- █▒                   █ ◎ █  ▒█
+ █▒▒▒▒▒▒▒▒▒▒▒▒▒▒▒▒▒▀▒▀▀▒▀▀▒▀▀▒█
+ █▒                   █▀◎▀█  ▒█
  █▒      ▄▄▀    ▄▄    █▄▄▄█  ▒█
  █▒ ····◥       ▒█           ██
  █▒             ×█           ██
@@ -74,8 +75,8 @@ GOLDEN = {
 """,
     "ascii": """
  ##############################
- #.................#.#ooooo##.#
- #.                   o * o  .#
+ #.................#.##.##.##.#
+ #.                   oo*oo  .#
  #.      /      ##    ooooo  .#
  #. ,,,,>       .#           ##
  #.             X#           ##
@@ -322,6 +323,20 @@ def test_a_cart_is_filled_and_the_targets_own_body_is_a_part_of_it(name: str, mo
     assert set(right.ravel().tolist()) == {Role.EMPTY, Role.TARGET}
     assert frame.glyphs[7, 7] != BLANK
     assert frame.glyphs[7, 22] == BLANK, "a ring is hollow"
+
+
+@pytest.mark.parametrize("layers", [False, True])
+def test_a_targets_ring_beside_a_wall_is_closed_and_of_dots_as_everywhere(layers: bool) -> None:
+    camera = Camera(0, 0, 0.1, 30, 15)
+    walls = box_walls(((0.5, -1.4, 0.7, 1.4),))
+    scene = Scene(walls, targets=(Disc(0.2, 0.0, 0.5),), bodies=(robot(Pose(-1.0, 0.5)),))
+    frame = Painter(BrailleEncoder(layers=layers)).paint(scene, camera)
+    is_target = frame.fg == Role.TARGET
+    assert Role.TARGET not in frame.bg
+    assert (frame.glyphs[is_target & (frame.glyphs != ord("◎"))] > 0x2800).all()
+    right = is_target.any(axis=0).nonzero()[0].max()
+    middle = slice(is_target.any(axis=1).nonzero()[0].min() + 1, is_target.any(axis=1).nonzero()[0].max())
+    assert is_target[middle, right].all(), "its rim runs down along the wall"
 
 
 def full_scene() -> Scene:

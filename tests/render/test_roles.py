@@ -4,20 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from kit.render.roles import (
-    COLOR_SCHEMES,
-    GHOST_ROLES,
-    LINE_DASHES,
-    LIT_ROLES,
-    PALETTES,
-    ROBOT_ROLES,
-    ROLE_LOOKS,
-    SHADES,
-    Palette,
-    Rgb,
-    Role,
-    nearest_xterm_color,
-)
+from kit.render.palettes import COLOR_SCHEMES, PALETTES, Palette
+from kit.render.role_looks import LINE_DASHES, ROLE_LOOKS
+from kit.render.roles import LIT_ROLES, ROBOT_ROLES, SHADES, Role
+from kit.render.xterm_colors import Rgb, nearest_xterm_color
 from tests.cases import every_case
 
 EVERY_PALETTE: dict[str, Palette] = {
@@ -40,6 +30,7 @@ def test_no_colour_has_none_but_tells_hits_and_robots_from_walls_by_weight() -> 
     assert not palette[Role.WALL].bold
 
 
+GHOST_ROLES = [role for role in Role if role.name.startswith("GHOST_")]
 MOVING = (Role.BODY, Role.TARGET, *GHOST_ROLES, *ROBOT_ROLES)
 """What is told apart at a glance while a level is driven."""
 

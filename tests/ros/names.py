@@ -95,6 +95,21 @@ def find_absent(names: Sequence[tuple[str, str]]) -> list[str]:
     ]
 
 
+def find_shadowed(names: Sequence[tuple[str, str]]) -> list[str]:
+    """The names that a module has from its submodule of the same name, and that are that submodule here.
+
+    Importing a submodule makes it an attribute of its package, so that each is imported before its package is asked.
+    """
+    modules = {module for module, _ in names}
+    return [
+        f"{module}.{name}"
+        for module, name in names
+        if f"{module}.{name}" in modules
+        and (f"{module}.{name}", name) in names
+        and import_module(f"{module}.{name}") is getattr(import_module(module), name)
+    ]
+
+
 def find_missing(programs: Sequence[Program]) -> dict[int, list[str]]:
     """What each program lacks, by its number. The import names must be installed."""
     missing = {program.number: program.missing_attributes() for program in programs}

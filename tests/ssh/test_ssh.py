@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from kit.render.roles import COLOR_SCHEMES, Role
+from kit.render.palettes import COLOR_SCHEMES
+from kit.render.roles import Role
 from tests.ssh.connection import SSH, SSHD, open_kit, private_sshd
 from tests.tui.test_play_pty import User
 from tests.tui.widgets.test_world_view_pty import run_on

@@ -30,7 +30,7 @@ from kit.study.evaluation import evaluation_chapters, evaluation_table
 from kit.study.evaluation_data import DATA_FILE, read_evaluation_data
 from kit.study.evaluation_tables import (
     TableRows,
-    print_differences,
+    differences_from_print,
     recompute_tables,
     score_order,
     setting_of,
@@ -80,7 +80,7 @@ def test_these_tables_are_exact(table: str) -> None:
 def test_the_others_differ_in_the_known_cells_and_nowhere_else() -> None:
     found = {
         (each.table, each.row, each.column): (each.printed, round(each.ours, 2))
-        for each in print_differences(study())
+        for each in differences_from_print(study())
     }
     assert found == SLIPS
     assert unexplained_differences(study()) == ()
@@ -98,7 +98,7 @@ def test_one_cell_explains_table_5_6(subject: int) -> None:
         for key, row in study().ratings.values.items()
     }
     changed = replace(study(), ratings=ClassRatings(study().ratings.questions, values))
-    left = [each for each in print_differences(changed) if each.table == "5.6"]
+    left = [each for each in differences_from_print(changed) if each.table == "5.6"]
     assert (not left) == (subject in (3, 4))
 
 

@@ -146,8 +146,8 @@ def test_the_agents_of_a_part_are_those_of_the_whole(tmp_path: Path) -> None:
     assert [entry.config for entry in part.sweep(3).entries()] == list(
         whole.configs(3)
     )  # the longer one stays
-    assert not part.has_fields
-    assert whole.has_fields
+    assert not part.has_potential_fields
+    assert whole.has_potential_fields
 
 
 def test_without_the_limit_nothing_else_differs(tmp_path: Path) -> None:

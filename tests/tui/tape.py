@@ -17,7 +17,7 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from kit.render.encode import Encoder
-from kit.render.roles import ANSI_PALETTE, Palette
+from kit.render.palettes import ANSI_PALETTE, Palette
 from kit.tui.textual_patches import ASK_CURSOR, CroppingCompositor
 from kit.tui.widgets.world_view import WorldView
 

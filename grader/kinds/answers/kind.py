@@ -76,7 +76,7 @@ class SubmittedAnswers:
     def is_right(self, name: str) -> bool:
         given, key = self.given.get(name, ()), self.task.keys[name]
         if key.is_list:
-            return sorted(map(_normalized, given)) == sorted(map(_normalized, key.right))
+            return sorted(map(_normalize_word, given)) == sorted(map(_normalize_word, key.right))
         return len(given) == 1 and any(_is_same(given[0], right, key.within) for right in key.right)
 
     def explain(self, names: Sequence[str]) -> str:
@@ -94,16 +94,16 @@ class SubmittedAnswers:
             given = self.given.get(question.name, ())
             if not given:
                 return f"{quoted(question.name)} is not answered yet: {question.ask}"
-            hint = self.task.keys[question.name].feedback.get(_normalized(", ".join(given)), "")
+            hint = self.task.keys[question.name].feedback.get(_normalize_word(", ".join(given)), "")
             hint = hint or self._form_mistake(question, given)
             return f"{quoted(question.name)}: {', '.join(given)} is not right. {hint}".strip()
         return ""
 
     def _form_mistake(self, question: AnswerQuestion, given: Sequence[str]) -> str:
         """Says that an answer is none of the choices, or no number where one is asked for; empty otherwise."""
-        choices = {_normalized(choice) for choice in question.choices}
+        choices = {_normalize_word(choice) for choice in question.choices}
         for each in given:
-            if choices and _normalized(each) not in choices:
+            if choices and _normalize_word(each) not in choices:
                 return f"There is no choice {quoted(each)}: {suggestion(each, question.choices)}"
         is_number = all(map(_is_number, self.task.keys[question.name].right))
         if is_number and not all(map(_is_number, given)):
@@ -130,16 +130,16 @@ def answers(evidence: EvidenceRecord, params: AnswerKeysParams) -> float:
 
 def read_settings(files: AssignmentFiles) -> KindSettings:
     """Reads the questions and the right answers."""
-    questions = tuple(_questions(files.public.section("questions")))
+    questions = tuple(_read_questions(files.public.section("questions")))
     in_secret = not files.public.has("answers") and files.secret is not None
     holder = files.secret if in_secret and files.secret is not None else files.public
     section = holder.section("answers")
-    keys = {each.name: _key(section, each) for each in questions}
+    keys = {each.name: _read_key(section, each) for each in questions}
     section.finish()
     return KindSettings(task=AnswersTask(questions, keys, in_secret))
 
 
-def _questions(section: Section) -> Iterator[AnswerQuestion]:
+def _read_questions(section: Section) -> Iterator[AnswerQuestion]:
     for name in tuple(section.keys()):
         each = section.section(name)
         question = AnswerQuestion(name, each.text("ask"), each.texts("choices", ()), each.flag("list", False))
@@ -148,14 +148,16 @@ def _questions(section: Section) -> Iterator[AnswerQuestion]:
     section.finish()
 
 
-def _key(section: Section, question: AnswerQuestion) -> AnswerKey:
+def _read_key(section: Section, question: AnswerQuestion) -> AnswerKey:
     each = section.section(question.name)
     right = each.texts("right")
     for value in right:
         if question.choices and value not in question.choices:
             each.error(f"{quoted(value)} is none of the choices", "right")
     given = each.section("feedback", None)
-    feedback = {} if given is None else {_normalized(name): given.text(name) for name in tuple(given.keys())}
+    feedback = (
+        {} if given is None else {_normalize_word(name): given.text(name) for name in tuple(given.keys())}
+    )
     key = AnswerKey(right, each.number("within", 0.0, minimum=0), question.is_list, feedback)
     each.finish()
     return key
@@ -205,7 +207,7 @@ def _is_same(given: str, right: str, within: float) -> bool:
     try:
         return math.isclose(float(given), float(right), rel_tol=1e-9, abs_tol=within)
     except ValueError:
-        return _normalized(given) == _normalized(right)
+        return _normalize_word(given) == _normalize_word(right)
 
 
 def _is_number(word: str) -> bool:
@@ -215,7 +217,7 @@ def _is_number(word: str) -> bool:
         return False
 
 
-def _normalized(word: str) -> str:
+def _normalize_word(word: str) -> str:
     return " ".join(word.split()).casefold()
 
 

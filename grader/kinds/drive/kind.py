@@ -285,7 +285,7 @@ def _rerun(task: HandDriveTask, recording: Recording, clock: SubmissionClock) ->
         secret=False,
         scenario=task.scenario,
         limit_s=task.time_s,
-        recording=_cut(recording, run.poses[ticks], best.first),
+        recording=_cut_attempt(recording, run.poses[ticks], best.first),
         score=best.score,
         failure=None,
         traffic={},
@@ -297,7 +297,7 @@ def _rerun(task: HandDriveTask, recording: Recording, clock: SubmissionClock) ->
     )
 
 
-def _cut(recording: Recording, poses: np.ndarray[Any, np.dtype[np.float64]], first: int) -> Recording:
+def _cut_attempt(recording: Recording, poses: np.ndarray[Any, np.dtype[np.float64]], first: int) -> Recording:
     """Returns one attempt as a recording of its own, with the replay's poses."""
     ticks, models, _ = poses.shape
     inputs = tuple(

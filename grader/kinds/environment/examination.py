@@ -30,7 +30,7 @@ from kit.host.sandbox.sandbox_config import Level
 from kit.host.wire import Json, ProtocolError, decode, printable
 from kit.msg.message import Message
 from kit.msg.std_msgs import String
-from kit.ros.graph.directory import GraphNode
+from kit.ros.graph.directory import NodeLike
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
 from kit.run.episode import controller_arguments, run_until, when, when_failed
@@ -391,7 +391,7 @@ class _EnvironmentExaminer:
     def _on_answer(self, message: String) -> None:
         self._answers.append(message.data)
 
-    def _on_message(self, _: int, node: GraphNode, topic: str, message: Message) -> None:
+    def _on_message(self, _: int, node: NodeLike, topic: str, message: Message) -> None:
         if topic == self._task.scan and node is self._runner.node:
             self._ranges = tuple(getattr(message, "ranges", ()))
 

@@ -393,8 +393,10 @@ def format_value(value: Json) -> str:
 
 
 def _first_difference(expected: Json, actual: Json) -> str:
-    """Describes where two lists first differ; empty for other values."""
+    """Describes where two lists first differ; empty for other values, and for lists of one entry, which are it."""
     if not isinstance(expected, list) or not isinstance(actual, list):
+        return ""
+    if len(expected) == len(actual) == 1:
         return ""
     if len(expected) != len(actual):
         return f": {counted(len(actual), 'entry')} instead of {len(expected)}"

@@ -98,38 +98,38 @@ def starts(record: LaunchRecord, params: RunParams) -> float:
 @check(none=0, full=1, unit="%", params=NodeParams)
 def nodes(record: LaunchRecord, params: NodeParams) -> float:
     """Of the required nodes, {actual} are there ({where})."""
-    return _share(params.nodes, lambda name: name in record.nodes)
+    return _share_that_holds(params.nodes, lambda name: name in record.nodes)
 
 
 @check(none=0, full=1, unit="%", params=ArgumentParams)
 def arguments(record: LaunchRecord, params: ArgumentParams) -> float:
     """Of the required arguments, {actual} are declared as the task asks."""
-    return _share(params.arguments, lambda each: each in _declared(record))
+    return _share_that_holds(params.arguments, lambda each: each in _declared_arguments(record))
 
 
 @check(none=0, full=1, unit="%", params=ParameterParams)
 def parameters(record: LaunchRecord, params: ParameterParams) -> float:
     """Of the checked parameters, {actual} have the right value ({where})."""
-    return _share(params.parameters, lambda each: _has_value(record, *each.split(maxsplit=2)))
+    return _share_that_holds(params.parameters, lambda each: _has_value(record, *each.split(maxsplit=2)))
 
 
 @check(none=0, full=1, unit="%", params=EndpointParams)
 def wired(record: LaunchRecord, params: EndpointParams) -> float:
     """Of the required connections, {actual} are there ({where})."""
-    return _share(params.ends, lambda each: each in _connections(record))
+    return _share_that_holds(params.ends, lambda each: each in _connections(record))
 
 
 @check(none=0, full=1, unit="%", params=DistanceParams)
 def drives(record: LaunchRecord, params: DistanceParams) -> float:
     """Of the robots, {actual} drive as far as they should ({where})."""
-    return _share(params.ways, lambda each: _is_distance_right(record, *each.split()))
+    return _share_that_holds(params.ways, lambda each: _is_distance_right(record, *each.split()))
 
 
-def _share(wanted: Sequence[str], holds: Callable[[str], bool]) -> float:
+def _share_that_holds(wanted: Sequence[str], holds: Callable[[str], bool]) -> float:
     return sum(map(holds, wanted)) / len(wanted) if wanted else 1.0
 
 
-def _declared(record: LaunchRecord) -> list[str]:
+def _declared_arguments(record: LaunchRecord) -> list[str]:
     # ROS 2 shows a default in quotes.
     return [
         each.name if each.default is None else f"{each.name} {each.default.strip(QUOTES)}"
@@ -176,7 +176,7 @@ def _explain_node(record: LaunchRecord, params: NodeParams) -> str:
 
 
 def _explain_argument(record: LaunchRecord, params: ArgumentParams) -> str:
-    declared = _declared(record)
+    declared = _declared_arguments(record)
     missing = next((each for each in params.arguments if each not in declared), None)
     return "" if missing is None else f"Missing: {missing}. Declared: {', '.join(declared) or 'none'}."
 
@@ -230,14 +230,14 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
         section.error(
             f"no package {quoted(name)}: there is no {name}/package.xml beside assignment.yaml", "package"
         )
-    runs = list(_runs(section.sections("runs", at_least=1), secret=False))
+    runs = list(_read_runs(section.sections("runs", at_least=1), secret=False))
     section.finish()
     if files.secret is not None:
-        runs += _runs(files.secret.sections("runs", ()), secret=True)
+        runs += _read_runs(files.secret.sections("runs", ()), secret=True)
     return KindSettings(task=LaunchTask(folder, tuple(runs)))
 
 
-def _runs(sections: Sequence[Section], *, secret: bool) -> Iterator[LaunchCase]:
+def _read_runs(sections: Sequence[Section], *, secret: bool) -> Iterator[LaunchCase]:
     for each in sections:
         given = each.section("arguments", None)
         values = {} if given is None else {key: given.text(key) for key in given.keys()}  # noqa: SIM118 - no mapping

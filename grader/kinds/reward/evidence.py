@@ -32,7 +32,7 @@ from grader.kinds.reward.reward_training import RewardTrainingParams, mean_succe
 from grader.kinds.reward.task_model import LAST_MOVES, LEFT, RIGHT, GridModel, build_model
 from grader.kinds.reward.transitions import MODEL_FACTS, TransitionBatch, to_transition
 from grader.submitted_files import reading_submission
-from kit.arrays import FloatArray
+from kit.arrays import FloatArray, IntArray
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
@@ -172,24 +172,31 @@ class RewardEvidence:
 
     def picture(self, check: str = "") -> str:
         """Draws the optimal behaviour under this reward, and says its return, if it misses the target."""
-        try:
-            if self.failure is not None or self.plan_outcome.exploit_start is None:
-                return ""
-        except StudentCodeError:  # the time is used up
+        states = self._exploit
+        if states is None:
             return ""
-        states = rollout(self.policy, self.plan_outcome.exploit_start, self.model.task.max_steps)
         moves = tuple((states[1:] % LAST_MOVES).tolist())
         paid = discounted_return(self.model, self.policy.rewards, int(states[0]), moves)
         return f"{draw_path(self.model, states)}\nYour reward pays {paid:.4g} for it in all."
 
-    def save_exploit(self, file: Path) -> None:
-        """Saves what ``picture`` shows as a recording. Raises OSError."""
-        assert self.plan_outcome.exploit_start is not None, "there is no picture"
-        save_exploit(
-            self.model,
-            rollout(self.policy, self.plan_outcome.exploit_start, self.model.task.max_steps),
-            file,
-        )
+    def replay_title(self) -> str:
+        return "" if self._exploit is None else "What a robot does that has learnt this reward perfectly"
+
+    def save_replay(self, file: Path) -> bool:
+        """Saves what ``picture`` shows as a recording, with its world beside it. Raises OSError."""
+        assert self._exploit is not None, "there is no picture"
+        save_exploit(self.model, self._exploit, file)
+        return False
+
+    @cached_property
+    def _exploit(self) -> IntArray | None:
+        """The states of the optimal behaviour, if it misses the target."""
+        try:
+            if self.failure is not None or self.plan_outcome.exploit_start is None:
+                return None
+        except StudentCodeError:  # the time is used up
+            return None
+        return rollout(self.policy, self.plan_outcome.exploit_start, self.model.task.max_steps)
 
     def _evaluate_all(self, steps: TransitionBatch) -> FloatArray:
         with self._open() as functions:

@@ -51,7 +51,7 @@ MAX_RADIUS: Final = 0.5
 
 
 @dataclass(frozen=True, slots=True)
-class PlacesParams:
+class StartAndTargetParams:
     """Where episodes must begin and end."""
 
     start: str = ""
@@ -59,7 +59,7 @@ class PlacesParams:
     target: str = ""
 
 
-NO_PLACES: Final = MappingProxyType(asdict(PlacesParams()))
+NO_PLACES: Final = MappingProxyType(asdict(StartAndTargetParams()))
 
 
 @check(none=0, full=1, words=("not sound", "sound"))
@@ -68,8 +68,8 @@ def sound(evidence: EvidenceRecord, params: NoParams) -> float:
     return 1.0 if evidence.content is not None else 0.0
 
 
-@check(none=0, full=1, unit="%", params=PlacesParams)
-def places(evidence: EvidenceRecord, params: PlacesParams) -> float:
+@check(none=0, full=1, unit="%", params=StartAndTargetParams, is_explained=True)
+def places(evidence: EvidenceRecord, params: StartAndTargetParams) -> float:
     """Episodes begin and end where the exercise says in {actual} of the cases."""
     return _measure(evidence, "places", 0.0, params)
 
@@ -113,7 +113,7 @@ def quick(evidence: EvidenceRecord, params: NoParams) -> float:
 
 
 def _measure(
-    evidence: EvidenceRecord, check: str, otherwise: float, params: PlacesParams | None = None
+    evidence: EvidenceRecord, check: str, otherwise: float, params: StartAndTargetParams | None = None
 ) -> float:
     """Returns the value of a check; ``otherwise`` for a task that is not sound. A task that takes too much fails, and is no
     fault of the grader's."""
@@ -168,7 +168,7 @@ def collect_evidence(
     seed = plan.secret_seed if secret and plan.secret_seed is not None else plan.seed
     record = EvidenceRecord(secret=secret, label="the task with a secret seed" if secret else "the task")
     with reading_submission(file.name):
-        problem = _problem(file)
+        problem = _find_problem(file)
     posed = None
     if not problem:
         posed = stack.enter_context(PosedTaskProcess(file, plan, seed, options.level, options.clock))
@@ -188,7 +188,7 @@ def collect_evidence(
     return record
 
 
-def _problem(file: Path) -> str:
+def _find_problem(file: Path) -> str:
     """Says what in the task's own file keeps it from being used, in words without the path of the temporary copy; empty
     if nothing does."""
     try:
@@ -219,7 +219,9 @@ def _problem(file: Path) -> str:
 def _explain(posed: PosedTaskProcess, name: str, params: object) -> str:
     if name == "sound":
         return ""
-    return posed.measure(name, asdict(params) if isinstance(params, PlacesParams) else NO_PLACES).explanation
+    return posed.measure(
+        name, asdict(params) if isinstance(params, StartAndTargetParams) else NO_PLACES
+    ).explanation
 
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(

@@ -103,7 +103,7 @@ class PosedTask:
     def arriving_reward(self) -> float:
         """The mean return of drives that arrive; NaN if no robot that was well taught does."""
         for number in range(TEACHERS):
-            found = self._mean_of_arriving(self._teacher(number))
+            found = self._mean_of_arriving(self._taught_policy(number))
             if not math.isnan(found):
                 return found
         return math.nan
@@ -215,11 +215,11 @@ class PosedTask:
             "loops": self._measure_loops,
             "learns": self._measure_learning,
             "arrives": self._measure_arriving,
-            "quick": self._measure_time,
+            "quick": self._measure_time_ratio,
         }[check](params)
 
     def _measure_places(self, params: Mapping[str, str]) -> PosedMeasure:
-        found = [list(_misplaced(case, params)) for case in self.cases]
+        found = [list(_misplaced_places(case, params)) for case in self.cases]
         share = sum(not each for each in found) / len(found)
         return PosedMeasure(share, next((text for each in found for text in each), ""))
 
@@ -268,7 +268,7 @@ class PosedTask:
         share = lower_bound(sum(case.reached for case in cases), sum(case.episodes for case in cases))
         return PosedMeasure(share, _worst_case(self.policy_test))
 
-    def _measure_time(self, params: Mapping[str, str]) -> PosedMeasure:
+    def _measure_time_ratio(self, params: Mapping[str, str]) -> PosedMeasure:
         if isinstance(self.policy_test, str):
             return PosedMeasure(math.nan, self.policy_test)
         steps = [case.steps for case in self.policy_test.cases if case.reached]
@@ -278,7 +278,7 @@ class PosedTask:
     def _loop_actions(self, plans: list[tuple[tuple[int, ...], int]], step: int) -> IntArray:
         return np.array([which[step // repeats % len(which)] for which, repeats in plans], dtype=np.int64)
 
-    def _teacher(self, number: int) -> Policy:
+    def _taught_policy(self, number: int) -> Policy:
         """A robot that was taught the task by the kit's own reward."""
         choice = replace(self.choice, reward=TEACHING_REWARD, scale=None)
         task, algorithm = choice.resolve(), find_algorithm(self.plan.algorithm)
@@ -297,10 +297,10 @@ def _worst_case(test: EvaluationResult) -> str:
 
 def _leads_back(case: TaskCase, other: TaskCase) -> bool:
     """Whether some start of ``other`` is at a target of ``case``, and some target of it at a start of that."""
-    return _is_near(case.targets, other.starts[0]) and _is_near(other.targets, case.starts[0])
+    return _shares_a_place(case.targets, other.starts[0]) and _shares_a_place(other.targets, case.starts[0])
 
 
-def _is_near(one: EpisodePlaces, other: EpisodePlaces) -> bool:
+def _shares_a_place(one: EpisodePlaces, other: EpisodePlaces) -> bool:
     return any(math.dist(a[:2], b[:2]) <= SAME_PLACE for a in _points_of(one) for b in _points_of(other))
 
 
@@ -310,7 +310,7 @@ def _points_of(spots: EpisodePlaces) -> list[tuple[float, float]]:
     return corners or [(pose.x, pose.y) for pose in spots.poses]
 
 
-def _misplaced(case: TaskCase, params: Mapping[str, str]) -> Iterator[str]:
+def _misplaced_places(case: TaskCase, params: Mapping[str, str]) -> Iterator[str]:
     """Names the places of a case that lie elsewhere than asked."""
     for name, asked, spots in (
         ("starts", params["start"], case.starts[0]),

@@ -134,7 +134,7 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     algorithms = section.texts("algorithms", TABLES, at_least=1)
     steps = section.integer("steps", minimum=1_000, maximum=MAX_STEPS)
     episodes = section.integer("episodes", 200, minimum=10, maximum=2_000)
-    seeds, secret = _seeds(section), () if files.secret is None else _seeds(files.secret)
+    seeds, secret = _read_seeds(section), () if files.secret is None else _read_seeds(files.secret)
     for each in algorithms:
         if each not in ALGORITHMS:
             section.error(f"no algorithm {quoted(each)}: {suggestion(each, ALGORITHMS)}", "algorithms")
@@ -158,14 +158,14 @@ def read_settings(files: AssignmentFiles) -> KindSettings:
     return KindSettings(task=budget, secret_seeds=secret)
 
 
-def _seeds(section: Section) -> tuple[int, ...]:
+def _read_seeds(section: Section) -> tuple[int, ...]:
     return section.integers("seeds", minimum=0, maximum=MAX_SEED, at_least=1, at_most=MAX_SEEDS)
 
 
 def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOptions) -> EvidenceRecord:
     """Trains with the submitted settings, once for each seed."""
     budget: TrainingBudget = assignment.task
-    settings = read_submitted_yaml(file, lambda section: _settings(section, budget))
+    settings = read_submitted_yaml(file, lambda section: _read_settings(section, budget))
     if isinstance(settings, Failure):
         return EvidenceRecord(failure=settings)
     secret = options.secret and bool(budget.secret_seeds)
@@ -175,9 +175,9 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
         seeds = budget.secret_seeds if secret else budget.seeds
         results = run_trainings(settings, budget, seeds, options.clock)
     except LearnExtraMissing as error:
-        return _failed(Failure(FailureKind.IMPORT, printable(str(error))))
+        return _failure_record(Failure(FailureKind.IMPORT, printable(str(error))))
     except StudentCodeError as error:
-        return _failed(error.failure)
+        return _failure_record(error.failure)
     return EvidenceRecord(
         results,
         secret=secret,
@@ -189,7 +189,7 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
     )
 
 
-def _failed(failure: Failure) -> EvidenceRecord:
+def _failure_record(failure: Failure) -> EvidenceRecord:
     return EvidenceRecord(failure=failure, label="the trainings", outcome="not trained")
 
 
@@ -211,7 +211,7 @@ def _explain(results: TrainingResults, check: str) -> str:
     return ""
 
 
-def _settings(section: Section, budget: TrainingBudget) -> TrainingSettings:
+def _read_settings(section: Section, budget: TrainingBudget) -> TrainingSettings:
     known = budget.cases
     train_on = section.texts("train_on", known, at_least=1)
     for each in train_on:
@@ -225,8 +225,8 @@ def _settings(section: Section, budget: TrainingBudget) -> TrainingSettings:
     algorithm = section.text("algorithm", budget.algorithms[0], choices=budget.algorithms)
     settings = TrainingSettings(
         algorithm=algorithm,
-        learning_rate=_schedule(section, "learning_rate", (0.2, 0.02)),
-        exploration=_schedule(section, "exploration", (0.3, 0.02)),
+        learning_rate=_read_schedule(section, "learning_rate", (0.2, 0.02)),
+        exploration=_read_schedule(section, "exploration", (0.3, 0.02)),
         discount=section.number("discount", 0.99, minimum=0, maximum=1),
         edges=edges,
         worlds=section.integer("worlds", 16, minimum=1, maximum=MAX_WORLDS),
@@ -244,7 +244,7 @@ def _settings(section: Section, budget: TrainingBudget) -> TrainingSettings:
     return settings
 
 
-def _schedule(section: Section, key: str, default: tuple[float, float]) -> LinearSchedule:
+def _read_schedule(section: Section, key: str, default: tuple[float, float]) -> LinearSchedule:
     """Reads a schedule: two numbers between 0 and 1, for the beginning and the end."""
     first, last = section.numbers(key, default, length=2)
     if not (0 <= first <= 1 and 0 <= last <= 1):

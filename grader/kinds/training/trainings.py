@@ -74,7 +74,7 @@ def _run_training(
     )
     learner: Learner | None = None
     for stage, on in enumerate(stages, 1):
-        learner = _learner(settings, budget, on, derive_seed(seed, "training", stage), learner)
+        learner = _make_learner(settings, budget, on, derive_seed(seed, "training", stage), learner)
         monitor.learner = learner
         try:
             learner.learn(settings.steps * stage // len(stages), monitor)
@@ -91,7 +91,7 @@ def _run_training(
     return result
 
 
-def _learner(
+def _make_learner(
     settings: TrainingSettings, budget: TrainingBudget, on: tuple[str, ...], seed: int, before: Learner | None
 ) -> Learner:
     """Makes a learner of these cases that continues from the one before."""
@@ -101,14 +101,14 @@ def _learner(
     is_continuous = not isinstance(task.actions, DiscreteActions)
     preset = find_preset("kit", algorithm, task.preset, is_continuous=is_continuous)
     learner = make_learner(
-        algorithm, _adapted(preset, settings, algorithm.needs_torch), choice, choice.resolve(), seed=seed
+        algorithm, _adapt_preset(preset, settings, algorithm.needs_torch), choice, choice.resolve(), seed=seed
     )
     if before is not None:
         learner.load(before.save())
     return learner
 
 
-def _adapted(preset: Preset, settings: TrainingSettings, neural: bool) -> Preset:
+def _adapt_preset(preset: Preset, settings: TrainingSettings, neural: bool) -> Preset:
     if neural:
         return replace(
             preset, worlds=settings.worlds, learning_rate=settings.learning_rate, steps=settings.steps
@@ -117,7 +117,7 @@ def _adapted(preset: Preset, settings: TrainingSettings, neural: bool) -> Preset
     return replace(preset, settings=tabular, worlds=settings.worlds, steps=settings.steps)
 
 
-def _strategy(settings: TrainingSettings, cases: int) -> StoppingRule:
+def _make_stopping_rule(settings: TrainingSettings, cases: int) -> StoppingRule:
     if settings.stop is StopRule.SURE:
         screening = -(-settings.test_episodes // cases)
         confirming = max(CONFIRMING_EPISODES, screening)
@@ -137,7 +137,7 @@ class _TrainingMonitor:
         self._clock = progress.clock
         self._progress = progress
         self._evaluator = Evaluator(budget.choice.resolve())
-        self._strategy = _strategy(settings, len(budget.cases))
+        self._strategy = _make_stopping_rule(settings, len(budget.cases))
         self._every, self._seed = settings.batch, seed
         self._next, self._test_count = settings.batch, 0
         self._memory = StoppingMemory()

@@ -42,7 +42,7 @@ def main() -> None:
     from grader.kinds.world.world_run import run_world  # only now: a world that cannot be read is not run
 
     for line in sys.stdin:
-        send_answer(answers, asdict(run_world(_readable(world), WorldRunSpec(**json.loads(line)))))
+        send_answer(answers, asdict(run_world(_require_world(world), WorldRunSpec(**json.loads(line)))))
 
 
 def _read_world(file: Path, memory: int) -> tuple[WorldFacts, World | None]:
@@ -61,7 +61,7 @@ def _read_world(file: Path, memory: int) -> tuple[WorldFacts, World | None]:
     return read_world_facts(file)
 
 
-def _readable(world: World | None) -> World:
+def _require_world(world: World | None) -> World:
     assert world is not None, "a world that cannot be read is not run"
     return world
 

@@ -84,7 +84,7 @@ def world_check(params: type[Any] = NoParams) -> Callable[[WorldFaults], Check]:
 
 
 def run_check(params: type[Any] = NoParams) -> Callable[[RunFaults], Check]:
-    """The same for what is wrong with a world's run; the measure is NaN where there was none."""
+    """As ``world_check``, for a world's run; the measure is NaN where there was none."""
 
     def make(find: RunFaults) -> Check:
         def count(evidence: EvidenceRecord, given: Any) -> float:

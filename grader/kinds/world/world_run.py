@@ -20,7 +20,7 @@ from kit.msg.message import Message
 from kit.msg.nav_msgs import Odometry
 from kit.msg.sensor_msgs import LaserScan
 from kit.render.scene import Disc
-from kit.ros.graph.directory import GraphNode
+from kit.ros.graph.directory import NodeLike
 from kit.ros.graph.graph import Graph
 from kit.run.episode import EndReason, controller_arguments, run_until, when_failed, when_reached
 from kit.run.lockstep import Observer
@@ -71,13 +71,13 @@ RECORD_INTERVAL: Final = 5
 class TopicRecorder:
     """Counts the world's messages on each topic, and measures how much laser and odometry readings spread."""
 
-    def __init__(self, graph: Graph, world_node: GraphNode) -> None:
+    def __init__(self, graph: Graph, world_node: NodeLike) -> None:
         self._world_node = world_node
         self._counts: dict[str, int] = {}
         self._scans: dict[str, tuple[FloatArray, FloatArray]] = {}
         self.stop = graph.add_message_listener(self._on_message)
 
-    def _on_message(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
+    def _on_message(self, time_ns: int, node: NodeLike, name: str, message: Message) -> None:
         if node is not self._world_node:
             return
         count = self._counts[name] = self._counts.get(name, 0) + 1

@@ -31,8 +31,8 @@ def write_annotations(result: GradingResult, work: str = "") -> str:
         if place is not None:
             folder = work if work and not PurePosixPath(work).suffix else str(PurePosixPath(work).parent)
             where = {"file": str(PurePosixPath(folder) / place["file"]), "line": place["line"], **where}
-        told = ",".join(f"{key}={_escaped(value, is_property=True)}" for key, value in where.items())
-        text = _escaped(plain("\n".join((test.rationale, *test.hints[:1])), 1000))
+        told = ",".join(f"{key}={_escape(value, is_property=True)}" for key, value in where.items())
+        text = _escape(plain("\n".join((test.rationale, *test.hints[:1])), 1000))
         lines.append(f"::{'warning' if test.points else 'error'} {told}::{text}")
     kinds = {
         kind: [line for line in lines if line.startswith(f"::{kind}")][:MAX_ANNOTATIONS]
@@ -44,12 +44,12 @@ def write_annotations(result: GradingResult, work: str = "") -> str:
     later = [test.title for test in result.tests if test.is_withheld]
     points += f"; shown later: {clean_line(', '.join(later))}" if later else ""
     kinds["notice"] = [
-        f"::notice title={_escaped(clean_line(result.assignment), is_property=True)}::{_escaped(points)}"
+        f"::notice title={_escape(clean_line(result.assignment), is_property=True)}::{_escape(points)}"
     ]
     return "".join(f"{line}\n" for each in kinds.values() for line in each)
 
 
-def _escaped(text: str, *, is_property: bool = False) -> str:
+def _escape(text: str, *, is_property: bool = False) -> str:
     """What a workflow command may hold: nothing in it ends the command, or begins another."""
     for sign, code in (("%", "%25"), ("\r", "%0D"), ("\n", "%0A")):
         text = text.replace(sign, code)

@@ -58,11 +58,11 @@ def write_gradescope(result: GradingResult) -> str:
     else:
         if all(test.visibility is Visibility.VISIBLE for test in result.tests):
             content["score"] = None if result.points is None else rounded_points(result.points)
-        content["tests"] = [_test(number, test) for number, test in enumerate(result.tests, 1)]
+        content["tests"] = [_test_entry(number, test) for number, test in enumerate(result.tests, 1)]
     return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
-def _test(number: int, test: CriterionResult) -> dict[str, Any]:
+def _test_entry(number: int, test: CriterionResult) -> dict[str, Any]:
     parts = [test.rationale]
     if test.actual and test.status is not CriterionStatus.PASS:
         parts.append(f"expected {test.expected}, got {test.actual}")

@@ -27,7 +27,7 @@ def write_junit(result: GradingResult) -> str:
     suite = ElementTree.SubElement(
         root,
         "testsuite",
-        {"name": _attribute(result.assignment), **counts, "timestamp": result.timing.started},
+        {"name": _attribute_text(result.assignment), **counts, "timestamp": result.timing.started},
     )
     properties = ElementTree.SubElement(suite, "properties")
     for name, value in (
@@ -39,27 +39,29 @@ def write_junit(result: GradingResult) -> str:
         ("submission", result.submission),
         ("assignment_version", result.assignment_version),
     ):
-        ElementTree.SubElement(properties, "property", {"name": name, "value": _attribute(value)})
+        ElementTree.SubElement(properties, "property", {"name": name, "value": _attribute_text(value)})
     names: set[str] = set()
     for test in result.tests:
-        _case(suite, test, result.assignment, names)
+        _add_case(suite, test, result.assignment, names)
     ElementTree.indent(root)
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
-def _case(suite: ElementTree.Element, test: CriterionResult, assignment: str, names: set[str]) -> None:
+def _add_case(suite: ElementTree.Element, test: CriterionResult, assignment: str, names: set[str]) -> None:
     name = clean_line(test.title, 120)
     while name in names:  # of two tests with one name GitLab keeps the first
         name += " (again)"
     names.add(name)
     case = ElementTree.SubElement(
-        suite, "testcase", {"classname": _attribute(assignment), "name": _attribute(name), "time": "0"}
+        suite,
+        "testcase",
+        {"classname": _attribute_text(assignment), "name": _attribute_text(name), "time": "0"},
     )
     properties = ElementTree.SubElement(case, "properties")
     for key, points in () if test.is_withheld else (("points", test.points), ("max_points", test.max_points)):
         ElementTree.SubElement(properties, "property", {"name": key, "value": format_points(points)})
     earned = f"{format_points(test.points)} of {format_points(test.max_points)} points"
-    message = _attribute(test.rationale if test.is_withheld else f"{earned}. {test.rationale}")
+    message = _attribute_text(test.rationale if test.is_withheld else f"{earned}. {test.rationale}")
     if test.status is CriterionStatus.SKIPPED:
         ElementTree.SubElement(case, "skipped", {"message": message})
     elif test.status is CriterionStatus.GRADER_ERROR:
@@ -75,7 +77,7 @@ def _case(suite: ElementTree.Element, test: CriterionResult, assignment: str, na
         ElementTree.SubElement(case, "system-out").text = xml_text(test.log)
 
 
-def _attribute(text: str) -> str:
+def _attribute_text(text: str) -> str:
     return xml_text(clean_line(text, 600))
 
 

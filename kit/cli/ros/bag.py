@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from kit.cli import options
-from kit.cli.options import Storage
+from kit.cli import bag_storage
+from kit.cli.bag_storage import Storage
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
 from kit.msg.interfaces import UnknownInterface, find_message
+from kit.plain_text import counted
 from kit.ros.node.node import Node
 from kit.ros.node.publisher import Publisher
 
@@ -115,7 +116,7 @@ def _absolute(name: str) -> str:
 )
 @click.option("-n", "--node-name", default="", help="Name of the recording node.")
 @topic_options("Record")
-@options.storage
+@bag_storage.storage
 @with_world_client
 def record(
     client: InspectionClient,
@@ -144,7 +145,7 @@ def record(
     if (every or regex is not None) == bool(topics):
         exit_with_error("Give the topics to record, or -a for all of them, or --regex.")
     admits = _filter(regex, exclude_regex, exclude_topics)
-    options.explain_storage(storage)
+    bag_storage.explain_storage(storage)
     folder = output or Path(f"rosbag2_{datetime.now():%Y_%m_%d-%H_%M_%S}")
     names = [_absolute(name) for name in topics] or None
     node = client.create_node(node_name or RECORDER)
@@ -294,7 +295,7 @@ def _told(recorder: BagRecorder, log: Callable[[str], object], folder: Path) -> 
         with recorder:
             yield
     finally:
-        log(f"{recorder.count} messages in {folder}")
+        log(f"{counted(recorder.count, 'message')} in {folder}")
 
 
 def _read_bag(folder: Path) -> Bag:

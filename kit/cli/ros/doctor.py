@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import options
+from kit.cli import opening, options
 from kit.cli.ros.world_client import connect_to_world, package_folders
 from kit.host.process import ROS_DISTRO
 from kit.inspection.client import InspectionClient
@@ -69,7 +69,7 @@ def command(
 @contextmanager
 def _client(world: str | None, workspace: Path | None) -> Iterator[InspectionClient | None]:
     """Connects to the world; None if none was named and none runs."""
-    folder = sockets_folder(options.open_existing_workspace(workspace).folder)
+    folder = sockets_folder(opening.open_existing_workspace(workspace).folder)
     if world is None and not running_worlds(folder):
         yield None
         return

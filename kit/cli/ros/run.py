@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, opening, options, terminal_options
 from kit.cli.launch import run_launch
 from kit.cli.ros.world_client import EXIT_INTERRUPTED, exit_with_error
 from kit.host.program_terminal import ProgramTerminal, has_user_terminal
@@ -47,7 +47,7 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     The program gets its own terminal, shown in this one: input(), single keys and pynput listeners work, while the
     world keeps running in real time. Ctrl-C asks the program to stop; a second Ctrl-C ends it.
     """
-    opened_workspace = options.open_existing_workspace(workspace)
+    opened_workspace = opening.open_existing_workspace(workspace)
     if (package, *words[:1]) == ("turtlesim", "turtlesim_node"):
         _run_turtlesim(words[1:], opened_workspace, seed)
         return
@@ -112,7 +112,7 @@ def _run_turtlesim(words: Sequence[str], opened_workspace: Workspace, seed: int)
     """Runs turtlesim's node in a world of its own, on the screen where there is one, as ROS 2 does in its window."""
     folder = SHARE_FOLDER / "turtlesim"
     target = LaunchTarget(folder / "launch" / "turtlesim_node.launch.py", folder, (SHARE_FOLDER,))
-    run_launch(target, {"words": shlex.join(words)}, opened_workspace, options.terminal(), seed=seed)
+    run_launch(target, {"words": shlex.join(words)}, opened_workspace, terminal_options.decide(), seed=seed)
 
 
 def _environment() -> dict[str, str]:

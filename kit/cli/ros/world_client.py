@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 
 import click
 
-from kit.cli import messages, options
+from kit.cli import messages, opening, options
 from kit.inspection.client import InspectionClient, ServiceTimeout, WorldDisconnected
 from kit.inspection.sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
 from kit.msg.interfaces import register_packages
@@ -29,7 +29,7 @@ def exit_with_error(message: str) -> NoReturn:
 
 def package_folders(workspace: Path | None = None) -> tuple[Path, ...]:
     """The folders in which packages are searched for: this one, its ``src`` and the workspace's."""
-    return Path.cwd(), Path.cwd() / "src", options.open_existing_workspace(workspace).packages
+    return Path.cwd(), Path.cwd() / "src", opening.open_existing_workspace(workspace).packages
 
 
 def register_workspace_interfaces(workspace: Path | None = None) -> None:
@@ -44,7 +44,7 @@ def connect_to_world(world: str | None, workspace: Path | None) -> Iterator[Insp
     register_workspace_interfaces(workspace)
     try:
         with InspectionClient(
-            find_world(sockets_folder(options.open_existing_workspace(workspace).folder), world)
+            find_world(sockets_folder(opening.open_existing_workspace(workspace).folder), world)
         ) as client:
             yield client
     except WorldNotFound as problem:

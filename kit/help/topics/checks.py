@@ -43,11 +43,11 @@ A check measures; between the two values below, points grow with the measure, an
 
 
 def _kind_chapter(kind: Mapping[str, Any]) -> Chapter:
-    table = Table(f"checks-{kind['kind']}", "", _COLUMNS, tuple(_rows(kind)))
+    table = Table(f"checks-{kind['kind']}", "", _COLUMNS, tuple(_check_rows(kind)))
     return chapter(f"Kind {kind['kind']}", *docstring_blocks(kind["about"]), table)
 
 
-def _rows(kind: Mapping[str, Any]) -> Iterator[tuple[str, str, str, str]]:
+def _check_rows(kind: Mapping[str, Any]) -> Iterator[tuple[str, str, str, str]]:
     for each in kind["checks"]:
         anchors = f"{each['none']}; {each['full']}" if each["full"] else ""
         params = ", ".join(f"{name}: {default}" for name, default in each["with"].items())

@@ -37,7 +37,7 @@ your own, or a variant from Python. `kit help python` shows training with stable
 A version ends in `-v0`, `-v1`, ...: it is raised whenever the same actions would earn another reward or another observation.
 """,
         ),
-        *(_card(name) for name in ENVIRONMENTS),
+        *(_environment_chapter(name) for name in ENVIRONMENTS),
         chapter(
             "Arguments",
             *docstring_blocks(TaskEnv.__init__.__doc__ or ""),
@@ -50,7 +50,7 @@ A version ends in `-v0`, `-v1`, ...: it is raised whenever the same actions woul
     )
 
 
-def _card(name: str) -> Chapter:
+def _environment_chapter(name: str) -> Chapter:
     """One environment: the table at its top, and its docstring."""
     identifier = f"RobotKit/{name}-v0"
     env = gymnasium.make(identifier)

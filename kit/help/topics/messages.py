@@ -32,17 +32,17 @@ service has two parts, request and response; an action has three: goal, result, 
 
 
 def _package_chapter(package: str) -> Chapter:
-    table = Table(package.replace("_", "-"), "", _COLUMNS, tuple(_rows(package)))
+    table = Table(package.replace("_", "-"), "", _COLUMNS, tuple(_interface_rows(package)))
     return chapter(package, table)
 
 
-def _rows(package: str) -> Iterator[tuple[str, str]]:
+def _interface_rows(package: str) -> Iterator[tuple[str, str]]:
     for name in interface_names(package):
         parts = re.split(rf"^{_PARTS}$", definition_source(name), flags=re.MULTILINE)
-        yield name.partition("/")[2], " | ".join(", ".join(_fields(part)) or "nothing" for part in parts)
+        yield name.partition("/")[2], " | ".join(", ".join(_field_lines(part)) or "nothing" for part in parts)
 
 
-def _fields(part: str) -> Iterator[str]:
+def _field_lines(part: str) -> Iterator[str]:
     """Type and name of each field, without constants and comments."""
     for line in part.splitlines():
         field = line.partition("#")[0].strip()

@@ -38,11 +38,11 @@ def serve(program: StudentProgram, session: CommandSession) -> None:
         if kind == "tell":
             session.answer("told", _json_result(functions[name], given[0], program))
         else:
-            values = _batch_result(functions[name], _records(*given), program)
+            values = _batch_result(functions[name], _rows_of_columns(*given), program)
             session.answer("values", numbers_to_text(values))
 
 
-def _records(count: int, columns: dict[str, Json]) -> Iterator[dict[str, Json]]:
+def _rows_of_columns(count: int, columns: dict[str, Json]) -> Iterator[dict[str, Json]]:
     """Yields the rows of a table that came as columns; columns of floats came as text."""
     lists = [
         text_to_numbers(column, "d", finite=False) if type(column) is str else column
@@ -59,7 +59,7 @@ def _batch_result(
     values = array("d")
     for record in records:
         value = function(**record)
-        number = value if type(value) is float else _number(value)
+        number = value if type(value) is float else _to_float(value)
         if number is None or number - number != 0:
             raise _wrong_result(function, "a finite number", value, program)
         values.append(number)
@@ -81,7 +81,7 @@ def _json_result(function: FunctionType, record: dict[str, Json], program: Stude
     """Calls the function for one record; returns its result as plain data."""
     value = function(**{name: _decode_argument(*packed) for name, packed in record.items()})
     try:
-        return _plain(value, MAX_RESULT_DEPTH)
+        return _to_plain_data(value, MAX_RESULT_DEPTH)
     except ValueError:
         wanted = "finite numbers, texts, True or False, or lists of these"
         raise _wrong_result(function, wanted, value, program) from None
@@ -100,7 +100,7 @@ def _decode_argument(form: str, value: Json) -> Json:
     return value
 
 
-def _plain(value: object, deep: int) -> Json:
+def _to_plain_data(value: object, deep: int) -> Json:
     """Converts a result of Python's or numpy's types to plain data. Raises ValueError for anything else."""
     if hasattr(value, "tolist"):
         value = value.tolist()
@@ -109,14 +109,14 @@ def _plain(value: object, deep: int) -> Json:
     if isinstance(value, (list, tuple)):
         if deep == 0 or len(value) > MAX_RESULT_ITEMS:
             raise ValueError
-        return [_plain(each, deep - 1) for each in value]
-    number = _number(value)
+        return [_to_plain_data(each, deep - 1) for each in value]
+    number = _to_float(value)
     if number is None or number - number != 0:
         raise ValueError
     return number
 
 
-def _number(value: object) -> float | None:
+def _to_float(value: object) -> float | None:
     """Converts Python's and numpy's numbers to float; None for anything else, and for True and False."""
     if getattr(value, "shape", None) == () and hasattr(value, "item"):
         value = value.item()

@@ -71,7 +71,7 @@ def _of_module(name: str, file: str) -> str:
     parent = sys.modules.get(name.rpartition(".")[0])
     if parent is not None:
         last = name.rpartition(".")[2]
-        return nearest(last, _names(parent)) or _lack(parent, last)
+        return nearest(last, _importable_names(parent)) or _lack(parent, last)
     what = describe_unavailable(top)
     if what is not None:
         return f". {top} is not in the kit: {what}."
@@ -94,10 +94,10 @@ def _of_module(name: str, file: str) -> str:
 
 
 def _of_name(name: str, module: ModuleType) -> str:
-    return nearest(name, _names(module)) or _lack(module, name)
+    return nearest(name, _importable_names(module)) or _lack(module, name)
 
 
-def _names(module: ModuleType) -> set[str]:
+def _importable_names(module: ModuleType) -> set[str]:
     """The names that can be imported from a module: its own, its submodules', and those of interfaces not built yet."""
     from pkgutil import iter_modules  # these here: only a mistake needs them
 

@@ -225,7 +225,7 @@ def use_simulated_time(graph: Graph, libraries: Sequence[str] = ()) -> Simulated
             return float(wall())
 
         def nanoseconds() -> int:
-            """The same [ns]."""
+            """The simulated time [ns]."""
             if is_own_code(sys._getframe(1).f_code.co_filename):
                 return progress.read(time_ns())
             return int(wall_ns())

@@ -123,7 +123,7 @@ def explain(problem: BaseException, program: StudentProgram) -> Failure:
         # Nothing may be built while the frames hold what filled the memory.
         frames = program.frames(problem.__traceback__)
         problem.__traceback__ = None
-        return _failure(FailureKind.MEMORY, "out of memory", frames)
+        return _make_failure(FailureKind.MEMORY, "out of memory", frames)
     if isinstance(problem, SyntaxError) and program.relative_path(problem.filename):
         line = problem.lineno  # whatever a program's own SyntaxError holds
         return Failure(
@@ -144,7 +144,7 @@ def explain(problem: BaseException, program: StudentProgram) -> Failure:
     if isinstance(problem, SystemExit):
         return _exit_failure(problem, frames)
     if isinstance(problem, OSError) and problem.errno == errno.ENOSPC and seccomp.is_installed():
-        return _failure(FailureKind.DISK, "its folder is full", frames)
+        return _make_failure(FailureKind.DISK, "its folder is full", frames)
     if len(frames) > 1:
         _print_frames(frames, program)
     kind = FailureKind.IMPORT if isinstance(problem, ImportError) else FailureKind.EXCEPTION
@@ -152,7 +152,7 @@ def explain(problem: BaseException, program: StudentProgram) -> Failure:
     message = f"{type(problem).__name__}: {text}" if text else type(problem).__name__
     if frames and frames[-1][2] != "<module>":
         message += f" (in {frames[-1][2]})"
-    return _failure(kind, message + _way_out(problem, program), frames)
+    return _make_failure(kind, message + _way_out(problem, program), frames)
 
 
 def exit_status(problem: SystemExit) -> int:
@@ -170,7 +170,7 @@ def _exit_failure(problem: SystemExit, frames: list[tuple[str, int, str]]) -> Fa
         text = f"the program exited with status {status}."
     else:  # what was called has not returned
         text = "the program exited before it had done what it was called for. Let it return instead."
-    return _failure(FailureKind.EXIT, text, frames, status)
+    return _make_failure(FailureKind.EXIT, text, frames, status)
 
 
 def _way_out(problem: BaseException, program: StudentProgram) -> str:
@@ -226,7 +226,9 @@ def _innermost_names(trace: TracebackType | None) -> tuple[set[str], set[str]]:
     return set(trace.tb_frame.f_locals), set(trace.tb_frame.f_globals)
 
 
-def _failure(kind: FailureKind, message: str, frames: list[tuple[str, int, str]], status: int = 1) -> Failure:
+def _make_failure(
+    kind: FailureKind, message: str, frames: list[tuple[str, int, str]], status: int = 1
+) -> Failure:
     file, line = frames[-1][:2] if frames else (None, None)
     return Failure(kind, message[:MAX_TEXT], file, line, status)
 

@@ -58,7 +58,7 @@ def wrap_command(command: list[str], tree: FileTree, scratch: str, room: int) ->
     """
     program = _find_program()
     assert program is not None, "`is_needed` has found it"
-    shown = FileTree((*tree.readable, *_interpreter(command[0])), tree.writable, tree.hidden)
+    shown = FileTree((*tree.readable, *_interpreter_paths(command[0])), tree.writable, tree.hidden)
     own = (
         "--perms",
         "0700",
@@ -71,16 +71,16 @@ def wrap_command(command: list[str], tree: FileTree, scratch: str, room: int) ->
         "--chdir",
         scratch,
     )
-    return [program, "--unshare-all", "--die-with-parent", *_mounts(shown), *own, "--", *command]
+    return [program, "--unshare-all", "--die-with-parent", *_mount_arguments(shown), *own, "--", *command]
 
 
-def _interpreter(executable: str) -> Iterator[str]:
+def _interpreter_paths(executable: str) -> Iterator[str]:
     """Yields what Python needs to start, besides its libraries: itself, and the file that makes it a virtual one."""
     yield executable
     yield str(Path(executable).parents[1] / "pyvenv.cfg")
 
 
-def _mounts(tree: FileTree) -> Iterator[str]:
+def _mount_arguments(tree: FileTree) -> Iterator[str]:
     covered = []
     for mount in plan_mounts(tree):
         if mount.real is not None:

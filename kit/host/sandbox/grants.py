@@ -120,7 +120,7 @@ def _find_installed(searched: tuple[str, ...]) -> _Installed:
     libraries = dict.fromkeys((*library_folders(), *_libraries_of_python()))
     changed_ns = {folder: _changed_ns(folder) for folder in libraries}
     for path in searched:
-        _grant(path, os.path.realpath(path), hidden, readable, listed)
+        _add_path(path, os.path.realpath(path), hidden, readable, listed)
     changed_ns |= {folder: _changed_ns(folder) for folder in listed if folder not in changed_ns}
     grants = ReadGrants(tuple(dict.fromkeys(readable)), tuple(dict.fromkeys(listed)), tuple(sorted(hidden)))
     return _Installed(searched, grants, changed_ns)
@@ -133,7 +133,7 @@ def _changed_ns(folder: str) -> int:
         return 0
 
 
-def _grant(path: str, real: str, hidden: frozenset[str], readable: list[str], listed: list[str]) -> None:
+def _add_path(path: str, real: str, hidden: frozenset[str], readable: list[str], listed: list[str]) -> None:
     """Adds a path, or what is in it without what is hidden. ``real``: the path without links."""
     if any(real == each or real.startswith(f"{each}/") for each in hidden):
         return
@@ -144,7 +144,7 @@ def _grant(path: str, real: str, hidden: frozenset[str], readable: list[str], li
     with suppress(OSError):  # the program cannot read it either
         for entry in sorted(os.scandir(real), key=lambda entry: entry.name):
             inner = os.path.realpath(entry.path) if entry.is_symlink() else entry.path
-            _grant(f"{path}/{entry.name}", inner, hidden, readable, listed)
+            _add_path(f"{path}/{entry.name}", inner, hidden, readable, listed)
 
 
 def _hidden_paths() -> Iterator[str]:

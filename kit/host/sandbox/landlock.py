@@ -70,35 +70,35 @@ def restrict(readable: Iterable[str], listed: Iterable[str], writable: Iterable[
         SCOPES[1] if version >= SCOPES[0] else 0,
     )
     # A kernel that knows fewer fields takes a longer record, as long as the rest is zero.
-    descriptor = _call(
+    descriptor = _syscall(
         _CREATE, ctypes.byref(ruleset), ctypes.c_size_t(ctypes.sizeof(ruleset)), ctypes.c_uint32(0)
     )
     try:
         for paths, access in ((readable, READ_ACCESS), (listed, READ_DIR)):
             for path in paths:
                 with suppress(FileNotFoundError, NotADirectoryError, PermissionError):
-                    _grant(descriptor, path, access & handled)
+                    _allow_access(descriptor, path, access & handled)
         for path in writable:
-            _grant(descriptor, path, handled)
-        _call(_RESTRICT, ctypes.c_int(descriptor), ctypes.c_uint32(0))
+            _allow_access(descriptor, path, handled)
+        _syscall(_RESTRICT, ctypes.c_int(descriptor), ctypes.c_uint32(0))
     finally:
         os.close(descriptor)
 
 
-def _grant(ruleset: int, path: str, access: int) -> None:
+def _allow_access(ruleset: int, path: str, access: int) -> None:
     target = os.open(path, os.O_PATH | os.O_CLOEXEC)
     try:
         if not stat.S_ISDIR(os.fstat(target).st_mode):
             access &= FILE_ACCESS
         rule = _PathBeneath(access, target)
-        _call(
+        _syscall(
             _ADD, ctypes.c_int(ruleset), ctypes.c_int(_PATH_BENEATH), ctypes.byref(rule), ctypes.c_uint32(0)
         )
     finally:
         os.close(target)
 
 
-def _call(number: int, *arguments: object) -> int:
+def _syscall(number: int, *arguments: object) -> int:
     result: int = libc().syscall(ctypes.c_long(number), *arguments)
     if result < 0:
         error = ctypes.get_errno()

@@ -97,7 +97,7 @@ def restrict_file_tree(root: str, tree: FileTree, scratch: str, room: int, files
     for mount in plan_mounts(tree):
         if mount.real is not None:
             _bind(root, mount.name, mount.real, mount.flags)
-        elif _cover(root, mount.name):
+        elif _hide_path(root, mount.name):
             covers.append(root + mount.name)
     os.makedirs(root + scratch, exist_ok=True)  # it is there already if its surroundings are readable
     _mount("none", root + scratch, "tmpfs", _NO_SUID | _NO_DEVICES, _scratch_options(room, files))
@@ -185,7 +185,7 @@ def _bind(root: str, name: str, real: str, flags: int) -> None:
     _mount("none", target, "", _REMOUNT | _BIND | flags | _NO_SUID | kept)
 
 
-def _cover(root: str, name: str) -> bool:
+def _hide_path(root: str, name: str) -> bool:
     """Makes a folder or a file of the new tree look empty; returns whether it is a folder.
 
     A link stays: it leads to something that is covered itself, or that the new tree does not have."""

@@ -41,11 +41,6 @@ def probe_levels() -> tuple[SandboxSupport, ...]:
         return tuple(_try_level(level, file) for level in Level)
 
 
-def highest_level() -> Level:
-    """Returns the highest level that this machine has."""
-    return max(support.level for support in probe_levels() if support.is_available)
-
-
 def is_level_available(level: Level) -> bool:
     """Returns whether this machine has this level; only this one is tried."""
     with private_folder() as folder:

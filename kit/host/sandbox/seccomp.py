@@ -246,7 +246,7 @@ def program(architecture: Architecture, own_process: int, *, starts_programs: bo
         (_LOAD, 0, 0, _NUMBER),
     ]
     free = {**ALLOWED, **STARTING_PROGRAMS} if starts_programs else ALLOWED
-    for number in _numbers(free, architecture):
+    for number in _call_numbers(free, architecture):
         code += [(_EQUAL, 0, 1, number), (_RETURN, 0, 0, _ALLOW)]
     for name, call in checked_calls(own_process).items():
         own = call.numbers[architecture.column]
@@ -255,31 +255,33 @@ def program(architecture: Architecture, own_process: int, *, starts_programs: bo
             code += [(_EQUAL, 0, len(body), own), *body]
     clone, socketpair = ((56, 220), (53, 199))
     body = [
-        (_LOAD, 0, 0, _argument(0)),
+        (_LOAD, 0, 0, _argument_offset(0)),
         (_ANY_BIT, 0, 1, CLONE_THREAD),
         (_RETURN, 0, 0, _ALLOW),
-        (_RETURN, 0, 0, _refuse(errno.EPERM)),
+        (_RETURN, 0, 0, _errno_action(errno.EPERM)),
     ]
     if "clone" not in free:
         code += [(_EQUAL, 0, len(body), clone[architecture.column]), *body]
     pair: list[Instruction] = [
-        (_LOAD, 0, 0, _argument(0)),
+        (_LOAD, 0, 0, _argument_offset(0)),
         (_EQUAL, 1, 0, LOCAL_DOMAIN),
-        (_RETURN, 0, 0, _refuse(errno.EPERM)),
-        (_LOAD, 0, 0, _argument(1)),
+        (_RETURN, 0, 0, _errno_action(errno.EPERM)),
+        (_LOAD, 0, 0, _argument_offset(1)),
     ]
     for value in STREAM_TYPES:
         pair += [(_EQUAL, 0, 1, value), (_RETURN, 0, 0, _ALLOW)]
-    pair.append((_RETURN, 0, 0, _refuse(errno.EPERM)))
+    pair.append((_RETURN, 0, 0, _errno_action(errno.EPERM)))
     code += [(_EQUAL, 0, len(pair), socketpair[architecture.column]), *pair]
-    for number in _numbers({name: call for name, call in DENIED.items() if name not in free}, architecture):
-        code += [(_EQUAL, 0, 1, number), (_RETURN, 0, 0, _refuse(errno.EPERM))]
+    for number in _call_numbers(
+        {name: call for name, call in DENIED.items() if name not in free}, architecture
+    ):
+        code += [(_EQUAL, 0, 1, number), (_RETURN, 0, 0, _errno_action(errno.EPERM))]
     # ``clone3`` too, whose flags lie in memory, out of a filter's sight: the C library falls back to ``clone``.
-    code.append((_RETURN, 0, 0, _refuse(errno.ENOSYS)))
+    code.append((_RETURN, 0, 0, _errno_action(errno.ENOSYS)))
     return b"".join(struct.pack("=HBBI", *instruction) for instruction in code)
 
 
-def _numbers(calls: dict[str, CallNumbers], architecture: Architecture) -> Iterator[int]:
+def _call_numbers(calls: dict[str, CallNumbers], architecture: Architecture) -> Iterator[int]:
     for numbers in calls.values():
         number = numbers[architecture.column]
         if number is not None:
@@ -287,20 +289,22 @@ def _numbers(calls: dict[str, CallNumbers], architecture: Architecture) -> Itera
 
 
 def _check_argument(call: CheckedCall) -> Iterator[Instruction]:
-    listed, others = (_ALLOW, _refuse(errno.EPERM)) if call.are_allowed else (_refuse(errno.EPERM), _ALLOW)
-    yield _LOAD, 0, 0, _argument(call.argument)
+    listed, others = (
+        (_ALLOW, _errno_action(errno.EPERM)) if call.are_allowed else (_errno_action(errno.EPERM), _ALLOW)
+    )
+    yield _LOAD, 0, 0, _argument_offset(call.argument)
     for value in call.values:
         yield _EQUAL, 0, 1, value
         yield _RETURN, 0, 0, listed
     yield _RETURN, 0, 0, others
 
 
-def _argument(index: int) -> int:
+def _argument_offset(index: int) -> int:
     """Returns the offset of the low half of a call's argument on a little-endian machine."""
     return 16 + 8 * index
 
 
-def _refuse(error: int) -> int:
+def _errno_action(error: int) -> int:
     return 0x00050000 | error
 
 

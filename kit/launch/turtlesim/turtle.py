@@ -91,7 +91,7 @@ class Turtle:
 
 
 def _normalized(angle: float) -> float:
-    """The same angle from -pi to pi [rad]."""
+    """An angle [rad] wrapped to -pi to pi."""
     return math.remainder(angle, 2 * math.pi)
 
 

@@ -9,6 +9,26 @@ from typing import Final
 
 from kit.layers.drawing.spans import STYLE_RANK, DrawingLine, DrawingSpan, DrawingStyle, GlyphStyle
 
+_FRAMES: Final = {
+    "body": ("─", "│", "┌┐└┘"),
+    "laser": ("─", "│", "┌┐└┘"),
+    "map": ("═", "║", "╔╗╚╝"),
+    "group": ("━", "┃", "┏┓┗┛"),
+}
+"""Across, down and the four corners of a box."""
+
+
+_ASCII_FRAMES: Final = {
+    "body": ("-", "|", "++++"),
+    "map": ("=", "|", "####"),
+    "group": ("#", "#", "####"),
+}
+
+
+_BRAILLE: Final = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
+"""The bit of each dot of a braille character, by row and column."""
+BOX_ROWS: Final = 4
+
 
 @dataclass(frozen=True, slots=True)
 class EntityBox:
@@ -35,9 +55,6 @@ class EntityBox:
         return across < widest + 2 and down < BOX_ROWS + 1
 
 
-BOX_ROWS: Final = 4
-
-
 class TextCanvas:
     """A grid of characters with lines under labels. Columns and rows from 0, at the top left."""
 
@@ -49,7 +66,7 @@ class TextCanvas:
 
     def line(self, start: tuple[float, float], end: tuple[float, float], style: DrawingStyle) -> None:
         """A straight line between two characters' middles."""
-        draw = self._braille if self._glyphs == "braille" else self._ascii
+        draw = self._draw_braille_line if self._glyphs == "braille" else self._draw_ascii_line
         draw(start, end, style)
 
     def label(self, middle: tuple[float, float], text: str, style: DrawingStyle) -> None:
@@ -115,24 +132,28 @@ class TextCanvas:
         if STYLE_RANK[style] >= STYLE_RANK[self._styles.get(cell, "space")]:
             self._styles[cell] = style
 
-    def _braille(self, start: tuple[float, float], end: tuple[float, float], style: DrawingStyle) -> None:
+    def _draw_braille_line(
+        self, start: tuple[float, float], end: tuple[float, float], style: DrawingStyle
+    ) -> None:
         x0, y0, x1, y1 = (2 * start[0] + 0.5, 4 * start[1] + 1.5, 2 * end[0] + 0.5, 4 * end[1] + 1.5)
         steps = max(1, math.ceil(max(abs(x1 - x0), abs(y1 - y0))))
         every = {"struck": 6, "beam": 3}.get(style, 1)
         aside = (1, 0) if abs(y1 - y0) > abs(x1 - x0) else (0, 1)
         for step in range(0, steps + 1, every):
             x, y = round(x0 + (x1 - x0) * step / steps), round(y0 + (y1 - y0) * step / steps)
-            self._dot(x, y, style)
+            self._set_dot(x, y, style)
             if style == "group edge":
-                self._dot(x + aside[0], y + aside[1], style)
+                self._set_dot(x + aside[0], y + aside[1], style)
 
-    def _dot(self, x: int, y: int, style: DrawingStyle) -> None:
+    def _set_dot(self, x: int, y: int, style: DrawingStyle) -> None:
         cell = x // 2, y // 4
         if 0 <= cell[0] < self._width and 0 <= cell[1] < self._height:
             self._dots[cell] = self._dots.get(cell, 0) | _BRAILLE[y % 4][x % 2]
             self._mark(cell, style)
 
-    def _ascii(self, start: tuple[float, float], end: tuple[float, float], style: DrawingStyle) -> None:
+    def _draw_ascii_line(
+        self, start: tuple[float, float], end: tuple[float, float], style: DrawingStyle
+    ) -> None:
         (x0, y0), (x1, y1) = start, end
         steps = max(1, math.ceil(max(abs(x1 - x0), abs(y1 - y0))))
         letter = {"struck": ".", "beam": ":", "group edge": "*"}.get(style) or _line_character(
@@ -143,26 +164,6 @@ class TextCanvas:
             if STYLE_RANK[style] >= STYLE_RANK[self._styles.get(cell, "space")]:
                 self._letters[cell] = letter
                 self._mark(cell, style)
-
-
-_FRAMES: Final = {
-    "body": ("─", "│", "┌┐└┘"),
-    "laser": ("─", "│", "┌┐└┘"),
-    "map": ("═", "║", "╔╗╚╝"),
-    "group": ("━", "┃", "┏┓┗┛"),
-}
-"""Across, down and the four corners of a box."""
-
-
-_ASCII_FRAMES: Final = {
-    "body": ("-", "|", "++++"),
-    "map": ("=", "|", "####"),
-    "group": ("#", "#", "####"),
-}
-
-
-_BRAILLE: Final = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
-"""The bit of each dot of a braille character, by row and column."""
 
 
 def _line_character(across: float, down: float) -> str:

@@ -69,7 +69,7 @@ class RelationTable:
         relations = (
             (self._relation_of_pair(p, q), p, q) for p, q in pairs if self._layer_lists.can_collide(p, q)
         )
-        return _combine(
+        return _combine_relations(
             "either",
             relations,
             lambda p, q, relation: f"{p.address} {_MODAL_VERBS[relation]} collide with {q.address}",
@@ -82,7 +82,7 @@ class RelationTable:
             for laser_use, use in product(laser.uses, layer_list.uses)
             if self._layer_lists.can_see(laser_use, use)
         )
-        return _combine(
+        return _combine_relations(
             "either",
             relations,
             lambda model, use, relation: f"{model}/{laser.plugin} {_MODAL_VERBS[relation]} see {use.address}",
@@ -97,14 +97,14 @@ class RelationTable:
             if models := layer_list.models:
                 families[models, self._layer_lists.kept_bits(layer_list)].append(i)
         for family in families.values():
-            while pair := self._mergeable(family, groups):
+            while pair := self._mergeable_pair(family, groups):
                 strong, weak = pair
                 self._merge_needs(strong, weak)
                 groups[strong] += groups.pop(weak)
                 family.remove(weak)
         return [sorted(group, key=lambda i: (i != head, i)) for head, group in groups.items()]
 
-    def _mergeable(self, family: list[int], groups: Mapping[int, list[int]]) -> tuple[int, int] | None:
+    def _mergeable_pair(self, family: list[int], groups: Mapping[int, list[int]]) -> tuple[int, int] | None:
         """Two of the family of which the first can absorb the second."""
         pairs = ((strong, weak) for weak in reversed(family) for strong in family if strong != weak)
         return next((pair for pair in pairs if self._can_absorb(*pair, groups)), None)
@@ -150,7 +150,7 @@ _MODAL_VERBS: Final[Mapping[Relation | Sighting, str]] = {
 }
 
 
-def _combine(
+def _combine_relations(
     open_: T,
     relations: Iterable[tuple[T, L, FootprintUse]],
     in_words: Callable[[L, FootprintUse, T], str],

@@ -36,7 +36,7 @@ from kit.layers.flatland.yaml_edits import (
 from kit.layers.flatland.yaml_scalars import format_flow_list
 from kit.layers.requirements import ContactRequirement, LayerCase, Relation, Sighting
 from kit.layers.requirements_file import RequirementsFile
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import counted, quoted, suggestion
 from kit.workspace import write_atomically
 from kit.world.collision_rules import CollisionRules
 from kit.world.documents import MAX_YAML_BYTES, UnusableFile, read_bytes
@@ -331,7 +331,7 @@ def make_recheck(
             )
             found = [str(breach) for breach in now.current_breaches]
         if len(world.layer_bits) != plan.size:
-            found.append(f"the world names {len(world.layer_bits)} layers, not {plan.size}")
+            found.append(f"the world names {counted(len(world.layer_bits), 'layer')}, not {plan.size}")
         return found
 
     return wrong

@@ -143,7 +143,7 @@ class _YamlDocument:
             else:
                 yield self._insert_key(mapping, change.key, change.names)
         elif isinstance(change, RemoveListItem):
-            yield self._drop(self._mapping(change.at))
+            yield self._delete_item(self._mapping(change.at))
         else:
             yield self._add(self._top_list(change.key), change.names)
 
@@ -231,7 +231,7 @@ class _YamlDocument:
             f"the mapping in line {mapping.start_mark.line + 1} leaves no line to write {key} after"
         )
 
-    def _drop(self, item: yaml.MappingNode) -> _TextEdit:
+    def _delete_item(self, item: yaml.MappingNode) -> _TextEdit:
         """An item goes, with its own lines; comments after it stay."""
         within = self._lists.get(id(item))
         if within is None or self._uses[id(item)] > 1:
@@ -240,7 +240,7 @@ class _YamlDocument:
             raise UnsafeEdit(f"the list in line {within.start_mark.line + 1} would become empty")
         if within.flow_style:
             return self._drop_from_flow(within, item)
-        first, last = self._line(item.start_mark.index), self._line(_content_end(item))
+        first, last = self._line_at(item.start_mark.index), self._line_at(_content_end(item))
         if not re.fullmatch(r"[ ]*-[ ]+", self._text[first.start : item.start_mark.index]):
             raise UnsafeEdit(f"line {item.start_mark.line + 1} holds more than the item")
         return _TextEdit(first.start, min(last.end + 1, len(self._text)), "")
@@ -266,12 +266,12 @@ class _YamlDocument:
             return _TextEdit(
                 last.end_mark.index, last.end_mark.index, f", {{name: {format_flow_list(names)}}}"
             )
-        line = self._line(last.start_mark.index)
+        line = self._line_at(last.start_mark.index)
         indent = re.match(r"[ ]*-[ ]+", self._text[line.start : last.start_mark.index])
         if indent is None:
             raise UnsafeEdit(f"line {last.start_mark.line + 1} holds more than an item of a list")
         return self._new_lines(
-            self._line(_content_end(last)), [f"{indent[0]}name: {format_flow_list(names)}"]
+            self._line_at(_content_end(last)), [f"{indent[0]}name: {format_flow_list(names)}"]
         )
 
     def _new_lines(self, after: _LineSpan, lines: Sequence[str]) -> _TextEdit:
@@ -283,9 +283,9 @@ class _YamlDocument:
 
     def _line_of(self, node: yaml.Node) -> _LineSpan:
         """The line on which a node ends."""
-        return self._line(node.end_mark.index)
+        return self._line_at(node.end_mark.index)
 
-    def _line(self, index: int) -> _LineSpan:
+    def _line_at(self, index: int) -> _LineSpan:
         """The line of a character; ``end`` is where its newline stands."""
         end = self._text.find("\n", index)
         return _LineSpan(self._text.rfind("\n", 0, index) + 1, len(self._text) if end < 0 else end)

@@ -96,10 +96,10 @@ def _map_text(card: MapCard) -> str:
         if case.partner_start is None
     )
     own = "# Without its own cases, a task has those of its maps:\n# cases:\n" + cases if cases else ""
-    return f"summary: Drive to the target on {card.name}\nmaps: [{card.name}]\n{own}{_standard(load_batch_map(card))}"
+    return f"summary: Drive to the target on {card.name}\nmaps: [{card.name}]\n{own}{_standard_text(load_batch_map(card))}"
 
 
-def _standard(batch_map: BatchMap) -> str:
+def _standard_text(batch_map: BatchMap) -> str:
     """What every new task begins with, with actions that the robot's motors can do."""
     robot = batch_map.robot
     return STANDARD.format(
@@ -161,7 +161,7 @@ def _own_world_text(world_file: Path, batch_map: BatchMap, cases: str) -> str:
     robots = names if len(batch_map.robot_names) == 1 else f"[{names}]"
     return (
         f"summary: Drive to the target\nworld: {world_file.name}\nrobots: {robots}\ncases:\n{cases}"
-        f"{_standard(batch_map)}"
+        f"{_standard_text(batch_map)}"
     )
 
 

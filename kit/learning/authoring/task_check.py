@@ -93,7 +93,7 @@ def _check_targets(task: LearningTask, placed: PlacedCase, batch_map: BatchMap) 
 
 
 def _cells_within(cells: FloatArray, x: float, y: float, distance: float) -> FloatArray:
-    """Those of the points (k, 2) that lie within a distance [m] of another one."""
+    """The points, of (k, 2), that lie within a distance [m] of another one."""
     near: FloatArray = cells[np.hypot(cells[:, 0] - x, cells[:, 1] - y) <= distance]
     return near
 

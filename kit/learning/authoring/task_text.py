@@ -51,18 +51,18 @@ def task_blocks(task: LearningTask) -> list[Block]:
     where = join_names(task.maps) if task.maps else str(task.map_cards[0].world_file)
     about = [
         ("file", f"{task.file} ({kind})"),
-        ("on", f"{where}; {counted(len(cases), 'case')}, {_robots(task)}"),
+        ("on", f"{where}; {counted(len(cases), 'case')}, {_robots_text(task)}"),
         ("goal", task.goal.description),
-        *_titled("ends", _ends(task)),
-        *_titled("learns", _curriculum(task)),
-        *_titled("differs", _randomness(task)),
+        *_titled_rows("ends", _ending_lines(task)),
+        *_titled_rows("learns", _curriculum_lines(task)),
+        *_titled_rows("differs", _randomness_lines(task)),
     ]
     return [
         Text(f"{task.name}: {task.summary}" if task.summary else task.name),
         replace(labelled_table(about), is_tight=True),
-        *_seen(task.observation),
-        *_actions(task),
-        *_earned(task),
+        *_observation_blocks(task.observation),
+        *_action_blocks(task),
+        *_reward_blocks(task),
     ]
 
 
@@ -73,7 +73,7 @@ def reward_blocks(task: LearningTask) -> list[Block]:
     reward = task.reward
     scale = "" if reward.scale == 1.0 else f", times {reward.scale:g}"
     rows = [
-        (f"{weight.value:g}", f"{weight.term}{_settings(weight)}", term_summary(weight.term))
+        (f"{weight.value:g}", f"{weight.term}{_settings_text(weight)}", term_summary(weight.term))
         for weight in reward.weights
     ]
     return [
@@ -137,17 +137,17 @@ def _transition_docs() -> dict[str, str]:
     return {name: " ".join(text.replace("``", "").split()) for name, text in found.items()}
 
 
-def _titled(title: str, lines: Iterator[str]) -> Iterator[tuple[str, str]]:
+def _titled_rows(title: str, lines: Iterator[str]) -> Iterator[tuple[str, str]]:
     """The rows of a table, whose title stands beside the first."""
     for number, line in enumerate(lines):
         yield "" if number else title, line
 
 
-def _robots(task: LearningTask) -> str:
+def _robots_text(task: LearningTask) -> str:
     return "one robot" if task.robots == 1 else f"{task.robots} robots driven by one agent"
 
 
-def _seen(seen: ObservationSpec) -> Iterator[Block]:
+def _observation_blocks(seen: ObservationSpec) -> Iterator[Block]:
     frames = f" ({seen.frames} frames of {seen.frame_size})" if seen.frames > 1 else ""
     yield Text(f"{seen.size} numbers{frames} per robot:", lead="sees")
     limit = f"at most {seen.clip:g} m, times {seen.scale:g}"
@@ -162,7 +162,7 @@ def _seen(seen: ObservationSpec) -> Iterator[Block]:
     yield from (Text(part, indent=2, hang=2, is_tight=True) for part in parts)
 
 
-def _actions(task: LearningTask) -> Iterator[Block]:
+def _action_blocks(task: LearningTask) -> Iterator[Block]:
     actions = task.actions
     checks = "" if task.collision_checks == 1 else f", {task.collision_checks} collision checks"
     stops = ", then stopped until the next command" if task.stops_between else ""
@@ -178,7 +178,7 @@ def _actions(task: LearningTask) -> Iterator[Block]:
     yield Table("actions", "", columns, rows, is_ruled=False, indent=2, is_tight=True)
 
 
-def _earned(task: LearningTask) -> Iterator[Block]:
+def _reward_blocks(task: LearningTask) -> Iterator[Block]:
     if task.reward_file is not None:
         yield Text(f"what reward() in {task.reward_file} returns", lead="earns")
         return
@@ -195,7 +195,7 @@ def _earned(task: LearningTask) -> Iterator[Block]:
     rows = tuple(
         (
             f"{weight.value:g}",
-            f"{weight.term}{_settings(weight)}",
+            f"{weight.term}{_settings_text(weight)}",
             average[weight.term],
             term_summary(weight.term),
         )
@@ -206,7 +206,7 @@ def _earned(task: LearningTask) -> Iterator[Block]:
     yield Table("reward", "", columns, rows, note, is_ruled=False, indent=2, is_tight=True)
 
 
-def _curriculum(task: LearningTask) -> Iterator[str]:
+def _curriculum_lines(task: LearningTask) -> Iterator[str]:
     cases = [(case.name, case.group) for _, case in task.map_cases()]
     stages = practices(task.curriculum, cases)
     for number, stage in enumerate(stages, 1):
@@ -215,7 +215,7 @@ def _curriculum(task: LearningTask) -> Iterator[str]:
         yield f"{len(stages) + 1}. all cases"
 
 
-def _settings(weight: TermWeight) -> str:
+def _settings_text(weight: TermWeight) -> str:
     settings = ", ".join(f"{name} {value:g}" for name, value in weight.settings)
     return f" ({settings})" if settings else ""
 
@@ -241,7 +241,7 @@ def average_step(task: LearningTask) -> dict[str, float]:
     return {name: value / SAMPLED_STEPS / task.reward.scale for name, value in sums.items()}
 
 
-def _ends(task: LearningTask) -> Iterator[str]:
+def _ending_lines(task: LearningTask) -> Iterator[str]:
     time = "terminated" if task.timeout_terminal else "truncated"
     yield f"goal reached: {task.goal_ending}"
     yield f"collision: {task.collision_ending}"
@@ -251,7 +251,7 @@ def _ends(task: LearningTask) -> Iterator[str]:
         yield f"the target is reached within {task.target_radius:g} m of the {measured}"
 
 
-def _randomness(task: LearningTask) -> Iterator[str]:
+def _randomness_lines(task: LearningTask) -> Iterator[str]:
     start = task.start
     if start.noise or start.max_rotation:
         yield f"starts by up to {start.noise:g} m and {start.max_rotation:g} rad"

@@ -26,11 +26,11 @@ class AgentObservations:
         ``is_fresh``: whether their episodes have just begun. Where agents see several frames, ``state`` keeps them.
         """
         for name, place in self._parts.items():
-            frame[:, :, place] = self._part(name, state, which)
+            frame[:, :, place] = self._part_values(name, state, which)
         flat = frame.reshape(len(frame), -1)
-        return flat if self._frames == 1 else self._stacked(flat, state, which, is_fresh=is_fresh)
+        return flat if self._frames == 1 else self._stack_frames(flat, state, which, is_fresh=is_fresh)
 
-    def _part(self, name: str, state: BatchState, which: IntArray | slice) -> Array:
+    def _part_values(self, name: str, state: BatchState, which: IntArray | slice) -> Array:
         """(m, robots, size) the numbers of one part of the observation."""
         pose, target, scale = state.pose[which], state.target[which], self._scale
         match name:
@@ -56,7 +56,7 @@ class AgentObservations:
             case _:
                 raise AssertionError(name)  # a part without numbers is a mistake in this class
 
-    def _stacked(
+    def _stack_frames(
         self, frame: Float32Array, state: BatchState, which: IntArray | slice, *, is_fresh: bool
     ) -> Float32Array:
         """(m, frames * size) the last frames, the newest last; of a fresh episode all are its first one."""

@@ -125,7 +125,7 @@ class BatchEnv:
     def obstacle_poses(self, world: int) -> FloatArray:
         """(k, 3) where the obstacles of a world are now."""
         which = np.array([world])
-        found: FloatArray = self._bodies(which, self._state.step[which])[0]
+        found: FloatArray = self._obstacle_poses(which, self._state.step[which])[0]
         return found
 
     @property
@@ -298,7 +298,7 @@ class BatchEnv:
 
     # Things that move, and targets
 
-    def _bodies(self, which: IntArray | slice, steps: Array) -> FloatArray:
+    def _obstacle_poses(self, which: IntArray | slice, steps: Array) -> FloatArray:
         """(m, k, 3) where the obstacles of the worlds ``which`` are after so many steps (m)."""
         if not self._has_obstacles:
             return NO_BODIES
@@ -312,7 +312,7 @@ class BatchEnv:
         if not self._has_obstacles:
             return NO_BODIES[None]
         parts: Array = (self._checks + 1) / len(self._checks)
-        return np.stack([self._bodies(ALL_WORLDS, self._state.step + part) for part in parts])
+        return np.stack([self._obstacle_poses(ALL_WORLDS, self._state.step + part) for part in parts])
 
     def _nearest_obstacles(self, bodies: FloatArray, poses: FloatArray) -> FloatArray:
         """(n, robots) [m], FAR where there is none."""
@@ -327,7 +327,7 @@ class BatchEnv:
         """(m, 2) the targets of the worlds ``which`` at the start of their episodes, of which ``targets`` (m, 2) stand."""
         if not self._has_leaders:
             return targets
-        return self._follow_leaders(targets, self._bodies(which, self._state.step[which]), which)
+        return self._follow_leaders(targets, self._obstacle_poses(which, self._state.step[which]), which)
 
     def _follow_leaders(
         self, targets: FloatArray, bodies: FloatArray, which: IntArray | slice = ALL_WORLDS
@@ -387,7 +387,7 @@ class BatchEnv:
         """(m, size) what agents see of the worlds ``which`` (m) as they are; ``is_fresh``: whether their episodes have just begun."""
         state = self._state
         draws = self._scan_draws(which, m, state.episode[which], state.step[which], state.disturbed)
-        bodies = self._bodies(which, state.step[which])
+        bodies = self._obstacle_poses(which, state.step[which])
         scan = self._loops.scan(self._maps[which], state.pose[which], draws, bodies)
         return self._observations.complete(scan.frame, state, which, is_fresh=is_fresh)
 
@@ -411,12 +411,14 @@ class BatchEnv:
         if isinstance(self._reward_function, Reward):
             terms = self._reward_function.terms(transition)
             return np.asarray(sum(terms.values()), dtype=np.float32), terms
-        rewards = self._checked(np.asarray(self._reward_function(transition)), "reward")
+        rewards = self._check_values(np.asarray(self._reward_function(transition)), "reward")
         count_metrics = getattr(self._reward_function, "metrics", None)  # of a student's file
         metrics = {} if count_metrics is None else count_metrics(transition)
-        return rewards, {name: self._checked(values, f"metric {name}") for name, values in metrics.items()}
+        return rewards, {
+            name: self._check_values(values, f"metric {name}") for name, values in metrics.items()
+        }
 
-    def _checked(self, values: Array, name: str) -> Float32Array:
+    def _check_values(self, values: Array, name: str) -> Float32Array:
         """(n,) what code from outside gave, in single precision. RewardError unless it is a finite number for each world."""
         if values.shape != (self.n,) or values.dtype.kind not in "fiub":
             raise RewardError(

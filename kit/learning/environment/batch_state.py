@@ -114,7 +114,7 @@ class BatchState:
         )
 
     def copy(self) -> BatchState:
-        """The same, of which the beginning of episodes may write into every array that it writes into: the others are shared."""
+        """A copy of the arrays that beginning an episode writes into; the others are shared."""
         robots = self.robots
         return BatchState(
             robots._replace(
@@ -144,7 +144,7 @@ class BatchState:
         )
 
     def changed(self, **changes: Any) -> BatchState:
-        """The same with other values of some fields, as ``dataclasses.replace``, which takes three times as long."""
+        """A copy with other values of some fields, as ``dataclasses.replace``, which takes three times as long."""
         return BatchState(*[changes[name] if name in changes else getattr(self, name) for name in FIELDS])
 
 

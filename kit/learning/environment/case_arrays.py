@@ -78,7 +78,7 @@ class CaseArrays:
         """(cases): each case's map."""
         cases = [case for _, case in courses]
         self.leaders = np.array(
-            [_leader(case, each) for case, (_, each) in zip(cases, self.maps, strict=True)]
+            [_leader_index(case, each) for case, (_, each) in zip(cases, self.maps, strict=True)]
         )
         """(cases): the number of the obstacle that is the target; -1 where it does not move."""
         places = [_case_places(case, task, each) for case, (_, each) in zip(cases, self.maps, strict=True)]
@@ -130,7 +130,7 @@ class CaseArrays:
 
     def draw_starts(self, cases: IntArray, keys: IntArray, first: IntArray) -> EpisodeStarts:
         """Starts for the ``cases`` (m); world i draws number ``first[i]`` and following of ``keys[i]``."""
-        found = self._drawn(cases, keys, first)
+        found = self._draw_starts(cases, keys, first)
         is_area = self._start_tables.is_area
         if not self._has_areas or not is_area[cases].any():
             return found
@@ -138,12 +138,12 @@ class CaseArrays:
             bad = np.flatnonzero(is_area[cases] & self._is_bad(cases, found))
             if not len(bad):
                 break
-            again = self._drawn(cases[bad], keys[bad], first[bad] + number * DRAWS_PER_TRY)
+            again = self._draw_starts(cases[bad], keys[bad], first[bad] + number * DRAWS_PER_TRY)
             for old, new in zip(found, again, strict=True):
                 old[bad] = new
         return found
 
-    def _drawn(self, cases: IntArray, keys: IntArray, first: IntArray) -> EpisodeStarts:
+    def _draw_starts(self, cases: IntArray, keys: IntArray, first: IntArray) -> EpisodeStarts:
         m = len(cases)
         found = EpisodeStarts(
             np.empty((m, self.task.robots, 3)), np.empty((m, 2)), np.empty(m, dtype=np.int64), np.empty(m)
@@ -253,11 +253,11 @@ def _targets(case: TaskCase, batch_map: BatchMap) -> tuple[FloatArray, float]:
     cells = floor.area_cells(case.targets.area, reached & (floor.clearance > hull_radius(batch_map)))
     if not len(cells):
         raise UnsupportedWorld(f"case {case.name}: no target {case.targets.description} can be reached")
-    chosen = _spread(cells, MAX_AREA_TARGETS)
+    chosen = _spread_out_points(cells, MAX_AREA_TARGETS)
     return np.concatenate([chosen, np.zeros((len(chosen), 1))], axis=1), 0.5 * FLOOR_CELL
 
 
-def _spread(cells: FloatArray, most: int) -> FloatArray:
+def _spread_out_points(cells: FloatArray, most: int) -> FloatArray:
     """Returns at most ``most`` of the points (k, 2), each as far as possible from those before it."""
     if len(cells) <= most:
         return cells
@@ -268,7 +268,7 @@ def _spread(cells: FloatArray, most: int) -> FloatArray:
     return cells[chosen]
 
 
-def _leader(case: TaskCase, batch_map: BatchMap) -> int:
+def _leader_index(case: TaskCase, batch_map: BatchMap) -> int:
     if case.targets.model is None:
         return -1
     names = [obstacle.name for obstacle in batch_map.obstacles]

@@ -49,7 +49,7 @@ class DisturbanceState:
         )
 
     def copy(self) -> DisturbanceState:
-        """The same, into which ``begin`` may write."""
+        """A copy into which ``begin`` may write."""
         if not self.is_any:
             return self
         return replace(
@@ -108,7 +108,9 @@ class DisturbanceState:
         twists, lasts, after = [], [], []
         for check in range(checks):
             parts = [
-                (driven, seconds) for driven, seconds in self._parts(check * length, length) if seconds.any()
+                (driven, seconds)
+                for driven, seconds in self._twist_parts(check * length, length)
+                if seconds.any()
             ]
             twists += [driven for driven, _ in parts]
             lasts += [seconds for _, seconds in parts]
@@ -118,7 +120,7 @@ class DisturbanceState:
             turn += driven[:, :, 1] * seconds[:, None]
         return StepMoves(np.stack(twists), np.stack(lasts), np.arange(len(after)), np.array(after), turn)
 
-    def _parts(self, start: float, length: float) -> Iterator[tuple[FloatArray, FloatArray]]:
+    def _twist_parts(self, start: float, length: float) -> Iterator[tuple[FloatArray, FloatArray]]:
         """The twists (n, r, 2) of the parts of the ``length`` seconds after ``start``, one after the other, and how long each
         part takes (n,): in none of them does a robot change its command."""
         n, depth, robots = self.due.shape

@@ -80,7 +80,7 @@ class RobotsParallelEnv(ParallelEnv):
         seen, info = self._env.reset(
             seed=seed, options=known
         )  # PettingZoo's own test gives options that are none
-        return self._split(seen), {agent: dict(info) for agent in self.agents}
+        return self._split_observation(seen), {agent: dict(info) for agent in self.agents}
 
     def step(
         self, actions: dict[str, Any]
@@ -93,11 +93,11 @@ class RobotsParallelEnv(ParallelEnv):
     ]:
         """The robots do one step. KeyError if one of them has no action."""
         agents = list(self.agents)
-        seen, reward, terminated, truncated, info = self._env.step(self._join(actions))
+        seen, reward, terminated, truncated, info = self._env.step(self._join_actions(actions))
         if terminated or truncated:
             self.agents = []
         return (
-            {agent: part for agent, part in self._split(seen).items() if agent in agents},
+            {agent: part for agent, part in self._split_observation(seen).items() if agent in agents},
             dict.fromkeys(agents, reward),
             dict.fromkeys(agents, terminated),
             dict.fromkeys(agents, truncated),
@@ -114,14 +114,14 @@ class RobotsParallelEnv(ParallelEnv):
         """Returns what all robots see together, as one agent of Gymnasium's environment would."""
         return self._seen.copy()
 
-    def _split(self, seen: NDArray[Any]) -> dict[str, Observation]:
+    def _split_observation(self, seen: NDArray[Any]) -> dict[str, Observation]:
         """Splits an observation by robot: of every frame its own numbers."""
         self._seen = seen
         spec = self.task.observation
         parts = seen.reshape(spec.frames, len(self.possible_agents), spec.frame_size)
         return {agent: parts[:, number].ravel() for number, agent in enumerate(self.possible_agents)}
 
-    def _join(self, actions: dict[str, Any]) -> Any:
+    def _join_actions(self, actions: dict[str, Any]) -> Any:
         """One action of all robots, from those of each."""
         each = [np.asarray(actions[agent]) for agent in self.possible_agents]
         if not isinstance(self._actions, DiscreteActions):

@@ -45,7 +45,7 @@ class BatchVecEnv(VecEnv):
         super().__init__(batch.n, batch.observation_space, batch.action_space)
 
     def reset(self) -> VecEnvObs:
-        """Begins new episodes; from the start of the seed, if ``seed`` was called."""
+        """Begins new episodes in all worlds; after ``seed``, with that seed."""
         seed = self._seeds[0]
         self._reset_seeds()
         self._reset_options()
@@ -77,7 +77,7 @@ class BatchVecEnv(VecEnv):
         return info | ({"adjacency": episode.adjacency} if self.batch.task.robots > 1 else {})
 
     def close(self) -> None:
-        """There is nothing to close."""
+        """Does nothing: a batch holds no files and no processes."""
 
     # All worlds share their attributes: there is one object behind them.
 
@@ -108,13 +108,13 @@ class HalfMirroredVecEnv(VecEnvWrapper):
         self._mirror = TaskMirror(venv.batch.task)
         self._which = np.flatnonzero(np.arange(venv.num_envs) // len(venv.batch.cases) % 2)
 
-    def _mirrored(self, observations: Any) -> Float32Array:
+    def _mirror_observations(self, observations: Any) -> Float32Array:
         seen: Float32Array = observations.copy()
         seen[self._which] = self._mirror.observations(seen[self._which])
         return seen
 
     def reset(self) -> VecEnvObs:
-        return self._mirrored(self.venv.reset())
+        return self._mirror_observations(self.venv.reset())
 
     def step_async(self, actions: NDArray[np.integer]) -> None:
         driven = actions.copy()
@@ -126,7 +126,7 @@ class HalfMirroredVecEnv(VecEnvWrapper):
         for number in self._which[dones[self._which]]:
             info = infos[number]
             info["terminal_observation"] = self._mirror.observations(info["terminal_observation"])
-        return self._mirrored(observations), rewards, dones, infos
+        return self._mirror_observations(observations), rewards, dones, infos
 
 
 def make_vec_env(

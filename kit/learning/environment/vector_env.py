@@ -100,7 +100,7 @@ class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
 
         Raises ValueError and TypeError for other seeds, masks and options."""
         check_options(options, "case", "reset_mask")
-        which = np.flatnonzero(self._mask((options or {}).get("reset_mask")))
+        which = np.flatnonzero(self._check_mask((options or {}).get("reset_mask")))
         seeds = self._seeds(seed)
         number = case_number(self.batch.task, (options or {}).get("case"))
         cases = None if number is None else np.full(self.num_envs, number)
@@ -129,7 +129,7 @@ class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
         chance: list[int | None] = np.random.default_rng().integers(2**31, size=self.num_envs).tolist()
         return chance
 
-    def _mask(self, mask: object) -> BoolArray:
+    def _check_mask(self, mask: object) -> BoolArray:
         if mask is None:
             return np.ones(self.num_envs, dtype=np.bool_)
         if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_:

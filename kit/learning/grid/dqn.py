@@ -50,11 +50,11 @@ class ValueNetwork:
 
     def values(self, inputs: FloatArray, parameters: list[FloatArray] | None = None) -> FloatArray:
         """(n, outputs) values for (n, inputs); by other parameters if they are given."""
-        return self._layers(inputs, self.parameters if parameters is None else parameters)[-1]
+        return self._forward(inputs, self.parameters if parameters is None else parameters)[-1]
 
     def descend(self, inputs: FloatArray, moves: IntArray, targets: FloatArray, rate: float) -> None:
         """Makes one step of gradient descent (Adam) on the squared differences to the targets of the moves made."""
-        first, second, values = self._layers(inputs, self.parameters)
+        first, second, values = self._forward(inputs, self.parameters)
         rows = np.arange(len(moves))
         slope = np.zeros_like(values)
         slope[rows, moves] = 2 * (values[rows, moves] - targets) / len(moves)
@@ -80,7 +80,7 @@ class ValueNetwork:
             parameter -= scale * mean / (np.sqrt(square) + ADAM_EPSILON)
 
     @staticmethod
-    def _layers(
+    def _forward(
         inputs: FloatArray, parameters: list[FloatArray]
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         first = np.tanh(inputs @ parameters[0] + parameters[1])

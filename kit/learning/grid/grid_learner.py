@@ -45,7 +45,7 @@ class GridLearnerSettings:
 
 
 @dataclass(frozen=True, slots=True)
-class GridUpdate:
+class ValueUpdate:
     """One update of one value."""
 
     cell: GridCell
@@ -79,7 +79,7 @@ class GridLearner(ABC):
         """Episodes that ended on a cliff."""
         self.updates = 0
         self.cell = world.start
-        self.last_update: GridUpdate | None = None
+        self.last_update: ValueUpdate | None = None
         self.episode_step = 0
         self.rng = np.random.default_rng(settings.seed)
         self._return = 0.0
@@ -90,7 +90,7 @@ class GridLearner(ABC):
         """Episodes that have ended."""
         return len(self.returns)
 
-    def step(self) -> GridUpdate:
+    def step(self) -> ValueUpdate:
         """Makes one move and learns from it."""
         cell, move = self.cell, self._move
         step = self.world.step(cell, move)
@@ -101,7 +101,7 @@ class GridLearner(ABC):
         self.episode_step += 1
         self._return += step.reward
         ended = step.terminated or self.episode_step >= MAX_EPISODE_STEPS
-        self.last_update = GridUpdate(
+        self.last_update = ValueUpdate(
             cell, move, step.reward, step.cell, before, target, float(self.values[cell][move]), ended
         )
         if ended:

@@ -122,13 +122,15 @@ class PpoLearner(GridLearner):
         cells, moves = cells.ravel(), moves.ravel()
         old = softmax(self.logits[cells])[np.arange(len(cells)), moves]
         for _ in range(EPOCHS):
-            self._climb(cells, moves, weights, old)
+            self._ascend_objective(cells, moves, weights, old)
             totals, counts = np.zeros(len(self.critic)), np.zeros(len(self.critic))
             np.add.at(totals, cells, returns - self.critic[cells])
             np.add.at(counts, cells, 1.0)
             self.critic += CRITIC_RATE * totals / np.maximum(1.0, counts)
 
-    def _climb(self, cells: IntArray, moves: IntArray, weights: FloatArray, old: FloatArray) -> None:
+    def _ascend_objective(
+        self, cells: IntArray, moves: IntArray, weights: FloatArray, old: FloatArray
+    ) -> None:
         """One step up the clipped objective, with the bonus for entropy."""
         settings, rows = self.settings, np.arange(len(cells))
         chances = softmax(self.logits[cells])

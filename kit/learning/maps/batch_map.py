@@ -101,7 +101,7 @@ def _load_batch_map(card: MapCard, robots: tuple[str, ...]) -> BatchMap:
 
 
 def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) -> BatchMap:
-    """The same for a world, whose models ``robots`` drive; None is none."""
+    """The batch map of a world whose models ``robots`` drive; None is none."""
     wanted_names = [name for name in robots if name]
     names = [model.name for model in world.models]
     for wanted in wanted_names:
@@ -125,11 +125,11 @@ def batch_map_of_world(world: World, name: str, robots: Sequence[str | None]) ->
         if other != made[0]:
             raise UnsupportedWorld(f"{driving[number].location}: training needs identical robots")
     touched = [
-        _walls(world, footprint.mask)
+        _wall_layers(world, footprint.mask)
         for model, other in zip(driving, observers, strict=True)
         for footprint in _hull_footprints(model, other, world)
     ]
-    seen = [_walls(world, _laser(model).mount.bits) for model in driving]
+    seen = [_wall_layers(world, _laser(model).mount.bits) for model in driving]
     for each in (*touched, *seen):
         if each != touched[0]:
             raise UnsupportedWorld(f"{world.file}: training needs walls that every robot touches and sees")
@@ -185,7 +185,7 @@ def batch_geometry(batch_maps: Sequence[BatchMap], noise: float | None = None) -
 def geometry_for_scans(
     geometry: kernels.BatchGeometry, robot: BatchRobot, robots: int
 ) -> kernels.BatchGeometry:
-    """The same for scans, where a robot's pose is that of its lidar: the hulls are given in the lidar's frame, and what is
+    """The geometry for scans, where a robot's pose is that of its lidar: the hulls are given in the lidar's frame, and what is
     seen without being touched is one of them."""
     lidar = robot.lidar
     if lidar == Pose() and not robot.untouched:
@@ -301,10 +301,10 @@ def _drive(model: Model) -> tuple[PluginSpec, DiffDriveParams]:
 
 
 def _hull_footprints(model: Model, observer: Model, world: World) -> tuple[Footprint, ...]:
-    """Those that walls stop: without parts that a lidar looks at, the robot's own or its ``observer``'s, and that pass through
+    """The footprints that walls stop: without parts that a lidar looks at, the robot's own or its ``observer``'s, and that pass through
     every wall."""
     footprints, sight = _body(model).footprints, _laser(model).mount.bits | _laser(observer).mount.bits
-    return tuple(each for each in footprints if _walls(world, each.mask) or not each.category & sight)
+    return tuple(each for each in footprints if _wall_layers(world, each.mask) or not each.category & sight)
 
 
 def _robot(model: Model, observer: Model, world: World) -> BatchRobot:
@@ -403,7 +403,7 @@ def _polygon_around(circle: Circle) -> CornerPoints:
     )
 
 
-def _walls(world: World, bits: int) -> tuple[Layer, ...]:
+def _wall_layers(world: World, bits: int) -> tuple[Layer, ...]:
     return tuple(layer for layer in world.layers if layer.walls is not None and layer.bits & bits)
 
 

@@ -123,7 +123,7 @@ def make_obstacle_parts(maps: Sequence[Sequence[Obstacle]]) -> ObstacleParts:
         corners=np.array(corners, dtype=np.float64).reshape(-1, 2),
         starts=np.cumsum([0, *counts], dtype=np.int64),
         bits=np.array([part.bits for _, part in parts], dtype=np.int64),
-        reach=np.array([_reach(part.shape) for _, part in parts], dtype=np.float64),
+        reach=np.array([_outer_radius(part.shape) for _, part in parts], dtype=np.float64),
     )
 
 
@@ -133,7 +133,7 @@ def _parts_of(obstacles: Sequence[Obstacle]) -> Iterator[tuple[int, ObstaclePart
             yield body, part
 
 
-def _reach(shape: Circle | Polygon) -> float:
+def _outer_radius(shape: Circle | Polygon) -> float:
     if isinstance(shape, Circle):
         return math.hypot(*shape.center) + shape.radius
     return max(math.hypot(x, y) for x, y in shape.points)

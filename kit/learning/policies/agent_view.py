@@ -123,29 +123,29 @@ def build_agent_view(
         tuple(
             path
             for robot in range(robots)
-            for path in _sight(seen, task, robot, ranges[robot], Pose(*poses[robot].tolist()))
+            for path in _seen_paths(seen, task, robot, ranges[robot], Pose(*poses[robot].tolist()))
         ),
         tuple(expected),
     )
 
 
-def _sight(
+def _seen_paths(
     seen: ObservationSpec, task: LearningTask, robot: int, ranges: Float32Array, pose: Pose
 ) -> list[ScenePath]:
     single, sectors = seen.ray_tables(task.robots)
     paths = []
     for ray, distance in zip(single[robot].tolist(), ranges.tolist(), strict=False):
-        end = _end(pose, ray_direction(ray), distance)
+        end = _ray_end(pose, ray_direction(ray), distance)
         paths.append(ScenePath(np.array([pose[:2], end]), "dotted" if distance >= seen.clip else "solid"))
     for (_, first, stop), distance in zip(sectors.tolist(), ranges[single.shape[1] :].tolist(), strict=False):
         start, end_angle = ray_direction(first), ray_direction(stop - 1)
         count = max(2, math.ceil((end_angle - start) / ARC_STEP) + 1)
-        arc = [_end(pose, angle, distance) for angle in np.linspace(start, end_angle, count).tolist()]
+        arc = [_ray_end(pose, angle, distance) for angle in np.linspace(start, end_angle, count).tolist()]
         paths.append(ScenePath(np.array(arc), "dotted" if distance >= seen.clip else "solid"))
     return paths
 
 
-def _end(pose: Pose, angle: float, distance: float) -> tuple[float, float]:
+def _ray_end(pose: Pose, angle: float, distance: float) -> tuple[float, float]:
     return (
         pose.x + distance * math.cos(pose.theta + angle),
         pose.y + distance * math.sin(pose.theta + angle),
@@ -157,7 +157,7 @@ def _rated_actions(
 ) -> tuple[RatingKind, tuple[RatedAction, ...]]:
     actions = task.actions
     if isinstance(actions, ContinuousActions):
-        return "command", _commands(actions, task.robots, scores)
+        return "command", _rated_commands(actions, task.robots, scores)
     names = _action_names(actions, task.robots)
     is_probability = policy.sampling.kind == "softmax"
     rated = []
@@ -187,7 +187,7 @@ def _action_names(actions: DiscreteActions, robots: int) -> list[list[str]]:
     return [[f"{robot + 1} {name}" for name in actions.names] for robot in range(robots)]
 
 
-def _commands(actions: ContinuousActions, robots: int, scores: Float32Array) -> tuple[RatedAction, ...]:
+def _rated_commands(actions: ContinuousActions, robots: int, scores: Float32Array) -> tuple[RatedAction, ...]:
     shares = np.clip(scores, -1.0, 1.0)
     twists = actions.commands(shares[None], robots).twists[0]
     return tuple(
@@ -307,10 +307,10 @@ class AgentObserver(Observer):
         minima = [ranges[first:stop].min() for _, first, stop in self._sectors.tolist()]
         numbers = [*(ranges[self._single[robot]] * seen.scale), *(np.array(minima) * seen.scale)]
         for part in seen.parts:
-            numbers += self._told(part.name, robot, simulation)
+            numbers += self._part_values(part.name, robot, simulation)
         return np.array(numbers)
 
-    def _told(self, part: str, robot: int, simulation: Simulation) -> list[float]:
+    def _part_values(self, part: str, robot: int, simulation: Simulation) -> list[float]:
         """The numbers of one part, as the node of the policy knows them."""
         if part == "last_action":
             twist: list[float] = self._last_twists[robot].tolist()

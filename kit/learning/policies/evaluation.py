@@ -11,6 +11,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from kit.document.blocks import Cell, CellStyle, Column, Table
+from kit.host.sandbox.probe import highest_level_up_to
+from kit.host.sandbox.sandbox_config import Level
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, wilson_interval
@@ -273,7 +275,7 @@ class Evaluator:
 
 @dataclass(slots=True)
 class _CaseSums:
-    """Over the episodes of one case."""
+    """Sums over the episodes of one case."""
 
     outcomes: dict[EpisodeOutcome, int] = field(default_factory=lambda: dict.fromkeys(EpisodeOutcome, 0))
     steps: int = 0
@@ -324,7 +326,8 @@ def evaluate_on(
     file = task.reward_file
     if file is None or not metric_parameters(file):
         return Evaluator(task).test(policy, episodes, seed, greedy=greedy)
-    with StudentReward(file) as reward:
+    # The policy may be somebody else's, and so the task and the program that it names.
+    with StudentReward(file, level=highest_level_up_to(max(Level))) as reward:
         return Evaluator(task, reward, counts_metrics=True).test(policy, episodes, seed, greedy=greedy)
 
 

@@ -21,6 +21,7 @@ from kit.arrays import BoolArray, Float32Array, IntArray
 from kit.learning.policies.policy_network import ActionValueTable, PolicyNetwork
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.plain_text import printable_text
 
 SamplingKind = Literal["softmax", "epsilon", "normal", "tanh-normal", "noisy-tanh"]
 
@@ -36,8 +37,18 @@ LOG_DEVIATION_RANGE = (-20.0, 2.0)
 """Within this stays the logarithm of a standard deviation that a network gives, as in stable-baselines3."""
 
 
+MAX_COUNT = 1 << 53
+"""Of steps, inputs and actions: up to it, numbers of every language are exact."""
+
+
 class PolicyError(Exception):
-    """A policy's file is damaged, or the policy does not fit the task; the message says which and what to do."""
+    """A policy's file is damaged, or the policy does not fit the task; the message says which and what to do.
+
+    What the file says of itself stands in it as characters that no terminal obeys.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__("\n".join(map(printable_text, message.split("\n"))))
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +96,10 @@ class Policy:
     def check_consistent(self) -> None:
         """Raises ValueError unless its parts fit one another: a damaged file may hold anything."""
         self.model.check_shapes()
-        if self.choices and (min(self.choices) < 1 or self.model.outputs != sum(self.choices)):
+        counts = (self.steps + 1, self.model.inputs, *self.choices)
+        if not all(1 <= count < MAX_COUNT for count in counts):
+            raise ValueError("a number of steps, inputs or actions that there cannot be")
+        if self.choices and self.model.outputs != sum(self.choices):
             raise ValueError(f"{self.model.outputs} scores for {_product_text(self.choices)} actions")
         kind = self.sampling.kind
         if (kind in CONTINUOUS_KINDS) == bool(self.choices):
@@ -266,12 +280,12 @@ class PolicyPlayer:
         )
         choices = self.policy.choices
         if not choices:
-            return self._draw(self.scores)
+            return self._sample_actions(self.scores)
         parts = np.split(self.scores, np.cumsum(choices)[:-1], axis=1)
-        chosen = np.stack([self._choose(part) for part in parts], axis=1)
+        chosen = np.stack([self._choose_actions(part) for part in parts], axis=1)
         return chosen[:, 0] if len(choices) == 1 else chosen
 
-    def _draw(self, outputs: Float32Array) -> Float32Array:
+    def _sample_actions(self, outputs: Float32Array) -> Float32Array:
         """(n, numbers) continuous actions."""
         sampling, deviations = self.policy.sampling, np.zeros(0, dtype=np.float32)
         if sampling.kind == "tanh-normal":
@@ -288,7 +302,7 @@ class PolicyPlayer:
             outputs = np.tanh(outputs)
         return np.clip(outputs, np.float32(-1), np.float32(1))
 
-    def _choose(self, scores: Float32Array) -> IntArray:
+    def _choose_actions(self, scores: Float32Array) -> IntArray:
         best: IntArray = scores.argmax(axis=1)
         if self._rng is None:
             return best

@@ -21,8 +21,9 @@ from kit.learning.policies.policy_network import (
     PolicyNetwork,
 )
 from kit.learning.policies.sb3_archive import is_sb3_archive, read_sb3_policy
-from kit.learning.tasks.catalogue import find_task
+from kit.learning.tasks.catalogue import find_task, task_names
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.plain_text import quoted
 from kit.workspace import write_atomically
 
 FORMAT_VERSION = 1
@@ -126,6 +127,9 @@ def _policy_from_arrays(arrays: dict[str, NDArray[Any]]) -> Policy:
     about = json.loads(arrays["about"].tobytes())
     if about["format"] != FORMAT_VERSION:
         raise ValueError(f"format {about['format']}, this kit reads {FORMAT_VERSION}")
+    task = TaskSpec.from_dict(about["task"])
+    if task.text is None and task.task not in task_names():  # a policy may be anybody's, and name any file
+        raise ValueError(f"there is no task {quoted(task.task)}, and it does not hold it")
     kind, amount = about["chance"]
     known_kind = next(each for each in get_args(SamplingKind) if each == kind)
     policy = Policy(
@@ -134,7 +138,7 @@ def _policy_from_arrays(arrays: dict[str, NDArray[Any]]) -> Policy:
         else _network_from_arrays(arrays, about["activation"]),
         tuple(map(int, about["choices"])),
         ActionSampling(known_kind, float(amount), tuple(map(float, about.get("deviations", ())))),
-        TaskSpec.from_dict(about["task"]),
+        task,
         int(about["steps"]),
         about["interface"],
         _network_from_arrays(_critics_own(arrays), about["critic"]) if "critic" in about else None,
@@ -150,7 +154,7 @@ def _critics_own(arrays: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
 
 
 def _table_from_arrays(arrays: dict[str, NDArray[Any]], inputs: int) -> ActionValueTable:
-    return ActionValueTable(arrays["used"], arrays["edges"], arrays["values"], inputs)
+    return ActionValueTable(arrays["used"], arrays["edges"], arrays["values"], int(inputs))
 
 
 def _network_from_arrays(arrays: dict[str, NDArray[Any]], activation: str) -> PolicyNetwork:

@@ -12,6 +12,9 @@ from kit.arrays import Float32Array, IntArray
 
 Activation = Literal["tanh", "relu"]
 
+MAX_TABLE_INPUTS = 62
+"""That a table looks at: with two bins each, its rows can just be counted."""
+
 
 def _check_numbers(array: NDArray[Any], dimensions: int) -> None:
     """Raises ValueError unless it is an array of finite floating-point numbers with this many dimensions."""
@@ -161,8 +164,10 @@ class ActionValueTable:
         _check_numbers(self.edges, 1)
         _check_numbers(self.values, 2)
         used = self.used
-        if used.ndim != 1 or used.dtype.kind != "i" or ((used < 0) | (used >= self.inputs)).any():
-            raise ValueError(f"it looks at inputs that are not among its {self.inputs}")
+        if used.ndim != 1 or used.dtype.kind != "i" or len(used) > MAX_TABLE_INPUTS:
+            raise ValueError("no list of the inputs that it looks at, or too long a one")
+        if len(set(used.tolist())) < len(used) or ((used < 0) | (used >= self.inputs)).any():
+            raise ValueError("it looks at inputs twice, or at some that it does not see")
         if not (np.diff(self.edges) > 0).all() or len(self.values) != (len(self.edges) + 1) ** len(used):
             raise ValueError(f"a table of {len(self.values)} rows for {len(used)} inputs")
 

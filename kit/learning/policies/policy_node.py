@@ -73,7 +73,7 @@ def node_refusals(task: LearningTask) -> tuple[str, ...]:
 
 def _refusals(task: LearningTask) -> Iterator[str]:
     seen, topics = task.observation, robot_topics(task)
-    shared = {name for name in _all(topics) if _all(topics).count(name) > 1}
+    shared = {name for name in _all_topics(topics) if _all_topics(topics).count(name) > 1}
     if shared:
         yield (
             f"{' and '.join(task.robots_on(_first_card(task)))} share {', '.join(sorted(shared))}: give each of them a "
@@ -97,7 +97,7 @@ def _refusals_to_count(task: LearningTask) -> Iterator[str]:
         yield "agents see how much is achieved, which a node can count for one case only, and there are several"
 
 
-def _all(topics: Sequence[RobotTopics]) -> list[str]:
+def _all_topics(topics: Sequence[RobotTopics]) -> list[str]:
     return [name for robot in topics for name in robot]
 
 

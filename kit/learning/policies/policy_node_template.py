@@ -106,7 +106,7 @@ class ExportedPolicy:
 
     def twists(self, x: np.ndarray) -> list[list[float]]:
         """Each robot's best command for what is seen: m/s forward and rad/s to the left."""
-        scores = self.look_up(x) if "values" in self.arrays else self.compute(x)
+        scores = self.look_up(x) if "values" in self.arrays else self.compute_scores(x)
         if BOUNDS:
             shares = (self.bound(scores).reshape(-1, 2) + 1) / 2
             low, high = np.array(BOUNDS).T
@@ -132,7 +132,7 @@ class ExportedPolicy:
         row: np.ndarray = self.arrays["values"][bins @ (len(edges) + 1) ** np.arange(len(used))[::-1]]
         return row
 
-    def compute(self, x: np.ndarray) -> np.ndarray:
+    def compute_scores(self, x: np.ndarray) -> np.ndarray:
         """The network's scores."""
         if self.gates:
             x = self.apply_lstm(x)

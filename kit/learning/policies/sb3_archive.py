@@ -1,5 +1,4 @@
-"""Reads the policy out of a model that stable-baselines3 or sb3-contrib has saved, by its weights alone (needs the extra
-``learn``).
+"""Reads the policy out of a model that stable-baselines3 or sb3-contrib has saved, by its weights alone. No torch.
 
 Such an archive also holds pickled Python objects: none of them is ever loaded. What the algorithm was is seen by the names of
 the weights, and what lies between the layers by what the archive says in plain text.
@@ -9,6 +8,7 @@ from __future__ import annotations
 
 import base64
 import io
+import itertools
 import json
 import pickletools
 import re
@@ -20,9 +20,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from kit.array_archives import MAX_PACKED_BYTES, MAX_UNPACKED_BYTES, check_stored, read_arrays
+from kit.array_archives import MAX_PACKED_BYTES, MAX_UNPACKED_BYTES, READ_ERRORS, read_arrays
 from kit.arrays import Float32Array, FloatArray
-from kit.installation import install_command
 from kit.learning.policies.policy import ActionSampling, Policy, PolicyError, action_counts, task_interface
 from kit.learning.policies.policy_network import (
     Activation,
@@ -32,13 +31,18 @@ from kit.learning.policies.policy_network import (
     average_quantiles,
     join_heads,
 )
+from kit.learning.policies.torch_weights import read_torch_weights
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.plain_files import open_plain_file, read_plain_file
+from kit.plain_files import read_plain_file
 
 WEIGHTS: Final = "policy.pth"
 DESCRIPTION: Final = "data"
-MAX_DESCRIPTION_BYTES: Final = 64 << 20
+MAX_DESCRIPTION_BYTES: Final = 8 << 20
+MAX_PICKLE_OPERATIONS: Final = 10_000
+"""That are looked through for what a model saw last; its own pickle takes a few dozen."""
+MAX_TOLD: Final = 60
+"""Characters of what an archive says, in a message."""
 ACTIVATIONS: Final[Mapping[str, Activation]] = {"Tanh": "tanh", "ReLU": "relu"}
 NORMALISATION_KEY: Final = re.compile(r"(^|\.)(ra_mean|running_mean|num_batches_tracked)$")
 """Weights of a layer that normalises what goes through it."""
@@ -62,9 +66,9 @@ class _Parts:
 def is_sb3_archive(file: Path) -> bool:
     """Whether a file looks like a model of stable-baselines3."""
     try:
-        with open_plain_file(file) as opened, zipfile.ZipFile(opened) as archive:
+        with zipfile.ZipFile(io.BytesIO(read_plain_file(file, MAX_PACKED_BYTES))) as archive:
             return {WEIGHTS, DESCRIPTION} <= set(archive.namelist())
-    except (OSError, zipfile.BadZipFile):
+    except READ_ERRORS:
         return False
 
 
@@ -103,13 +107,13 @@ def read_sb3_policy(
             choices,
             parts.sampling,
             spec,
-            steps if isinstance(steps, int) else 0,
+            steps if type(steps) is int else 0,
             task_interface(task),
             critic,
         )
         policy.check_fits(task)
         policy.check_consistent()
-    except (KeyError, ValueError, IndexError) as error:
+    except (LookupError, ValueError, OverflowError) as error:
         raise PolicyError(
             f"{file}: its weights do not fit one another, or task {task.name} ({error})."
         ) from None
@@ -119,29 +123,18 @@ def read_sb3_policy(
 def _read_archive(file: Path) -> tuple[Weights, dict[str, Any]]:
     """The weights by name, and what the archive says in plain text."""
     try:
-        import torch
-    except ImportError:
-        raise PolicyError(
-            f"To read {file} takes torch. To have it, type: {install_command('learn')}"
-        ) from None
-    data = read_plain_file(file, MAX_PACKED_BYTES)
-    try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        with zipfile.ZipFile(io.BytesIO(read_plain_file(file, MAX_PACKED_BYTES))) as archive:
             sizes = {each.filename: each.file_size for each in archive.infolist()}
+            if len(sizes) < len(archive.infolist()):
+                raise ValueError("two parts of one name")
             if sizes[WEIGHTS] > MAX_UNPACKED_BYTES or sizes[DESCRIPTION] > MAX_DESCRIPTION_BYTES:
                 raise ValueError("it unpacks to more than a policy needs")
-            packed, about = archive.read(WEIGHTS), json.loads(archive.read(DESCRIPTION))
-        with zipfile.ZipFile(io.BytesIO(packed)) as inner:
-            check_stored(inner, len(packed))
-        found = torch.load(io.BytesIO(packed), map_location="cpu", weights_only=True)
-        if not isinstance(about, dict) or not isinstance(found, dict):
-            raise ValueError("it holds no weights by name")
-        weights = {
-            str(name): np.asarray(value.detach().cpu().numpy(), dtype=np.float32)
-            for name, value in found.items()
-            if isinstance(value, torch.Tensor)
-        }
-    except Exception as error:  # noqa: BLE001 - whatever a damaged or hostile archive makes zipfile and torch raise
+            weights, about = read_torch_weights(archive.read(WEIGHTS)), json.loads(archive.read(DESCRIPTION))
+        if not isinstance(about, dict):
+            raise ValueError("its description is none")
+    except FileNotFoundError:
+        raise
+    except (*READ_ERRORS, RecursionError, MemoryError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise PolicyError(f"{file}: not a model of stable-baselines3, or damaged ({reason[:200]}).") from None
     return weights, about
@@ -154,9 +147,8 @@ def _is_normalised(about: Mapping[str, Any], task: LearningTask) -> bool:
     size = space.shape[0]
     try:
         pickled = base64.b64decode(about["_last_obs"][":serialized:"])
-        buffers = [
-            given for _, given, _ in pickletools.genops(pickled) if isinstance(given, (bytes, bytearray))
-        ]
+        operations = itertools.islice(pickletools.genops(pickled), MAX_PICKLE_OPERATIONS)
+        buffers = [given for _, given, _ in operations if isinstance(given, (bytes, bytearray))]
     except Exception:  # noqa: BLE001 - it holds none, or is damaged; its weights are judged by themselves
         return False
     rows = [np.frombuffer(each, np.float32) for each in buffers if len(each) and len(each) % (4 * size) == 0]
@@ -176,7 +168,7 @@ def _activation(about: Mapping[str, Any], weights: Weights) -> Activation:
         if re.search(rf"\b{name}\b", str(named)):
             return known
     raise PolicyError(
-        f"between its layers lies {named}; the kit knows Tanh and ReLU. Train with one of them: "
+        f"between its layers lies {str(named)[:MAX_TOLD]}; the kit knows Tanh and ReLU. Train with one of them: "
         "policy_kwargs={'activation_fn': torch.nn.Tanh}."
     )
 
@@ -201,7 +193,7 @@ def _parts_of(
     epsilon = ActionSampling("epsilon", float(chance) if isinstance(chance, (int, float)) else 0.0)
 
     def network(prefix: str, *heads: str) -> PolicyNetwork:
-        return PolicyNetwork(_layers(weights, prefix, heads), activation)
+        return PolicyNetwork(_linear_layers(weights, prefix, heads), activation)
 
     if "q_net.q_net.0.weight" in weights:
         return _Parts(network("q_net.q_net"), epsilon, None)
@@ -221,9 +213,9 @@ def _parts_of(
         model = network("actor.mu")
         return _Parts(model, ActionSampling("noisy-tanh", 1.0, (0.0,) * model.outputs), critic)
     if "action_net.weight" in weights:
-        memory = _memory(weights)
+        memory = _lstm_layer(weights)
         model = PolicyNetwork(
-            _layers(weights, "mlp_extractor.policy_net", ("action_net",)), activation, memory
+            _linear_layers(weights, "mlp_extractor.policy_net", ("action_net",)), activation, memory
         )
         value = None if memory else network("mlp_extractor.value_net", "value_net")
         if choices:
@@ -233,12 +225,12 @@ def _parts_of(
     if "action_net.0.weight" in weights:
         return _Parts(network("action_net"), ActionSampling("epsilon", 0.0), None)
     raise PolicyError(
-        f"no network of a known algorithm: its weights are {', '.join(list(weights)[:4])} ... The kit reads PPO, A2C, TRPO, "
+        f"no network of a known algorithm: its weights are {', '.join(list(weights)[:4])[:MAX_TOLD]} ... The kit reads PPO, A2C, TRPO, "
         "RecurrentPPO, DQN, QRDQN, SAC, TQC, TD3, DDPG and ARS with an MlpPolicy."
     )
 
 
-def _layers(weights: Weights, prefix: str, heads: tuple[str, ...] = ()) -> tuple[LinearLayer, ...]:
+def _linear_layers(weights: Weights, prefix: str, heads: tuple[str, ...] = ()) -> tuple[LinearLayer, ...]:
     """The linear layers ``prefix.0``, ``prefix.2`` and so on, and behind them the heads."""
     pattern = re.compile(rf"{re.escape(prefix)}\.(\d+)\.weight")
     numbers = sorted(int(found[1]) for name in weights if (found := pattern.fullmatch(name)))
@@ -246,12 +238,14 @@ def _layers(weights: Weights, prefix: str, heads: tuple[str, ...] = ()) -> tuple
     layers = []
     for name in names:
         weight = weights[f"{name}.weight"]
+        if weight.ndim != 2:
+            raise ValueError(f"{name[:MAX_TOLD]}.weight has the shape {weight.shape}")
         bias = weights.get(f"{name}.bias", np.zeros(len(weight), dtype=np.float32))
         layers.append(LinearLayer(np.ascontiguousarray(weight.T), bias))
     return tuple(layers)
 
 
-def _memory(weights: Weights) -> LstmLayer | None:
+def _lstm_layer(weights: Weights) -> LstmLayer | None:
     if "lstm_actor.weight_ih_l0" not in weights:
         return None
     if "lstm_actor.weight_ih_l1" in weights:

@@ -133,7 +133,7 @@ class PolicySweep:
             if name not in known:
                 task = replace(self._task, disturbances=disturbances)
                 result = evaluate_on(task, self._policy, self._episodes, self._seed, greedy=self._greedy)
-                known[name] = _counts(result)
+                known[name] = _outcome_counts(result)
                 self._append(name, known[name])
             yield SweepPoint(kind.name, value, **known[name])
 
@@ -165,7 +165,7 @@ class PolicySweep:
                 file.write(f"{json.dumps(entry)}\n")
 
 
-def _counts(result: EvaluationResult) -> dict[str, Any]:
+def _outcome_counts(result: EvaluationResult) -> dict[str, Any]:
     reached, collided, timed_out = np.sum([case.outcomes for case in result.cases], axis=0).tolist()
     worst = result.worst
     return {
@@ -191,13 +191,13 @@ def sweep_blocks(
         blocks.append(Text(f"{label}: {kind.summary}"))
         if len(of_kind) > 1:
             blocks.append(
-                Picture(tuple(_chart(of_kind, label, encoder, columns, rows)), indent=0, is_tight=True)
+                Picture(tuple(_sweep_chart(of_kind, label, encoder, columns, rows)), indent=0, is_tight=True)
             )
-        blocks.append(_figures(of_kind))
+        blocks.append(_sweep_table(of_kind))
     return blocks
 
 
-def _figures(points: Sequence[SweepPoint]) -> Table:
+def _sweep_table(points: Sequence[SweepPoint]) -> Table:
     columns = (
         Column("value"),
         Column("success", decimals=3),
@@ -224,7 +224,9 @@ def _figures(points: Sequence[SweepPoint]) -> Table:
     return Table("disturbances", "", columns, rows, is_ruled=False, is_tight=True)
 
 
-def _chart(points: Sequence[SweepPoint], label: str, encoder: Encoder, columns: int, rows: int) -> list[str]:
+def _sweep_chart(
+    points: Sequence[SweepPoint], label: str, encoder: Encoder, columns: int, rows: int
+) -> list[str]:
     values = np.array([point.value for point in points])
     parts = (
         Curve("success", values, np.array([point.share for point in points])),

@@ -47,18 +47,18 @@ class CaseReader:
             return ()
         found, names = [], set()
         for number, inner in enumerate(section.sections("cases", at_least=1)):
-            case = self._case(inner, number)
+            case = self._read_case(inner, number)
             if case.case.name in names:
                 inner.error(f"a case named {quoted(case.case.name)} already exists", "name")
             names.add(case.case.name)
             found.append(case)
         return tuple(found)
 
-    def _case(self, section: Section, number: int) -> PlacedCase:
+    def _read_case(self, section: Section, number: int) -> PlacedCase:
         case = TaskCase(
             name=section.name("name", f"case_{number + 1}"),
-            starts=self._starts(section),
-            targets=self._targets(section),
+            starts=self._read_starts(section),
+            targets=self._read_targets(section),
             start_shift=section.point("start_shift", (0.0, 0.0)),
             target_shift=section.point("target_shift", (0.0, 0.0)),
             is_heading_random=section.flag("any_heading", False),
@@ -80,7 +80,7 @@ class CaseReader:
             return 0
         return names.index(name)
 
-    def _starts(self, section: Section) -> tuple[EpisodePlaces, ...]:
+    def _read_starts(self, section: Section) -> tuple[EpisodePlaces, ...]:
         key = _only_key(section, START_KEYS)
         headings = _read_headings(section)
         if key == "start_area":
@@ -96,7 +96,7 @@ class CaseReader:
         return (EpisodePlaces(first), *self._other_starts(section, len(first)))
 
     def _other_starts(self, section: Section, count: int) -> tuple[EpisodePlaces, ...]:
-        """Those of the other robots: a pose for each of them, beside each start of the first one."""
+        """The starts of the other robots: a pose for each of them, beside each start of the first one."""
         others = self._robots - 1
         if not others:
             return ()
@@ -104,7 +104,7 @@ class CaseReader:
         poses = poses if len(poses) == others * count else (Pose(),) * (others * count)
         return tuple(EpisodePlaces(poses[robot::others]) for robot in range(others))
 
-    def _targets(self, section: Section) -> EpisodePlaces:
+    def _read_targets(self, section: Section) -> EpisodePlaces:
         goal = self._goal
         key = _only_key(section, TARGET_KEYS, needed=goal.needs_target)
         if goal.needs_leader and key not in ("target_model", None):

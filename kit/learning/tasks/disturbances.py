@@ -174,7 +174,7 @@ class Disturbances:
         return values
 
     def changed(self, ranges: Mapping[str, UniformRange]) -> Disturbances:
-        """The same, with other ranges for some kinds, by their names. Raises DisturbanceError for impossible ones."""
+        """A copy with other ranges for some kinds, by their names. Raises DisturbanceError for impossible ones."""
         return replace(self, **ranges)
 
     @property

@@ -151,7 +151,7 @@ class LearningTask:
         return self.robot_names or tuple(name for name in (card.robot, card.partner) if name)
 
     def on(self, *names: str) -> LearningTask:
-        """The same task on some of its cases, named one by one or by their groups.
+        """This task on some of its cases, named one by one or by their groups.
 
         UnknownTask if nothing has such a name.
         """

@@ -78,7 +78,7 @@ class ObservationSpec:
     @property
     def parts(self) -> tuple[ObservationPart, ...]:
         """The parts that follow the numbers of the scan."""
-        return _parts(self)
+        return _observation_parts(self)
 
     @property
     def frame_size(self) -> int:
@@ -150,7 +150,7 @@ class ObservationSpec:
 
 
 @cache
-def _parts(seen: ObservationSpec) -> tuple[ObservationPart, ...]:
+def _observation_parts(seen: ObservationSpec) -> tuple[ObservationPart, ...]:
     motion = (MAX_SPEED, MAX_TURN_RATE)
     still = (-MAX_SPEED, -MAX_TURN_RATE)
     far, reach = MAX_TARGET_DISTANCE * seen.scale, MAX_COORDINATE * seen.scale

@@ -12,6 +12,7 @@ of two, the left one's first.
 from __future__ import annotations
 
 import ast
+import errno
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -21,8 +22,10 @@ from typing import Any, Self
 import numpy as np
 
 from kit.host.failure import Failure, FailureKind, StudentCodeError
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
 from kit.host.student_functions import StudentFunctions
 from kit.learning.tasks.transition import TRANSITION_FIELDS, Array, Transition
+from kit.plain_files import read_plain_file
 from kit.plain_text import nearest_name, quoted
 
 REWARD_FUNCTION = "reward"
@@ -63,14 +66,12 @@ def metric_parameters(file: Path) -> dict[str, tuple[str, ...]]:
 def _read_functions(file: Path) -> dict[str, tuple[str, ...]]:
     """The parameter names of the reward and the metrics, by the functions' names."""
     try:
-        with file.open("rb") as opened:
-            source = opened.read(MAX_SOURCE_BYTES + 1)
-        if len(source) > MAX_SOURCE_BYTES:
+        tree = ast.parse(read_plain_file(file, MAX_SOURCE_BYTES), file.name)
+    except OSError as error:
+        if error.errno == errno.EFBIG:
             raise RewardFileError(
                 f"{file}: larger than {MAX_SOURCE_BYTES // 1024} KiB. A reward is a few lines: leave out everything else."
-            )
-        tree = ast.parse(source, file.name)
-    except OSError as error:
+            ) from None
         raise RewardFileError(f"{file}: cannot be read ({error.strerror}).") from None
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line = f":{error.lineno}" if isinstance(error, SyntaxError) and error.lineno else ""
@@ -110,13 +111,20 @@ class StudentReward:
     RewardFileError for a file that cannot be called; StudentCodeError when the student's code fails, here or in a call.
     """
 
-    def __init__(self, file: Path, *, seed: int = 0, original: Path | None = None) -> None:
+    def __init__(
+        self,
+        file: Path,
+        *,
+        seed: int = 0,
+        original: Path | None = None,
+        level: Level = INTERACTIVE_LEVEL,
+    ) -> None:
         """``original``: the student's own file where ``file`` is a copy of it; failures name that one."""
         self._names = reward_parameters(file)
         self._metrics = metric_parameters(file)
         self._file, self._original = file, original or file
         with self._named_failures():
-            self._functions = StudentFunctions(file, seed=seed)
+            self._functions = StudentFunctions(file, seed=seed, level=level)
 
     def __call__(self, transition: Transition) -> Array:
         """(n,) rewards of n worlds."""
@@ -177,10 +185,10 @@ def call_reward(
 
 def reward_columns(transition: Transition, names: Sequence[str]) -> dict[str, Sequence[Any] | Array]:
     """Returns the arguments of a reward with these parameters: one column each, with a value for every world."""
-    return {name: _column(transition, name) for name in names}
+    return {name: _field_values(transition, name) for name in names}
 
 
-def _column(transition: Transition, name: str) -> Sequence[Any] | Array:
+def _field_values(transition: Transition, name: str) -> Sequence[Any] | Array:
     """(n,) one value for each world, or a list of n lists; the axis of the robots is left out where there is one."""
     count = len(transition.step)
     value = np.asarray(getattr(transition, name))

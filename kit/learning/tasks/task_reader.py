@@ -81,12 +81,15 @@ def task_name(file: Path) -> str:
     return file.absolute().parent.name if file.name == TASK_FILE else file.stem
 
 
-def _world_named_in(file: Path) -> str | None:
-    """Returns the world that a task's file names now; None if there is no such file, or it names none."""
+def _named_in(file: Path, key: str, within: str | None = None) -> str | None:
+    """Returns what a task's file names now by ``key``, perhaps ``within`` a part; None if there is no such file, or it names
+    nothing."""
     try:
         documents = WorldDocuments(AllowedRoot.of_folder(file.parent), {}, ProblemCollector())
         section = documents.section(file, SourceLocation(file))
-        return section.name("world") if section is not None and section.has("world") else None
+        if section is not None and within is not None:
+            section = section.section(within) if section.is_mapping(within) else None
+        return section.name(key) if section is not None and section.has(key) else None
     except (UnusableFile, WorldError):
         return None
 
@@ -173,7 +176,7 @@ class _TaskReader:
 
     def _own_world(self) -> tuple[MapCard, ...]:
         section, name = self._section, self._section.name("world")
-        if self._is_kept and name != _world_named_in(self._file):
+        if self._is_kept and name != _named_in(self._file, "world"):
             section.error(
                 f"its world is not here: there is no task {quoted(str(self._file), 200)} that names {quoted(name)}. "
                 "Choose another task, such as one of the kit's",
@@ -212,6 +215,13 @@ class _TaskReader:
         if section.has("file"):
             name = section.name("file")
             section.finish()
+            if self._is_kept and name != _named_in(self._file, "file", "reward"):
+                section.error(
+                    f"its reward is not here: there is no task {quoted(str(self._file), 200)} that names {quoted(name)}. "
+                    "Choose another task, such as one of the kit's",
+                    "file",
+                )
+                return SUCCESS_REWARD, None
             try:
                 file = self._root.resolve(name, self._file.parent)
             except UnusableFile as error:

@@ -151,9 +151,9 @@ class QNetwork:
             if number:
                 slope = slope @ views[2 * number].T
                 slope *= 1 - inputs**2 if self._activation == "tanh" else inputs > 0
-        self._step(gradient, rate)
+        self._adam_step(gradient, rate)
 
-    def _step(self, gradient: Float32Array, rate: float) -> None:
+    def _adam_step(self, gradient: Float32Array, rate: float) -> None:
         one, other = ADAM_DECAY
         self.updates += 1
         self.mean += np.float32(1 - one) * (gradient - self.mean)
@@ -198,16 +198,16 @@ class BoltzmannLearner:
         calls = 0
         while self._steps < steps:
             callback.between_updates()
-            seen = self._drive(seen)
+            seen = self._step_worlds(seen)
             calls += 1
             if calls % every == 0 and self._steps > self._setting("learning_starts"):
                 self._update(1.0 - self._steps / steps)
             if calls % target_every == 0:
                 self._target += np.float32(self._setting("tau")) * (self._network.parameters - self._target)
 
-    def _drive(self, seen: Float32Array) -> Float32Array:
+    def _step_worlds(self, seen: Float32Array) -> Float32Array:
         """One step of all worlds; what is seen then."""
-        actions = self._draw(seen)
+        actions = self._sample_actions(seen)
         following, rewards, ended, infos = self._env.step(actions)
         reached, terminated = following, ended
         if ended.any():
@@ -220,7 +220,7 @@ class BoltzmannLearner:
         found: Float32Array = following
         return found
 
-    def _draw(self, seen: Float32Array) -> IntArray:
+    def _sample_actions(self, seen: Float32Array) -> IntArray:
         """An action for each world, in proportion to exp(value / temperature)."""
         values = self._network.outputs(seen)[-1].astype(np.float64) / self._setting("temperature")
         limit = self._setting("value_limit")

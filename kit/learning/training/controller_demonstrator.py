@@ -78,13 +78,13 @@ class ControllerDemonstrator:
         """
         cases = self._task.map_cases()
         parts = [
-            self._episode(card, number, policy, seed + episode * len(cases) + number)
+            self._drive_episode(card, number, policy, seed + episode * len(cases) + number)
             for episode in range(EPISODES_PER_CASE)
             for number, (card, _) in enumerate(cases)
         ]
         return join_examples(parts)
 
-    def _episode(self, card: MapCard, case: int, policy: Policy | None, seed: int) -> Examples:
+    def _drive_episode(self, card: MapCard, case: int, policy: Policy | None, seed: int) -> Examples:
         task, observer = self._task, PoseObserver(self._task, seed)
         seen = observer.begin(case)
         if policy is not None:

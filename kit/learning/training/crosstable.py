@@ -65,12 +65,12 @@ def crosstable_columns(sweep: TrainingSweep) -> tuple[CrosstableColumn, ...]:
     for entry in sweep.entries():
         result = sweep.result(entry.key)
         if result is not None and not result.problem:
-            column = _test(sweep.run_of(entry), entry.config, sweep.episodes)
+            column = _test_run(sweep.run_of(entry), entry.config, sweep.episodes)
             tests.setdefault(column.group, []).append(column)
-    return tuple(_mean(columns) for columns in tests.values())
+    return tuple(_mean_column(columns) for columns in tests.values())
 
 
-def _test(run: TrainingRun, config: RunConfig, episodes: int) -> CrosstableColumn:
+def _test_run(run: TrainingRun, config: RunConfig, episodes: int) -> CrosstableColumn:
     """The run's policy on all cases; tested once, then read."""
     file = run.folder / TEST_FILE
     if file.exists():
@@ -87,7 +87,7 @@ def _test(run: TrainingRun, config: RunConfig, episodes: int) -> CrosstableColum
     return CrosstableColumn(group, summary.steps, summary.seconds, stored["shares"], stored["adjacency"])
 
 
-def _mean(columns: Sequence[CrosstableColumn]) -> CrosstableColumn:
+def _mean_column(columns: Sequence[CrosstableColumn]) -> CrosstableColumn:
     """The column of several seeds."""
     first = columns[0]
     return CrosstableColumn(

@@ -71,12 +71,12 @@ def check_reward(file: Path, task: LearningTask) -> None:
         batch.reset()
         for _ in range(CHECKED_STEPS):
             step = batch.step(np.array([batch.action_space.sample() for _ in range(batch.n)]))
-        for ended in _endings(step.transition):
+        for ended in _possible_endings(step.transition):
             reward(ended)
             reward.metrics(ended)
 
 
-def _endings(transition: Transition) -> Iterator[Transition]:
+def _possible_endings(transition: Transition) -> Iterator[Transition]:
     """The step as a collision, as an arrival and as the last one."""
     after = EpisodeState.of(transition.after)
     unhurt = replace(after, hit=np.zeros_like(after.hit))

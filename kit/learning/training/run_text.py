@@ -56,11 +56,11 @@ def _format_evaluation(event: Evaluated) -> str:
     reason = f"; {event.reason}" if event.reason else ""
     return (
         f"{event.steps:>11,} steps  {event.seconds:7.1f} s  TEST mean {mean:.3f}, worst {shares[case]:.3f} "
-        f"({case}){kept}{_told(event.measures)}{reason}"
+        f"({case}){kept}{_measures_told(event.measures)}{reason}"
     )
 
 
-def _told(measures: Mapping[str, float]) -> str:
+def _measures_told(measures: Mapping[str, float]) -> str:
     """The measures, but for what rewards can pay."""
     shown = {name: number for name, number in measures.items() if name != VALUE_PAYABLE}
     return f"; {format_measures(shown)}" if shown else ""

@@ -159,10 +159,21 @@ def _run_cells(each: RunOverview) -> tuple[Cell, ...]:
     left = "" if each.remaining_s is None else ToneText(format_seconds(each.remaining_s), Tone.BOLD)
     state = ToneText(summary.state, STATE_TONES[summary.state])
     time = f"{summary.seconds:.1f} s"
-    return (name, state, disk, f"{summary.steps:,}", best, worst, _value(summary), time, left, each.reward)
+    return (
+        name,
+        state,
+        disk,
+        f"{summary.steps:,}",
+        best,
+        worst,
+        _best_value_cell(summary),
+        time,
+        left,
+        each.reward,
+    )
 
 
-def _value(summary: TrainingSummary) -> Cell:
+def _best_value_cell(summary: TrainingSummary) -> Cell:
     """The largest value, marked where rewards cannot pay it."""
     if VALUE_MAX not in summary.measures:
         return None

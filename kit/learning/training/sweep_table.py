@@ -71,10 +71,12 @@ def sweep_rows(sweep: TrainingSweep, goal: float | None = None) -> tuple[SweepRo
     groups: dict[SweepGroup, list[SweepEntry]] = {}
     for entry in sweep.entries():
         groups.setdefault(entry.group, []).append(entry)
-    return tuple(_row(sweep, group, entries, goal) for group, entries in groups.items())
+    return tuple(_table_row(sweep, group, entries, goal) for group, entries in groups.items())
 
 
-def _row(sweep: TrainingSweep, group: SweepGroup, entries: list[SweepEntry], goal: float | None) -> SweepRow:
+def _table_row(
+    sweep: TrainingSweep, group: SweepGroup, entries: list[SweepEntry], goal: float | None
+) -> SweepRow:
     config = entries[0].config
     goal = goal or config.choice.resolve().success or DEFAULT_GOAL
     results = [result for entry in entries if (result := sweep.result(entry.key)) and not result.problem]
@@ -99,13 +101,13 @@ def sweep_table(rows: Sequence[SweepRow]) -> Table:
     columns += [Column(name, decimals=2) for name in own]
     if any(len(row.results) < row.seeds for row in rows):
         columns.append(Column("missing"))
-    cells = tuple((*(row.group[n] for n in shown), *_figures(row, own))[: len(columns)] for row in rows)
+    cells = tuple((*(row.group[n] for n in shown), *_measure_cells(row, own))[: len(columns)] for row in rows)
     goals = " or ".join(f"{goal:g}" for goal in sorted({row.goal for row in rows}))
     note = f"learned: seeds whose worst case has a success rate of {goals} or more."
     return Table("sweep", "", tuple(columns), cells, note, is_ruled=False)
 
 
-def _figures(row: SweepRow, metrics: Sequence[str]) -> tuple[Cell, ...]:
+def _measure_cells(row: SweepRow, metrics: Sequence[str]) -> tuple[Cell, ...]:
     results, missing = row.results, row.seeds - len(row.results)
     if not results:
         return (f"0 of {row.seeds}", *[None] * (5 + len(metrics)), missing)
@@ -125,9 +127,9 @@ def sweep_table_csv(sweep: TrainingSweep) -> str:
     """A table for other programs: a row for each training."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    own = tuple(dict.fromkeys(name for _, result in _known(sweep) for name in result.metrics))
+    own = tuple(dict.fromkeys(name for _, result in _tested_entries(sweep) for name in result.metrics))
     writer.writerow((*CSV_HEADER, *own))
-    for entry, result in _known(sweep):
+    for entry, result in _tested_entries(sweep):
         found = (result.steps, result.seconds, result.mean, result.worst, result.worst_case)
         writer.writerow(
             (
@@ -147,12 +149,12 @@ def problems(sweep: TrainingSweep) -> list[str]:
     """A line for each training that has failed."""
     return [
         f"{', '.join(entry.group)}, seed {entry.config.seed}: {result.problem}"
-        for entry, result in _known(sweep)
+        for entry, result in _tested_entries(sweep)
         if result.problem
     ]
 
 
-def _known(sweep: TrainingSweep) -> Iterator[tuple[SweepEntry, SweepResult]]:
+def _tested_entries(sweep: TrainingSweep) -> Iterator[tuple[SweepEntry, SweepResult]]:
     for entry in sweep.entries():
         result = sweep.result(entry.key)
         if result is not None:

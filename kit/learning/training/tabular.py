@@ -63,12 +63,12 @@ class TableLearner(ABC):
     def learn(self, steps: int, callback: TrainingCallback) -> None:
         """Drives all worlds and learns from every step."""
         state, recorder = self._table.states(self._batch.reset()), EpisodeStatsRecorder(self._batch)
-        action = self._choose(state, steps)
+        action = self._choose_actions(state, steps)
         while self._steps < steps:
             callback.between_updates()
             step = self._batch.step(action)
             reached_state = self._table.states(step.final_observations())
-            next_action = self._choose(reached_state, steps)
+            next_action = self._choose_actions(reached_state, steps)
             self._update(state, action, step, reached_state, next_action, 1 - self._steps / steps)
             self._steps += self._batch.n
             self._recent.add(step.observations, step.rewards, step.ended)
@@ -76,7 +76,7 @@ class TableLearner(ABC):
                 callback.on_episode_end(episode)
             # Where no episode ends, the next one's first observation is none of them.
             state = self._table.states(step.observations) if step.ended.any() else reached_state
-            action = np.where(step.ended, self._choose(state, steps), next_action)
+            action = np.where(step.ended, self._choose_actions(state, steps), next_action)
 
     def _update(
         self,
@@ -108,7 +108,7 @@ class TableLearner(ABC):
     def next_value(self, state: IntArray, action: IntArray) -> FloatArray:
         """The value of the next state, where ``action`` will be taken in it."""
 
-    def _choose(self, state: IntArray, steps: int) -> IntArray:
+    def _choose_actions(self, state: IntArray, steps: int) -> IntArray:
         """The best action, or now and then any."""
         epsilon = self._settings.epsilon.value_at(max(0.0, 1 - self._steps / steps))
         anything = self._rng.integers(self._values.shape[1], size=len(state))

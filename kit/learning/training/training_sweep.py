@@ -115,7 +115,7 @@ class TrainingSweep(JobFolder):
         write_atomically(manifest, text)
         return sweep
 
-    def _manifest(self) -> dict[str, Any]:
+    def _read_manifest(self) -> dict[str, Any]:
         try:
             content: dict[str, Any] = json.loads((self.folder / "manifest.json").read_bytes())
         except (OSError, ValueError):
@@ -125,11 +125,11 @@ class TrainingSweep(JobFolder):
     @property
     def episodes(self) -> int:
         """Episodes per case in the final test."""
-        return int(self._manifest()["episodes"])
+        return int(self._read_manifest()["episodes"])
 
     def entries(self) -> tuple[SweepEntry, ...]:
         """Every training, in order. RunError if the folder holds no sweep."""
-        content = self._manifest()
+        content = self._read_manifest()
         found = []
         for each in content["runs"]:
             told = json.dumps([each, content["episodes"]], sort_keys=True).encode()
@@ -199,22 +199,22 @@ class TrainingSweep(JobFolder):
             time.sleep(0.1)  # the process of a sweep that was killed is about to end
         try:
             ended = run.summary() if run.summary().state == "finished" else None
-            problem = "" if ended else self._train(run, interrupted)
-            result = SweepResult(problem=problem) if problem else self._test(run)
+            problem = "" if ended else self._train_run(run, interrupted)
+            result = SweepResult(problem=problem) if problem else self._test_run(run)
         except RunError as error:
             result = SweepResult(problem=str(error))
-        self._save(key, result)
+        self._save_result(key, result)
 
     def record_loss(self, key: str) -> None:
         if self.result(key) is None:
-            self._save(key, SweepResult(problem="its process died twice; is there enough memory?"))
+            self._save_result(key, SweepResult(problem="its process died twice; is there enough memory?"))
 
-    def _train(self, run: TrainingRun, interrupted: Callable[[], bool]) -> str:
+    def _train_run(self, run: TrainingRun, interrupted: Callable[[], bool]) -> str:
         """Trains to the end; why it failed."""
         ended = train(run, interrupted=interrupted)
         return ended.reason if ended.how == "failed" else ""
 
-    def _test(self, run: TrainingRun) -> SweepResult:
+    def _test_run(self, run: TrainingRun) -> SweepResult:
         config, summary = run.config(), run.summary()
         policy = run.policy()
         seed = derive_seed(config.seed, "training sweep")
@@ -230,7 +230,7 @@ class TrainingSweep(JobFolder):
             metrics=found.metrics,
         )
 
-    def _save(self, key: str, result: SweepResult) -> None:
+    def _save_result(self, key: str, result: SweepResult) -> None:
         write_atomically(self._result_file(key), json.dumps(asdict(result)).encode())
 
     def _result_file(self, key: str) -> Path:

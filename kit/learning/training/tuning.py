@@ -79,7 +79,7 @@ def tune(
     configs: dict[Settings, list[RunConfig]] = {}
     while True:
         asked = [study.ask(distributions) for _ in range(min(TRIALS_AT_ONCE, trials - len(study.trials)))]
-        proposed = [(*config.settings, *_rounded(trial.params, ranges)) for trial in asked]
+        proposed = [(*config.settings, *_round_fractions(trial.params, ranges)) for trial in asked]
         for settings in proposed:  # what is proposed twice is trained once
             configs[settings] = [replace(config, settings=settings, seed=seed) for seed in seeds]
         sweep = TrainingSweep.prepare(
@@ -109,7 +109,7 @@ def _distributions(config: RunConfig, ranges: Sequence[SettingRange]) -> dict[st
     }
 
 
-def _rounded(proposed: Mapping[str, float], ranges: Sequence[SettingRange]) -> Settings:
+def _round_fractions(proposed: Mapping[str, float], ranges: Sequence[SettingRange]) -> Settings:
     """Fractions to three digits, which is as exact as anything is found in a few trials, and can be read."""
     return tuple(
         (

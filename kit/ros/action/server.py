@@ -265,7 +265,7 @@ class ActionServer:
         self._goal_callback = _checked(goal_callback, default_goal_callback, "goal callback")
 
     def register_cancel_callback(self, cancel_callback: Callable[[ServerGoalHandle], Any] | None) -> None:
-        """Sets what decides about the wish to cancel a goal; None: it is refused."""
+        """Sets the function that decides about requests to cancel a goal; None: they are refused."""
         self._cancel_callback = _checked(cancel_callback, default_cancel_callback, "cancel callback")
 
     def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], Any]) -> None:

@@ -109,7 +109,7 @@ def parse_ros_arguments(args: Iterable[str]) -> RosArguments:
         if flag in ("-r", "--remap"):
             remappings.append(_remapping(_value(rest, flag)))
         elif flag in ("-p", "--param"):
-            parameters.append(_parameter(_value(rest, flag)))
+            parameters.append(_parse_parameter(_value(rest, flag)))
         elif flag == "--params-file":
             parameters += _file(_value(rest, flag))
         elif flag == "--log-level":
@@ -170,7 +170,7 @@ def _remapping(text: str) -> Remapping:
     return Remapping(match, replacement, node, kind)
 
 
-def _parameter(text: str) -> GivenParameters:
+def _parse_parameter(text: str) -> GivenParameters:
     from kit.ros.parameters.parameter_files import parse_value
 
     node, name, value = _split_rule(text, "-p", "name:=value or node:name:=value")

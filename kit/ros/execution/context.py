@@ -174,7 +174,7 @@ def set_default_graph(graph: Graph | None) -> None:
 
 
 def set_default_graph_finder(find_graph: Callable[[], Graph] | None) -> None:
-    """The same with a graph that is found when a program first needs it: ``find_graph`` is called for each default
+    """Sets a graph that is found when a program first needs it: ``find_graph`` is called for each default
     context, and may wait."""
     with _DEFAULT.lock:
         _DEFAULT.find_graph = find_graph

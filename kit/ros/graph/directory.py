@@ -39,7 +39,7 @@ class Excess(NamedTuple):
     largest: str
 
 
-class GraphNode(Protocol):
+class NodeLike(Protocol):
     """The part of a Node that the graph and its listeners use."""
 
     @property
@@ -56,7 +56,7 @@ class NodeEntry(Protocol):
     """The part of a NodeEntry that the directory needs."""
 
     @property
-    def node(self) -> GraphNode: ...
+    def node(self) -> NodeLike: ...
 
     @property
     def name(self) -> str: ...

@@ -26,7 +26,7 @@ from weakref import WeakSet
 from kit.ros.exceptions import NodeFailure, WouldDeadlock
 from kit.ros.execution.callback_groups import TakenWork
 from kit.ros.execution.task import Task
-from kit.ros.graph.directory import Directory, GraphNode
+from kit.ros.graph.directory import Directory, NodeLike
 from kit.ros.graph.ready_queue import ReadyQueue, ThreadState
 from kit.ros.log import LoggerSettings, LogSink, log_to_stderr
 
@@ -68,7 +68,7 @@ class TimeJumpListener(Protocol):
     def after_jump(self, delta_ns: int) -> None: ...
 
 
-MessageListener = Callable[[int, GraphNode, str, Any], None]
+MessageListener = Callable[[int, NodeLike, str, Any], None]
 """``(time_ns, node, topic, message)``: called for every message published, every request and every response.
 
 The name of a request's or response's service takes the place of the topic. The message is the sender's own:
@@ -349,7 +349,7 @@ class Graph:
     # Nodes and listeners
 
     @property
-    def nodes(self) -> tuple[GraphNode, ...]:
+    def nodes(self) -> tuple[NodeLike, ...]:
         """Nodes in the order of their creation."""
         return tuple(handle.node for handle in self.directory.nodes)
 
@@ -371,7 +371,7 @@ class Graph:
 
         return stop
 
-    def notify_message_listeners(self, node: GraphNode, topic: str, message: Any) -> None:
+    def notify_message_listeners(self, node: NodeLike, topic: str, message: Any) -> None:
         """Calls the listeners for a message of ``node``. With the lock held."""
         for listener in self.message_listeners:
             listener(self.now_ns, node, topic, message)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from kit.msg.conversion import FieldValue, field_values
 from kit.msg.message import Message, type_name
 from kit.ros.graph.directory import (
-    GraphNode,
+    NodeLike,
 )
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ class TopicStats:
                 }
             )
 
-    def _count_message(self, time_ns: int, node: GraphNode, name: str, message: Message) -> None:
+    def _count_message(self, time_ns: int, node: NodeLike, name: str, message: Message) -> None:
         """Called for every message with the graph's lock held, so it must be quick."""
         flow = self._flow(node.handle.full_name, name, type_name(type(message)))
         counter = self._counters.get(flow)

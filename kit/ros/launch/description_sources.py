@@ -18,6 +18,7 @@ from kit.ros.launch.substitutions import (
 from kit.ros.launch.unavailable import require_available_path
 
 GENERATOR_FUNCTION: Final = "generate_launch_description"
+TEST_GENERATOR_FUNCTION: Final = "generate_test_description"
 MARKUP_SUFFIXES: Final = (".xml", ".yaml", ".yml")
 """Suffixes of launch files that are not in Python."""
 
@@ -56,7 +57,10 @@ def description_of(module: ModuleType) -> LaunchDescription:
     """Calls the module's ``generate_launch_description``. Raises LaunchError."""
     generate = getattr(module, GENERATOR_FUNCTION, None)
     if not callable(generate):
-        raise LaunchError(f"{module.__file__}: there is no {GENERATOR_FUNCTION}() in it")
+        hint = ""
+        if hasattr(module, TEST_GENERATOR_FUNCTION):
+            hint = f", but {TEST_GENERATOR_FUNCTION}(): it is a test for launch_testing, which the kit does not run"
+        raise LaunchError(f"{module.__file__}: there is no {GENERATOR_FUNCTION}() in it{hint}")
     description = generate()
     if not isinstance(description, LaunchDescription):
         raise LaunchError(

@@ -120,6 +120,11 @@ class SignalProcess(ProcessMatchingEvent):
         self.signal = signal_number
 
 
+def event_named(event_name: str) -> Callable[[Event], bool]:
+    """Returns a matcher for the events of this name, as ``launch.events.Shutdown``."""
+    return lambda event: event.name == event_name
+
+
 def matches_pid(pid: int) -> Callable[[Any], bool]:
     """Returns a matcher for the process of this number."""
     return lambda action: (action.process_details or {}).get("pid") == pid

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Any, Final, TypeVar
 
 from kit.ros.launch.context import LaunchContext
@@ -56,5 +57,22 @@ def ready_to_test_action_timeout(timeout: float) -> Callable[[Function], Functio
     def mark(function: Function) -> Function:
         function.__ready_to_test_action_timeout__ = timeout  # type: ignore[attr-defined]  # likewise
         return function
+
+    return mark
+
+
+def parametrize(
+    argnames: str | Iterable[str], argvalues: Iterable[Any]
+) -> Callable[[Function], Callable[[], list[tuple[Callable[..., Any], dict[str, Any]]]]]:
+    """Makes of a launch description's function one for each value, or tuple of values, of its arguments, as pytest's does."""
+    names = [name.strip() for name in argnames.split(",")] if isinstance(argnames, str) else list(argnames)
+
+    def mark(function: Function) -> Callable[[], list[tuple[Callable[..., Any], dict[str, Any]]]]:
+        def parametrized() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
+            sets = [dict(zip(names, [each] if len(names) == 1 else each, strict=True)) for each in argvalues]
+            return [(partial(function, **values), values) for values in sets]
+
+        parametrized.__parametrized__ = True  # type: ignore[attr-defined]  # what launch_testing looks for
+        return parametrized
 
     return mark

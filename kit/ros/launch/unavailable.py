@@ -63,7 +63,7 @@ def require_available(name: str) -> None:
 
 
 def require_available_path(path: str) -> None:
-    """The same for a path in the share folder of such a package."""
+    """As ``require_available``, for a path in the share folder of such a package."""
     if path.startswith(UNAVAILABLE_FOLDER + "/"):
         require_available(path.removeprefix(UNAVAILABLE_FOLDER + "/").partition("/")[0])
 

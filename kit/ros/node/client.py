@@ -9,7 +9,7 @@ from kit.msg.message import Service as Definition
 from kit.ros.exceptions import ExternalShutdownException, ServerGoneError, WouldDeadlock
 from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup, MutuallyExclusiveCallbackGroup
 from kit.ros.execution.task import Future
-from kit.ros.node.endpoint import Entity, EntityOwner
+from kit.ros.node.endpoint import CallbackEntity, EntityOwner
 from kit.ros.node.qos import QoSProfile
 from kit.ros.node.service import Call
 from kit.ros.node.service_introspection import (
@@ -30,7 +30,7 @@ _WARN_AFTER_NS = S_TO_NS
 """How long a blocking call waits before it warns that no thread may be spinning its node."""
 
 
-class Client(Entity, Generic[Request, Response]):
+class Client(CallbackEntity, Generic[Request, Response]):
     """Calls a service. ``Node.create_client`` makes one."""
 
     def __init__(

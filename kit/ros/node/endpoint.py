@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self, TypeVar
 from kit.msg.message import type_name
 from kit.ros.exceptions import InvalidHandle
 from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup
-from kit.ros.graph.directory import GraphEndpoint, GraphNode, NodeEntry
+from kit.ros.graph.directory import GraphEndpoint, NodeEntry, NodeLike
 from kit.ros.node.qos import QoSProfile
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class Destroyable(ABC):
         return self._handle
 
     @property
-    def node(self) -> GraphNode:
+    def node(self) -> NodeLike:
         """The node that made it."""
         return self._handle.node
 
@@ -77,7 +77,7 @@ class Destroyable(ABC):
             raise InvalidHandle(f"cannot use {self}: it has been destroyed")
 
 
-class Entity(Destroyable):
+class CallbackEntity(Destroyable):
     """Something with a callback: a ``ReadyItem``."""
 
     callback_group: CallbackGroup
@@ -98,7 +98,7 @@ class Entity(Destroyable):
         """Drops the work that waits in its queue. With the graph's lock held."""
 
 
-E = TypeVar("E", bound=Entity)
+E = TypeVar("E", bound=CallbackEntity)
 
 
 def register_entity(entities: list[E], entity: E) -> E:
@@ -160,7 +160,7 @@ class TopicEndpointInfo(NamedTuple):
         )
 
 
-class GuardCondition(Entity):
+class GuardCondition(CallbackEntity):
     """Calls its callback once after ``trigger()``. ``Node.create_guard_condition`` makes one."""
 
     def __init__(

@@ -15,7 +15,7 @@ from enum import IntEnum
 from typing import Any, NamedTuple
 
 from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup, ReentrantCallbackGroup
-from kit.ros.node.endpoint import Entity, EntityOwner, accepted_argument_count
+from kit.ros.node.endpoint import CallbackEntity, EntityOwner, accepted_argument_count
 from kit.ros.node.qos import QoSPolicyKind, QoSProfile
 
 EventCallback = Callable[[Any], Any]
@@ -124,7 +124,7 @@ class SubscriptionEventCallbacks:
     use_default_callbacks: bool = True
 
 
-class EventHandler(Entity):
+class EventHandler(CallbackEntity):
     """Calls one event callback with the status, and counts what happens until then."""
 
     def __init__(
@@ -178,7 +178,7 @@ class EventHandler(Entity):
         self._is_queued = False
 
 
-class DeadlineWatch(Entity):
+class DeadlineWatch(CallbackEntity):
     """Counts the deadlines in which no message came. Begins with the first message."""
 
     def __init__(self, handler: EventHandler, handle: EntityOwner, period_ns: int) -> None:

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any
 from kit.msg.message import type_name
 from kit.ros.exceptions import NodeNameNonExistentError
 from kit.ros.graph.action_names import NamesAndTypes, action_names_and_types, called_actions, served_actions
-from kit.ros.graph.directory import GraphNode, NodeEntry
+from kit.ros.graph.directory import NodeEntry, NodeLike
 from kit.ros.graph.naming import expand_topic_name, full_name, validate_topic_name
 from kit.ros.graph.ready_queue import ReadyQueue
 from kit.ros.node.endpoint import (
+    CallbackEntity,
     Destroyable,
-    Entity,
     GuardCondition,
     TopicEndpointInfo,
     TopicEndpointTypeEnum,
@@ -48,7 +48,7 @@ class NodeHandle:
     logger: RcutilsLogger
 
     def __init__(
-        self, node: GraphNode, context: Context, arguments: RosArguments, name: str, namespace: str
+        self, node: NodeLike, context: Context, arguments: RosArguments, name: str, namespace: str
     ) -> None:
         self.node = node
         self.context = context
@@ -136,7 +136,7 @@ class NodeHandle:
 
     def discard_queues(self) -> None:
         """Drops all queued messages, requests and responses. With the graph's lock held."""
-        entities: list[Entity] = [*self.subscriptions, *self.clients, *self.services]
+        entities: list[CallbackEntity] = [*self.subscriptions, *self.clients, *self.services]
         for entity in entities:
             entity.discard_queue()
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 from kit.msg.message import Service as Definition
 from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup
 from kit.ros.graph.directory import ServiceClient
-from kit.ros.node.endpoint import Entity, EntityOwner, accepted_argument_count
+from kit.ros.node.endpoint import CallbackEntity, EntityOwner, accepted_argument_count
 from kit.ros.node.qos import QoSProfile
 from kit.ros.node.service_introspection import (
     ServiceEventKind,
@@ -34,7 +34,7 @@ class Call(NamedTuple):
     request: Any
 
 
-class Service(Entity, Generic[Request, Response]):
+class Service(CallbackEntity, Generic[Request, Response]):
     """Answers requests. ``Node.create_service`` makes one.
 
     The callback ``(request, response) -> response`` may be a coroutine: then the response is sent later.

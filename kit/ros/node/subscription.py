@@ -9,7 +9,7 @@ from typing import Any, Generic, TypedDict, TypeVar
 
 from kit.msg.message import Message
 from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup
-from kit.ros.node.endpoint import Entity, EntityOwner, accepted_argument_count
+from kit.ros.node.endpoint import CallbackEntity, EntityOwner, accepted_argument_count
 from kit.ros.node.events import EndpointEvents, EventHandler, SubscriptionEventCallbacks
 from kit.ros.node.qos import QoSProfile
 
@@ -25,7 +25,7 @@ class MessageInfo(TypedDict):
     reception_sequence_number: int | None
 
 
-class Subscription(Entity, Generic[M]):
+class Subscription(CallbackEntity, Generic[M]):
     """Receives messages of one type from a topic. ``Node.create_subscription`` makes one.
 
     Its queue holds as many messages as its quality of service says; when it is full, the oldest one is dropped.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kit.ros.exceptions import InvalidHandle, ROSInterruptException, WouldDeadlock
 from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup
-from kit.ros.node.endpoint import Destroyable, Entity, EntityOwner, accepted_argument_count
+from kit.ros.node.endpoint import CallbackEntity, Destroyable, EntityOwner, accepted_argument_count
 from kit.ros.node.time import Time
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ class TimerInfo(NamedTuple):
     actual_call_time: Time
 
 
-class Timer(Entity):
+class Timer(CallbackEntity):
     """Calls back every period. ``Node.create_timer`` makes one."""
 
     def __init__(

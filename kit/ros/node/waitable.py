@@ -115,7 +115,7 @@ class GuardConditionHandle:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Nothing to do: it was not in danger."""
+        """Does nothing: the kit's guard conditions hold nothing that could be freed."""
 
 
 class WaitSet:

@@ -139,23 +139,23 @@ def grid_rows(grid: Grid, signs: Mapping[Cell, tuple[str, str]], scale: int = 1)
     from the drawing."""
 
     def shown(row: int, column: int, part: int) -> tuple[str, str]:
-        sign, style = signs.get((row, column)) or _plain(grid[row][column])
+        sign, style = signs.get((row, column)) or _plain_square(grid[row][column])
         if sign == FULL:
             return sign * 2 * scale, style
         return (sign if part == scale // 2 else " ").center(2 * scale - 1) + " ", style
 
     return [
-        (("  ", ""), *_joined(shown(row, column, part) for column in range(len(line))))
+        (("  ", ""), *_join_by_style(shown(row, column, part) for column in range(len(line))))
         for row, line in enumerate(grid)
         for part in range(scale)
     ]
 
 
-def _plain(sign: str) -> tuple[str, str]:
+def _plain_square(sign: str) -> tuple[str, str]:
     return (FULL, "dim") if sign == WALL else (sign, "")
 
 
-def _joined(cells: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+def _join_by_style(cells: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     """Neighbours of one style as one text."""
     return [
         ("".join(text for text, _ in group), style)

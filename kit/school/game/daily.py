@@ -94,7 +94,7 @@ class DailyLevel(GameLevel):
         drawn, walls = self.map, wall_segments(self.map)
         case, robot = base.case, base.robot
         assert case is not None  # every level has one
-        start, target = start_pose(drawn), _middle(drawn.way[-1])
+        start, target = start_pose(drawn), _middle_of_cell(drawn.way[-1])
         layers = tuple(
             layer
             if layer.walls is None
@@ -119,7 +119,7 @@ class DailyLevel(GameLevel):
 def daily_level(day: datetime.date) -> GameLevel:
     """The level of a day; in fog on some days. It is always open."""
     base = find_level(BASE_LEVEL)
-    fog = _random(day).random() < 0.4
+    fog = _random_of_day(day).random() < 0.4
     reference = daily_drive(daily_map(day))
     return DailyLevel(
         id=f"{DAILY_PREFIX}{day.isoformat()}",
@@ -138,22 +138,22 @@ def daily_level(day: datetime.date) -> GameLevel:
     )
 
 
-def _random(day: datetime.date) -> random.Random:
+def _random_of_day(day: datetime.date) -> random.Random:
     return random.Random(day.toordinal())
 
 
 @cache
 def daily_map(day: datetime.date) -> DailyMap:
     """The map of a day: a spanning tree of cells (randomized depth-first search) with some walls taken out again."""
-    chance = _random(day)
+    chance = _random_of_day(day)
     chance.random()  # the first one decides about fog
     while True:
         columns, rows = chance.randint(*COLUMNS), chance.randint(*ROWS)
-        openings = _maze(chance, columns, rows)
+        openings = _draw_maze(chance, columns, rows)
         start = (0, chance.randrange(rows))
         before = _search(openings, start)
-        far = max(before, key=lambda cell: (len(_way(before, cell)), cell))
-        way = _way(before, far)
+        far = max(before, key=lambda cell: (len(_path_to(before, cell)), cell))
+        way = _path_to(before, far)
         bends = sum(
             _direction(a, b) != _direction(b, c) for a, b, c in zip(way, way[1:], way[2:], strict=False)
         )
@@ -161,7 +161,7 @@ def daily_map(day: datetime.date) -> DailyMap:
             return DailyMap(columns, rows, frozenset(openings), tuple(way))
 
 
-def _maze(chance: random.Random, columns: int, rows: int) -> set[tuple[Cell, Cell]]:
+def _draw_maze(chance: random.Random, columns: int, rows: int) -> set[tuple[Cell, Cell]]:
     openings: set[tuple[Cell, Cell]] = set()
     stack, seen = [(0, 0)], {(0, 0)}
     while stack:
@@ -200,7 +200,7 @@ def _search(openings: set[tuple[Cell, Cell]], start: Cell) -> dict[Cell, Cell | 
     return before
 
 
-def _way(before: dict[Cell, Cell | None], end: Cell) -> list[Cell]:
+def _path_to(before: dict[Cell, Cell | None], end: Cell) -> list[Cell]:
     way: list[Cell] = []
     cell: Cell | None = end
     while cell is not None:
@@ -213,13 +213,13 @@ def _direction(a: Cell, b: Cell) -> tuple[int, int]:
     return b[0] - a[0], b[1] - a[1]
 
 
-def _middle(cell: Cell) -> tuple[float, float]:
+def _middle_of_cell(cell: Cell) -> tuple[float, float]:
     return (cell[0] + 0.5) * CELL, (cell[1] + 0.5) * CELL
 
 
 def start_pose(drawn: DailyMap) -> Pose:
     """In the middle of the first cell, towards the second one."""
-    x, y = _middle(drawn.way[0])
+    x, y = _middle_of_cell(drawn.way[0])
     dx, dy = _direction(drawn.way[0], drawn.way[1])
     return Pose(x, y, math.atan2(dy, dx))
 
@@ -255,14 +255,14 @@ def daily_drive(drawn: DailyMap) -> ReferenceDrive:
     """The reference drive of a map: pure pursuit along the middles of the cells at full speed, which cuts bends by as much as
     the walls leave room for. That it arrives and touches nothing proves the map drivable."""
     walls = wall_segments(drawn)
-    tried = [_pursue(drawn, lookahead) for lookahead in LOOKAHEADS]
-    safe = [drive for drive, places in tried if _clearance(places, walls) >= LEAST_CLEARANCE]
+    tried = [_pursue_path(drawn, lookahead) for lookahead in LOOKAHEADS]
+    safe = [drive for drive, places in tried if _least_clearance(places, walls) >= LEAST_CLEARANCE]
     return min(safe, key=lambda drive: drive.seconds)
 
 
-def _pursue(drawn: DailyMap, lookahead: float) -> tuple[ReferenceDrive, FloatArray]:
+def _pursue_path(drawn: DailyMap, lookahead: float) -> tuple[ReferenceDrive, FloatArray]:
     """The commands of a pursuit, and (k, 2) its places [m]; the motors' model is exact, so the simulator drives the same."""
-    corners = np.array([_middle(cell) for cell in drawn.way])
+    corners = np.array([_middle_of_cell(cell) for cell in drawn.way])
     count = round(CELL / POINT_STEP)
     points = np.concatenate(
         [np.linspace(first, second, count, endpoint=False) for first, second in pairwise(corners)]
@@ -286,7 +286,7 @@ def _pursue(drawn: DailyMap, lookahead: float) -> tuple[ReferenceDrive, FloatArr
     return ReferenceDrive(tuple(commands), round(len(commands) * dt, 3)), np.array(places)
 
 
-def _clearance(places: FloatArray, walls: FloatArray) -> float:
+def _least_clearance(places: FloatArray, walls: FloatArray) -> float:
     """The least distance of places (k, 2) from walls (n, 4) [m]."""
     starts, ends = walls[:, :2], walls[:, 2:]
     along = ends - starts

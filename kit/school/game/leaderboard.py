@@ -178,23 +178,23 @@ def read_entries(folder: Path, levels: Sequence[GameLevel] | None = None) -> lis
     """Judges the drives of all who have joined, by default on all levels and that of the day; sorted by level and time.
     Passes over what may not stand there, and what is another's drive by hand. Takes about a second for twenty drives that were not judged before."""
     entries, former = [], []
-    for user, name in _names(folder).items():
+    for user, name in _user_names(folder).items():
         for level in levels if levels is not None else (*all_levels(), daily_level(today())):
             for driver in DriverKind:
                 file = _drive_file(folder, user, level.id, driver)
-                judged = _judged(file, user, level, driver)
+                judged = _judge_shared_drive(file, user, level, driver)
                 if judged is not None:
-                    entries.append(_entry(name, user, level, driver, *judged))
+                    entries.append(_make_entry(name, user, level, driver, *judged))
                 former += [
-                    _entry(name, user, level, driver, *judged)
+                    _make_entry(name, user, level, driver, *judged)
                     for each in _former_files(file)
-                    if (judged := _judged(each, user, level, driver)) is not None
+                    if (judged := _judge_shared_drive(each, user, level, driver)) is not None
                 ]
     told = _without_copies(entries, former)
     return sorted(told, key=lambda each: (each.level, each.seconds, bool(each.copy_of), each.name))
 
 
-def _entry(
+def _make_entry(
     name: str, user: int, level: GameLevel, driver: DriverKind, judged: JudgedDrive, since_ns: int
 ) -> LeaderboardEntry:
     return LeaderboardEntry(
@@ -221,7 +221,7 @@ def users_of(folder: Path) -> Iterator[int]:
                 yield int(file.stem)
 
 
-def _names(folder: Path) -> dict[int, str]:
+def _user_names(folder: Path) -> dict[int, str]:
     """The names of the users who have joined; where several have one name, it is told whose it is."""
     names = {user: name for user in users_of(folder) if (name := _read_name(folder, user)) is not None}
     taken = Counter(name.casefold() for name in names.values())
@@ -247,11 +247,13 @@ def _former_files(file: Path) -> list[Path]:
     return []
 
 
-def _judged(file: Path, user: int, level: GameLevel, driver: DriverKind) -> tuple[JudgedDrive, int] | None:
+def _judge_shared_drive(
+    file: Path, user: int, level: GameLevel, driver: DriverKind
+) -> tuple[JudgedDrive, int] | None:
     """A user's shared drive of a level, run again, and since when it stands there [ns]; None if there is none that may."""
     try:
         content, since_ns = read_own(file, user, MAX_FILE_BYTES), file.lstat().st_ctime_ns
-        judged = _judge(content, level, driver)
+        judged = _judge_once(content, level, driver)
     except (OSError, DriveRefused):
         return None
     return None if judged is None else (judged, since_ns)
@@ -300,7 +302,7 @@ def _is_same_way(one: LeaderboardEntry, other: LeaderboardEntry) -> bool:
 
 
 @lru_cache(MAX_JUDGED)
-def _judge(content: bytes, level: GameLevel, driver: DriverKind) -> JudgedDrive | None:
+def _judge_once(content: bytes, level: GameLevel, driver: DriverKind) -> JudgedDrive | None:
     """Judges the content of a file once; None if it is refused."""
     with suppress(DriveRefused):
         return judge_shared_drives(content, level, driver)

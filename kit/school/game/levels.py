@@ -78,7 +78,7 @@ def apply_conditions(
     driven = set(scenario.partners)
     limits = motors or (PAIR_SPEED if len(driven) > 1 else SPEED, TURN_RATE)
     models = [
-        replace(model, plugins=tuple(_limited(each, conditions, limits) for each in model.plugins))
+        replace(model, plugins=tuple(_limit_drive(each, conditions, limits) for each in model.plugins))
         if model.name in driven
         else model
         for model in world.models
@@ -86,11 +86,11 @@ def apply_conditions(
     file = maps_folder().joinpath(*CART_MODEL)
     for cart in conditions.carts:
         model = load_model(file, world, name=cart.name, namespace=cart.name, pose=cart.start)
-        models.append(_moving(model, cart))
+        models.append(_moving_cart(model, cart))
     return replace(scenario, world=replace(world, models=tuple(models)))
 
 
-def _limited(plugin: PluginSpec, conditions: LevelConditions, motors: tuple[float, float]) -> PluginSpec:
+def _limit_drive(plugin: PluginSpec, conditions: LevelConditions, motors: tuple[float, float]) -> PluginSpec:
     """A drive's plugin with the level's motors and odometry; any other as it is."""
     params = plugin.params
     if not isinstance(params, DiffDriveParams | TricycleDriveParams):
@@ -107,7 +107,7 @@ def _limited(plugin: PluginSpec, conditions: LevelConditions, motors: tuple[floa
     return replace(plugin, params=replace(params, linear=linear, angular=angular, odometry=odometry))
 
 
-def _moving(model: Model, cart: MovingCart) -> Model:
+def _moving_cart(model: Model, cart: MovingCart) -> Model:
     """A cart's model with the way of one cart."""
     plugins = tuple(
         replace(plugin, params=replace(plugin.params, delta=cart.delta, duration=cart.duration))
@@ -250,9 +250,11 @@ def opened_levels_text(levels: tuple[GameLevel, ...]) -> str:
     if not levels:
         return ""
     if len(levels) == 1:
-        return f"It opens the level {levels[0].title} of the game. To drive it: kit game play {levels[0].id}"
+        return (
+            f"It opens the level {levels[0].title} of the game. To drive it: `kit game play {levels[0].id}`"
+        )
     titles = ", ".join(level.title for level in levels[:-1])
-    return f"It opens the levels {titles} and {levels[-1].title} of the game: kit game"
+    return f"It opens the levels {titles} and {levels[-1].title} of the game: `kit game`"
 
 
 def find_level(name: str, levels: tuple[GameLevel, ...] | None = None) -> GameLevel:

@@ -48,7 +48,7 @@ class Objective:
         self._begin(np.array([scenario.starts], dtype=np.float64))
 
     def _begin(self, poses: FloatArray) -> None:
-        """Nothing is achieved yet; ``poses`` (1, robots, 3)."""
+        """Sets the count to nothing achieved; ``poses`` (1, robots, 3)."""
         self.reached_s: float | None = None
         """When it was achieved [simulated s]."""
         self.splits: tuple[float, ...] = ()

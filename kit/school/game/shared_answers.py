@@ -32,21 +32,21 @@ def publish_answer(folder: Path, challenge: Challenge, answer: str) -> None:
     if challenge.task.board("") is None or not leaderboard.has_joined(folder):
         return
     with suppress(OSError, ValueError):  # the medal counts without it
-        _publish(folder, challenge, challenge.task.shared_text(answer))
+        _publish_answer(folder, challenge, challenge.task.shared_text(answer))
 
 
-def _publish(folder: Path, challenge: Challenge, text: str) -> None:
-    new = _judge(challenge.id, text)
+def _publish_answer(folder: Path, challenge: Challenge, text: str) -> None:
+    new = _judge_once(challenge.id, text)
     if new is None:
         return
-    old = _shared(folder, challenge, os.getuid())
+    old = _shared_answer(folder, challenge, os.getuid())
     if old is not None and (new.answer <= old.answer if new.more_is_better else new.answer >= old.answer):
         return
-    write_atomically(_file(folder, challenge, os.getuid()), text.encode())
+    write_atomically(_answer_file(folder, challenge, os.getuid()), text.encode())
 
 
 def publish_answers(folder: Path, workspace: Workspace, challenges: tuple[Challenge, ...]) -> None:
-    """The same for every answer that the workspace holds."""
+    """Publishes every answer that the workspace holds."""
     for challenge in challenges:
         file = answers_folder(workspace) / challenge.id / challenge.task.answer_file
         if challenge.task.answer_file and file.is_file():
@@ -56,7 +56,7 @@ def publish_answers(folder: Path, workspace: Workspace, challenges: tuple[Challe
 
 def figures_needed(folder: Path, challenge: Challenge) -> list[float]:
     """What everybody who has joined needed, of those whose answer earns a medal: lasers, moves, ticks or what else its unit is."""
-    found = (_shared(folder, challenge, user) for user in leaderboard.users_of(folder))
+    found = (_shared_answer(folder, challenge, user) for user in leaderboard.users_of(folder))
     return [each.answer for each in found if each is not None]
 
 
@@ -70,17 +70,17 @@ def share_answer(challenge: Challenge, answer: str, judgement: Judgement) -> tup
     return histogram(figures_needed(folder, challenge), judgement.comparison.answer)
 
 
-def _shared(folder: Path, challenge: Challenge, user: int) -> AnswerComparison | None:
+def _shared_answer(folder: Path, challenge: Challenge, user: int) -> AnswerComparison | None:
     """A user's shared answer beside others; None if there is none that earns a medal."""
     try:
-        content = leaderboard.read_own(_file(folder, challenge, user), user, MAX_ANSWER_BYTES)
-        return _judge(challenge.id, content.decode())
+        content = leaderboard.read_own(_answer_file(folder, challenge, user), user, MAX_ANSWER_BYTES)
+        return _judge_once(challenge.id, content.decode())
     except (OSError, UnicodeDecodeError):
         return None
 
 
 @lru_cache(MAX_JUDGED)
-def _judge(name: str, text: str) -> AnswerComparison | None:
+def _judge_once(name: str, text: str) -> AnswerComparison | None:
     """Judges an answer once; None for one that earns no medal, and for a challenge without a board."""
     task = find_challenge(name).task
     if len(text.encode()) > MAX_ANSWER_BYTES or task.board("") is None:
@@ -91,5 +91,5 @@ def _judge(name: str, text: str) -> AnswerComparison | None:
     return None
 
 
-def _file(folder: Path, challenge: Challenge, user: int) -> Path:
+def _answer_file(folder: Path, challenge: Challenge, user: int) -> Path:
     return folder / f"{user}.{challenge.id}.txt"

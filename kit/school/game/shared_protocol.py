@@ -105,10 +105,10 @@ def parse_from_guest(frame: Json) -> JoinRequest | KeyPush | RematchRequest:
     if kind == "join":
         version, name, plays = items(rest, 3)
         _check_version(version)
-        return JoinRequest(_name(name), boolean(plays))
+        return JoinRequest(_read_name(name), boolean(plays))
     if kind == "push":
         linear, angular = items(rest, 2)
-        return KeyPush(_share(linear), _share(angular))
+        return KeyPush(_read_share(linear), _read_share(angular))
     if kind == "again":
         items(rest, 0)
         return RematchRequest()
@@ -122,7 +122,10 @@ def parse_from_host(frame: Json) -> GameOffer | SharedGameState:
         version, level, mode, name, plays = items(rest, 5)
         _check_version(version)
         return GameOffer(
-            text(level, MAX_LEVEL_NAME), SharedMode(_one_of(mode, SharedMode)), _name(name), boolean(plays)
+            text(level, MAX_LEVEL_NAME),
+            SharedMode(_one_of(mode, SharedMode)),
+            _read_name(name),
+            boolean(plays),
         )
     if kind == "state":
         phase, seconds, poses, scores, catcher, winner, names, asks_again, watching = items(rest, 9)
@@ -130,14 +133,14 @@ def parse_from_host(frame: Json) -> GameOffer | SharedGameState:
             raise ProtocolError(f"more than {MAX_WATCHING} spectators")
         return SharedGameState(
             SharedPhase(_one_of(phase, SharedPhase)),
-            _limited(seconds, MAX_SECONDS),
-            tuple(_pose(each) for each in items(poses, PLAYERS)),
-            tuple(_limited(each, MAX_SECONDS) for each in items(scores, PLAYERS)),
-            _player(catcher),
-            _player(winner),
+            _read_bounded(seconds, MAX_SECONDS),
+            tuple(_read_pose(each) for each in items(poses, PLAYERS)),
+            tuple(_read_bounded(each, MAX_SECONDS) for each in items(scores, PLAYERS)),
+            _read_player(catcher),
+            _read_player(winner),
             tuple(text(each, MAX_PLAYER_NAME) for each in items(names, PLAYERS)),
             boolean(asks_again),
-            tuple(_name(each) for each in items(watching)),
+            tuple(_read_name(each) for each in items(watching)),
         )
     raise ProtocolError("a frame of an unknown kind")
 
@@ -154,26 +157,26 @@ def _one_of(value: Json, kind: type[SharedMode] | type[SharedPhase]) -> str:
     return found
 
 
-def _name(value: Json) -> str:
+def _read_name(value: Json) -> str:
     """Returns a name without spaces around it, and never empty."""
     return " ".join(text(value, MAX_PLAYER_NAME).split()) or "somebody"
 
 
-def _limited(value: Json, limit: float) -> float:
+def _read_bounded(value: Json, limit: float) -> float:
     found = number(value)
     if abs(found) > limit:
         raise ProtocolError(f"a number beyond {limit:g}")
     return found
 
 
-def _share(value: Json) -> float:
-    return _limited(value, 1.0)
+def _read_share(value: Json) -> float:
+    return _read_bounded(value, 1.0)
 
 
-def _pose(value: Json) -> Pose:
-    x, y, theta = (_limited(each, MAX_COORDINATE) for each in items(value, 3))
+def _read_pose(value: Json) -> Pose:
+    x, y, theta = (_read_bounded(each, MAX_COORDINATE) for each in items(value, 3))
     return Pose(x, y, theta)
 
 
-def _player(value: Json) -> int | None:
+def _read_player(value: Json) -> int | None:
     return None if value is None else integer(value, 0, PLAYERS - 1)

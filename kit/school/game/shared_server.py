@@ -168,7 +168,7 @@ class SharedGameServer:
             self._hand_out()
             now = self._clock()
             for guest in list(self._guests):
-                if reason := _overdue(guest, now):
+                if reason := _overdue_reason(guest, now):
                     self._drop(guest, reason)
         for guest in list(self._guests):
             self._drop(guest, "")
@@ -234,11 +234,11 @@ class SharedGameServer:
             frame = decode(bytes(guest.received[HEADER.size : HEADER.size + length]))
             del guest.received[: HEADER.size + length]
             guest.receiving_since = None
-            self._take(guest, frame, now)
+            self._take_frame(guest, frame, now)
         if guest.received and guest.receiving_since is None:
             guest.receiving_since = now
 
-    def _take(self, guest: _Guest, frame: Json, now: float) -> None:
+    def _take_frame(self, guest: _Guest, frame: Json, now: float) -> None:
         guest.credit = min(MAX_BURST, guest.credit + (now - guest.heard) * MAX_RATE) - 1.0
         guest.heard = now
         if guest.credit < 0.0:
@@ -305,7 +305,7 @@ class SharedGameServer:
             self._on_change()
 
 
-def _overdue(guest: _Guest, now: float) -> str:
+def _overdue_reason(guest: _Guest, now: float) -> str:
     """Why a guest is to be disconnected by now; empty: it is not."""
     if not guest.has_joined and now - guest.since > JOIN_WITHIN:
         return "no request in time"
@@ -337,7 +337,7 @@ class SharedGameClient:
             offer = parse_from_host(self._socket.receive())
         except (EOFError, OSError, ProtocolError) as error:
             self._socket.close()
-            raise SharedGameError(f"{game.name} does not let you in: {_reason(error)}.") from error
+            raise SharedGameError(f"{game.name} does not let you in: {_error_text(error)}.") from error
         if not isinstance(offer, GameOffer):
             self._socket.close()
             raise SharedGameError(f"{game.name} does not let you in: it did not say what is played.")
@@ -388,7 +388,7 @@ class SharedGameClient:
                 on_state(content)
         except (EOFError, OSError, ProtocolError) as error:
             if not self._is_closed:
-                on_end(_reason(error))
+                on_end(_error_text(error))
 
     def _send(self) -> None:
         """The newest push, at most fifty times a second, and now and then to say that somebody is still here."""
@@ -403,7 +403,7 @@ class SharedGameClient:
                 time.sleep(0.02)
 
 
-def _reason(error: Exception) -> str:
+def _error_text(error: Exception) -> str:
     if isinstance(error, TimeoutError):
         return "no answer"
     if isinstance(error, ProtocolError):

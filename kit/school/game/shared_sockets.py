@@ -115,7 +115,7 @@ def listen_for_guests(folder: Path, name: str, audience: Audience) -> tuple[sock
 
 def found_games(folder: Path) -> list[FoundGame]:
     """All hosts that this user can see, by name. A folder or socket of another owner than its name says is left out."""
-    return sorted(_found(folder), key=lambda game: game.name)
+    return sorted(_find_games(folder), key=lambda game: game.name)
 
 
 def find_game(folder: Path, name: str | None) -> FoundGame:
@@ -153,7 +153,7 @@ def peer_user(connection: socket.socket) -> int | None:
     return FramedSocket(connection).peer_user
 
 
-def _found(folder: Path) -> Iterator[FoundGame]:
+def _find_games(folder: Path) -> Iterator[FoundGame]:
     with suppress(OSError):
         for own in sorted(folder.iterdir()):
             with suppress(OSError):

@@ -63,9 +63,9 @@ def scenario_from(level: GameLevel, seed: int) -> Scenario:
         phase = float(random.uniform(0.0, 2.0))
         least, most = np.transpose((SHIFT_M, SHIFT_M, SHIFT_RAD))
         x, y, turn = random.uniform(least, most) * random.choice((-1.0, 1.0), 3)
-        models = [_disturbed(model, phase) for model in scenario.world.models]
+        models = [_disturb_model(model, phase) for model in scenario.world.models]
         disturbed = replace(scenario, world=replace(scenario.world, models=tuple(models)))
-        shifted = _shifted(disturbed, float(x), float(y), float(turn))
+        shifted = _shift_scenario(disturbed, float(x), float(y), float(turn))
         if _is_free(shifted):
             return shifted
     return scenario
@@ -78,7 +78,7 @@ def film_scenario(level: GameLevel, seed: int) -> Scenario:
     return replace(scenario, case=case)
 
 
-def _disturbed(model: Model, phase: float) -> Model:
+def _disturb_model(model: Model, phase: float) -> Model:
     """A model with noise on its lasers, and on its way since a while if it is a cart. ``phase``: as of ``LaterCurve``."""
     plugins = []
     for plugin in model.plugins:
@@ -91,7 +91,7 @@ def _disturbed(model: Model, phase: float) -> Model:
     return replace(model, plugins=tuple(plugins))
 
 
-def _shifted(scenario: Scenario, x: float, y: float, turn: float) -> Scenario:
+def _shift_scenario(scenario: Scenario, x: float, y: float, turn: float) -> Scenario:
     """The scenario with its robots shifted [m] and turned [rad] about the middle between them."""
     starts = scenario.starts
     middle = (sum(each.x for each in starts) / len(starts), sum(each.y for each in starts) / len(starts))

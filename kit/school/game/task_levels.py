@@ -50,7 +50,7 @@ class TaskLevel(GameLevel):
 
     @property
     def command_name(self) -> str:
-        return self.title if self.title in task_names() else str(_short(self.file))
+        return self.title if self.title in task_names() else str(_short_path(self.file))
 
     @property
     def map_card(self) -> MapCard:
@@ -128,14 +128,14 @@ def _moved_on(models: Sequence[Model], obstacles: Sequence[Obstacle], phase: flo
         )
     )
     return [
-        replace(model, plugins=tuple(_later(each, phases[model.name]) for each in model.plugins))
+        replace(model, plugins=tuple(_advance_cart(each, phases[model.name]) for each in model.plugins))
         if model.name in phases
         else model
         for model in models
     ]
 
 
-def _later(plugin: PluginSpec, phase: float) -> PluginSpec:
+def _advance_cart(plugin: PluginSpec, phase: float) -> PluginSpec:
     """A cart's plugin after this share of its whole way; any other as it is."""
     params = plugin.params
     if not isinstance(params, TweenParams) or params.progress is None:
@@ -182,7 +182,7 @@ def task_level(file: Path) -> TaskLevel:
         hint=f"{task.goal.description[0].upper()}{task.goal.description[1:]}.",
         opened_by=(),
         row=0,
-        story=f"Case {quoted(case.name)} of {_short(file)}{f', without {left_out}' if left_out else ''}.",
+        story=f"Case {quoted(case.name)} of {_short_path(file)}{f', without {left_out}' if left_out else ''}.",
         skill=f"no more than {limit:g} s; then it is over",
         time_limit=limit,
         goal=task.goal,
@@ -193,7 +193,7 @@ def task_level(file: Path) -> TaskLevel:
     )
 
 
-def _short(file: Path) -> Path:
+def _short_path(file: Path) -> Path:
     """The path from here, where the file is below this folder."""
     here = Path.cwd()
     return file.absolute().relative_to(here) if file.absolute().is_relative_to(here) else file
@@ -216,7 +216,7 @@ def race_command(task: LearningTask, agent: str) -> str:
     if name not in task_names():
         if task.file is None or not task.file.is_file():
             return ""
-        name = shlex.quote(str(_short(task.file)))
+        name = shlex.quote(str(_short_path(task.file)))
     return f"kit game race {name} --agent {agent}"
 
 

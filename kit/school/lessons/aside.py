@@ -117,7 +117,7 @@ def run_and_copy(
         ) as process:
             os.close(theirs)
             printed = bytearray()
-            while part := _read_part(ours):
+            while part := _read_available(ours):
                 printed += part
                 out.write(part)
             process.wait()
@@ -136,7 +136,7 @@ def plain_lines(printed: str) -> list[str]:
     return Text.from_ansi(printed.replace("\r\n", "\n")).plain.splitlines()
 
 
-def _read_part(descriptor: int) -> bytes:
+def _read_available(descriptor: int) -> bytes:
     """The next characters; none at the end, which a terminal whose other side is closed tells as an error."""
     try:
         return os.read(descriptor, 1 << 14)

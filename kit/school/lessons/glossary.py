@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
@@ -80,6 +81,12 @@ def find_terms(terms: Sequence[GlossaryTerm], word: str) -> tuple[GlossaryTerm, 
 def glossary_blocks(terms: Sequence[GlossaryTerm]) -> list[Block]:
     """The terms one below the other."""
     return [block for each in terms for block in each.blocks()]
+
+
+@cache
+def lesson_words(lesson: str) -> tuple[Block, ...]:
+    """The terms that a lesson introduces, by its folder. Raises WorldError and FileNotFoundError."""
+    return tuple(glossary_blocks([each for each in read_glossary() if each.lesson == lesson]))
 
 
 def glossary_action() -> DialogueAction[Any]:

@@ -24,7 +24,7 @@ SELF_TEST_S: Final = 600.0
 
 @dataclass(frozen=True, slots=True)
 class ContractFinding:
-    """One thing that was looked at."""
+    """The result of one test of a lesson."""
 
     lesson: str
     text: str

@@ -125,7 +125,7 @@ class LessonDialogue(Dialogue):
         self.has_ended = False
         """Whether the last step is behind one."""
         self.is_answer_shown = True
-        """Whether what there is to say of a prediction may be said: the scene has been seen."""
+        """Whether the answer to a prediction may be shown: the scene has been watched to its end."""
         self._problem = ""
         """Why the exercise's files could not be laid out."""
         self._opening_step = self.step

@@ -28,7 +28,7 @@ MAP_SIGNS: Final = {WALL: "#", START: "S", TARGET: "T"}
 
 
 class OwnAgentError(Exception):
-    """There is no film; the message says why."""
+    """The drive cannot be recorded; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,7 +55,7 @@ class KeptLines:
     answers: tuple[Any, ...]
 
     def opened(self) -> Lines:
-        """The same answers from the first one on."""
+        """A copy that gives the kept answers again from the first one."""
         return _Answering(self.answers)
 
 

@@ -221,7 +221,7 @@ class LessonStep:
 
     @property
     def runnable_commands(self) -> list[LessonCommand]:
-        """Its commands, except that one that looks into a world is replaced by the one that opens that world."""
+        """The step's commands; in place of each that inspects a world, the one that opens this world."""
         made = [each for each in self.commands if each.kind is not CommandKind.BESIDE]
         places = dict.fromkeys(each.map_name for each in self.commands if each.kind is CommandKind.BESIDE)
         worlds = [LessonCommand(f"kit play {place}", CommandKind.SCREEN, place) for place in places]

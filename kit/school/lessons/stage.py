@@ -1,4 +1,4 @@
-"""The stage of a lesson: what moves beside its words, as the lesson's dialogue sees it."""
+"""The stage of a lesson: the moving picture beside its text, as the lesson's dialogue uses it."""
 
 from __future__ import annotations
 

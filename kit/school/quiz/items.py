@@ -211,7 +211,7 @@ def _with_numbers(item: QuizItem, folder: Path, problems: ProblemCollector) -> Q
 
 
 def _translated_items(items: list[QuizItem], file: Path, documents: WorldDocuments) -> list[QuizItem]:
-    """The same items in the words of a translation, which names them by their ids; the others as they are."""
+    """The items in the words of a translation, which names them by their ids; items without one as they are."""
     section = documents.section(file, SourceLocation(file))
     if section is None:
         return items
@@ -253,7 +253,7 @@ def _read_items(section: Section, lesson: str, lessons: Collection[str]) -> Iter
             question=each.text("question").strip(),
             picture=_read_picture(each),
             options=_read_options(each),
-            lesson_to_repeat=_read_see(each, step, lessons),
+            lesson_to_repeat=_read_lesson_to_repeat(each, step, lessons),
             taught_by=words,
             command_to_try=_read_attempt(each),
             derivation=each.name("derived") if each.has("derived") else "",
@@ -307,7 +307,7 @@ def _read_taught(section: Section, lesson: str) -> tuple[str, str]:
     return step, words
 
 
-def _read_see(section: Section, taught: str, lessons: Collection[str]) -> str:
+def _read_lesson_to_repeat(section: Section, taught: str, lessons: Collection[str]) -> str:
     see = section.name("see", taught)
     named, _, step = see.partition("/")
     if named not in lessons:

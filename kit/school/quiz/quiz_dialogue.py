@@ -7,22 +7,28 @@ from enum import Enum
 from types import MappingProxyType
 from typing import Any, ClassVar, Final
 
-from kit.dialogue.dialogue import Dialogue, DialogueAction, help_action, leave_action
+from kit.dialogue.dialogue import Dialogue, DialogueAction, Panel, help_action, leave_action
 from kit.dialogue.effects import Effect
 from kit.dialogue.screen_action import ScreenAction, digits, letter
 from kit.dialogue.shared_actions import ACTIONS
 from kit.document.blocks import Block, Choice, Choices, KeyLine, Picture, Text, Tone
-from kit.school.lessons.glossary import glossary_action
+from kit.school.lessons.glossary import glossary_action, lesson_words
 from kit.school.progress import ProgressError
 from kit.school.quiz.answers import BLANK, NOT_SURE, AnswerChoice, AnswerOutcome
-from kit.school.quiz.items import OPTION_COUNT, QuizItem
+from kit.school.quiz.items import OPTION_COUNT, QuizItem, QuizTopic, lesson_reference
+from kit.school.quiz.quiz_scores import measure_calibration
 from kit.school.quiz.quiz_session import QuizSession
 from kit.school.quiz.quiz_text import (
+    CALIBRATION_HEADING,
     CONFIDENCE_CHOICES,
     CONFIDENCE_QUESTION,
+    answered_blocks,
+    calibration_blocks,
     closing_blocks,
     feedback_text,
     follow_up_blocks,
+    round_blocks,
+    schedule_blocks,
     today_line,
     topic_map,
     verdict_text,
@@ -47,6 +53,23 @@ KEPT: Final = (
     ("what is kept", "every answer, once you have said how sure you are"),
     ("what comes back", "topics, after 1, 3, 7 and 21 days: kit quiz --today"),
 )
+PLACES: Final = {
+    QuizTopic.DRIVING: "maze",
+    QuizTopic.ROS2: "simple",
+    QuizTopic.FLATLAND: "house",
+    QuizTopic.LAYERS: "crossing",
+    QuizTopic.RL: "turn",
+    QuizTopic.FIELDS: "pair_turn",
+}
+"""The map that stands for each topic, where there is room for its picture."""
+HOW_IT_GOES: Final = (
+    Text("First choose an answer, then say how sure you are: only then is it kept, and only then told."),
+    Text(
+        "0, not sure, is never counted as wrong. Nobody can tell a guess that was lucky from knowledge; you can."
+    ),
+    *(Text(f"{words[0].upper()}{words[1:]}.", lead=f"{lead}:", lead_tone=Tone.DIM) for lead, words in KEPT),
+)
+"""What the first question is told beside."""
 _TONES: Final = {
     AnswerOutcome.RIGHT: Tone.GOOD,
     AnswerOutcome.WRONG: Tone.BAD,
@@ -123,10 +146,33 @@ class QuizDialogue(Dialogue):
             shown += self._feedback(item, self.choice)
         return shown
 
-    def beside(self) -> Sequence[Block]:
-        if self.item is None or self.is_over:
+    @property
+    def has_panels(self) -> bool:
+        return self.item is not None and not self.is_over
+
+    def panels(self) -> Sequence[Panel]:
+        item, session = self.item, self.session
+        if item is None or self.is_over:
             return ()
-        return (topic_map(self.session.bank, self.session.all_answers(), self.item.topic),)
+        answers = session.all_answers()
+        last = (
+            Panel(f"words of {lesson_reference(item.lesson)}", lesson_words(item.lesson))
+            if self.stage is QuizStage.TOLD
+            else Panel("answered just now", answered_blocks(session))
+            if session.session_answers
+            else Panel("how it goes", HOW_IT_GOES)
+        )
+        return (
+            Panel("what you know, by topic", (topic_map(session.bank, answers, item.topic),)),
+            Panel("these questions", round_blocks(session, self.number)),
+            Panel(CALIBRATION_HEADING.lower(), tuple(calibration_blocks(measure_calibration(answers)))),
+            Panel("what comes back, and when", tuple(schedule_blocks(session.build_schedule()))),
+            *([last] if last.blocks else []),
+        )
+
+    @property
+    def place_shown(self) -> str:
+        return PLACES[QuizTopic.DRIVING if self.item is None else self.item.topic]
 
     def _options(self, item: QuizItem) -> list[Block]:
         """``>`` before the chosen one; once it is told, ``+`` before the right and ``x`` before a wrong one."""

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from datetime import date
 from typing import Final
 
-from kit.document.blocks import Block, CellStyle, Column, Table, Text, Tone, ToneText
+from kit.document.blocks import Block, CellStyle, Column, Picture, Table, Text, Tone, ToneText
 from kit.school.quiz.answers import CONFIDENCE_LABELS, AnswerChoice, AnswerOutcome, QuizAnswer
 from kit.school.quiz.items import (
     QuestionBank,
@@ -30,6 +30,8 @@ from kit.school.quiz.schedule import PracticeSchedule, RoundHistory
 
 BAR: Final = 20
 """Width of a bar in columns."""
+MAP_BAR: Final = 10
+"""Columns of a topic's bar on the map of topics."""
 
 VERDICTS: Final[Mapping[AnswerOutcome, str]] = {
     AnswerOutcome.RIGHT: "Right.",
@@ -40,6 +42,7 @@ VERDICTS: Final[Mapping[AnswerOutcome, str]] = {
 CALIBRATION_HEADING: Final = "How sure you were, and how often right"
 CONFIDENCE_QUESTION: Final = "How sure are you?"
 CONFIDENCE_CHOICES: Final = tuple(CONFIDENCE_LABELS.items())
+_WORDS: Final = CellStyle.TEXT
 
 
 def verdict_text(item: QuizItem, choice: AnswerChoice) -> str:
@@ -50,9 +53,6 @@ def verdict_text(item: QuizItem, choice: AnswerChoice) -> str:
 def feedback_text(item: QuizItem, choice: AnswerChoice) -> str:
     """Feedback for the chosen option; for no choice, that of the right option."""
     return item.options[item.right_option if choice.option is None else choice.option].feedback
-
-
-_WORDS: Final = CellStyle.TEXT
 
 
 def follow_up_blocks(item: QuizItem) -> list[Block]:
@@ -131,10 +131,6 @@ def topic_table(scores: Mapping[QuizTopic, OutcomeCounts]) -> Table:
     return Table("topics", "", columns, rows, is_ruled=False)
 
 
-MAP_BAR: Final = 10
-"""Columns of a topic's bar on the map of topics."""
-
-
 def topic_map(bank: QuestionBank, answers: Iterable[QuizAnswer], current: QuizTopic) -> Table:
     """What is known of each topic, by the latest answer to each of its questions, and which one is asked now."""
     counts = count_by_topic(bank.items, latest_answers(answers))
@@ -142,12 +138,45 @@ def topic_map(bank: QuestionBank, answers: Iterable[QuizAnswer], current: QuizTo
         (
             ">" if topic is current else "",
             ToneText(topic.label, Tone.BOLD if topic is current else Tone.PLAIN),
-            "#" * (filled := round(MAP_BAR * each.right / each.total)) + "." * (MAP_BAR - filled),
+            "━" * (filled := round(MAP_BAR * each.right / each.total)) + "─" * (MAP_BAR - filled),
             f"{each.right} of {each.total}",
         )
         for topic, each in counts.items()
     )
-    return Table("topic-map", "What you know, by topic", (Column("", _WORDS),) * 3 + (Column(""),), rows)
+    return Table("topic-map", "", (Column("", _WORDS),) * 3 + (Column(""),), rows)
+
+
+MARKS: Final = {
+    AnswerOutcome.RIGHT: "+",
+    AnswerOutcome.WRONG: "x",
+    AnswerOutcome.NOT_SURE: "0",
+    AnswerOutcome.BLANK: "-",
+}
+"""A question's mark, by how it was answered."""
+
+
+def round_blocks(session: QuizSession, number: int) -> tuple[Block, ...]:
+    """A mark for each question of a session: how it was answered, which one is asked, which are to come."""
+    answered = session.question_number - 1
+    latest = [MARKS[each.outcome] for each in session.session_answers][-answered:] if answered else []
+    marks = ["*"] * (answered - len(latest)) + latest
+    marks += ["."] * (max(number, session.question_count) - len(marks))
+    if number > answered:
+        marks[number - 1] = ">"
+    said = "+ right  x wrong  0 not sure  - blank"
+    if "*" in marks:
+        said = f"* before  {said}"
+    return Text(" ".join(marks), Tone.BOLD), Picture((said,), indent=0, tone=Tone.DIM, is_tight=True)
+
+
+def answered_blocks(session: QuizSession) -> tuple[Block, ...]:
+    """The questions that were answered in this session, the last one first."""
+    items = {each.id: each for each in session.bank.items}
+    return tuple(
+        Text(items[each.item].question, Tone.DIM, lead=MARKS[each.outcome], hang=2, is_tight=True)
+        for each in reversed(session.session_answers)
+        if each.item in items
+    )
 
 
 def calibration_blocks(calibration: Calibration) -> list[Block]:

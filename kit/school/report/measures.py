@@ -80,7 +80,7 @@ class AnswerSheet:
         return tuple(item for item in self.items if item.topic == topic)
 
     def without_replies(self) -> AnswerSheet:
-        """The same items without any replies."""
+        """A copy with the same items and no replies."""
         return AnswerSheet(self.items, {name: (None,) * len(row) for name, row in self.replies.items()})
 
     def outcome_counts(self, outcome: AnswerOutcome) -> FloatArray:

@@ -78,12 +78,12 @@ class Bumper(Plugin):
         for contact in self._context.physics.contacts():
             if contact.entity_a == own:
                 if contact.body_a not in self._params.exclude:
-                    yield _collision(contact)
+                    yield _collision_message(contact)
             elif contact.entity_b == own and contact.body_b not in self._params.exclude:
-                yield _collision(contact.reversed)
+                yield _collision_message(contact.reversed)
 
 
-def _collision(contact: Contact) -> Collision:
+def _collision_message(contact: Contact) -> Collision:
     x, y = contact.normal
     return Collision(
         entity_a=contact.entity_a,

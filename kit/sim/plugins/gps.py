@@ -77,11 +77,11 @@ class Gps(Plugin):
     def before_step(self, dt: float) -> Iterable[OutgoingMessage]:
         if not self._timer.is_due():
             return ()
-        return self._fix.publish(self._message) + (
-            self._tf.publish(self._transform) if self._params.broadcast_tf else []
+        return self._fix.publish(self._make_message) + (
+            self._tf.publish(self._make_transform) if self._params.broadcast_tf else []
         )
 
-    def _message(self) -> NavSatFix:
+    def _make_message(self) -> NavSatFix:
         position = self._body.pose.compose(self._params.origin)
         latitude, longitude = geodetic_position(
             position.x, position.y, self._params.latitude, self._params.longitude
@@ -89,7 +89,7 @@ class Gps(Plugin):
         header = Header(stamp=self._context.clock.stamp, frame_id=self._frame)
         return NavSatFix(header=header, latitude=latitude, longitude=longitude)
 
-    def _transform(self) -> TFMessage:
+    def _make_transform(self) -> TFMessage:
         parent = self._context.model.frame(self._body.name)
         return tf_message(
             transform_message(self._context.clock.stamp, parent, self._frame, self._params.origin)

@@ -130,19 +130,19 @@ class Imu(Plugin):
         theta = self._body.pose.theta
         cos, sin = math.cos(theta), math.sin(theta)
         measured = theta, now[2], cos * ax + sin * ay, cos * ay - sin * ax
-        sent = self._truth.publish(lambda: self._message(*measured, _NO_NOISE, _NO_NOISE, _NO_NOISE))
+        sent = self._truth.publish(lambda: self._make_message(*measured, _NO_NOISE, _NO_NOISE, _NO_NOISE))
         if self._params.enabled:
             channels = (
                 self._params.orientation,
                 self._params.angular_velocity,
                 self._params.linear_acceleration,
             )
-            sent += self._imu.publish(lambda: self._message(*measured, *channels))
+            sent += self._imu.publish(lambda: self._make_message(*measured, *channels))
         if self._params.broadcast_tf:
-            sent += self._tf.publish(self._transform)
+            sent += self._tf.publish(self._make_transform)
         return sent
 
-    def _message(
+    def _make_message(
         self,
         theta: float,
         turn: float,
@@ -152,9 +152,9 @@ class Imu(Plugin):
         angular_velocity: ImuChannel,
         linear_acceleration: ImuChannel,
     ) -> sensor_msgs.Imu:
-        _, _, yaw = self._noisy(0, (0.0, 0.0, theta), orientation.noise)
-        wx, wy, wz = self._noisy(3, (0.0, 0.0, turn), angular_velocity.noise)
-        ax, ay, az = self._noisy(6, (ax, ay, 0.0), linear_acceleration.noise)
+        _, _, yaw = self._add_noise(0, (0.0, 0.0, theta), orientation.noise)
+        wx, wy, wz = self._add_noise(3, (0.0, 0.0, turn), angular_velocity.noise)
+        ax, ay, az = self._add_noise(6, (ax, ay, 0.0), linear_acceleration.noise)
         return sensor_msgs.Imu(
             header=Header(stamp=self._context.clock.stamp, frame_id=self._frame),
             orientation=yaw_quaternion(yaw),
@@ -165,14 +165,14 @@ class Imu(Plugin):
             linear_acceleration_covariance=np.array(linear_acceleration.covariance),
         )
 
-    def _noisy(self, first: int, values: Sequence[float], variances: Sequence[float]) -> list[float]:
+    def _add_noise(self, first: int, values: Sequence[float], variances: Sequence[float]) -> list[float]:
         """Three values with normal noise; ``first`` numbers them within a step."""
         return [
             value + self._noise.normal(9 * self._context.clock.tick + first + i, math.sqrt(variance))
             for i, (value, variance) in enumerate(zip(values, variances, strict=True))
         ]
 
-    def _transform(self) -> TFMessage:
+    def _make_transform(self) -> TFMessage:
         parent = self._context.model.frame(self._body.name)
         return tf_message(transform_message(self._context.clock.stamp, parent, self._frame, Pose()))
 

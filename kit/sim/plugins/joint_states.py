@@ -82,9 +82,9 @@ class JointStates(Plugin):
         self._angles = [angle + speed * dt for angle, speed in zip(self._angles, speeds, strict=True)]
         if not self._timer.is_due():
             return ()
-        return self._publisher.publish(lambda: self._message(speeds))
+        return self._publisher.publish(lambda: self._make_message(speeds))
 
-    def _message(self, speeds: list[float]) -> sensor_msgs.JointState:
+    def _make_message(self, speeds: list[float]) -> sensor_msgs.JointState:
         return sensor_msgs.JointState(
             header=Header(stamp=self._context.clock.stamp),
             name=list(self._params.joints),

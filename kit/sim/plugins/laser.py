@@ -171,7 +171,7 @@ class Laser(Plugin):
         if has_subscribers(self._topic) or params.always_publish:
             sent.append(OutgoingMessage(self._topic, self._scan_message()))
         if params.broadcast_tf and has_subscribers(TF_TOPIC):
-            sent.append(OutgoingMessage(TF_TOPIC, self._transform()))
+            sent.append(OutgoingMessage(TF_TOPIC, self._make_transform()))
         return sent
 
     def _scan_message(self) -> LaserScan:
@@ -181,16 +181,16 @@ class Laser(Plugin):
             message.intensities = _intensities(self._scanner.scan(pose), self._reflections.scan(pose))
         ranges = self._scanner.scan(pose, (params.noise, self._noise_key, clock.tick))
         self._scene.keep_latest(self._name, pose, self._beams, ranges, params.max_range)
-        reported = ranges if self._shows_nan else self._reported(ranges)
+        reported = ranges if self._shows_nan else self._reported_ranges(ranges)
         message.header.stamp = clock.stamp
         message.ranges = array("f", reported.tobytes())
         return message
 
-    def _reported(self, ranges: Float32Array) -> Float32Array:
+    def _reported_ranges(self, ranges: Float32Array) -> Float32Array:
         """The ranges as the message has them, where that is not NaN for nothing in range."""
         return np.where(np.isnan(ranges), np.float32(self._params.out_of_range), ranges)
 
-    def _transform(self) -> TFMessage:
+    def _make_transform(self) -> TFMessage:
         parent = self._context.model.frame(self._body.name)
         return tf_message(
             transform_message(self._context.clock.stamp, parent, self._frame, self._params.mount.origin)

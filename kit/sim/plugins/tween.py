@@ -19,16 +19,16 @@ Easing = Callable[[float], float]
 """Maps the elapsed fraction of the time, 0 to 1, to the fraction of the distance: 0 at 0 and 1 at 1."""
 
 
-def _power(exponent: int) -> Easing:
+def _power_easing(exponent: int) -> Easing:
     return lambda t: t**exponent
 
 
-def _back(t: float) -> float:
+def _back_easing(t: float) -> float:
     """Moves back by a tenth of the distance first."""
     return t * t * (2.70158 * t - 1.70158)
 
 
-def _elastic(t: float) -> float:
+def _elastic_easing(t: float) -> float:
     """A spring that swings, with growing swings and a period of 0.3."""
     return t if t in (0.0, 1.0) else -(2.0 ** (10.0 * (t - 1.0))) * math.sin((t - 1.075) * math.tau / 0.3)
 
@@ -44,7 +44,7 @@ def _ease_in(curve: Easing) -> Easing:
 
 
 def _ease_out(curve: Easing) -> Easing:
-    """The same backwards: slow at the end."""
+    """An easing reversed in time: slow at the end."""
     return lambda t: 1.0 - curve(1.0 - t)
 
 
@@ -54,14 +54,14 @@ def _ease_in_out(curve: Easing) -> Easing:
 
 
 _EASING_CURVES: Mapping[str, Easing] = {
-    "quadratic": _power(2),
-    "cubic": _power(3),
-    "quartic": _power(4),
-    "quintic": _power(5),
+    "quadratic": _power_easing(2),
+    "cubic": _power_easing(3),
+    "quartic": _power_easing(4),
+    "quintic": _power_easing(5),
     "exponential": lambda t: 0.0 if t == 0.0 else 2.0 ** (10.0 * (t - 1.0)),
     "circular": lambda t: 1.0 - math.sqrt(1.0 - t * t),
-    "back": _back,
-    "elastic": _elastic,
+    "back": _back_easing,
+    "elastic": _elastic_easing,
     "bounce": _ease_out(_bouncing_ball),
 }
 _EASING_KINDS = {"In": _ease_in, "Out": _ease_out, "InOut": _ease_in_out}

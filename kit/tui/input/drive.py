@@ -130,7 +130,7 @@ class KeyboardDrive:
         return self._changes()
 
     def stop(self) -> tuple[str, ...]:
-        """Everything up at once: the focus is lost, the screen changes, the world is paused."""
+        """Releases all keys: the focus is lost, the screen changes, or the world is paused."""
         self._mode.stop()
         return self._changes()
 
@@ -139,7 +139,7 @@ class KeyboardDrive:
         return self._change_mode(self._requested_mode, automatic_mode(flags, hidden_by))
 
     def choose(self, mode: ModeName | None) -> tuple[str, ...]:
-        """The user's wish, None for automatic. Switching to another mode stops first."""
+        """Sets the mode that the user chose, None for automatic. Switching to another mode stops the robot first."""
         return self._change_mode(mode, self._automatic)
 
     def _change_mode(self, wish: ModeName | None, automatic: ModeChoice) -> tuple[str, ...]:

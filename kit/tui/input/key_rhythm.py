@@ -39,15 +39,15 @@ class Rhythm:
 
     @property
     def next_timeout(self) -> float:
-        """The same after a repeat."""
+        """As ``first_timeout``, after a repeat."""
         return max(0.1, 2 * self.period + 4 * self.jitter + 0.02)
 
     def start(self, now: float) -> None:
-        """Another key than before."""
+        """Begins with a key other than the one before."""
         self._last, self._repeats, self._pause = now, 0, None
 
     def heard(self, now: float) -> None:
-        """The same key again. A gap is understood when the next one is known: only repeats follow quickly."""
+        """Notes that the same key came again. A gap is understood when the next one is known: only repeats follow quickly."""
         gap, self._last = now - self._last, now
         repeating = self._repeats >= 2
         if gap > LONGEST_DELAY:

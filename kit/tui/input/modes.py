@@ -47,7 +47,7 @@ class DriveMode(Protocol):
         """Lets time pass up to the clock's now."""
 
     def stop(self) -> None:
-        """Everything up, at once."""
+        """Releases all keys."""
 
     def strengths(self) -> dict[str, float]:
         """Message names of the keys that count as down, and how strongly each pushes, 0 to 1."""
@@ -56,7 +56,7 @@ class DriveMode(Protocol):
         """When ``advance`` will next change something if no key comes; None if never."""
 
 
-def _row(key: str) -> DriveKey:
+def _require_drive_key(key: str) -> DriveKey:
     row = drive_key(key)
     assert row is not None, f"{key} does not drive"
     return row
@@ -78,7 +78,7 @@ class ExactMode:
         self._state = KeyState(clock)
 
     def handle(self, kind: KeyEventKind, key: str) -> None:
-        if kind is KeyEventKind.PRESS and _row(key).name == "space":
+        if kind is KeyEventKind.PRESS and _require_drive_key(key).name == "space":
             self._state.clear()
         _CHANGES[kind](self._state, key)
 
@@ -89,7 +89,7 @@ class ExactMode:
         self._state.clear()
 
     def strengths(self) -> dict[str, float]:
-        return {_row(key).name: 1.0 for key in self._state.held}
+        return {_require_drive_key(key).name: 1.0 for key in self._state.held}
 
     def deadline(self) -> float | None:
         return None
@@ -138,7 +138,7 @@ class RepeatMode:
         return row.name if row else ""
 
     def handle(self, kind: KeyEventKind, key: str) -> None:
-        row, now = _row(key), self._clock()
+        row, now = _require_drive_key(key), self._clock()
         if kind is KeyEventKind.RELEASE:
             self._end(row.name)
             return
@@ -202,7 +202,7 @@ class LatchMode:
     def handle(self, kind: KeyEventKind, key: str) -> None:
         if kind is not KeyEventKind.PRESS:
             return
-        row, now = _row(key), self._clock()
+        row, now = _require_drive_key(key), self._clock()
         last = self._heard.get(row.name)
         self._heard[row.name] = now
         if last is not None and now - last < _BOUNCE:

@@ -31,11 +31,11 @@ def agent_panel(
         row((f"{name} ", "dim"), (value[: max(1, width - len(name) - 1)], "bold")) for name, value in about
     ]
     readings = [
-        _reading("nearest" if len(view.nearest) == 1 else f"nearest {robot + 1}", distance, " m")
+        _reading_row("nearest" if len(view.nearest) == 1 else f"nearest {robot + 1}", distance, " m")
         for robot, distance in enumerate(view.nearest)
         if math.isfinite(distance)
     ]
-    readings += [_reading(name.replace("_", " "), value, "") for name, value in view.readings]
+    readings += [_reading_row(name.replace("_", " "), value, "") for name, value in view.readings]
     below = [row(("perceives", "dim")), *readings] if readings else []
     expected = _expected_rows(view.expected_returns, width)
     if height - len(head) - 1 - len(below) - len(expected) < min(4, len(view.actions)):
@@ -46,7 +46,7 @@ def agent_panel(
     if len(shown) > room:
         kept = sorted(shown, key=lambda action: (not action.is_chosen, -action.rating))[: room - 1]
         shown = tuple(action for action in view.actions if action in kept)
-    bars = [_bar(action, view.kind, width) for action in shown]
+    bars = [_action_bar(action, view.kind, width) for action in shown]
     if len(shown) < len(view.actions):
         bars.append(row((f" {len(view.actions) - len(shown)} more", "dim")))
     return (*head, row((_TITLES[view.kind], "dim")), *bars, *below)[:height]
@@ -75,7 +75,7 @@ _TITLES: Final = {
 }
 
 
-def _bar(action: RatedAction, kind: str, width: int) -> Row:
+def _action_bar(action: RatedAction, kind: str, width: int) -> Row:
     rating = f"{action.rating:.0%}" if kind == "probability" else f"{action.rating:.2f}"
     room = max(0, width - RATING_WIDTH - 1)
     name_width = min(14, room // 2)
@@ -90,5 +90,5 @@ def _bar(action: RatedAction, kind: str, width: int) -> Row:
     )
 
 
-def _reading(name: str, value: float, unit: str) -> Row:
+def _reading_row(name: str, value: float, unit: str) -> Row:
     return row(f" {name:<15.15}", (f"{round(value, 2) + 0.0:>8.2f}", "bold"), (unit, "dim"))

@@ -68,8 +68,8 @@ def challenge_list(
 def about_challenge(challenge: Challenge, medal: Medal, width: int) -> list[Row]:
     """What the chosen challenge asks for, and what was earned."""
     return [
-        *_wrapped(challenge.title, f" {challenge.story}", width),
-        *_wrapped("task  ", challenge.task_text, width, "dim"),
+        *_wrap_with_lead(challenge.title, f" {challenge.story}", width),
+        *_wrap_with_lead("task  ", challenge.task_text, width, "dim"),
         row(
             ("best   ", "dim"),
             medal.title,
@@ -85,7 +85,7 @@ def challenge_picture(challenge: Challenge, width: int, height: int) -> list[Row
         shown = [row((line, "code")) for line in challenge.task.lines()]
     else:
         shown = board.rows(largest_drawing(board, width, height)[0])
-    return [part for each in shown for part in _within(each, width)][:height]
+    return [part for each in shown for part in _wrap_row(each, width)][:height]
 
 
 def challenge_page(challenge: Challenge, file: Path | None, width: int) -> list[Row]:
@@ -96,8 +96,8 @@ def challenge_page(challenge: Challenge, file: Path | None, width: int) -> list[
         else f"Your answer: {shell_path(file)}"
     )
     return [
-        *_wrapped("", challenge.story, width),
-        *_wrapped("task  ", challenge.written_task, width, "dim"),
+        *_wrap_with_lead("", challenge.story, width),
+        *_wrap_with_lead("task  ", challenge.written_task, width, "dim"),
         *(row((line, "code")) for line in challenge.task.lines()),
         row((place, "bold")),
     ]
@@ -132,7 +132,7 @@ def puzzle_beside(
     """A puzzle with its board at the left, as large as there is room for, and the rest beside it."""
     scale, drawing = largest_drawing(board, width - LEAST_TEXT - GAP, height - 1)
     column = min(max(LEAST_BOARD, drawing + GAP), width - LEAST_TEXT)
-    left = [each for shown in board.rows(scale) for each in _within(shown, column - GAP)]
+    left = [each for shown in board.rows(scale) for each in _wrap_row(shown, column - GAP)]
     room = min(width - column - 1, WIDEST_TEXT)
     story, task, keys = _about_puzzle(challenge, board, room)
     worth, sentence = worth_now(judgement, room)
@@ -151,7 +151,7 @@ def largest_drawing(board: Board, width: int, height: int) -> tuple[int, int]:
     return 1, 0
 
 
-def _within(shown: Row, width: int) -> list[Row]:
+def _wrap_row(shown: Row, width: int) -> list[Row]:
     """A row that is wider, which is a sentence, goes on below."""
     text = row_text(shown)
     if len(text) <= width:
@@ -163,16 +163,16 @@ def _within(shown: Row, width: int) -> list[Row]:
 def _about_puzzle(challenge: Challenge, board: Board, width: int) -> tuple[list[Row], list[Row], list[Row]]:
     """The story, the task and the keys of a puzzle."""
     return (
-        _wrapped("", challenge.story, width),
-        _wrapped("task  ", challenge.task_text, width, "dim"),
-        _wrapped("keys  ", board.keys, width, "dim"),
+        _wrap_with_lead("", challenge.story, width),
+        _wrap_with_lead("task  ", challenge.task_text, width, "dim"),
+        _wrap_with_lead("keys  ", board.keys, width, "dim"),
     )
 
 
 def worth_now(judgement: Judgement | str, width: int) -> tuple[list[Row], list[Row]]:
     """What the answer on a board is worth, with a bar from the naive answer to the best one; and a sentence about it."""
     if isinstance(judgement, str):
-        sentence = _wrapped("      ", judgement, width, "dim") if judgement else []
+        sentence = _wrap_with_lead("      ", judgement, width, "dim") if judgement else []
         return [row(("now    ", "dim"), "no answer yet")], sentence
     rows = [
         row(
@@ -186,16 +186,16 @@ def worth_now(judgement: Judgement | str, width: int) -> tuple[list[Row], list[R
         (first, naive), (last, best) = comparison.others[0], comparison.others[-1]
         share = (comparison.answer - naive) / (best - naive)
         parts = (
-            (f"{first} {_number(naive)} ", "dim"),
+            (f"{first} {_number_text(naive)} ", "dim"),
             (share_bar(share), "good" if judgement.medal is not Medal.NONE else "dim"),
-            (f" {last} {_number(best)} {comparison.unit}", "dim"),
+            (f" {last} {_number_text(best)} {comparison.unit}", "dim"),
         )
         indent = "       "
         if len(indent) + sum(len(text) for text, _ in parts) <= width:
             rows.append(row(indent, *parts))
         else:
             rows += [row(indent, (text.strip(), style)) for text, style in parts]
-    return rows, _wrapped("      ", judgement.text, width, "dim")
+    return rows, _wrap_with_lead("      ", judgement.text, width, "dim")
 
 
 def judged(judgement: Judgement, previous: Medal, following: str | None, width: int) -> list[Row]:
@@ -205,10 +205,10 @@ def judged(judgement: Judgement, previous: Medal, following: str | None, width: 
     """
     rows = [
         medal_row(judgement.medal, is_new=judgement.medal > previous),
-        *_wrapped("  ", judgement.text, width),
+        *_wrap_with_lead("  ", judgement.text, width),
     ]
     if judgement.comparison is not None:
-        rows += _compared(judgement.comparison)
+        rows += _comparison_rows(judgement.comparison)
     if following is not None and judgement.medal is not Medal.NONE:
         rows.append(row(("   next ", "dim"), following))
     return rows
@@ -220,7 +220,7 @@ def answers_needed_rows(bins: Sequence[Bin], comparison: AnswerComparison) -> li
     return needed_rows(bins, comparison.unit, decimals)
 
 
-def _compared(comparison: AnswerComparison) -> list[Row]:
+def _comparison_rows(comparison: AnswerComparison) -> list[Row]:
     """The differences of an answer to others; one that is no worse than the other is told by its style too."""
     rows = []
     for name, figure in comparison.others:
@@ -228,18 +228,18 @@ def _compared(comparison: AnswerComparison) -> list[Row]:
         is_good = difference >= 0 if comparison.more_is_better else difference <= 0
         rows.append(
             row(
-                f"   {name:<{NAME_COLUMNS}} {_number(figure):>9} {comparison.unit}  ",
-                (f"{'+' if difference > 0 else ''}{_number(difference)}", "good" if is_good else "warn"),
+                f"   {name:<{NAME_COLUMNS}} {_number_text(figure):>9} {comparison.unit}  ",
+                (f"{'+' if difference > 0 else ''}{_number_text(difference)}", "good" if is_good else "warn"),
             )
         )
     return rows
 
 
-def _number(value: float) -> str:
+def _number_text(value: float) -> str:
     return f"{value:,.0f}" if float(value).is_integer() else f"{value:,.2f}"
 
 
-def _wrapped(word: str, text: str, width: int, style: str = "bold") -> list[Row]:
+def _wrap_with_lead(word: str, text: str, width: int, style: str = "bold") -> list[Row]:
     """A text that begins with a word in a style of its own, in rows of at most ``width`` columns."""
     start = f"{word} " if word else ""
     indent = " " * len(start) if style == "dim" or not word.strip() else ""

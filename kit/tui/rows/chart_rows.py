@@ -23,7 +23,7 @@ def laser_chart(laser: Sequence[float], width: int, rows: int = CHART_ROWS) -> l
     for start, stop in pairwise(columns):
         seen = filter(math.isfinite, ranges[start : max(stop, start + 1)])
         heights.append(min(seen, default=0.0))
-    return _bars(heights, max(heights, default=0.0) or 1.0, rows, "m")
+    return _bar_rows(heights, max(heights, default=0.0) or 1.0, rows, "m")
 
 
 def time_chart(values: Sequence[float], width: int, least: float, rows: int = CHART_ROWS) -> list[Row]:
@@ -36,13 +36,16 @@ def time_chart(values: Sequence[float], width: int, least: float, rows: int = CH
     largest = max((abs(value) for value in paired), default=0.0)
     top = max(least, math.ceil(largest / least - 1e-9) * least)
     if min(paired, default=0.0) > -0.05 * top:
-        return _bars(paired, top, rows, "")
+        return _bar_rows(paired, top, rows, "")
     middle = rows // 2
-    upper = _bars([max(value, 0.0) for value in paired], top, middle, "", has_zero=False)
+    upper = _bar_rows([max(value, 0.0) for value in paired], top, middle, "", has_zero=False)
     lower = [
         row(
             (f"{-top:4.1f}  " if number == rows - middle - 2 else " " * 6, "dim"),
-            ("".join(_downward(-value / top * (rows - middle - 1) - number) for value in paired), "code"),
+            (
+                "".join(_downward_block(-value / top * (rows - middle - 1) - number) for value in paired),
+                "code",
+            ),
         )
         for number in range(rows - middle - 1)
     ]
@@ -50,7 +53,7 @@ def time_chart(values: Sequence[float], width: int, least: float, rows: int = CH
     return [*upper, axis, *lower]
 
 
-def _downward(share: float) -> str:
+def _downward_block(share: float) -> str:
     """A character filled from its top: half and whole are all there are."""
     return "█" if share >= 0.75 else "▀" if share >= 0.1 else " "
 
@@ -63,7 +66,9 @@ def column_chart(shares: Sequence[float], rows: int) -> list[str]:
     ]
 
 
-def _bars(values: Sequence[float], top: float, rows: int, unit: str, *, has_zero: bool = True) -> list[Row]:
+def _bar_rows(
+    values: Sequence[float], top: float, rows: int, unit: str, *, has_zero: bool = True
+) -> list[Row]:
     lines = []
     for number, glyphs in enumerate(column_chart([value / top for value in values], rows)):
         label = " " * 6

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from kit.document.rows import Row, row
-from kit.plain_text import counted
+from kit.plain_text import counted, wrap
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.levels import GameLevel, all_worlds
@@ -14,6 +15,9 @@ from kit.school.game.race import DriverKind, RaceFinish
 from kit.tui.rows.level_rows import BAR
 from kit.tui.rows.medal_rows import medal_row
 from kit.tui.rows.medal_signs import NO_STAR, STAR
+
+MARK: Final = 5
+"""Columns of a star before what it is for."""
 
 
 def finish_sentence(finish: RaceFinish) -> str:
@@ -29,8 +33,8 @@ def finish_sentence(finish: RaceFinish) -> str:
     return f"The goal was not reached in {finish.seconds:.0f} s."
 
 
-def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord) -> list[Row]:
-    """The medal and the stars of a drive, one row each, in the order in which they appear."""
+def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord, width: int) -> list[Row]:
+    """The medal and the stars of a drive, in the order in which they appear, in rows of at most ``width`` columns."""
     if record.is_shipped:
         return [
             row(
@@ -46,7 +50,9 @@ def earned(level: GameLevel, finish: RaceFinish, record: DriveRecord) -> list[Ro
     rows = [medal_row(record.medal, is_new=record.medal > record.previous_medal)]
     for rule in record.rules:
         new = " (new)" if rule in record.new_rules else ""
-        rows.append(row((f"   {STAR} ", "warn"), rule.description(level) + new))
+        first, *rest = wrap(rule.description(level) + new, width - MARK)
+        rows.append(row((f"   {STAR} ", "warn"), first))
+        rows += [row(" " * MARK, each) for each in rest]
     return rows
 
 

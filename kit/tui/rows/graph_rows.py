@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from kit.document.rows import PLAIN, Row, row, spread
+from kit.document.rows import PLAIN, Row, at_both_edges, row
 from kit.msg.message import Message
 from kit.plain_text import counted, wrap
 from kit.render.graph import GraphElement, rate_text
@@ -51,7 +51,7 @@ def heading(title: str, talk: GraphData, heard: GraphUpdate, name_filter: str, w
         (f"{counted(broken, 'broken line')} " if broken else "", "bad"),
         ("paused" if heard.paused else "", "warn"),
     )
-    return spread(row((title, "bold"), f"  {text}", (hidden, "dim"), (only, "bold")), state, width)
+    return at_both_edges(row((title, "bold"), f"  {text}", (hidden, "dim"), (only, "bold")), state, width)
 
 
 def rates(flow_stats: Mapping[MessageFlow, FlowStats]) -> dict[str, float]:
@@ -72,15 +72,15 @@ def about(
     if spot is None:
         return (row(("no nodes", "dim")),)
     if spot.column != "item":
-        return tuple(_of_node(spot.name, heard.state, full))
+        return tuple(_node_rows(spot.name, heard.state, full))
     name = spot.name.removesuffix("()")
     if name == spot.name:
         topic = next((topic for topic in heard.state.topics if topic.name == name), None)
-        head = () if topic is None else tuple(_of_topic(topic, heard.flow_stats, width, full))
+        head = () if topic is None else tuple(_topic_rows(topic, heard.flow_stats, width, full))
     else:
         service = next((service for service in heard.state.services if service.name == name), None)
-        head = () if service is None else tuple(_of_service(service))
-    return (*head, *_newest(heard.message_of(spot), width, full, field))
+        head = () if service is None else tuple(_service_rows(service))
+    return (*head, *_newest_message_rows(heard.message_of(spot), width, full, field))
 
 
 def ruled(words: tuple[Row, ...], rule: str, width: int) -> tuple[Row, ...]:
@@ -94,7 +94,7 @@ def ruled(words: tuple[Row, ...], rule: str, width: int) -> tuple[Row, ...]:
     )
 
 
-def _of_topic(
+def _topic_rows(
     topic: TopicState, flow_stats: Mapping[MessageFlow, FlowStats], width: int, full: bool
 ) -> Iterator[Row]:
     yield row((topic.name, "bold"), f"  {', '.join(topic.types)}")
@@ -102,25 +102,25 @@ def _of_topic(
         for line in wrap(f"nothing arrives: {mismatch.reason}", width):
             yield row((line, "bad"))
     if not full:
-        yield row(*_ends("from", topic.publishers), *_ends("  to", topic.subscriptions))
+        yield row(*_endpoint_names("from", topic.publishers), *_endpoint_names("  to", topic.subscriptions))
         return
     for end in topic.publishers:
         heard = flow_stats.get(MessageFlow(end.node, topic.name))
         rate = "" if heard is None or heard.rate is None else f"  {rate_text(heard.rate)}"
-        yield row(("from ", "dim"), end.node, rate, (f"  {_terms(end)}", "dim"))
+        yield row(("from ", "dim"), end.node, rate, (f"  {_qos_text(end)}", "dim"))
     for end in topic.subscriptions:
-        yield row(("to   ", "dim"), end.node, (f"  {_terms(end)}", "dim"))
+        yield row(("to   ", "dim"), end.node, (f"  {_qos_text(end)}", "dim"))
     if not topic.subscriptions:
-        yield row(*_ends("to  ", ()))
+        yield row(*_endpoint_names("to  ", ()))
     yield row()
 
 
-def _of_service(service: ServiceState) -> Iterator[Row]:
+def _service_rows(service: ServiceState) -> Iterator[Row]:
     yield row((service.name, "bold"), f"  {', '.join(service.types)}")
-    yield row(*_names("asked by", service.clients), *_names("  answered by", service.servers))
+    yield row(*_node_names("asked by", service.clients), *_node_names("  answered by", service.servers))
 
 
-def _of_node(node: str, state: GraphState, full: bool) -> Iterator[Row]:
+def _node_rows(node: str, state: GraphState, full: bool) -> Iterator[Row]:
     topics = [topic for topic in state.topics if full or not topic.is_infrastructure]
     services = [service for service in state.services if full or not service.is_infrastructure]
     lists = (
@@ -139,7 +139,7 @@ def _of_node(node: str, state: GraphState, full: bool) -> Iterator[Row]:
             yield row((f"{word:<12}", "dim"), ", ".join(names))
 
 
-def _newest(message: Message | None, width: int, full: bool, field: str) -> Iterator[Row]:
+def _newest_message_rows(message: Message | None, width: int, full: bool, field: str) -> Iterator[Row]:
     if message is None:
         yield row(("no message yet since it was chosen", "dim"))
         return
@@ -151,15 +151,15 @@ def _is_among(node: str, ends: Sequence[EndpointState]) -> bool:
     return any(end.node == node for end in ends)
 
 
-def _ends(word: str, ends: Sequence[EndpointState]) -> tuple[tuple[str, str], ...]:
-    return _names(word, tuple(dict.fromkeys(end.node for end in ends)))
+def _endpoint_names(word: str, ends: Sequence[EndpointState]) -> tuple[tuple[str, str], ...]:
+    return _node_names(word, tuple(dict.fromkeys(end.node for end in ends)))
 
 
-def _names(word: str, names: Sequence[str]) -> tuple[tuple[str, str], ...]:
+def _node_names(word: str, names: Sequence[str]) -> tuple[tuple[str, str], ...]:
     return ((f"{word} ", "dim"), (", ".join(names) or "no node", PLAIN))
 
 
-def _terms(end: EndpointState) -> str:
+def _qos_text(end: EndpointState) -> str:
     """Its quality of service in a few words."""
     qos = end.qos
     kept = "keeps all" if qos.queue_length is None else f"depth {qos.queue_length}"

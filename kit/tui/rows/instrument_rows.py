@@ -93,7 +93,7 @@ def instruments(
 
 
 def _two_columns(rows: Sequence[Row], width: int) -> list[Row]:
-    """The same rows in two columns, the second from a title on."""
+    """The rows in two columns; the second begins at a title."""
     titles = [
         number for number, parts in enumerate(rows) if len(parts) == 1 and not parts[0][0].startswith(" ")
     ]

@@ -13,7 +13,9 @@ from kit.school.game.medal import RUNGS
 from kit.school.game.player_progress import LevelProgress
 from kit.school.game.race import DriverKind
 from kit.school.game.references import reference_seconds
-from kit.tui.rows.level_rows import BEST, BEST_TODAY
+
+BEST, BEST_TODAY = 3, 10
+"""Rows of the leaderboard per level, and for that of the day."""
 
 
 def leaderboard_standings(standings: Sequence[PlayerStanding], offer: str = "") -> list[Block]:
@@ -31,7 +33,7 @@ def leaderboard_standings(standings: Sequence[PlayerStanding], offer: str = "") 
     rows: tuple[tuple[Cell, ...], ...] = tuple(
         (
             f"{place}.",
-            _player(each.name, each.is_mine),
+            _player_cell(each.name, each.is_mine),
             *(each.medals[medal] for medal in reversed(RUNGS)),
             each.stars,
             counted(each.fastest, "level"),
@@ -41,11 +43,11 @@ def leaderboard_standings(standings: Sequence[PlayerStanding], offer: str = "") 
     return [Table("standings", "", columns, rows, is_ruled=False), *offered]
 
 
-def _player(name: str, is_mine: bool) -> ToneText:
+def _player_cell(name: str, is_mine: bool) -> ToneText:
     return ToneText(name, Tone.BOLD if is_mine else Tone.PLAIN)
 
 
-def _driven(entry: LeaderboardEntry) -> str:
+def _driver_text(entry: LeaderboardEntry) -> str:
     """Who drove, whether it was on another kind of machine than this one, where a drive is the same but not to the bit, and who
     had the same drive before."""
     remarks = [
@@ -59,7 +61,7 @@ def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
     """The quickest drives of today's level and of each other. ``entries``: in the order of ``read_entries``."""
     titles = {daily_level(today()).id: "Today's level", **{each.id: each.title for each in all_levels()}}
     rows = tuple(
-        (title, _player(each.name, each.is_mine), f"{each.seconds:.2f} s", _driven(each))
+        (title, _player_cell(each.name, each.is_mine), f"{each.seconds:.2f} s", _driver_text(each))
         for level, title in titles.items()
         for each in [each for each in entries if each.level == level][
             : BEST_TODAY if level.startswith(DAILY_PREFIX) else BEST

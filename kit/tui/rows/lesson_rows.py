@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from kit.document.rows import Row, row, spread
+from kit.document.rows import Row, at_both_edges, row, row_width
 from kit.school.lessons.catalogue import LessonProgress
 from kit.school.lessons.records import LessonStep, StepKind
 from kit.tui.rows.progress_marks import progress_bar
@@ -34,22 +34,31 @@ def heading(progress: LessonProgress, step: LessonStep, width: int) -> Row:
     if len(goal) > room:
         goal = f"{goal[: room - 3].rstrip()}..." if room >= LEAST_GOAL else ""
     left = row((title, "bold"), "  ", (goal, "dim")) if goal else row((title, "bold"))
-    return spread(left, row(where, (bar, "bold")), width)
+    return at_both_edges(left, row(where, (bar, "bold")), width)
+
+
+def fits_beside_title(step: LessonStep, caption: Row, width: int) -> bool:
+    """Whether a step's whole title and a caption fit on one row."""
+    return len(step.title) + 1 + row_width(caption) <= width
 
 
 def title(step: LessonStep, caption: Row, width: int) -> Row:
     """Returns the step's kind and title, and on the right the state of the scene, or what is said to the last key. Where not all
     fit, the kind gives way: the title is whole."""
     kind = f"{KINDS[step.kind]}: "
-    said = sum(len(text) for text, _ in caption)
-    if len(kind) + len(step.title) + 1 + said > width:
+    if len(kind) + len(step.title) + 1 + row_width(caption) > width:
         kind = ""
-    return spread(row((kind, "dim"), (step.title, "bold")), caption, width)
+    return at_both_edges(row((kind, "dim"), (step.title, "bold")), caption, width)
 
 
-def checking(seconds: float, progress: str = "") -> Row:
-    """One line of a check that is running. ``progress``: what it is doing."""
-    return row((f"  {seconds:.1f} s: {progress}" if progress else f"  Checking ... {seconds:.1f} s", "bold"))
+def checking(seconds: float, progress: str, width: int) -> Row:
+    """One line of a check that is running. ``progress``: what it is doing; where that does not fit, its last part gives way."""
+    if not progress:
+        return row((f"  Checking ... {seconds:.1f} s", "bold"))
+    head = f"  {seconds:.1f} s: "
+    while len(head) + len(progress) > width and ", " in progress:
+        progress = progress.rpartition(", ")[0]
+    return row((f"{head}{progress}"[:width], "bold"))
 
 
 PASSED_S: Final = 1.2

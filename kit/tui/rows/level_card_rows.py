@@ -40,7 +40,7 @@ def level_card(
     if width < LEAST_WIDTH:  # the screen has no size yet
         return []
     skill = f"skill: {level.skill}" if level.skill else ""
-    ladder = [] if reference is None else _ladder(driver, reference, width)
+    ladder = [] if reference is None else _ladder_rows(driver, reference, width)
     stars = [] if reference is None else star_rows(level, kept, width)
     parts = [
         [ruled_title("level", width), *(row(line) for line in wrap(level.story, width))],
@@ -56,7 +56,7 @@ def level_card(
     return [each for number, part in enumerate(parts) if number in shown for each in part]
 
 
-def _ladder(driver: DriverKind, reference: float, width: int) -> list[Row]:
+def _ladder_rows(driver: DriverKind, reference: float, width: int) -> list[Row]:
     """The ladder with the time of each of its rungs."""
     rows = [
         ruled_title("ladder", width, driver.phrase),

@@ -10,11 +10,15 @@ from typing import Final
 from kit.document.rows import Row
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import LevelProgress
-from kit.tui.rows.level_rows import DOWN, LEAST_COLUMNS, LEAST_ROWS, LEFT, MOST_COLUMNS, MOST_ROWS, RIGHT, UP
 from kit.tui.rows.medal_signs import MEDAL_SIGNS, SHUT
 
 GAP: Final = 4
 """Columns between two pictures, for the lines."""
+MOST_COLUMNS, LEAST_COLUMNS = 24, 12
+MOST_ROWS, LEAST_ROWS = 8, 3
+"""Most and fewest rows of a picture."""
+RIGHT, LEFT, UP, DOWN = 1, 2, 4, 8
+"""Directions in which a line leaves a character."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +83,7 @@ def map_rows(
     height = max(place.y + place.rows for place in places) + 1
     signs = [[(" ", "") for _ in range(width)] for _ in range(height)]
     by_level = {place.level: place for place in places}
-    for y, line in enumerate(_lines(standings, by_level, width, height)):
+    for y, line in enumerate(_connection_lines(standings, by_level, width, height)):
         for x, sign in enumerate(line):
             signs[y][x] = sign, "dim"
     for each in standings:
@@ -109,7 +113,7 @@ def _write_signs(signs: list[list[tuple[str, str]]], x: int, y: int, text: str, 
         signs[y][x + number] = sign, style
 
 
-def _lines(
+def _connection_lines(
     standings: Sequence[LevelProgress], places: Mapping[str, LevelPlace], width: int, height: int
 ) -> list[str]:
     """The lines from each level to those in the next column that it opens, ending in an arrow."""
@@ -123,7 +127,7 @@ def _lines(
                 continue
             x, middle = begin.x + begin.columns, begin.x + begin.columns + GAP // 2
             first, last = (place.y + (place.rows + 1) // 2 for place in (begin, end))
-            _line(ways, [(x, first), (middle, first), (middle, last), (end.x - 1, last)])
+            _trace_line(ways, [(x, first), (middle, first), (middle, last), (end.x - 1, last)])
             arrows.add((end.x - 1, last))
     return [
         "".join("▶" if (x, y) in arrows else _SIGNS[way] for x, way in enumerate(line))
@@ -131,7 +135,7 @@ def _lines(
     ]
 
 
-def _line(ways: list[list[int]], corners: Sequence[tuple[int, int]]) -> None:
+def _trace_line(ways: list[list[int]], corners: Sequence[tuple[int, int]]) -> None:
     """Leaves in each character on the way the directions in which the line goes on."""
     for (x, y), (end_x, end_y) in pairwise(corners):
         while (x, y) != (end_x, end_y):

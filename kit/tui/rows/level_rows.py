@@ -58,10 +58,6 @@ def game_progress(summary: GameSummary) -> list[Row]:
     return [row(f"  {medal_counts(summary)}"), row(), *rows_of([table], Page(margin=2))]
 
 
-BEST, BEST_TODAY = 3, 10
-"""Rows of the leaderboard per level, and for that of the day."""
-
-
 def still_in_reach(driver: DriverKind, reference: float, seconds: float, collisions: int) -> str:
     """The medal that is still in reach while one drives, and until when."""
     medal = rung_in_reach(driver, reference, seconds, collisions)
@@ -165,10 +161,3 @@ def before_the_start(level: GameLevel, ghosts: Sequence[str], width: int) -> lis
             break
         shown = longer
     return [row((start, "bold"), (shown, "dim")), row(f" {level.hint}")]
-
-
-MOST_COLUMNS, LEAST_COLUMNS = 24, 12
-MOST_ROWS, LEAST_ROWS = 8, 3
-"""Most and fewest rows of a picture."""
-RIGHT, LEFT, UP, DOWN = 1, 2, 4, 8
-"""Directions in which a line leaves a character."""

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from kit.document.rows import Row, row
+from kit.document.rows import Row, row, side_by_side
 from kit.plain_text import counted, wrap
 from kit.tui.rows.ruled_title import ruled_title
 
 if TYPE_CHECKING:
     from kit.tui.student_store import StudentOverview
 
-PANEL_WIDTH: Final = 31
-INSIDE: Final = PANEL_WIDTH - 2
-"""Columns of the panel that are drawn."""
-TEXT: Final = INSIDE - 2
-"""Columns of a text, behind its margin."""
+PANEL_WIDTH, WIDE_PANEL = 31, 60
+"""Columns of the panel, and of the one that a wide screen has beside its robot, which is as high there as it can be."""
+FRAME: Final = 2
+"""Columns of the panel that are not drawn."""
+MARGIN: Final = 2
+"""Columns before a text."""
+WIDE_ROWS: Final = 44
+"""Rows from which on a wide panel says of every line what it opens."""
+PICTURE: Final = 28
+"""Columns of the next level's picture."""
+PICTURE_ROWS: Final = 9
 TITLE: Final = 11
 """Columns of a line's title."""
 WORD: Final = 10
@@ -51,31 +58,65 @@ MENU_KEYS: Final = "123456789l"
 """The keys of its lines."""
 
 
-def menu(overview: StudentOverview | None, chosen: int, room: int) -> list[Row]:
-    """The menu, and as much below it as there are rows for. ``overview``: None while it is being read."""
+def menu(
+    overview: StudentOverview | None,
+    chosen: int,
+    room: int,
+    columns: int = PANEL_WIDTH,
+    picture: Sequence[str] = (),
+) -> list[Row]:
+    """The menu, and as much below it as there are rows for. ``overview``: None while it is being read. ``columns``: of the
+    panel; a wide and high one says of every line what it opens. ``picture``: of the next level, which such a one shows."""
+    width = columns - FRAME
+    is_wide = columns >= WIDE_PANEL and room >= WIDE_ROWS
     rows = [row()]
     for number, item in enumerate(MENU):
-        is_chosen = number == chosen
-        status = _status(item.name, overview)
-        rows.append(
-            row(
-                (">" if is_chosen else " ", "bold"),
-                (f" {MENU_KEYS[number]}  ", "chosen" if is_chosen else "press"),
-                (f"{item.title:<{TITLE}}", "chosen" if is_chosen else ""),
-                (f" {status:<{INSIDE - TITLE - 6}}", "chosen" if is_chosen else "dim"),
-            )
-        )
+        rows.append(_item_row(number, item, overview, number == chosen, width))
         if item.name == "next_lesson":
-            rows += [row("     ", each) for each in _padded(_next_step_text(overview), 3, INSIDE - 5)]
-    about = _padded(MENU[chosen].about, 3, TEXT)
-    rows += [row(), *(row("  ", (each, "dim")) for each in about)]
-    for part in () if overview is None else (today_rows(overview), won_rows(overview)):
+            text, most = _next_step_text(overview), 2 if is_wide else 3
+            rows += [row("     ", each) for each in _padded(text, most, width - 5)]
+        elif is_wide:
+            rows += [row("     ", (each, "dim")) for each in wrap(item.about, width - 5)]
+    if not is_wide:
+        about = _padded(MENU[chosen].about, 3, width - MARGIN)
+        rows += [row(), *(row("  ", (each, "dim")) for each in about)]
+    elif overview is not None:
+        rows += [row()]
+    if overview is None:
+        return rows
+    won = won_rows(overview, width)
+    if is_wide and won:
+        level = next_level_rows(overview, picture)
+        won = side_by_side(level, won_rows(overview, width - PICTURE - MARGIN), PICTURE + MARGIN)
+    for part in (today_rows(overview, width), won):
         if part and len(rows) + len(part) <= room:
             rows += part
     return rows
 
 
-def today_rows(overview: StudentOverview) -> list[Row]:
+def _item_row(
+    number: int, item: MenuItem, overview: StudentOverview | None, is_chosen: bool, width: int
+) -> Row:
+    room, style = width - TITLE - 6, "chosen" if is_chosen else ""
+    status = _status(item.name, overview)
+    return row(
+        (">" if is_chosen else " ", "bold"),
+        (f" {MENU_KEYS[number]}  ", "chosen" if is_chosen else "press"),
+        (f"{item.title:<{TITLE}}", style),
+        (f" {status:<{room}}", style or "dim"),
+    )
+
+
+def next_level_rows(overview: StudentOverview, picture: Sequence[str]) -> list[Row]:
+    """The first level without a medal, as a picture; nothing where all have one."""
+    if overview.next_level is None:
+        return []
+    name = overview.next_level.title
+    return [row(), row(" ", *ruled_title("next level", PICTURE - 1)), *(row(" ", each) for each in picture),
+            row("  ", (f"4  {name}", "dim"))]  # fmt: skip
+
+
+def today_rows(overview: StudentOverview, width: int = PANEL_WIDTH - FRAME) -> list[Row]:
     """What is open today: the day's maze, the next medal in reach, questions that are due, trainings that run."""
     if overview.problem:
         return []
@@ -90,26 +131,23 @@ def today_rows(overview: StudentOverview) -> list[Row]:
     lines += [("5  train", f"{name} is running") for name in overview.running[:MOST_TRAININGS]]
     if len(overview.running) > MOST_TRAININGS:
         lines.append(("", f"and {len(overview.running) - MOST_TRAININGS} more"))
-    rows = [row(" ", *ruled_title("today", INSIDE - 1))]
+    rows = [row(" ", *ruled_title("today", width - 1))]
     for word, text in lines:
-        first, *rest = wrap(text, TEXT - WORD)
+        first, *rest = wrap(text, width - MARGIN - WORD)
         rows.append(row("  ", (f"{word:<{WORD}}", "dim"), first))
         rows += [row("  ", " " * WORD, each) for each in rest]
     return rows
 
 
-def won_rows(overview: StudentOverview) -> list[Row]:
-    """How many levels of each world of the game have a medal, as a bar and in figures."""
+def won_rows(overview: StudentOverview, width: int = PANEL_WIDTH - FRAME) -> list[Row]:
+    """How many levels of each world of the game have a medal."""
     if not overview.won:
         return []
-    rows = [row(), row(" ", *ruled_title("medals", INSIDE - 1))]
+    rows = [row(), row(" ", *ruled_title("medals", width - 1))]
     for title, won, count in overview.won:
-        figures = f"{won:>3} of {count}"
-        rows.append(
-            row(
-                "  ", f"{title:<{TEXT - len(figures)}.{TEXT - len(figures)}}", (figures, "" if won else "dim")
-            )
-        )
+        figures = f"{won:>3} of {count:>2}"
+        room = width - MARGIN - len(figures)
+        rows.append(row("  ", f"{title:<{room}.{room}}", (figures, "" if won else "dim")))
     return rows
 
 

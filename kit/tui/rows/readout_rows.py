@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from kit.document.rows import Row, StyledText, row, spread
+from kit.document.rows import Row, StyledText, at_both_edges, row
 from kit.geometry import whole_degrees
 from kit.plain_text import format_clock, wrap
 from kit.run.pacing import MAXIMUM, PacingStatus
@@ -27,14 +27,14 @@ def heading(view: View, pacing: PacingStatus, width: int, driver: str = "") -> R
     does."""
     who = view.controller or driver or "no driver"
     left = row((view.title, "bold"), "  ", who)
-    return spread(
+    return at_both_edges(
         left,
-        (*_state(view, pacing), (f"  {format_clock(view.time_s, 2 if view.paused else 1)}", "bold")),
+        (*_state_row(view, pacing), (f"  {format_clock(view.time_s, 2 if view.paused else 1)}", "bold")),
         width,
     )
 
 
-def _state(view: View, pacing: PacingStatus) -> Row:
+def _state_row(view: View, pacing: PacingStatus) -> Row:
     if view.paused:
         return row(("paused", "warn"))
     asked, actual = pacing.factor, pacing.actual_factor
@@ -50,32 +50,32 @@ def readout(view: View, drive: str | None) -> tuple[Row, ...]:
     rows: list[Row] = []
     if view.pose is not None:
         rows += [
-            _title("pose"),
-            _figure("x", _two_decimals(view.pose.x), "m"),
-            _figure("y", _two_decimals(view.pose.y), "m"),
-            _figure("heading", f"{whole_degrees(view.pose.theta)}", "°"),
-            _title("speed"),
-            _figure("forward", _two_decimals(view.speed[0]), "m/s"),
-            _figure("turning", _two_decimals(view.speed[1]), "rad/s"),
+            _title_row("pose"),
+            _figure_row("x", _two_decimals(view.pose.x), "m"),
+            _figure_row("y", _two_decimals(view.pose.y), "m"),
+            _figure_row("heading", f"{whole_degrees(view.pose.theta)}", "°"),
+            _title_row("speed"),
+            _figure_row("forward", _two_decimals(view.speed[0]), "m/s"),
+            _figure_row("turning", _two_decimals(view.speed[1]), "rad/s"),
         ]
     if view.nearest:
-        rows.append(_title("nearest"))
+        rows.append(_title_row("nearest"))
         rows += [
-            _figure(side, "-" if distance is None else f"{distance:.2f}", "m")
+            _figure_row(side, "-" if distance is None else f"{distance:.2f}", "m")
             for side, distance in view.nearest
         ]
     score = view.metrics
-    rows.append(_title("drive"))
-    rows.append(_figure("distance", f"{score.distance_m:.1f}", "m"))
-    rows.append(_figure("bumps", f"{score.bumps}", ""))
+    rows.append(_title_row("drive"))
+    rows.append(_figure_row("distance", f"{score.distance_m:.1f}", "m"))
+    rows.append(_figure_row("bumps", f"{score.bumps}", ""))
     if score.reached_s is not None:
         rows.append(row(("target reached", "good")))
-        rows.append(_figure("after", f"{score.reached_s:.1f}", "s"))
+        rows.append(_figure_row("after", f"{score.reached_s:.1f}", "s"))
     elif score.target_m is not None or (view.pose is not None and view.scene.targets):
         # Before the first tick nothing is measured; the row has its place all the same.
-        rows.append(_figure("to target", "-" if score.target_m is None else f"{score.target_m:.2f}", "m"))
+        rows.append(_figure_row("to target", "-" if score.target_m is None else f"{score.target_m:.2f}", "m"))
     if drive is not None:
-        rows += [_title("keys"), row(f" {drive}")]
+        rows += [_title_row("keys"), row(f" {drive}")]
     return tuple(rows)
 
 
@@ -84,11 +84,11 @@ def _two_decimals(value: float) -> str:
     return f"{round(value, 2) + 0.0:.2f}"
 
 
-def _title(text: str) -> Row:
+def _title_row(text: str) -> Row:
     return row((text, "dim"))
 
 
-def _figure(name: str, value: str, unit: str) -> Row:
+def _figure_row(name: str, value: str, unit: str) -> Row:
     return row(f" {name:<9}", (f"{value:>5}", "bold"), (f" {unit}", "dim"))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from kit.document.rows import Row, row, row_width, spread
+from kit.document.rows import Row, at_both_edges, row, row_width
 from kit.plain_text import counted
 from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedGameState, SharedMode, SharedPhase
 
@@ -30,7 +30,7 @@ def shared_heading(level: str, mode: SharedMode, state: SharedGameState, width: 
     watched = f"{', '.join(state.watching)} {'watches' if len(state.watching) == 1 else 'watch'}  "
     if row_width(left) + len(watched) + len(clock) >= width:
         watched = f"{counted(len(state.watching), 'spectator')}  "
-    return spread(left, row((watched if state.watching else "", "dim"), (clock, "bold")), width)
+    return at_both_edges(left, row((watched if state.watching else "", "dim"), (clock, "bold")), width)
 
 
 def shared_message(
@@ -46,27 +46,27 @@ def shared_message(
         return (
             row(
                 (f" {max(1, round(COUNTDOWN - state.seconds + 0.5))}", "warn"),
-                f"   {_task(mode, state, me)}",
+                f"   {_task_text(mode, state, me)}",
             ),
         )
     scores = row(
         " ",
         *(
-            f"{'you' if number == me else name or NOBODY}: {_score(mode, state, number)}   "
+            f"{'you' if number == me else name or NOBODY}: {_score_text(mode, state, number)}   "
             for number, name in enumerate(state.names)
         ),
     )
     if state.phase is SharedPhase.OVER:
-        again = _again(state, me)
+        again = _rematch_text(state, me)
         end = row(
-            (f" {_end(state, me)}", "good" if state.winner == me is not None else "bold"),
+            (f" {_end_text(state, me)}", "good" if state.winner == me is not None else "bold"),
             (f"  {again}." if again else "", "dim"),
         )
         return end, scores
-    return row((f" {_task(mode, state, me)}", "bold")), scores
+    return row((f" {_task_text(mode, state, me)}", "bold")), scores
 
 
-def _again(state: SharedGameState, me: int | None) -> str:
+def _rematch_text(state: SharedGameState, me: int | None) -> str:
     """What can be done about another game; empty for whoever watches."""
     if me is None:
         return ""
@@ -78,7 +78,7 @@ def _again(state: SharedGameState, me: int | None) -> str:
     return f"r asks {state.names[HOST]} for a rematch"
 
 
-def _task(mode: SharedMode, state: SharedGameState, me: int | None) -> str:
+def _task_text(mode: SharedMode, state: SharedGameState, me: int | None) -> str:
     if mode is SharedMode.RACE:
         return "First at the target wins."
     assert state.catcher is not None
@@ -87,12 +87,12 @@ def _task(mode: SharedMode, state: SharedGameState, me: int | None) -> str:
     return "You catch: touch the other robot." if state.catcher == me else "Do not get caught."
 
 
-def _score(mode: SharedMode, state: SharedGameState, number: int) -> str:
+def _score_text(mode: SharedMode, state: SharedGameState, number: int) -> str:
     score = state.scores[number]
     return counted(round(score), "target") if mode is SharedMode.RACE else f"catcher for {score:.1f} s"
 
 
-def _end(state: SharedGameState, me: int | None) -> str:
+def _end_text(state: SharedGameState, me: int | None) -> str:
     if state.winner is None:
         return "Nobody has won."
     if me is not None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from kit.arrays import FloatArray
 from kit.dialogue.actions import ScreenActions
-from kit.document.rows import Row, row, spread
+from kit.document.rows import Row, at_both_edges, row
 from kit.learning.training.measures import (
     MEASURES,
     VALUE_MAX,
@@ -67,7 +67,7 @@ def heading(name: str, status: RunStatus, width: int) -> Row:
     """Returns the heading: on the left the task, on the right the state of the training and its duration."""
     left = row((name, "bold"), "  ", (status.plan.title, "dim"))
     right = row(_STATES[status.summary.state], "  ", (clock(status.summary.seconds), "bold"))
-    return spread(left, right, width)
+    return at_both_edges(left, right, width)
 
 
 def clock(seconds: float) -> str:
@@ -120,19 +120,20 @@ def note(name: str, status: RunStatus, width: int) -> Row:
 
 def caption(moment: DemonstrationView, width: int) -> Row:
     """Names the case, the policy that drives, and how the episode ended."""
-    policy = f"{'best, of' if moment.kept else 'after'} {_short(moment.trained)}"
-    left = row((moment.case, "bold"), (f"  {policy}", "dim"))
+    policy = f"{'best, of' if moment.kept else 'after'} {_short_count(moment.trained)}"
+    # "case": the row stands beside the names of curves.
+    left = row(("case ", "dim"), (moment.case, "bold"), (f"  {policy}", "dim"))
     if moment.outcome is None:
-        return spread(left, (), width)
+        return at_both_edges(left, (), width)
     names = [part.name for part in OUTCOMES]
     style = OUTCOME_STYLES[names.index(moment.outcome.value)]
-    return spread(left, row((moment.outcome.value, style)), width)
+    return at_both_edges(left, row((moment.outcome.value, style)), width)
 
 
 def agent(name: str, moment: DemonstrationView, width: int, height: int) -> tuple[Row, ...]:
     """The policy, its environment and return so far, what it perceives and how it rates its actions."""
     about = (
-        ("agent", f"{name}, {'best' if moment.kept else 'newest'} of {_short(moment.trained)}"),
+        ("agent", f"{name}, {'best' if moment.kept else 'newest'} of {_short_count(moment.trained)}"),
         ("environment", f"{moment.environment}, {moment.case}"),
         ("step", f"{moment.step}"),
         *((("return so far", f"{moment.total_reward:.3f}"),) if moment.total_reward is not None else ()),
@@ -140,7 +141,7 @@ def agent(name: str, moment: DemonstrationView, width: int, height: int) -> tupl
     return agent_panel(moment.agent, about, width, height)
 
 
-def _short(steps: int) -> str:
+def _short_count(steps: int) -> str:
     """Formats steps in few characters: 850, 49k, 1.25M."""
     if steps < 1000:
         return str(steps)
@@ -195,9 +196,9 @@ def shares(status: RunStatus) -> StackedCounts:
 def pages(status: RunStatus, width: int, height: int) -> tuple[tuple[Row, ...], ...]:
     """Cases, terms of the reward, and what the learner measures, on as few pages as they fit on; at least one."""
     width = max(width, NAME + 4)
-    blocks = [_cases(status, width, height), _terms(status, width)]
+    blocks = [_case_rows(status, width, height), _term_rows(status, width)]
     if status.measures:
-        blocks.append(_measures(status, width))
+        blocks.append(_measure_rows(status, width))
     made: list[tuple[Row, ...]] = []
     for title, rows in blocks:
         for start in range(0, len(rows), max(1, height - 1)):
@@ -209,7 +210,7 @@ def pages(status: RunStatus, width: int, height: int) -> tuple[tuple[Row, ...], 
     return tuple(made) or ((),)
 
 
-def _cases(status: RunStatus, width: int, height: int) -> tuple[Row, list[Row]]:
+def _case_rows(status: RunStatus, width: int, height: int) -> tuple[Row, list[Row]]:
     """Every case: how its episodes ended in training and how many reached the target in the last test; where they
     are too many, only the latter, several in a row."""
     names = short_names([case.name for case in status.cases])
@@ -218,7 +219,7 @@ def _cases(status: RunStatus, width: int, height: int) -> tuple[Row, list[Row]]:
         wide = max(len("case"), *map(len, names))
         bar = max(0, width - wide - 13)
         title = row((f"{'case':{wide}} {'recent':{bar}} train  test"[:width], "dim"))
-        return title, [_case(name.ljust(wide), case, bar) for name, case in cases]
+        return title, [_case_row(name.ljust(wide), case, bar) for name, case in cases]
     per_row = max(1, (width + 1) // (NAME + 5))
     tested = any(sum(case.last_evaluation) for case in status.cases)
     title = row((f"% reached, {'last test' if tested else 'in training'}"[:width], "dim"))
@@ -230,12 +231,12 @@ def _cases(status: RunStatus, width: int, height: int) -> tuple[Row, list[Row]]:
     return title, [tuple(part for cell in cells[line::down] for part in cell) for line in range(down)]
 
 
-def _case(name: str, case: CaseStatus, bar: int) -> Row:
-    trained, tested = _percent(case.trained), _percent(case.last_evaluation)
-    return row(f"{name} ", *_bar(case.trained, bar), f"{trained:>6}", (f"{tested:>5} ", "bold"))
+def _case_row(name: str, case: CaseStatus, bar: int) -> Row:
+    trained, tested = _percent_text(case.trained), _percent_text(case.last_evaluation)
+    return row(f"{name} ", *_outcome_bar(case.trained, bar), f"{trained:>6}", (f"{tested:>5} ", "bold"))
 
 
-def _bar(counts: Sequence[int], width: int) -> tuple[tuple[str, str], ...]:
+def _outcome_bar(counts: Sequence[int], width: int) -> tuple[tuple[str, str], ...]:
     total = sum(counts)
     if not total:
         return ((" " * width, ""),)
@@ -247,10 +248,10 @@ def _bar(counts: Sequence[int], width: int) -> tuple[tuple[str, str], ...]:
 
 def _cell(name: str, counts: Sequence[int], goal: float | None) -> Row:
     enough = sum(counts) and goal is not None and counts[0] / sum(counts) >= goal
-    return row(f"{name:{NAME}.{NAME}}", (f"{_percent(counts):>4}", "good" if enough else "bold"), " ")
+    return row(f"{name:{NAME}.{NAME}}", (f"{_percent_text(counts):>4}", "good" if enough else "bold"), " ")
 
 
-def _percent(counts: Sequence[int]) -> str:
+def _percent_text(counts: Sequence[int]) -> str:
     """Rounded down: 100 means all."""
     return f"{100 * counts[0] // sum(counts)}" if sum(counts) else "-"
 
@@ -263,7 +264,7 @@ def short_names(names: Sequence[str]) -> list[str]:
     return ["_".join(each) for each in words]
 
 
-def _terms(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
+def _term_rows(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
     """The reward per episode by named term."""
     total = "" if status.reward is None else f" {status.reward:.2f}"
     told = f"reward per episode{total}, {RECENTLY}"
@@ -278,7 +279,7 @@ def _terms(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
     return title, [tuple(part for each in cells[line::down] for part in each) for line in range(down)]
 
 
-def _measures(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
+def _measure_rows(status: RunStatus, width: int) -> tuple[Row, list[Row]]:
     """What the learner last measured of its own learning."""
     rows = [
         row(f"{MEASURES[name].title:{width - 14}.{width - 14}}", (f"{format_measure(number):>13} ", "bold"))

@@ -116,7 +116,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
 
     def _result_rows(self) -> list[Row]:
         if self._started_at is not None:
-            return [checking(time.monotonic() - self._started_at, self._doing)]
+            return [checking(time.monotonic() - self._started_at, self._doing, self.size.width)]
         return self._result
 
     def _without(self) -> list[str]:

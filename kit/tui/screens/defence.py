@@ -5,7 +5,7 @@ from __future__ import annotations
 from textual.app import ComposeResult
 
 from kit.document.layout import Page, rows_of
-from kit.document.rows import MARGIN, Row, row, spread, text_width
+from kit.document.rows import MARGIN, Row, at_both_edges, row, text_width
 from kit.school.lessons.defence_dialogue import DefenceDialogue
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.dialogue import DialogueScreen
@@ -43,7 +43,7 @@ class DefenceScreen(DialogueScreen):
     def _heading(self) -> Row:
         is_running = self.dialogue.is_answered and not self._scene.is_resting
         right = self._scene.caption if is_running else self.dialogue.position
-        return spread(row((self.dialogue.title, "bold")), row((right, "dim")), self.size.width)
+        return at_both_edges(row((self.dialogue.title, "bold")), row((right, "dim")), self.size.width)
 
     def _show_body(self) -> None:
         page = Page(text_width(self.size.width), MARGIN)

@@ -5,39 +5,51 @@ from __future__ import annotations
 from asyncio import to_thread
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from textual import events, work
 from textual.app import ComposeResult
+from textual.containers import Horizontal, Vertical
 from textual.geometry import Size
 
 from kit.dialogue.actions import ScreenActions
-from kit.dialogue.dialogue import Dialogue, Turn
+from kit.dialogue.dialogue import Dialogue, Panel, Turn
 from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show, StartTyping, Tell, Work
 from kit.document.blocks import Tone
 from kit.document.layout import Page, place, rows_of
-from kit.document.rows import MARGIN, Row, row, side_by_side, spread, text_width, window
+from kit.document.rows import MARGIN, Row, at_both_edges, row, text_width, window
 from kit.tui.rows.key_rows import footer
+from kit.tui.rows.ruled_title import ruled_title
 from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
+from kit.tui.widgets.world_view import WorldView
 
 if TYPE_CHECKING:
+    from kit.render.scene import Scene
+    from kit.tui.app import KitApp
     from kit.tui.widgets.text_field import AnswerField
 
 WIDEST: Final = 92
 """Columns of a question, however wide the terminal."""
 BESIDE: Final = 42
-"""Columns of what stands beside it."""
+WIDEST_BESIDE: Final = 76
+"""Columns of the panels beside it, at least and at most."""
 LEAST_BESIDE: Final = 76
 """A question keeps so many columns; where there are fewer nothing stands beside it."""
+LEAST_PANEL: Final = 5
+"""Rows of a panel that is cut, at least."""
 LEAST_ROWS_IN_MIDDLE: Final = 24
 """A screen with no more rows shows the question at its top."""
 ROOMY_ROWS: Final = 36
 """A screen with no fewer rows has room for empty ones between choices."""
 ROWS_AROUND: Final = 3
 """Rows of the heading, the remark and the keys."""
+ROWS_ABOVE_PICTURE: Final = 22
+"""Rows that a question and what is said to its answer seldom exceed: they are kept free of the picture."""
+LEAST_PICTURE, MOST_PICTURE = 9, 25
+"""Rows of the picture below the question; where there are fewer it is left out."""
 POLL_S: Final = 0.2
 """Seconds between two looks whether something has happened by itself."""
 SCROLLS: Final = {
@@ -69,8 +81,9 @@ class DialogueScreen(RowsScreen[None]):
     DEFAULT_CSS = """
     DialogueScreen { layout: vertical; }
     DialogueScreen #heading, DialogueScreen #remark, DialogueScreen #keys { height: 1; }
-    DialogueScreen #body, DialogueScreen #below { height: 1fr; }
-    DialogueScreen #below, DialogueScreen AnswerField { display: none; }
+    DialogueScreen #middle, DialogueScreen #body, DialogueScreen #below { height: 1fr; }
+    DialogueScreen #panels { width: 1fr; height: 1fr; }
+    DialogueScreen #panels, DialogueScreen #below, DialogueScreen AnswerField, DialogueScreen WorldView { display: none; }
     """
 
     def __init__(self, dialogue: Dialogue) -> None:
@@ -87,16 +100,28 @@ class DialogueScreen(RowsScreen[None]):
         """The place whose text is in the field."""
         self._top = 0
         self._body_height: int | str = "1fr"
+        self._picture: WorldView | None = None
+        self._place = ""
+        """The map that the picture shows, or will."""
+        self._placed: tuple[int, int, bool] | None = None
+        """Columns of the question, rows of the picture and whether there are panels, as the screen was last laid out."""
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
-        yield TextRows(id="body")
-        if self.dialogue.has_entry:
-            from kit.tui.widgets.text_field import AnswerField  # its library is slow to import
+        with Horizontal(id="middle"):
+            with Vertical(id="question"):
+                yield TextRows(id="body")
+                if self.dialogue.has_entry:
+                    from kit.tui.widgets.text_field import AnswerField  # its library is slow to import
 
-            self._field = AnswerField()
-            yield self._field
-            yield TextRows(id="below")
+                    self._field = AnswerField()
+                    yield self._field
+                    yield TextRows(id="below")
+                if self.dialogue.place_shown:
+                    theme = cast("KitApp", self.app).kit_theme
+                    self._picture = WorldView(lambda: theme.encoder, theme.palette)
+                    yield self._picture
+            yield TextRows(id="panels")
         yield TextRows(id="remark")
         yield TextRows(id="keys")
 
@@ -124,47 +149,89 @@ class DialogueScreen(RowsScreen[None]):
         return self.size if self.size.width else self.app.size
 
     def show(self) -> None:
-        """Everything, as it stands now. Rows that are the same cost nothing."""
+        """Draws everything as it is now. Rows that have not changed cost nothing."""
         if not self.is_attached:
             return
         self._show_body()
+        self._show_place()
         self._rows("heading").show([self._heading()])
         self._rows("remark").show([self._remark()])
         self._rows("keys").show([self._keys()])
 
     def _show_body(self) -> None:
-        width, room = self.room.width, max(1, self.room.height - ROWS_AROUND)
+        whole, room = self._body(), self._body_room
+        picture = self._picture_rows if len(whole) <= room - self._picture_rows else 0
+        self._lay_out(picture)
         self._show_field()
-        body, self._top = window(self._body(), self._top, room)
-        if beside := self._beside():
-            body = side_by_side(body, beside[:room], self._widest + MARGIN)
-        body = centred(body, width, room, self._whole)
+        body, self._top = window(whole, self._top, room - picture)
+        body = centred(body, self.room.width, room, self._whole, is_at_top=self._has_panels)
         height = len(body) if self._field is not None and self._field.display else "1fr"
         if height != self._body_height:  # setting a style lays out and paints the whole screen
             self._body_height = self._rows("body").styles.height = height
         self._rows("body").show(body)
+        if self._has_panels:
+            self._rows("panels").show(panel_rows(self.dialogue.panels(), self._beside - MARGIN, room))
+
+    def _lay_out(self, picture: int) -> None:
+        """Gives the question, its picture and the panels their places, where these have changed."""
+        has_panels = self._has_panels
+        columns = self._left + self._widest if has_panels else self.room.width
+        if self._placed == (columns, picture, has_panels):
+            return
+        self._placed = columns, picture, has_panels
+        self.query_one("#question").styles.width = columns
+        self._rows("panels").display = has_panels
+        if self._picture is not None:
+            self._picture.display = bool(picture)
+            self._picture.styles.height = picture
+            self._picture.styles.margin = (0, MARGIN, 0, self._left + MARGIN)
+
+    def _show_place(self) -> None:
+        """The picture of the map that belongs to the question, as soon as it is read."""
+        if self._picture is not None and self._picture.display and self._place != self.dialogue.place_shown:
+            self._place = self.dialogue.place_shown
+            self._read_place(self._picture)
+
+    @work(exclusive=True, group="place")
+    async def _read_place(self, picture: WorldView) -> None:
+        picture.show(await to_thread(scene_of_place, self._place))
 
     def _body(self) -> list[Row]:
         return [row(), *rows_of(self.dialogue.blocks(), self._text_page)]
 
-    def _beside(self) -> list[Row]:
-        """What stands to the right of the question; nothing where there is no room."""
-        if self._whole == self._widest:
-            return []
-        return [row(), *rows_of(self.dialogue.beside(), Page(BESIDE - MARGIN))]
+    @property
+    def _body_room(self) -> int:
+        return max(1, self.room.height - ROWS_AROUND)
+
+    @property
+    def _picture_rows(self) -> int:
+        """Rows of the picture below the question, however long that is; 0 where there is no room."""
+        rows = min(MOST_PICTURE, self._body_room - ROWS_ABOVE_PICTURE)
+        return rows if self._picture is not None and self._has_panels and rows >= LEAST_PICTURE else 0
+
+    @property
+    def _has_panels(self) -> bool:
+        return self.room.width >= LEAST_BESIDE + BESIDE and self.dialogue.has_panels
+
+    @property
+    def _beside(self) -> int:
+        """Columns of the panels."""
+        return max(BESIDE, min(WIDEST_BESIDE, self.room.width - WIDEST - MARGIN)) if self._has_panels else 0
 
     @property
     def _whole(self) -> int:
         """Columns of the question and of what stands beside it."""
-        has_room = self.room.width >= LEAST_BESIDE + BESIDE and self.dialogue.beside()
-        return self._widest + MARGIN + BESIDE if has_room else self._widest
+        return self._widest + self._beside
 
     @property
     def _widest(self) -> int:
         """Columns of the question."""
-        if self.room.width >= LEAST_BESIDE + BESIDE and self.dialogue.beside():
-            return min(WIDEST, self.room.width - MARGIN - BESIDE)
-        return WIDEST
+        return min(WIDEST, self.room.width - self._beside) if self._has_panels else WIDEST
+
+    @property
+    def _left(self) -> int:
+        """The column at which the question begins."""
+        return left_column(self.room.width, self._whole)
 
     @property
     def _text_page(self) -> Page:
@@ -181,8 +248,9 @@ class DialogueScreen(RowsScreen[None]):
         if entry is None:
             self._typed_place = self
             return
-        left = left_column(self.room.width, self._whole) + MARGIN
-        right = max(0, self.room.width - left - text_width(self.room.width, self._widest - 2 * MARGIN))
+        left = self._left + MARGIN
+        columns = self._left + self._widest if self._has_panels else self.room.width
+        right = max(0, columns - left - text_width(self.room.width, self._widest - 2 * MARGIN))
         field.styles.margin = (0, right, 0, left)
         if self._typed_place != self.dialogue.place:
             self._typed_place = self.dialogue.place
@@ -200,7 +268,7 @@ class DialogueScreen(RowsScreen[None]):
     def _heading(self) -> Row:
         title = row((self.dialogue.title, "bold"))
         position = self.dialogue.position
-        return spread(title, row((position, "dim")), self.room.width) if position else title
+        return at_both_edges(title, row((position, "dim")), self.room.width) if position else title
 
     def _remark(self) -> Row:
         if self.turn.remark is not None:
@@ -230,7 +298,7 @@ class DialogueScreen(RowsScreen[None]):
         if look is not None:
             blocks = list(self.dialogue.blocks())
             placed = place(blocks, self._text_page)
-            last_top = max(0, len(placed.rows) + 1 - max(1, self.room.height - ROWS_AROUND))
+            last_top = max(0, len(placed.rows) + 1 - self._body_room)
             self._top = min(placed.starts[blocks.index(look)] + 1, last_top)  # an empty row begins the page
         self.show()
 
@@ -360,15 +428,45 @@ def _nothing() -> Effect:
     return None
 
 
-def centred(rows: Sequence[Row], width: int, room: int, widest: int = WIDEST) -> list[Row]:
-    """The rows as a column in the middle of a wide screen, lower on a high one. The place depends on the screen alone:
+def scene_of_place(name: str) -> Scene:
+    """A map before anybody drives. Takes a while: not to be called by what draws."""
+    from kit.run.scenario import find_scenario  # of no use to the first frame
+    from kit.tui.screens.level_pictures import first_scene
+
+    return first_scene(find_scenario(name, None))
+
+
+def panel_rows(panels: Sequence[Panel], width: int, room: int) -> list[Row]:
+    """The panels below each other, each with its title on a rule; what does not fit in ``room`` rows is left out, the last
+    panel that fits in part is cut.
+
+    >>> from kit.document.blocks import Text
+    >>> from kit.document.rows import row_text
+    >>> panels = [Panel("one", (Text("first"),)), Panel("two", (Text("second"),))]
+    >>> [row_text(each) for each in panel_rows(panels, 12, 5)]
+    ['', '── one ────', 'first']
+    """
+    made: list[Row] = []
+    for panel in panels:
+        rows = [row(), ruled_title(panel.title, width), *rows_of(panel.blocks, Page(width))]
+        left = room - len(made)
+        if len(rows) > left and left < LEAST_PANEL:
+            break
+        made += rows[:left]
+    return made
+
+
+def centred(
+    rows: Sequence[Row], width: int, room: int, widest: int = WIDEST, *, is_at_top: bool = False
+) -> list[Row]:
+    """The rows as a column in the middle of a wide screen, lower on a high one if not ``is_at_top``. The place depends on the screen alone:
     nothing moves as rows are added.
 
     >>> centred([row("one")], 100, 20)
     [(('    ', ''), ('one', ''))]
     """
     left = left_column(width, widest)
-    above = max(0, min((room - LEAST_ROWS_IN_MIDDLE) // 3, room - len(rows)))
+    above = 0 if is_at_top else max(0, min((room - LEAST_ROWS_IN_MIDDLE) // 3, room - len(rows)))
     return [row()] * above + [(row(" " * left) + each if left and each else each) for each in rows]
 
 

@@ -232,7 +232,7 @@ class GraphScreen(RowsScreen[None]):
     # What is shown
 
     def _refresh_text(self) -> None:
-        """Everything but the dots: who is there, rates, words."""
+        """Draws all but the moving dots: the nodes, rates and texts."""
         heard = self._heard
         if heard is None:
             return
@@ -493,7 +493,7 @@ class GraphScreen(RowsScreen[None]):
         self.app.push_screen(HelpDialog("Nodes and topics", self.screen_actions, PARTS))
 
     def action_back(self) -> None:
-        """One thing at a time: out of the field, the plot, the details, the narrowing, the screen."""
+        """Leaves the innermost open view: field, plot, details, filter, and at last the screen."""
         if self.focused is not None:
             self.query_one(Input).value = ""
             self._ask_for_name(False)

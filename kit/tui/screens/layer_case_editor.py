@@ -14,7 +14,7 @@ from textual.widgets import Input
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction, letter
-from kit.document.rows import row, spread
+from kit.document.rows import at_both_edges, row
 from kit.layers.case_table import CaseTable, RowKind
 from kit.layers.drawing.matrix import draw_matrix
 from kit.layers.drawing.spans import GlyphStyle, to_plain_lines
@@ -109,7 +109,7 @@ class CaseEditor(RowsScreen[LayerCase]):
             step = Step("case", "", (), laser=None if laser is None else laser.name)
             beside.show(picture(case, step, room, rows, self._glyphs))
         assumed = row(("bodies of one model never meet", "warn")) if editing.ignore_self_collisions else row()
-        self._rows("heading").show([spread(row(("a case by hand", "bold")), assumed, self.size.width)])
+        self._rows("heading").show([at_both_edges(row(("a case by hand", "bold")), assumed, self.size.width)])
         self._rows("remark").show([row((self._problem, "bad")) if self._problem else row(editing.cell_text)])
         self._rows("keys").show([footer(self.screen_actions, self.size.width)])
 

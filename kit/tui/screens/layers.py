@@ -16,7 +16,7 @@ from textual.widgets import Input
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction, digits, letter
-from kit.document.rows import Row, row, spread, window
+from kit.document.rows import Row, at_both_edges, row, window
 from kit.layers.case_sources import PlanningTask, UnknownPlanningTask, open_task, solve_task
 from kit.layers.drawing.graph import MAX_ENTITIES_IN_PICTURE
 from kit.layers.drawing.spans import GlyphStyle
@@ -205,7 +205,7 @@ class LayersScreen(RowsScreen[None]):
         number = PARTS.index(step.part) + 1
         left = row((self._title, "bold"), f"  {number}. {step.title}")
         place = row((f"{self._at + 1} of {len(self._steps)}", "dim"))
-        return spread(left, place, self.size.width)
+        return at_both_edges(left, place, self.size.width)
 
     # Keys
 

@@ -17,7 +17,7 @@ from kit.controllers import user_controllers
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
 from kit.document.layout import Page, rows_of
-from kit.document.rows import Row, row, side_by_side, spread
+from kit.document.rows import Row, at_both_edges, row, side_by_side
 from kit.document.tables import list_rows
 from kit.host.job_folder import JobExecutor
 from kit.render.scene import Scene
@@ -140,7 +140,7 @@ class LeagueScreen(RowsScreen[None]):
         place = f"{self._league.folder}".replace(str(Path.home()), "~", 1)
         has_room = len(title) + len(place) + 2 <= width
         self._rows("heading").show(
-            [spread(row((title, "bold")), row((place if has_room else "", "dim")), width)]
+            [at_both_edges(row((title, "bold")), row((place if has_room else "", "dim")), width)]
         )
         body = [] if standings is None else self._body(standings, width, height)
         self._rows("body").show(body)

@@ -16,7 +16,7 @@ from kit.dialogue.dialogue import Dialogue
 from kit.dialogue.effects import Remark
 from kit.document.blocks import Block, Tone
 from kit.document.layout import Page, place, rows_of
-from kit.document.rows import MARGIN, Row, row, spread, text_width
+from kit.document.rows import MARGIN, Row, at_both_edges, row, text_width
 from kit.inspection.sockets import sockets_folder
 from kit.run.scenario import find_scenario
 from kit.school.lessons.aside import has_easy_editor, plain_lines
@@ -206,7 +206,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
             if work is not None and not self._is_editing  # it names the file itself
             else []
         )
-        status = [self._status_row()] if work is not None or dialogue.note is not None else []
+        status = [self._status_row()] if self._has_status_row else []
         self._rows("file").show_all(file)
         self._rows("status").show_all(status)
         self._rows("heading").show([lesson_rows.heading(dialogue.session.lesson_progress, step, width)])
@@ -270,15 +270,15 @@ class LessonScreen(DialogueScreen, DriveScreen):
     def _show_title(self) -> None:
         width, caption = self.room.width, self._caption()
         if self.dialogue.has_ended:
-            title = spread((), caption, width)
+            title = at_both_edges((), caption, width)
         else:
             title = lesson_rows.title(self.dialogue.step, caption, width)
         self._rows("title").show([title])
 
     def _caption(self) -> Row:
-        """The state of the scene; in a step without an exercise, what is said to the last key."""
+        """The state of the scene, or what is said to the last key, if that has no row of its own."""
         dialogue, scene, remark = self.dialogue, self.stage.scene, self.turn.remark
-        if remark is not None and dialogue.work is None and dialogue.note is None:
+        if remark is not None and not self._has_status_row:
             return row((remark.text, remark.tone))
         state = ""
         if dialogue.has_scene:
@@ -289,11 +289,25 @@ class LessonScreen(DialogueScreen, DriveScreen):
                 state = "you drive" if dialogue.is_driving else "press d to drive"
         return row((state, "dim"))
 
+    @property
+    def _has_status_row(self) -> bool:
+        """Whether what is said to the last key has a row of its own: in an exercise, and where it would cut the step's title."""
+        dialogue, remark = self.dialogue, self.turn.remark
+        if dialogue.work is not None or dialogue.note is not None:
+            return True
+        return (
+            remark is not None
+            and not dialogue.has_ended
+            and not lesson_rows.fits_beside_title(
+                dialogue.step, row((remark.text, remark.tone)), self.room.width
+            )
+        )
+
     def _status_row(self) -> Row:
         """One row: where one is with the exercise, or what is said to the last key."""
         work = self.dialogue.work
         if work is not None and work.seconds is not None:
-            return lesson_rows.checking(work.seconds, work.progress)
+            return lesson_rows.checking(work.seconds, work.progress, self.room.width)
         since = time.monotonic() - self._passed_at
         if work is self._passed_work and since < lesson_rows.PASSED_S and self.turn.remark is None:
             return lesson_rows.passing(since)

@@ -17,7 +17,7 @@ from textual.screen import Screen
 
 from kit.dialogue.actions import ScreenActions
 from kit.document.layout import lines_of
-from kit.document.rows import Row, row, spread
+from kit.document.rows import Row, at_both_edges, row
 from kit.school.game.levels import GameLevel, levels_of_lesson
 from kit.school.lessons.catalogue import LessonEntry
 from kit.school.lessons.records import Lesson
@@ -119,7 +119,9 @@ class LessonsScreen(RowsScreen[None]):
         self._listed = [entry for entry, _ in lines[top : top + room]]
         where = f"lines {top + 1} to {top + len(self._listed)} of {len(lines)}" if len(lines) > room else ""
         news = (f"   {self._news}", "good")
-        heading = spread(row(("Lessons", "bold"), (told, "dim"), news), row((where, "dim")), self.size.width)
+        heading = at_both_edges(
+            row(("Lessons", "bold"), (told, "dim"), news), row((where, "dim")), self.size.width
+        )
         self._rows("heading").show([heading])
         self._rows("list").show_all([line for _, line in lines[top : top + room]])
         if is_wide:
@@ -145,7 +147,7 @@ class LessonsScreen(RowsScreen[None]):
         if scene is not None:
             self._picture.show(scene)
         elif chosen.lesson is not None and chosen.name not in self._beside:
-            self._beside[chosen.name] = await to_thread(_read_beside, chosen.lesson)
+            self._beside[chosen.name] = await to_thread(_read_world_and_levels, chosen.lesson)
             if self.query(TextRows):
                 self._show_beside()
 
@@ -192,7 +194,7 @@ class LessonsScreen(RowsScreen[None]):
         self.app.push_screen(HelpDialog("Lessons", self.screen_actions, MARKS))
 
 
-def _read_beside(lesson: Lesson) -> tuple[Scene | None, tuple[GameLevel, ...]]:
+def _read_world_and_levels(lesson: Lesson) -> tuple[Scene | None, tuple[GameLevel, ...]]:
     """The lesson's world and the levels that it opens; what cannot be read is told when the lesson is opened."""
     # of no use to the first frame
     from kit.tui.screens.level_pictures import scene_of_lesson

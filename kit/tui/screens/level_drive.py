@@ -13,7 +13,7 @@ from textual.message import Message
 from kit.controllers import ControllerFile, find_controller
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.shared_actions import VIEW_IDS
-from kit.document.rows import Row, row, spread
+from kit.document.rows import Row, at_both_edges, row
 from kit.inspection.sockets import sockets_folder
 from kit.plain_text import format_clock
 from kit.render.scene import Scene, SceneMark
@@ -284,7 +284,7 @@ class LevelDrive(WatchScreen):
             if reference is not None and not self._is_over:
                 reach = level_rows.still_in_reach(self._driver, reference, time_s, referee.finish.collisions)
                 left.append((f"  {reach}", "dim"))
-        return spread(row(*left), row(*right, (format_clock(time_s), "bold")), self.size.width)
+        return at_both_edges(row(*left), row(*right, (format_clock(time_s), "bold")), self.size.width)
 
     def _end(self, session: Session) -> None:
         """Ends the drive in the world's thread, between two ticks: nothing moves any more."""
@@ -392,7 +392,7 @@ class LevelDrive(WatchScreen):
         """Time is not for sale in a race."""
 
     def action_speed(self, key: str) -> None:
-        """A program may be watched faster: its own clock is the world's."""
+        """Changes the speed at which a program's drive is shown; its own clock is the world's."""
         if self._race_program is not None:
             super().action_speed(key)
 

@@ -17,7 +17,8 @@ from textual.screen import ModalScreen
 
 from kit.dialogue.actions import ScreenActions
 from kit.document.rows import Row, row
-from kit.render.roles import PEN_ROLES, Role
+from kit.render.role_looks import PEN_ROLES
+from kit.render.roles import Role
 from kit.render.scene import PenStroke, Scene, ScenePath
 from kit.run.animation import ExportError
 from kit.run.recording import Recording
@@ -54,8 +55,14 @@ FINISH_ROWS: Final = 3
 """Columns of the photo finish, and how many are in it."""
 ROWS_AROUND: Final = 2
 """Of the result: a note and the keys."""
+NARROW: Final = 80
+"""Columns from which on a small map stands beside medal, times and sectors."""
 WIDE: Final = 110
 """Columns from which on the map stands beside the result."""
+LEFT: Final = 46
+"""Columns of medal, times and sectors where a small map stands beside these alone."""
+LEAST_BESIDE_ROWS: Final = 9
+"""Of that map."""
 LEAST_MAP_ROWS: Final = 7
 """Of the map below the result; where there are fewer it is left out."""
 HIGH: Final = 30
@@ -93,9 +100,10 @@ class DriveResultScreen(ModalScreen[Wish]):
     screen_actions = ScreenActions("level result", ("next", "restart", "replay", "share", "back"))
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = f"""
-    DriveResultScreen {{ layout: vertical; }}
+    DriveResultScreen {{ layout: vertical; layers: text map; }}
     DriveResultScreen > TextRows {{ width: 1fr; height: 1fr; }}
     DriveResultScreen > WorldView {{ display: none; }}
+    DriveResultScreen.-beside > WorldView {{ display: block; layer: map; dock: right; width: {NARROW - LEFT}; }}
     DriveResultScreen.-wide {{ layout: horizontal; }}
     DriveResultScreen.-wide > TextRows {{ width: {WIDTH}; }}
     DriveResultScreen.-wide > WorldView {{ display: block; width: 1fr; }}
@@ -114,10 +122,11 @@ class DriveResultScreen(ModalScreen[Wish]):
             *wrapped(f" {drive_end_rows.finish_sentence(finish)}"),
             row(),
         ]
-        self._before_finish = [
-            *drive_end_rows.earned(result.level, finish, record),
+        self._ladder = [
             *ladder_of_drive(finish, record, result.driver, result.reference),
             *level_rows.starts_rows(result.finishes, record.counts),
+        ]
+        self._times = [
             *drive_end_rows.compared(finish, record, result.reference, result.ghosts),
             *drive_end_rows.sector_rows(result.splits),
         ]
@@ -176,9 +185,17 @@ class DriveResultScreen(ModalScreen[Wish]):
         self._show()
 
     def on_resize(self, event: events.Resize) -> None:
+        width, height = event.size
+        self.set_class(width >= WIDE, "-wide")
+        self.set_class(False, "-high")
+        self.set_class(False, "-beside")
         rows = len(self._fixed) + len(self._revealed) + len(self._medal) + ROWS_AROUND
-        self.set_class(event.size.width >= WIDE, "-wide")
-        self.set_class(event.size.width < WIDE and event.size.height >= rows + LEAST_MAP_ROWS, "-high")
+        is_high = width < WIDE and height >= rows + LEAST_MAP_ROWS
+        self.set_class(is_high, "-high")
+        self.set_class(NARROW <= width < WIDE and not is_high, "-beside")
+        is_beside = self.has_class("-beside")
+        self._world.styles.margin = (len(self._fixed) if is_beside else 0, 0, 0, 0)
+        self._world.styles.height = len(self._beside_map) if is_beside else "1fr"
         self._show()
 
     @property
@@ -186,6 +203,23 @@ class DriveResultScreen(ModalScreen[Wish]):
         """The medal as a drawing, where there is room for it."""
         has_room = self.app.size.height >= HIGH and self._result.record.medal is not Medal.NONE
         return medal_drawing(self._result.record.medal, self._spark) if has_room else []
+
+    @property
+    def _earned(self) -> list[Row]:
+        width = LEFT if self.has_class("-beside") else WIDTH
+        return drive_end_rows.earned(self._result.level, self._result.finish, self._result.record, width)
+
+    @property
+    def _beside_map(self) -> list[Row]:
+        """The rows that a small map stands beside."""
+        rows = [*self._earned, *self._times]
+        return [*rows, *[row()] * (LEAST_BESIDE_ROWS - len(rows))]
+
+    @property
+    def _before_finish(self) -> list[Row]:
+        if self.has_class("-beside"):
+            return [*self._beside_map, *self._ladder]
+        return [*self._earned, *self._ladder, *self._times]
 
     @property
     def _revealed(self) -> list[Row]:

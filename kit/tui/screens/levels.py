@@ -17,7 +17,7 @@ from textual.containers import Horizontal
 from kit.controllers import ControllerFile, kit_controllers, user_controllers
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
-from kit.document.rows import Row, row, side_by_side, spread
+from kit.document.rows import Row, at_both_edges, row, side_by_side
 from kit.plain_text import counted
 from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
@@ -209,7 +209,7 @@ class LevelsScreen(RowsScreen[None]):
         counts, title = f"{level_rows.medal_counts(summary)} ", " The game   "
         daily = self._daily_text(self.size.width - len(counts) - len(title) - 1)
         self._rows("heading").show(
-            [spread(row((title, "bold"), (daily, "dim")), row((counts, "bold")), self.size.width)]
+            [at_both_edges(row((title, "bold"), (daily, "dim")), row((counts, "bold")), self.size.width)]
         )
         challenge = self.chosen_challenge
         self.set_class(challenge is not None, "-challenge")

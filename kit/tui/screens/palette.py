@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from kit.dialogue.actions import ScreenActions
-from kit.render.roles import COLOR_SCHEMES
+from kit.render.palettes import COLOR_SCHEMES
 from kit.tui.input.driver import key_driver
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.terminal import MOUSE_VARIABLE

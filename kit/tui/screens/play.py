@@ -227,7 +227,7 @@ class PlayScreen(WatchScreen):
         return self.focused is None and key not in self._editor_keys and super().is_drive_key(key)
 
     def action_back(self) -> None:
-        """First the editor is closed."""
+        """Closes the editor if one is open, else the screen."""
         if self.has_class(EDITING):
             self._close_editor()
         else:

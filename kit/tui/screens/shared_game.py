@@ -320,14 +320,14 @@ class _Shapes:
         """The world at this instant."""
         poses = {name: pose for (name, _, _), pose in zip(self._robots, state.poses, strict=True)}
         outlines = [
-            replace(outline, points=_moved(outline.points, start, poses[name]))
+            replace(outline, points=_move_points(outline.points, start, poses[name]))
             for name, start, own in self._robots
             for outline in own
         ]
         return Scene(walls=self._walls, bodies=scene_bodies(outlines, poses, poses))
 
 
-def _moved(
+def _move_points(
     points: tuple[tuple[float, float], ...], start: Pose, pose: Pose
 ) -> tuple[tuple[float, float], ...]:
     """The points of a body that stood at ``start``, now that it stands at ``pose``."""

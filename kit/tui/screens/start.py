@@ -6,7 +6,7 @@ from asyncio import Event, get_running_loop, to_thread
 from collections.abc import Awaitable, Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from textual import work
 from textual.binding import BindingType
@@ -14,15 +14,24 @@ from textual.screen import Screen
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction
-from kit.document.rows import Row, row, spread
+from kit.document.rows import Row, at_both_edges, row
 from kit.inspection.sockets import sockets_folder
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import base_key
 from kit.tui.rows.key_rows import bindings
-from kit.tui.rows.menu_rows import MENU, MENU_KEYS, PANEL_WIDTH, menu
+from kit.tui.rows.menu_rows import (
+    MENU,
+    MENU_KEYS,
+    PANEL_WIDTH,
+    PICTURE,
+    PICTURE_ROWS,
+    WIDE_PANEL,
+    menu,
+)
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.palette import PaletteCommand
 from kit.tui.screens.play import TELEOP, PlayScreen
+from kit.tui.screens.watch import BREAKPOINTS
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
 
@@ -34,6 +43,9 @@ if TYPE_CHECKING:
 
 
 DRIVING_LETTERS = ("w", "a", "s", "d")
+VAST: Final = 190
+"""Columns from which on the robot's picture leaves room for a wide panel."""
+WITH_VAST: Final = [*BREAKPOINTS, (VAST, "-vast")]
 PLACE, CONTROLLER = "maze", "random_walk"
 
 
@@ -60,7 +72,9 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     DEFAULT_CSS = f"""
     StartScreen #panel {{ width: {PANEL_WIDTH}; }}
     StartScreen.-narrow #panel {{ display: block; }}
+    StartScreen.-vast #panel {{ width: {WIDE_PANEL}; }}
     """
+    HORIZONTAL_BREAKPOINTS = WITH_VAST
 
     def __init__(self, theme: Theme, store: StudentStore, *, seed: int = 0) -> None:
         workspace = store.workspace
@@ -78,6 +92,8 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self._reading = ThreadPoolExecutor(1)
         """Not the event loop's own, for whose work leaving would wait."""
         self._overview: StudentOverview | None = None
+        self._level_picture: tuple[str, ...] = ()
+        """Rows of the next level's picture, once it is drawn."""
         self._chosen = 0
         self._is_reading = self._is_away = False
 
@@ -128,11 +144,18 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         driver = "you drive" if view.controller == TELEOP else "a program drives: random walk"
         if view.failure is not None:
             driver = "no program drives"
-        return spread(row(("The terminal robot-learning kit", "bold")), row((driver, "dim")), self.size.width)
+        return at_both_edges(
+            row(("The terminal robot-learning kit", "bold")), row((driver, "dim")), self.size.width
+        )
 
     def _show_menu(self) -> None:
         panel = self._rows("panel")
-        panel.show(menu(self._overview, self._chosen, panel.size.height))
+        size = panel.size  # without its padding
+        columns = WIDE_PANEL if self.has_class("-vast") else PANEL_WIDTH
+        panel.show(menu(self._overview, self._chosen, size.height, columns, self._level_picture))
+
+    def on_resize(self) -> None:  # besides the base class's, which Textual calls too
+        self.call_after_refresh(self._show_menu)
 
     # Where the student stands
 
@@ -149,6 +172,10 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         """Read again, and shown."""
         overview = await get_running_loop().run_in_executor(self._reading, self._store.read_overview)
         self._overview = overview
+        if overview.next_level is not None and self.has_class("-vast"):
+            self._level_picture = await get_running_loop().run_in_executor(
+                self._reading, _picture_of, overview.next_level, self._theme.terminal.glyphs.value
+            )
         if notice := self._store.take_notice():
             self.app.push_screen(MessageDialog("Your progress", wrapped(notice)))
         self._show()
@@ -364,3 +391,9 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self._close_own_world()
         await show_progress(self, self._store)
         await self._reopen_own_world()
+
+
+def _picture_of(level: GameLevel, glyphs: str) -> tuple[str, ...]:
+    from kit.tui.screens.level_pictures import picture_of  # of no use to the first frame
+
+    return tuple(picture_of(level, PICTURE - 1, PICTURE_ROWS, glyphs))

@@ -10,7 +10,7 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 
 from kit.dialogue.actions import ScreenActions
-from kit.document.rows import Row, broken, row, row_width, side_by_side, spread
+from kit.document.rows import Row, at_both_edges, broken, row, row_width, side_by_side
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import TextRows
@@ -68,7 +68,7 @@ class TextScreen(ActivePaintScreen[None]):
         self._top = max(0, min(self._top, len(self._shown) - room))
         last = min(len(self._shown), self._top + room)
         where = f"lines {self._top + 1} to {last} of {len(self._shown)}" if len(self._shown) > room else ""
-        heading = spread(row((self._title, "bold")), row((where, "dim")), self.size.width)
+        heading = at_both_edges(row((self._title, "bold")), row((where, "dim")), self.size.width)
         self.query_one("#heading", TextRows).show([heading])
         self.query_one("#body", TextRows).show(self._shown[self._top : last])
         self.query_one("#keys", TextRows).show([self._keys()])

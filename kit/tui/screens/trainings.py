@@ -15,7 +15,7 @@ from textual.containers import Horizontal
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction, letter
 from kit.document.blocks import Block, Text
-from kit.document.rows import row, spread
+from kit.document.rows import at_both_edges, row
 from kit.plain_text import counted, format_size
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.training_list_rows import about_run, no_trainings, training_list
@@ -143,7 +143,7 @@ class TrainingsScreen(RowsScreen[None]):
         width, runs = self.size.width, self._overviews
         self.set_class(not runs, "-empty")
         count = "" if not runs else counted(len(runs), "run")
-        self._rows("heading").show([spread(row(("Trainings", "bold")), row((count, "dim")), width)])
+        self._rows("heading").show([at_both_edges(row(("Trainings", "bold")), row((count, "dim")), width)])
         if runs is None:
             self._rows("body").show([row((" reading ...", "dim"))])
         else:
@@ -222,7 +222,7 @@ class TrainingsScreen(RowsScreen[None]):
             self._show()
             return
         self._tell(
-            f"testing {len(marked)} runs ...",
+            f"testing {counted(len(marked), 'run')} ...",
             "Comparison",
             lambda columns: _comparison_rows(marked, self._theme, columns),
         )

@@ -456,4 +456,4 @@ def _lines_of(file: Path | None) -> tuple[str, ...]:
 
 
 def _do_nothing(session: Session) -> None:
-    """A wish that only has the world looked at again."""
+    """Changes nothing: a request that only refreshes the picture of the world."""

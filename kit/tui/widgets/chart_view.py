@@ -8,7 +8,7 @@ from textual import events
 
 from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import UNICODE_GLYPHS, BrailleEncoder, Encoder, GlyphSet
-from kit.render.roles import ANSI_PALETTE, Palette
+from kit.render.palettes import ANSI_PALETTE, Palette
 from kit.render.stacked_chart import ChartPart, StackedCounts, draw_stacked_chart
 from kit.tui.widgets.frame_view import FrameView
 

@@ -13,7 +13,9 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
-from kit.render.roles import ANSI_PALETTE, Color, Palette, Role, RoleStyle
+from kit.render.palettes import ANSI_PALETTE, Palette
+from kit.render.role_looks import Color, RoleStyle
+from kit.render.roles import Role
 from kit.tui.textual_patches import PlacedRun, crop_left, write_runs
 
 if TYPE_CHECKING:  # numpy is imported by whoever makes a frame

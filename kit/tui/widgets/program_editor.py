@@ -19,6 +19,7 @@ from kit.controllers import ControllerFile, find_controller, kit_controllers
 from kit.document.rows import Row, row, row_text
 from kit.host.failure import Failure
 from kit.plain_text import wrap
+from kit.school.lessons.shell_lines import shell_path
 from kit.tui.rows.key_rows import key_row
 from kit.tui.widgets.program_colours import LANGUAGES, coloured_spans
 from kit.tui.widgets.text_field import KitTextArea
@@ -78,7 +79,7 @@ class ProgramFile:
                 stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
             ):
                 raise ProgramFileError(
-                    f"{self.file.name} is read-only: `chmod u+w {self.file.name}` lets you save it."
+                    f"{self.file.name} is read-only: `chmod u+w {shell_path(self.file)}` lets you save it."
                 )
             write_atomically(self.file, text.encode())
         except OSError as error:

@@ -14,7 +14,8 @@ from textual import events
 from textual.message import Message
 from textual.timer import Timer
 
-from kit.render.roles import ANSI_PALETTE, Palette, Role
+from kit.render.palettes import ANSI_PALETTE, Palette
+from kit.render.roles import Role
 from kit.tui.textual_patches import ask_cursor
 from kit.tui.widgets.frame_view import FrameView
 

@@ -102,7 +102,27 @@ print(code, *sys.modules)
 def test_a_slip_in_yaml_loads_no_simulator(exercise: str, file: str, tmp_path: Path) -> None:
     """It costs a student half a second only if nothing slow is imported for it."""
     (tmp_path / file).write_text("other: [1, 2\n")
-    words = [tmp_path / file, lessons_folder() / exercise, tmp_path / "worst.npz"]
+    code, modules = _checked_with_modules(tmp_path / file, lessons_folder() / exercise)
+    assert code == 1
+    assert not {"numpy", "pymunk", "PIL", "kit.sim"} & modules
+
+
+@pytest.mark.long
+def test_a_drive_loads_nothing_of_the_other_kinds(tmp_path: Path) -> None:
+    file = tmp_path / "ada.py"
+    file.write_text(FORWARD)
+    code, modules = _checked_with_modules(file, write_assignment(tmp_path / "q"))
+    assert code == 1
+    assert (tmp_path / "worst.npz").exists()
+    assert "kit.run.recording" in modules
+    assert not {
+        each for each in modules if each.startswith(("gymnasium", "kit.learning", "grader.kinds.reward"))
+    }
+
+
+def _checked_with_modules(file: Path, assignment: Path) -> tuple[int, set[str]]:
+    """Returns the exit code of a check that saves a replay beside the file, and the modules that it has loaded."""
+    words = [file, assignment, file.with_name("worst.npz")]
     done = subprocess.run(
         [sys.executable, "-c", CHECK_AND_LIST_MODULES, *map(str, words)],
         capture_output=True,
@@ -110,8 +130,7 @@ def test_a_slip_in_yaml_loads_no_simulator(exercise: str, file: str, tmp_path: P
         check=True,
     )
     code, *modules = done.stdout.split()
-    assert code == "1"
-    assert not {"numpy", "pymunk", "PIL", "kit.sim"} & set(modules)
+    return int(code), set(modules)
 
 
 @pytest.mark.parametrize("format_name", ["text", "junit", "annotations"])

@@ -538,7 +538,7 @@ def test_a_class_is_not_graded_at_level_0_by_silence(tmp_path: Path) -> None:
     asked = one_of_a_class(tmp_path)
     code, told = verb("cohort", *asked)
     queue = Queue(tmp_path / "queue")
-    highest = int(probe.highest_level())
+    highest = int(probe.highest_level_up_to(Level.ANOTHER_USER))
     assert highest >= 1
     assert (code, queue.manifest()["level"], gradebook_rows(queue)[0].level) == (0, highest, highest)
     assert f"1 fail, at confinement level {highest}: " in told
@@ -569,7 +569,7 @@ def test_one_work_with_secrets_is_not_graded_at_level_0_by_silence(tmp_path: Pat
     folder, file = write_assignment(tmp_path / "quick", secret="seeds: {turn: [5]}"), tmp_path / "ada.py"
     file.write_text(FORWARD)
     asked = (file, "--assignment", folder, "--json")
-    highest = int(probe.highest_level())
+    highest = int(probe.highest_level_up_to(Level.ANOTHER_USER))
     for more, level in (
         (("--secret",), highest),
         (("--secret", "--level", "0"), 0),

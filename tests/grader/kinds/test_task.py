@@ -137,6 +137,13 @@ def test_what_cannot_be_used_is_told_and_earns_nothing(
     assert all(each.status is not CriterionStatus.GRADER_ERROR for each in result.tests)
 
 
+def test_where_episodes_begin_is_said_of_no_task_that_cannot_be_used() -> None:
+    """The lesson asks for places first: then its cause is all that is told."""
+    result = graded(lessons_folder() / "24-train-your-own" / "pays", "map: [turn\n")
+    assert result.tests[0].rationale.startswith("task.yaml:1:6: not valid YAML")
+    assert result.tests[0].rationale.count(".") < 4
+
+
 @pytest.mark.long
 def test_places_elsewhere_are_named(folder: Path) -> None:
     result = graded(folder, TASK.replace("target: [0.625, 2.5]", "target: [0.625, 1.5]"))

@@ -165,7 +165,7 @@ def test_an_update_goes_up_the_slope_of_the_clipped_objective(clip: float) -> No
         return float((gain + 0.1 * entropy).mean())
 
     before = learner.logits.copy()
-    learner._climb(cells, moves, weights, old)
+    learner._ascend_objective(cells, moves, weights, old)
     for cell in range(5):
         for move in range(4):
             nudged = before.copy()

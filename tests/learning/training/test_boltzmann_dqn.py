@@ -38,7 +38,7 @@ def test_the_gradient_is_that_of_half_the_squared_error(dqn: ModuleType, activat
     steps, targets = batch(dqn), RNG.normal(size=8).astype(np.float32)
     start = network.parameters.copy()
     found: list[np.ndarray[tuple[int], np.dtype[np.float32]]] = []
-    network._step = lambda gradient, rate: found.append(gradient.copy())  # type: ignore[method-assign]  # only look
+    network._adam_step = lambda gradient, rate: found.append(gradient.copy())  # type: ignore[method-assign]  # only look
     network.descend(steps, targets, 0.1)
 
     def loss(parameters: np.ndarray[tuple[int], np.dtype[np.float32]]) -> float:

@@ -37,7 +37,7 @@ def crosstable(*arguments: object, code: int = 0) -> str:
 def test_the_table_is_made_once_and_taken_up_again(tmp_path: Path) -> None:
     words = ("turn", "--algos", "q-learning", "--on", "turn_a_to_b,all", "--steps", 2000, "--episodes", 5)
     words = (*words, "--workspace", tmp_path, "--seeds", 2)
-    assert "4 of 4 trainings have no result yet" in crosstable(*words, "--executor", "none")
+    assert "4 of 4 trainings without a result yet" in crosstable(*words, "--executor", "none")
     table = crosstable(*words)
     assert table.splitlines()[0].split() == ["tested", "on", "turn_a_to_b", ALL_CASES]
     marks = {file: file.stat().st_mtime_ns for file in tmp_path.rglob("runs/*/*.npz")}

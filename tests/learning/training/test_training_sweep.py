@@ -56,7 +56,7 @@ def test_a_row_tells_how_many_seeds_have_learned(tmp_path: Path) -> None:
     sweep = TrainingSweep.prepare(tmp_path, QUICK, 10)
     entries = sweep.entries()
     for entry, worst in zip(entries, (0.95, 0.5, 1.0), strict=False):
-        sweep._save(entry.key, SweepResult(2000, 60.0, 0.97, worst, "turn_a_to_b", 19, 20))
+        sweep._save_result(entry.key, SweepResult(2000, 60.0, 0.97, worst, "turn_a_to_b", 19, 20))
     sweep.record_loss(entries[3].key)
     assert sweep.waiting() == (entries[3].key,)
     first, second = sweep_rows(sweep, 0.9)

@@ -95,7 +95,7 @@ class TrainingStandIn:
             if self.trained == self.patience:
                 raise KeyboardInterrupt
             self.trained += 1
-            sweep._save(key, cost_of_gamma(entries[key].settings))
+            sweep._save_result(key, cost_of_gamma(entries[key].settings))
 
 
 def search(folder: Path, run: Any, trials: int = 14) -> list[str]:

@@ -27,7 +27,7 @@ def main() -> None:
         if chosen.output:
             print(*(text for text, _ in outcome.lines), sep="\n")
         word = "does" if not outcome.complaints else "FAILS"
-        print(f"{program.file.stem:34}{word:6} {'; '.join(outcome.complaints)}", flush=True)
+        print(f"{program.name:34}{word:6} {'; '.join(outcome.complaints)}", flush=True)
     print(f"{working} of {len(programs)} do what their author means")
     raise SystemExit(working < len(programs))
 

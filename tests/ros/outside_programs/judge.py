@@ -64,6 +64,9 @@ _WORLDS: Final = {
 class OutsideProgram:
     """A program, which may be a launch file, and what its author expects of it."""
 
+    name: str
+    folder: Path
+    """Where it and the packages lie that it uses."""
     file: Path
     is_launch_file: bool
     world: str
@@ -74,7 +77,7 @@ class OutsideProgram:
 
     @property
     def number(self) -> str:
-        return self.file.name.partition("_")[0]
+        return self.name.partition("_")[0]
 
 
 def programs_of(name: str) -> list[OutsideProgram]:
@@ -85,7 +88,9 @@ def programs_of(name: str) -> list[OutsideProgram]:
 def _read(file: Path) -> OutsideProgram:
     card = yaml.safe_load(file.read_text(encoding="utf-8"))
     return OutsideProgram(
-        file.with_suffix(".py"),
+        file.stem,
+        file.parent,
+        file.parent / card.get("file", f"{file.stem}.py"),
         card.get("launch", False),
         card["world"],
         card["seconds"],
@@ -174,7 +179,7 @@ def run_program(program: OutsideProgram, seed: int = 0) -> Outcome:
         programs += [(str(each), []) for each in program.beside]
         text = _LAUNCH_FILE.format(world=_WORLDS[program.world], launch_files=launch_files, programs=programs)
         launch_file.write_text(text, encoding="utf-8")
-        target = find_launch_file(str(launch_file), None, (program.file.parent,))
+        target = find_launch_file(str(launch_file), None, (program.folder,))
         name, workspace = target.name, Path(folder) / "workspace"
         launch = Launch(
             target, graph, seed=seed, workspace=workspace, name=world_name(name), on_output=on_output

@@ -134,9 +134,9 @@ def what_happens(page: ExercisePage) -> Answers:
         frozenset(pair) for pair, relation in _relations(meetings).items() if relation == "collides with"
     }
     seen = [thing for (_, thing), relation in _relations(sights).items() if relation == "sees"]
-    pairs = [name for name in page.questions if name != "lidar_sees"]
+    pairs = [name for name in page.questions if name != "laser_sees"]
     return {
-        "lidar_sees": (f"[{', '.join(seen)}]",),
+        "laser_sees": (f"[{', '.join(seen)}]",),
         **{name: ("yes" if frozenset(name.split("_")) in colliding else "no",) for name in pairs},
     }
 

@@ -4,9 +4,9 @@ import os
 import sys
 from pathlib import Path
 
-from kit.cli import options
+from kit.cli import terminal_options
 
-terminal = options.terminal(glyphs=sys.argv[5] if len(sys.argv) > 5 else None)
+terminal = terminal_options.decide(glyphs=sys.argv[5] if len(sys.argv) > 5 else None)
 os.environ.update(terminal.environment())
 
 from kit.school.lessons import checking  # noqa: E402 - as the kit itself does it

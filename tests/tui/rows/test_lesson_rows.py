@@ -180,10 +180,30 @@ def test_a_running_check_fits_into_a_line() -> None:
     progress = TrainingProgressReport(SubmissionClock(show_progress=lines.append), 10, 10, 120_000)
     for steps in range(10_000, 120_000, 10_000):
         progress.add_test(steps, 1.0)
-    line = row_text(lesson_rows.checking(123.4, lines[-1]))
+    line = row_text(lesson_rows.checking(123.4, lines[-1], 80))
     assert "training 10 of 10" in line
     assert len(line) <= 80
-    assert "Checking" in row_text(lesson_rows.checking(0.4))
+    assert "Checking" in row_text(lesson_rows.checking(0.4, "", 80))
+
+
+def test_what_does_not_fit_of_a_running_check_gives_way_in_whole_words() -> None:
+    doing = "public cases: 3 of 6 criteria passed; episode 3 of 3: around, secret seed 1"
+    assert row_text(lesson_rows.checking(10.4, doing, 120)).endswith("secret seed 1")
+    assert row_text(lesson_rows.checking(10.4, doing, 80)).endswith("episode 3 of 3: around")
+
+
+def test_what_is_not_graded_is_explained_once_for_neighbours() -> None:
+    waits = [
+        CriterionResult(name, name, CriterionStatus.SKIPPED, 0, 1, rationale="First pass “It runs”.")
+        for name in ("near", "quick", "neat")
+    ]
+    broken = replace(LOST, id="runs", title="It runs", hints=())
+    result = replace(RESULT, tests=(broken, *waits))
+    rows = shown(verdict_blocks(CheckReport(GradingVerdict.FAIL, result, 1.25), []))
+    assert [row_text(each).strip() for each in rows[-4:]] == [
+        *(f"[--] {each.title}: 0 of 1" for each in waits),
+        "First pass “It runs”.",
+    ]
 
 
 def test_what_has_passed_moves_from_left_to_right_once() -> None:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from kit.document.rows import row_width
-from kit.tui.rows.menu_rows import INSIDE, MENU, menu, today_rows
+from kit.school.game.levels import all_levels
+from kit.tui.rows.menu_rows import FRAME, MENU, PANEL_WIDTH, WIDE_PANEL, menu, today_rows
 from kit.tui.student_store import StudentOverview
 from tests.tui.lesson_stage import row_text
 
@@ -22,10 +25,23 @@ FULL = StudentOverview(
 def test_what_stands_below_the_menu_is_there_whole_or_not_at_all(room: int) -> None:
     rows = menu(FULL, 0, room)
     assert len(rows) <= room or rows == menu(FULL, 0, 0)
-    assert all(row_width(each) <= INSIDE for each in rows)
+    assert all(row_width(each) <= PANEL_WIDTH - FRAME for each in rows)
     text = " ".join(" ".join(row_text(each).split()) for each in rows)
     assert all(item.title in text for item in MENU)
     assert ("── today" in text) == ("silver" in text)
+
+
+@pytest.mark.parametrize("room", [24, 46])
+def test_a_wide_panel_says_what_every_line_opens_and_shows_the_next_level(room: int) -> None:
+    level = next(iter(all_levels()))
+    rows = menu(replace(FULL, next_level=level, running=()), 0, room, WIDE_PANEL, ("PICTURE",) * 9)
+    assert len(rows) <= room
+    assert all(row_width(each) <= WIDE_PANEL - FRAME for each in rows)
+    text = " ".join(" ".join(row_text(each).split()) for each in rows)
+    is_high = room > 40
+    assert ("races against what you wrote" in text) == is_high
+    assert ("PICTURE" in text) == is_high
+    assert (level.title in text) == is_high
 
 
 def test_today_names_the_maze_the_medal_the_questions_and_the_trainings() -> None:

@@ -98,6 +98,12 @@ def test_a_prediction_is_kept_before_anything_moves(student: Student, play: Play
         assert "step 1 of 5" in rows(pilot)[0]
         assert "Predict first" in rows(pilot)[1]
         assert "1-3 predict" in rows(pilot)[-1], "the keys that work stay in sight"
+        await pilot.resize_terminal(60, 24)
+        await pilot.press("n")
+        title = read_lesson(student.lesson).steps[0].title
+        assert title in rows(pilot)[1], "what is said has a row of its own where it would cut the title"
+        assert "Predict first" in rows(pilot)[-2]
+        await pilot.resize_terminal(80, 24)
         await pilot.press("2")
         await seen(pilot, "finished")
         await seen(pilot, "Only a wall makes it turn.")

@@ -14,6 +14,7 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
+from kit.document.rows import row_width
 from kit.learning.authoring.new_task import new_task_file
 from kit.learning.tasks.goals.target import REACH_TARGET
 from kit.mapmaking.map_drawing import read_drawing
@@ -33,6 +34,8 @@ from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_drive import LevelDrive
 from kit.tui.screens.level_result import (
+    LEAST_BESIDE_ROWS,
+    LEFT,
     ROWS_AROUND,
     WIDE,
     DriveResult,
@@ -416,10 +419,10 @@ def test_a_result_with_all_that_can_be_won_fits_on_the_screen(
         await wait_until_shown(pilot, lambda: dialog._shown >= len(dialog._revealed))
         shown_rows = len(dialog._revealed) + len(dialog._fixed) + len(dialog._medal) + ROWS_AROUND
         assert shown_rows <= size[1]
-        has_map = dialog.has_class("-wide") or dialog.has_class("-high")
-        assert has_map is (size[0] >= WIDE)
-        if has_map:
-            await wait_until_shown(pilot, lambda: dialog._world._scene is not None)
+        assert dialog.has_class("-wide") is (size[0] >= WIDE)
+        await wait_until_shown(pilot, lambda: dialog._world._scene is not None)
+        assert dialog._world.size.height >= LEAST_BESIDE_ROWS
+        assert all(row_width(each) <= LEFT for each in dialog._beside_map) or size[0] >= WIDE
         shown = flat(screen.app)
         assert all(each.title in shown for each in record.unlocked)
         assert "yellow belt" in shown

@@ -6,7 +6,8 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import OptionList
 
-from kit.render.roles import COLOR_SCHEMES, Role
+from kit.render.palettes import COLOR_SCHEMES
+from kit.render.roles import Role
 from kit.tui.app import KitApp
 from kit.tui.screens.lesson import LessonScreen
 from kit.tui.screens.lessons import LessonsScreen

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Awaitable, Callable, Iterator
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from textual.app import App
 from textual.pilot import Pilot
 
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
@@ -17,7 +15,7 @@ from kit.school.quiz.quiz_session import QuizSession, lesson_plan, quiz_plan
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
 from tests.kit_content import kit_bank
-from tests.tui.lesson_stage import rows
+from tests.tui.lesson_stage import rows, stage
 
 BANK = kit_bank()
 Scene = Callable[[DialogueScreen, Pilot[None]], Awaitable[None]]
@@ -34,15 +32,8 @@ def play(
 ) -> None:
     plan = lesson_plan(BANK, lesson) if lesson else quiz_plan(BANK)
 
-    async def run() -> None:
-        app: App[None] = App()
-        async with app.run_test(size=size) as pilot:
-            screen = DialogueScreen(QuizDialogue(QuizSession(progress, BANK, plan, seed=1)))
-            await app.push_screen(screen)
-            await pilot.pause()
-            await scene(screen, pilot)
-
-    asyncio.run(run())
+    screen = DialogueScreen(QuizDialogue(QuizSession(progress, BANK, plan, seed=1)))
+    stage(lambda theme: screen, lambda pilot: scene(screen, pilot), size=size)
 
 
 def quiz(screen: DialogueScreen) -> QuizDialogue:

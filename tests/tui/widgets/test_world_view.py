@@ -21,7 +21,8 @@ from textual.widgets import Label
 from kit.geometry import Pose
 from kit.render.encode import ENCODERS, BrailleEncoder
 from kit.render.painter import Painter
-from kit.render.roles import COLOR_SCHEMES, PALETTES, SHADES, Role
+from kit.render.palettes import COLOR_SCHEMES, PALETTES
+from kit.render.roles import SHADES, Role
 from kit.render.scene import Scene
 from kit.tui.textual_patches import CroppingCompositor
 from kit.tui.widgets.world_view import FAST, LEAST, MOST_UNDER_WAY, SLOW, TIMEOUT, FrameThrottle

@@ -80,16 +80,18 @@ class _CoverCount(GoalCount):
             np.zeros((len(which), *self._covered.shape[1:]), dtype=np.bool_),
             np.zeros(len(which)),
         )
-        self._cover(cases, poses, covered, counts)
+        self._mark_covered(cases, poses, covered, counts)
         self._covered[which] = covered
         return counts
 
     def count(self, transition: Transition) -> FloatArray:
         counts: FloatArray = transition.before.count.copy()
-        self._cover(transition.case, transition.pose, self._covered, counts)
+        self._mark_covered(transition.case, transition.pose, self._covered, counts)
         return counts
 
-    def _cover(self, cases: IntArray, poses: FloatArray, covered: BoolArray, counts: FloatArray) -> None:
+    def _mark_covered(
+        self, cases: IntArray, poses: FloatArray, covered: BoolArray, counts: FloatArray
+    ) -> None:
         radius = self._goal.radius
         grids.cover_cells(poses, cases, self._origins, self._cell, self._floors, radius, covered, counts)
 

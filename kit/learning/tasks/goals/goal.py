@@ -163,7 +163,7 @@ class Goal(ABC):
     def usual_settings(cls) -> str:
         """The settings that a file may give with what they usually are, ``share 0.9, radius 0.15``."""
         told = ((each.name, each.default) for each in fields(cls))  # type: ignore[arg-type]  # a dataclass, by contract
-        return ", ".join(f"{name} {_plain(usual)}".rstrip() for name, usual in told)
+        return ", ".join(f"{name} {_plain_value(usual)}".rstrip() for name, usual in told)
 
 
 def read_distances(section: Section, nearest: float, farthest: float) -> tuple[float, float]:
@@ -176,7 +176,7 @@ def read_distances(section: Section, nearest: float, farthest: float) -> tuple[f
     return low, high
 
 
-def _plain(value: object) -> str:
+def _plain_value(value: object) -> str:
     if value is None:
         return ""
     return f"{value:g}" if isinstance(value, float) else str(value)

@@ -5,14 +5,14 @@
 from typing import TYPE_CHECKING, Any
 
 from kit.ros.late_names import import_late_name
+from launch_testing.parametrize import parametrize as parametrize
+from launch_testing.ready_to_test_action_timeout import (
+    ready_to_test_action_timeout as ready_to_test_action_timeout,
+)
 
 if TYPE_CHECKING:
     from kit.ros.launch.testing import post_shutdown_test as post_shutdown_test
-    from launch_testing import (
-        parametrize as parametrize,
-        ready_to_test_action_timeout as ready_to_test_action_timeout,
-        tools as tools,
-    )
+    from launch_testing import tools as tools
     ActiveIoHandler: Any
     ActiveProcInfoHandler: Any
     IoHandler: Any
@@ -25,9 +25,7 @@ else:
         "IoHandler": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
         "ProcInfoHandler": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
         "ReadyAggregator": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "parametrize": "launch_testing.parametrize",
         "post_shutdown_test": "kit.ros.launch.testing:post_shutdown_test",
-        "ready_to_test_action_timeout": "launch_testing.ready_to_test_action_timeout",
         "tools": "launch_testing.tools",
     }
 

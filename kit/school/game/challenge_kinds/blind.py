@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Self, TypeAlias
 
 from kit.document.rows import Row, row
+from kit.plain_text import counted
 from kit.school.game.board import (
     MOVES,
     Board,
@@ -61,7 +62,7 @@ class BlindTask(ChallengeTask):
             where = "1 place" if len(belief) == 1 else f"{len(belief)} places"
             return Judgement(Medal.NONE, f"The robot may be in {where} then, and has to be at G for certain.")
         count, fewest, naive = len(moves), len(fewest_moves(self)), len(naive_moves(self))
-        text = f"{count} moves; two places after another takes {naive}, and {fewest} are enough."
+        text = f"{counted(count, 'move')}; two places after another takes {naive}, and {fewest} are enough."
         return judge_count("moves", text, count, fewest, naive)
 
 
@@ -69,15 +70,15 @@ def believed(task: BlindTask, moves: str) -> Belief:
     """Where a robot may be after moves that may have begun anywhere."""
     belief: Belief = frozenset(free_cells(task.grid))
     for name in moves:
-        belief = _moved(task, belief, name)
+        belief = _move_belief(task, belief, name)
     return belief
 
 
-def _moved(task: BlindTask, belief: Belief, move: str) -> Belief:
+def _move_belief(task: BlindTask, belief: Belief, move: str) -> Belief:
     return frozenset(step(task.grid, cell, move) for cell in belief)
 
 
-def _search(task: BlindTask, belief: Belief, is_goal: Belief | None) -> str:
+def _shortest_moves(task: BlindTask, belief: Belief, is_goal: Belief | None) -> str:
     """The fewest moves that lead a belief to ``is_goal``, or to fewer places where that is None: breadth first."""
     found, waiting = {belief: ""}, deque([belief])
     while waiting:
@@ -85,7 +86,7 @@ def _search(task: BlindTask, belief: Belief, is_goal: Belief | None) -> str:
         if present == is_goal or (is_goal is None and len(present) < len(belief)):
             return found[present]
         for name in MOVES:
-            following = _moved(task, present, name)
+            following = _move_belief(task, present, name)
             if following not in found:
                 found[following] = found[present] + name
                 waiting.append(following)
@@ -95,7 +96,7 @@ def _search(task: BlindTask, belief: Belief, is_goal: Belief | None) -> str:
 @cache
 def fewest_moves(task: BlindTask) -> str:
     """A plan than which none is shorter."""
-    return _search(task, frozenset(free_cells(task.grid)), frozenset({find_cell(task.grid, "G")}))
+    return _shortest_moves(task, frozenset(free_cells(task.grid)), frozenset({find_cell(task.grid, "G")}))
 
 
 @cache
@@ -104,10 +105,10 @@ def naive_moves(task: BlindTask) -> str:
     belief, moves = frozenset(free_cells(task.grid)), ""
     while len(belief) > 1:
         two = frozenset(sorted(belief)[-2:])
-        more = _search(task, two, None)
+        more = _shortest_moves(task, two, None)
         moves += more
         for name in more:
-            belief = _moved(task, belief, name)
+            belief = _move_belief(task, belief, name)
     (cell,) = belief
     return moves + shortest_way(task.grid, cell, find_cell(task.grid, "G"))
 

@@ -10,6 +10,7 @@ from typing import Final, Self
 
 from kit.document.rows import Row, row
 from kit.layers.cover import minimum_cover
+from kit.plain_text import counted
 from kit.school.game.board import WALL, Board, Cell, History, free_cells, grid_rows
 from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
@@ -51,7 +52,7 @@ class DevicesTask(ChallengeTask):
         if missed:
             return Judgement(Medal.NONE, f"Nothing sees {', '.join(missed)}.")
         count, fewest, naive = len(lasers), len(fewest_lasers(self)), len(naive_lasers(self))
-        text = f"{count} lasers; one at every place takes {naive}, and {fewest} are enough."
+        text = f"{counted(count, 'laser')}; one at every place takes {naive}, and {fewest} are enough."
         return judge_count("lasers", text, count, fewest, naive)
 
     @property
@@ -75,7 +76,7 @@ class DevicesTask(ChallengeTask):
 
     def seen_from(self, lasers: tuple[Cell, ...]) -> set[str]:
         """The letters of the places that at least one laser sees."""
-        visible = _visible(self)
+        visible = _visible_squares(self)
         return {name for laser in lasers for name in visible[laser]}
 
     def _squares(self) -> dict[Cell, str]:
@@ -125,7 +126,7 @@ class DevicesBoard(Board):
 
     def rows(self, scale: int = 1) -> list[Row]:
         task, seen = self._task, self._task.seen_from(self._lasers)
-        lit = {square for laser in self._lasers for square in _lit(task, laser)}
+        lit = {square for laser in self._lasers for square in _squares_seen_from(task, laser)}
         signs: dict[Cell, tuple[str, str]] = {}
         for square in task.floor:
             signs[square] = ("·", "warn") if square in lit else (" ", "")
@@ -154,7 +155,7 @@ def naive_lasers(task: DevicesTask) -> tuple[Cell, ...]:
 
 
 @cache
-def _visible(task: DevicesTask) -> dict[Cell, frozenset[str]]:
+def _visible_squares(task: DevicesTask) -> dict[Cell, frozenset[str]]:
     """Computes which squares are seen from each square of the floor."""
     places = task.places
     return {
@@ -164,7 +165,7 @@ def _visible(task: DevicesTask) -> dict[Cell, frozenset[str]]:
 
 
 @cache
-def _lit(task: DevicesTask, laser: Cell) -> frozenset[Cell]:
+def _squares_seen_from(task: DevicesTask, laser: Cell) -> frozenset[Cell]:
     """Computes which squares of the floor are seen from one of them."""
     return frozenset(square for square in task.floor if task.sees(laser, square))
 

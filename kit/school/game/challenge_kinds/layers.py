@@ -18,6 +18,7 @@ from kit.layers.planning import solve_layers
 from kit.layers.requirements import LayerCase
 from kit.layers.requirements_file import read_requirements
 from kit.plain_files import is_file_there
+from kit.plain_text import counted
 from kit.school.game.board import Board, History
 from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
@@ -91,7 +92,7 @@ class LayersBoard(Board):
                 )
 
     @property
-    def _plan(self) -> LayerAssignment:
+    def _make_plan(self) -> LayerAssignment:
         lasers = {laser.name for laser in self._case.lasers}
         layers = tuple(
             NamedLayer(f"layer {number}", members - lasers) for number, members in enumerate(self._layers, 1)
@@ -106,10 +107,10 @@ class LayersBoard(Board):
 
     @property
     def answer(self) -> str:
-        return format_plan(self._plan)
+        return format_plan(self._make_plan)
 
     def judgement(self) -> Judgement:
-        return judge_assignment(self._task, self._plan)
+        return judge_assignment(self._task, self._make_plan)
 
     def move(self, columns: int, rows: int) -> None:
         self._row = max(0, min(self._row + rows, len(self._names) - 1))
@@ -129,7 +130,7 @@ class LayersBoard(Board):
     def rows(self, scale: int = 1) -> list[Row]:
         width = max(len(name) for name in self._names) + 2
         columns = min(len(self._layers) + 1, MAX_LAYERS)
-        wrong = find_breaches(self._case, self._plan)
+        wrong = find_breaches(self._case, self._make_plan)
         about = {word for each in wrong for word in str(each).replace(",", " ").split()}
         rows = [row(("  " + " " * width + "".join(f"{number + 1:>3}" for number in range(columns)), "dim"))]
         for number, name in enumerate(self._names):
@@ -195,7 +196,7 @@ def judge_assignment(task: LayersTask, plan: LayerAssignment) -> Judgement:
     if breaches:
         return Judgement(Medal.NONE, f"It does not do what is asked: {breaches[0]}.")
     count, naive = len(plan.layers), len(naive_plan(case).layers)
-    text = f"{count} layers; a layer for every line takes {naive}, and {fewest} are enough."
+    text = f"{counted(count, 'layer')}; a layer for every line takes {naive}, and {fewest} are enough."
     return judge_count("layers", text, count, fewest, naive)
 
 

@@ -139,7 +139,7 @@ class PassByBoard(Board):
                 self._moves = list(read_two(answer))
 
     @property
-    def _both(self) -> tuple[str, str]:
+    def _both_moves(self) -> tuple[str, str]:
         return self._moves[0], self._moves[1]
 
     @property
@@ -150,15 +150,15 @@ class PassByBoard(Board):
         return self._task.judge(AnswerSubmission(self.answer, Path()))
 
     def move(self, columns: int, rows: int) -> None:
-        self._add(letters_of(columns, rows))
+        self._add_move(letters_of(columns, rows))
 
     def mark(self) -> None:
-        self._add(WAIT)
+        self._add_move(WAIT)
 
     def switch(self) -> None:
         self._active = 1 - self._active
 
-    def _add(self, name: str) -> None:
+    def _add_move(self, name: str) -> None:
         if len(self._moves[self._active]) < MAX_TICKS:
             self._moves[self._active] += name
 
@@ -169,10 +169,10 @@ class PassByBoard(Board):
         task, tick = self._task, len(self._moves[self._active])
         signs = {goal: (name, "good") for name, goal in zip("ab", task.goals, strict=True)}
         signs |= dict.fromkeys(task.starts, (" ", ""))
-        here = places(task, self._both, tick)
+        here = places(task, self._both_moves, tick)
         for number, cell in enumerate(here):
             signs[cell] = ("AB"[number], "chosen" if number == self._active else "bold")
-        meeting = first_meeting(task, self._both)
+        meeting = first_meeting(task, self._both_moves)
         if here[0] == here[1]:
             signs[here[0]] = ("X", "bad")
         plans = [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
@@ -12,7 +13,7 @@ from typing import Final, Self
 
 import numpy as np
 
-from kit.arrays import FloatArray
+from kit.arrays import BoolArray, FloatArray
 from kit.document.rows import Row, row
 from kit.school.game.board import (
     ARROWS,
@@ -96,6 +97,10 @@ class PolicyTask(ChallengeTask):
         comparison = AnswerComparison(
             "return", value, (("naive answer", naive), ("best answer", best)), more_is_better=True
         )
+        if math.isinf(value):
+            raise ChallengeError(
+                "From S an episode may never end, and each of its steps costs: lead every cell to G."
+            )
         text = f"From S it is worth {value:.3f}; the shortest way is worth {naive:.3f}, and {best:.3f} is possible."
         return judge_share(text, comparison, naive, best)
 
@@ -156,7 +161,7 @@ def read_policy(task: PolicyTask, answer: str) -> Policy:
 
 
 @cache
-def _model(task: PolicyTask) -> dict[str, tuple[FloatArray, FloatArray]]:
+def _transition_model(task: PolicyTask) -> dict[str, tuple[FloatArray, FloatArray]]:
     """For each move the chances (cells, cells) of where it leads, and what it is paid on average (cells,)."""
     cells = task.cells
     number = {cell: at for at, cell in enumerate(cells)}
@@ -176,25 +181,54 @@ def _model(task: PolicyTask) -> dict[str, tuple[FloatArray, FloatArray]]:
     return model
 
 
+def _leading_to(chances: FloatArray, cells: BoolArray) -> BoolArray:
+    """(cells,) those from which one of ``cells`` is ever reached, themselves included."""
+    found = cells
+    while True:
+        further = found | (chances[:, found] > 0).any(axis=1)
+        if (further == found).all():
+            return found
+        found = further
+
+
+def _values(task: PolicyTask, arrows: Sequence[str]) -> FloatArray:
+    """(cells,) the expected return from each cell under these arrows, exactly: a linear system.
+
+    Without a discount it is minus infinity where an episode may never end: its steps cost without limit.
+    """
+    model = _transition_model(task)
+    chances = np.stack([model[arrow][0][at] for at, arrow in enumerate(arrows)])
+    pays = np.array([model[arrow][1][at] for at, arrow in enumerate(arrows)])
+    ends = np.ones(len(arrows), np.bool_)
+    if task.discount == 1:
+        may_end = _leading_to(chances, chances.sum(axis=1) < 1 - 1e-9)
+        ends = ~_leading_to(chances, ~may_end)
+    values = np.full(len(arrows), -np.inf)
+    values[ends] = np.linalg.solve(
+        np.eye(ends.sum()) - task.discount * chances[np.ix_(ends, ends)], pays[ends]
+    )
+    return values
+
+
 def value_of(task: PolicyTask, policy: Policy) -> float:
-    """The expected return of a policy from the start, exactly: a linear system."""
-    cells, model = task.cells, _model(task)
-    chances = np.stack([model[policy[cell]][0][at] for at, cell in enumerate(cells)])
-    pays = np.array([model[policy[cell]][1][at] for at, cell in enumerate(cells)])
-    values = np.linalg.solve(np.eye(len(cells)) - task.discount * chances, pays)
-    return float(values[cells.index(find_cell(task.grid, START))])
+    """The expected return of a policy from the start; minus infinity if, undiscounted, its episodes may never end."""
+    return float(
+        _values(task, [policy[cell] for cell in task.cells])[task.cells.index(find_cell(task.grid, START))]
+    )
 
 
 @cache
-def _best(task: PolicyTask) -> tuple[str, ...]:
-    cells, model = task.cells, _model(task)
+def _best_policy(task: PolicyTask) -> tuple[str, ...]:
+    cells, model = task.cells, _transition_model(task)
     if not task.looks_alike:  # policy iteration
-        arrows = ["u"] * len(cells)
+        arrows = [naive_policy(task)[cell] for cell in cells]
         while True:
-            chances = np.stack([model[arrow][0][at] for at, arrow in enumerate(arrows)])
-            pays = np.array([model[arrow][1][at] for at, arrow in enumerate(arrows)])
-            values = np.linalg.solve(np.eye(len(cells)) - task.discount * chances, pays)
-            worth = {move: model[move][1] + task.discount * model[move][0] @ values for move in MOVES}
+            values = _values(task, arrows)
+            worth = {
+                move: pays
+                + task.discount * np.multiply(chances, values, where=chances > 0, out=chances * 0).sum(axis=1)
+                for move, (chances, pays) in model.items()
+            }
             better = []
             for at, own in enumerate(arrows):
                 most = max(each[at] for each in worth.values())
@@ -222,7 +256,7 @@ def _best(task: PolicyTask) -> tuple[str, ...]:
 
 def best_policy(task: PolicyTask) -> Policy:
     """A policy than which none is better: by policy iteration, or of cells that look alike by comparing all."""
-    return dict(zip(task.cells, _best(task), strict=True))
+    return dict(zip(task.cells, _best_policy(task), strict=True))
 
 
 class PolicyBoard(Board):

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Self
 
 from kit.document.rows import Row, row
+from kit.plain_text import counted
 from kit.school.game.board import Board, Cell, distances_to, find_cell, grid_rows, shortest_way, step
 from kit.school.game.challenge import AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
@@ -50,7 +51,7 @@ class RoundTask(ChallengeTask):
         if cell != find_cell(self.grid, "S"):
             return Judgement(Medal.NONE, "It comes to all of them, but not home.")
         count, fewest, naive = len(moves), len(best_round(self)), len(naive_round(self))
-        text = f"{count} moves; in the order of the letters it takes {naive}, and {fewest} are enough."
+        text = f"{counted(count, 'move')}; in the order of the letters it takes {naive}, and {fewest} are enough."
         return judge_count("moves", text, count, fewest, naive, near=2)  # every round has an even number
 
     @property
@@ -69,7 +70,7 @@ def walked(task: RoundTask, moves: str) -> tuple[Cell, set[str]]:
     return cell, {name for name, place in task.places.items() if place not in passed}
 
 
-def _way(task: RoundTask, names: str) -> str:
+def _moves_through(task: RoundTask, names: str) -> str:
     """The moves from place to place in this order, from the start and home."""
     home = find_cell(task.grid, "S")
     stops = [home, *(task.places[name] for name in names), home]
@@ -79,7 +80,7 @@ def _way(task: RoundTask, names: str) -> str:
 @cache
 def naive_round(task: RoundTask) -> str:
     """The round in the order of the letters."""
-    return _way(task, "".join(sorted(task.places)))
+    return _moves_through(task, "".join(sorted(task.places)))
 
 
 @cache
@@ -107,7 +108,7 @@ def best_round(task: RoundTask) -> str:
         for (visited, last), (moves, order) in best.items()
         if len(visited) == len(names)
     ]
-    return _way(task, min(ends)[1])
+    return _moves_through(task, min(ends)[1])
 
 
 class RoundBoard(MovesBoard):

@@ -121,7 +121,7 @@ class Learned:
 @cache
 def learn(task: TuningTask, numbers: tuple[float, ...]) -> Learned:
     """Trains from every seed; the same numbers, the same result. ``numbers``: in the order of ``CHOICES``."""
-    runs = [_train(task, numbers, seed) for seed in SEEDS]
+    runs = [_train_once(task, numbers, seed) for seed in SEEDS]
     curves = np.array([lengths for _, lengths in runs], dtype=np.float64)
     return Learned(
         sum(has_arrived for has_arrived, _ in runs),
@@ -130,7 +130,7 @@ def learn(task: TuningTask, numbers: tuple[float, ...]) -> Learned:
     )
 
 
-def _train(task: TuningTask, numbers: tuple[float, ...], seed: int) -> tuple[bool, list[int]]:
+def _train_once(task: TuningTask, numbers: tuple[float, ...], seed: int) -> tuple[bool, list[int]]:
     """One training: whether its greedy policy takes a shortest way, and the steps of each episode."""
     rate, exploration, discount, first_value, episodes = numbers
     cells = free_cells(task.grid)

@@ -215,7 +215,7 @@ class League(JobFolder):
         share_drives(recordings, self.result_file(key), remarks)
 
     def record_loss(self, key: str) -> None:
-        """Nothing is written: a job that was lost waits for the next run."""
+        """Writes nothing: a job that was lost waits for the next run."""
 
     # Results
 
@@ -285,7 +285,7 @@ def tag_job(level: GameLevel, first: Entry, second: Entry) -> LeagueJob:
 def run_league_job(job: LeagueJob, confinement: Confinement) -> tuple[list[Recording], list[str]]:
     """Runs a job's programs. Returns its recordings, and why programs have stopped: of each drive, or of both players."""
     with private_folder() as folder:  # the programs as they were entered, whatever their owners do meanwhile
-        programs = [_copied(each, folder, number) for number, each in enumerate(job.entrants)]
+        programs = [_copy_program(each, folder, number) for number, each in enumerate(job.entrants)]
         if len(programs) > 1:
             game = play_tag(job.level, programs, confinement, GRADER_LIMITS)
             return [game.recording], list(game.failures)
@@ -304,7 +304,7 @@ def run_league_job(job: LeagueJob, confinement: Confinement) -> tuple[list[Recor
     return [recording for _, recording in drives], remarks
 
 
-def _copied(entry: Entry, folder: Path, number: int) -> ControllerFile:
+def _copy_program(entry: Entry, folder: Path, number: int) -> ControllerFile:
     """An entrant's program as a file that nobody changes. Raises LeagueError if it is another one than was read."""
     part = folder / str(number)
     part.mkdir()
@@ -350,7 +350,7 @@ def _judge_once(folder: Path, content: bytes, level: GameLevel, players: int) ->
     )
     file = folder / f"{hashlib.sha256(told.encode()).hexdigest()[:32]}.json"
     with suppress(OSError, ValueError, KeyError, TypeError):
-        return _judgement(read_result(file))
+        return _read_judgement(read_result(file))
     judged = _judge(content, level, players)
     with suppress(OSError):  # it is judged again next time
         make_private_folder(folder)
@@ -358,7 +358,7 @@ def _judge_once(folder: Path, content: bytes, level: GameLevel, players: int) ->
     return judged
 
 
-def _judgement(content: dict[str, Any]) -> JudgedJob | None:
+def _read_judgement(content: dict[str, Any]) -> JudgedJob | None:
     """What ``_judge_once`` has kept. Raises ValueError, KeyError or TypeError for anything else."""
     judged = content["judged"]
     if judged is None:

@@ -111,7 +111,7 @@ def read_standings(league: League) -> Standings:
                 if game is not None:
                     matches.append(tag_match(job, game))
     refused = tuple(each for each in entries if each.problem)
-    places = _places(entrants, matches)
+    places = _rank_entrants(entrants, matches)
     return Standings(programme.title, places, tuple(matches), len(jobs), waiting, refused, programme)
 
 
@@ -163,7 +163,7 @@ def tag_match(job: LeagueJob, game: JudgedJob) -> Match:
     return Match(job.level, True, entrants, points, (details[0], details[1]), (job,), game.is_same_platform)
 
 
-def _places(entrants: Sequence[Entry], matches: Sequence[Match]) -> tuple[Place, ...]:
+def _rank_entrants(entrants: Sequence[Entry], matches: Sequence[Match]) -> tuple[Place, ...]:
     numbers = {each.name: number for number, each in enumerate(entrants)}
     points = np.zeros((len(entrants), len(entrants)))
     counts = np.zeros((len(entrants), 3), dtype=int)

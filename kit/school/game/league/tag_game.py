@@ -87,7 +87,7 @@ def play_tag(
                 player = NodeProcess.start(
                     graph,
                     program.file,
-                    args=_arguments(scenario, number),
+                    args=_program_arguments(scenario, number),
                     seed=OWN_SEED,
                     limits=limits,
                     level=confinement,
@@ -159,7 +159,7 @@ class TagAnnouncer(Observer):
             places.publish(message)
 
 
-def _arguments(scenario: Scenario, number: int) -> list[str]:
+def _program_arguments(scenario: Scenario, number: int) -> list[str]:
     """What a program is told at its start: as in every race, and its target is where the other robot starts."""
     robots = (scenario.robot or "", GUEST)
     poses = {model.name: model.pose for model in scenario.world.models}

@@ -119,7 +119,7 @@ def means_bars(
     context: ReportContext,
     bounds: tuple[float, float] = SCALE_BOUNDS,
 ) -> BarChart:
-    """The same means as a bar chart: of the groups, or of the whole class where there are none."""
+    """A bar chart of the means: of the groups, or of the whole class where there are none."""
     groups = context.groups[:-1] or context.groups
     return BarChart(
         identity,

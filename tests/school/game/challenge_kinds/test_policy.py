@@ -100,3 +100,14 @@ def test_cells_that_look_alike_share_an_arrow() -> None:
     lines[at] = "l" if lines[at] != "l" else "r"
     with pytest.raises(ChallengeError, match="looks like"):
         task.judge(AnswerSubmission("".join(lines), Path()))
+
+
+def test_an_episode_that_may_never_end_is_refused_where_nothing_is_discounted() -> None:
+    task = next(each.task for each in POLICIES if each.task.discount == 1)
+    upward = dict.fromkeys(task.cells, "u")
+    assert value_of(task, upward) == -np.inf
+    with pytest.raises(ChallengeError, match="never end"):
+        task.judge(AnswerSubmission(format_policy(task, upward), Path()))
+    for arrow in "ldr":  # a slip leads into a pit at last
+        assert -10 < value_of(task, dict.fromkeys(task.cells, arrow)) < 0
+    assert 0 < value_of(task, best_policy(task)) < 1

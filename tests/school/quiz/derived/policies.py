@@ -29,7 +29,7 @@ def what_an_advantage_does(item: QuizItem, folder: Path) -> Finding:
     learner = PpoLearner(WORLD, replace(SETTINGS, alpha=0.1, entropy=0.0))
     before = learner.logits[0].copy()
     chances = np.array([0.25])
-    learner._climb(np.array([0]), np.array([2]), np.array([0.2 - 0.8]), chances)
+    learner._ascend_objective(np.array([0]), np.array([2]), np.array([0.2 - 0.8]), chances)
     change = learner.logits[0, 2] - before[2]
     truth = "falls" if change < 0 else "rises" if change > 0 else "stays"
     return Finding(
@@ -63,7 +63,7 @@ def outside_the_range(item: QuizItem, folder: Path) -> Finding:
     learner = PpoLearner(WORLD, replace(SETTINGS, clip=0.2, entropy=0.0))
     learner.logits[0] = np.log([0.3, 0.3, 0.2, 0.2])
     before = learner.logits[0].copy()
-    learner._climb(np.array([0]), np.array([0]), np.array([1.0]), np.array([0.2]))
+    learner._ascend_objective(np.array([0]), np.array([0]), np.array([1.0]), np.array([0.2]))
     change = learner.logits[0, 0] - before[0]
     truth = "none" if change == 0 else "up" if change > 0 else "down"
     return Finding(

@@ -12,16 +12,15 @@ from kit.ros.launch.event_handlers import (
     OnProcessStart,
     OnShutdown,
 )
+from launch.event_handlers.event_named import event_named as event_named
 
 __all__ = ["OnExecutionComplete", "OnProcessExit", "OnProcessIO", "OnProcessStart", "OnShutdown"]
 
 if TYPE_CHECKING:
-    from launch.event_handlers import event_named as event_named
     OnIncludeLaunchDescription: Any
 else:
     _LATE_NAMES = {
         "OnIncludeLaunchDescription": "!launch's own process, in whose place `kit launch FILE` runs launch files",
-        "event_named": "launch.event_handlers.event_named",
     }
 
     def __getattr__(name):

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
-    from kit.ros.launch.events import Event as Event
-    from launch.event_handlers import event_named as event_named
+    from kit.ros.launch.events import Event as Event, event_named as event_named
 else:
     _LATE_NAMES = {
         "Event": "kit.ros.launch.events:Event",
-        "event_named": "launch.event_handlers.event_named",
+        "event_named": "kit.ros.launch.events:event_named",
     }
 
     def __getattr__(name):

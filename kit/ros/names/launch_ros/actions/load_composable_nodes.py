@@ -25,10 +25,8 @@ if TYPE_CHECKING:
         LoadComposableNodes as LoadComposableNodes,
     )
     from kit.ros.launch.substitutions import SomeText as _SomeSubstitutionsType
-    from launch_ros.utilities import (
-        evaluate_parameters as evaluate_parameters,
-        to_parameters_list as to_parameters_list,
-    )
+    from launch_ros.utilities.evaluate_parameters import evaluate_parameters as evaluate_parameters
+    from launch_ros.utilities.to_parameters_list import to_parameters_list as to_parameters_list
     from pathlib import Path as Path
 
     SomeSubstitutionsType = _SomeSubstitutionsType
@@ -57,7 +55,7 @@ else:
         "SomeSubstitutionsType_types_tuple": "kit.ros.launch.normalization:TEXT_TYPES",
         "add_node_name": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "ensure_argument_type": "kit.ros.launch.normalization:ensure_argument_type",
-        "evaluate_parameters": "launch_ros.utilities.evaluate_parameters",
+        "evaluate_parameters": "launch_ros.utilities.evaluate_parameters:evaluate_parameters",
         "expose_action": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "get_composable_node_load_request": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "get_node_name_count": "!launch's own process, in whose place `kit launch FILE` runs launch files",
@@ -68,7 +66,7 @@ else:
         "normalize_to_list_of_substitutions": "kit.ros.launch.normalization:normalize_to_list_of_substitutions",
         "perform_substitutions": "kit.ros.launch.normalization:perform",
         "prefix_namespace": "kit.ros.launch.normalization:prefix_namespace",
-        "to_parameters_list": "launch_ros.utilities.to_parameters_list",
+        "to_parameters_list": "launch_ros.utilities.to_parameters_list:to_parameters_list",
     }
 
     def __getattr__(name):

@@ -27,11 +27,9 @@ if TYPE_CHECKING:
         LocalSubstitution as LocalSubstitution,
         SomeText as _SomeSubstitutionsType,
     )
-    from launch_ros.utilities import (
-        evaluate_parameters as evaluate_parameters,
-        normalize_parameters as normalize_parameters,
-        plugin_support as plugin_support,
-    )
+    from launch_ros.utilities import plugin_support as plugin_support
+    from launch_ros.utilities.evaluate_parameters import evaluate_parameters as evaluate_parameters
+    from launch_ros.utilities.normalize_parameters import normalize_parameters as normalize_parameters
     from tempfile import NamedTemporaryFile as NamedTemporaryFile
 
     SomeSubstitutionsType = _SomeSubstitutionsType
@@ -68,7 +66,7 @@ else:
         "SomeSubstitutionsType": "kit.ros.launch.substitutions:SomeText",
         "add_node_name": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "ensure_argument_type": "kit.ros.launch.normalization:ensure_argument_type",
-        "evaluate_parameters": "launch_ros.utilities.evaluate_parameters",
+        "evaluate_parameters": "launch_ros.utilities.evaluate_parameters:evaluate_parameters",
         "expose_action": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "g_entry_points_impl": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "get_data_type_from_identifier": "!launch's own process, in whose place `kit launch FILE` runs launch files",
@@ -76,7 +74,7 @@ else:
         "get_node_name_count": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "instantiate_extension": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "make_namespace_absolute": "kit.ros.launch.normalization:make_namespace_absolute",
-        "normalize_parameters": "launch_ros.utilities.normalize_parameters",
+        "normalize_parameters": "launch_ros.utilities.normalize_parameters:normalize_parameters",
         "normalize_remap_rules": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "normalize_to_list_of_substitutions": "kit.ros.launch.normalization:normalize_to_list_of_substitutions",
         "perform_substitutions": "kit.ros.launch.normalization:perform",

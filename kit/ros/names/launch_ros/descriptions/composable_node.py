@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     )
     from kit.ros.launch.processes import ComposableNode as ComposableNode
     from kit.ros.launch.substitutions import SomeText as _SomeSubstitutionsType, Substitution as Substitution
-    from launch_ros.utilities import normalize_parameters as normalize_parameters
+    from launch_ros.utilities.normalize_parameters import normalize_parameters as normalize_parameters
 
     SomeSubstitutionsType = _SomeSubstitutionsType
     Entity: Any
@@ -41,7 +41,7 @@ else:
         "SomeSubstitutionsType": "kit.ros.launch.substitutions:SomeText",
         "Substitution": "kit.ros.launch.substitutions:Substitution",
         "UnlessCondition": "kit.ros.launch.entity:UnlessCondition",
-        "normalize_parameters": "launch_ros.utilities.normalize_parameters",
+        "normalize_parameters": "launch_ros.utilities.normalize_parameters:normalize_parameters",
         "normalize_remap_rules": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "normalize_to_list_of_substitutions": "kit.ros.launch.normalization:normalize_to_list_of_substitutions",
     }

@@ -5,6 +5,10 @@
 from typing import TYPE_CHECKING, Any
 
 from kit.ros.late_names import import_late_name
+from launch_ros.utilities.evaluate_parameters import evaluate_parameters as evaluate_parameters
+from launch_ros.utilities.normalize_parameters import normalize_parameters as normalize_parameters
+from launch_ros.utilities.normalize_remap_rule import normalize_remap_rule as normalize_remap_rule
+from launch_ros.utilities.to_parameters_list import to_parameters_list as to_parameters_list
 
 if TYPE_CHECKING:
     from kit.ros.launch.normalization import (
@@ -13,28 +17,18 @@ if TYPE_CHECKING:
         make_namespace_absolute as make_namespace_absolute,
         prefix_namespace as prefix_namespace,
     )
-    from launch_ros.utilities import (
-        evaluate_parameters as evaluate_parameters,
-        normalize_parameters as normalize_parameters,
-        normalize_remap_rule as normalize_remap_rule,
-        to_parameters_list as to_parameters_list,
-    )
     add_node_name: Any
     get_node_name_count: Any
     normalize_remap_rules: Any
 else:
     _LATE_NAMES = {
         "add_node_name": "!launch's own process, in whose place `kit launch FILE` runs launch files",
-        "evaluate_parameters": "launch_ros.utilities.evaluate_parameters",
         "get_node_name_count": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "is_namespace_absolute": "kit.ros.launch.normalization:is_namespace_absolute",
         "is_root_namespace": "kit.ros.launch.normalization:is_root_namespace",
         "make_namespace_absolute": "kit.ros.launch.normalization:make_namespace_absolute",
-        "normalize_parameters": "launch_ros.utilities.normalize_parameters",
-        "normalize_remap_rule": "launch_ros.utilities.normalize_remap_rule",
         "normalize_remap_rules": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "prefix_namespace": "kit.ros.launch.normalization:prefix_namespace",
-        "to_parameters_list": "launch_ros.utilities.to_parameters_list",
     }
 
     def __getattr__(name):

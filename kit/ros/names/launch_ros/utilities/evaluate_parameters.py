@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     )
     from kit.ros.launch.parameters import ParameterFile as ParameterFile
     from kit.ros.launch.substitutions import Substitution as Substitution
-    from launch_ros.utilities import evaluate_parameters as evaluate_parameters
 
     perform_substitutions = _perform_substitutions
     EvaluatedParameterValue: Any
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     Parameters: Any
     ParametersDict: Any
     evaluate_parameter_dict: Any
+    evaluate_parameters: Any
 else:
     _LATE_NAMES = {
         "EvaluatedParameterValue": "!launch's own process, in whose place `kit launch FILE` runs launch files",
@@ -37,7 +37,7 @@ else:
         "Substitution": "kit.ros.launch.substitutions:Substitution",
         "ensure_argument_type": "kit.ros.launch.normalization:ensure_argument_type",
         "evaluate_parameter_dict": "!launch's own process, in whose place `kit launch FILE` runs launch files",
-        "evaluate_parameters": "launch_ros.utilities.evaluate_parameters",
+        "evaluate_parameters": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "perform_substitutions": "kit.ros.launch.normalization:perform",
     }
 

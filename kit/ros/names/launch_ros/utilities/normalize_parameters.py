@@ -18,7 +18,6 @@ if TYPE_CHECKING:
         Substitution as Substitution,
         TextSubstitution as TextSubstitution,
     )
-    from launch_ros.utilities import normalize_parameters as normalize_parameters
 
     SomeSubstitutionsType = _SomeSubstitutionsType
     SomeSubstitutionsType_types_tuple = _SomeSubstitutionsType_types_tuple
@@ -30,6 +29,7 @@ if TYPE_CHECKING:
     SomeParameters: Any
     SomeParametersDict: Any
     normalize_parameter_dict: Any
+    normalize_parameters: Any
 else:
     _LATE_NAMES = {
         "ParameterDescription": "!launch's own process, in whose place `kit launch FILE` runs launch files",
@@ -47,7 +47,7 @@ else:
         "TextSubstitution": "kit.ros.launch.substitutions:TextSubstitution",
         "ensure_argument_type": "kit.ros.launch.normalization:ensure_argument_type",
         "normalize_parameter_dict": "!launch's own process, in whose place `kit launch FILE` runs launch files",
-        "normalize_parameters": "launch_ros.utilities.normalize_parameters",
+        "normalize_parameters": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "normalize_to_list_of_substitutions": "kit.ros.launch.normalization:normalize_to_list_of_substitutions",
     }
 

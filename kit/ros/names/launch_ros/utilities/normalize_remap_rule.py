@@ -11,11 +11,11 @@ if TYPE_CHECKING:
         ensure_argument_type as ensure_argument_type,
         normalize_to_list_of_substitutions as normalize_to_list_of_substitutions,
     )
-    from launch_ros.utilities import normalize_remap_rule as normalize_remap_rule
     RemapRule: Any
     RemapRules: Any
     SomeRemapRule: Any
     SomeRemapRules: Any
+    normalize_remap_rule: Any
     normalize_remap_rules: Any
 else:
     _LATE_NAMES = {
@@ -24,7 +24,7 @@ else:
         "SomeRemapRule": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "SomeRemapRules": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "ensure_argument_type": "kit.ros.launch.normalization:ensure_argument_type",
-        "normalize_remap_rule": "launch_ros.utilities.normalize_remap_rule",
+        "normalize_remap_rule": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "normalize_remap_rules": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "normalize_to_list_of_substitutions": "kit.ros.launch.normalization:normalize_to_list_of_substitutions",
     }

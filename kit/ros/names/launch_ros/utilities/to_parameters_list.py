@@ -8,17 +8,17 @@ from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
     from kit.ros.launch.context import LaunchContext as LaunchContext
-    from launch_ros.utilities import to_parameters_list as to_parameters_list
     EvaluatedParameters: Any
     evaluate_parameter_dict: Any
     normalize_parameter_dict: Any
+    to_parameters_list: Any
 else:
     _LATE_NAMES = {
         "EvaluatedParameters": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "LaunchContext": "kit.ros.launch.context:LaunchContext",
         "evaluate_parameter_dict": "!launch's own process, in whose place `kit launch FILE` runs launch files",
         "normalize_parameter_dict": "!launch's own process, in whose place `kit launch FILE` runs launch files",
-        "to_parameters_list": "launch_ros.utilities.to_parameters_list",
+        "to_parameters_list": "!launch's own process, in whose place `kit launch FILE` runs launch files",
     }
 
     def __getattr__(name):

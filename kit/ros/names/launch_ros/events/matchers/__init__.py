@@ -2,6 +2,6 @@
 
 # Made by: python -m tests.ros.import_names
 
-from kit.ros.launch.events import matches_node_name
+from launch_ros.events.matchers.matches_node_name import matches_node_name
 
 __all__ = ["matches_node_name"]
