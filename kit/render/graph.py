@@ -1,208 +1,32 @@
-"""The ROS graph in characters: nodes left and right, topics and services between them, lines and what moves on them.
+"""Draws the ROS graph in characters: nodes left and right, topics and services between them, lines and what moves on them.
 
 Two lines that cross do not touch: the level one is drawn through. They touch where a corner or a tee is drawn.
 The selected element stands in brackets, and its lines are thick; a service's lines are dashed. So no meaning hangs on
 colour.
-
-Animates messages in a graph drawing: a few dots, each at the same slow pace.
-
-A dot stands for all messages on a line since the last dot left, so that ten messages a second and a thousand
-look alike: traffic, not a flicker.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from types import MappingProxyType
-from typing import Final, Literal, NamedTuple
+from typing import Final
 
 import numpy as np
 
 from kit.render.encode import Frame
-from kit.render.graph_data import GraphData, GraphItem
-from kit.render.graph_glyphs import EAST, HORIZONTAL, NORTH, SOUTH, UNICODE_LINES, VERTICAL, WEST, LineGlyphs
-from kit.render.graph_layout import GraphLayout
+from kit.render.graph_columns import ARROW_WIDTH
+from kit.render.graph_drawing import GraphCell, GraphDrawing, GraphElement, GraphLink
+from kit.render.graph_glyphs import HORIZONTAL, UNICODE_LINES, VERTICAL, LineGlyphs
 from kit.render.roles import Role
 
-ColumnName = Literal["sender", "item", "receiver"]
 LINE_ROLE: Final = Role.WALL
 NAME_ROLE: Final = Role.WALL
 SELECTED_ROLE: Final = Role.ROBOT
 MESSAGE_ROLE: Final = Role.HIT
 MISMATCH_ROLE: Final = Role.CONTACT
-
 RATE_ROLE: Final = Role.TRAIL
 """Roles of the world's palette as used for the graph."""
-
-
-class GraphElement(NamedTuple):
-    """A node or an item of the picture. A node that sends and receives is drawn twice."""
-
-    column: ColumnName
-    name: str
-    """The node's full name or the item's label."""
-
-
-class GraphLink(NamedTuple):
-    """A node's line to an item, or an item's to a node."""
-
-    node: str
-    item: str
-    """Its label."""
-    is_sender: bool
-    """Whether it leads from the node to the item; else from the item to the node."""
-
-
-class GraphCell(NamedTuple):
-    column: int
-    row: int
-
-
-@dataclass(frozen=True, slots=True)
-class ColumnLayout:
-    """Positions and widths of the columns."""
-
-    width: int
-    node_width: int
-    """Width of each column of nodes."""
-    left_gap: int
-    """Between senders and items: lanes, then the rate, then the arrow."""
-    item_width: int
-    right_gap: int
-    """Between items and receivers: lanes, then the arrow."""
-    lane_pitch: tuple[int, int]
-    """Characters from one lane to the next, left and right."""
-
-    @property
-    def item_start(self) -> int:
-        """The first character of the items."""
-        return self.node_width + self.left_gap
-
-    @property
-    def receiver_start(self) -> int:
-        """The first character of the receivers."""
-        return self.item_start + self.item_width + self.right_gap
-
-
-RATE_WIDTH: Final = 8
-ARROW_WIDTH: Final = 2
-
-MIN_LANE_WIDTHS: Final = (5, 8)
-"""Characters kept for lanes, left and right, so that the columns stay where they are when one joins."""
-MIN_NAME_WIDTH: Final = 8
-
-
-def fit_columns(width: int, layout: GraphLayout) -> ColumnLayout:
-    """The columns for a picture of this width: what lanes need beyond the usual is taken from the names."""
-    needed = [max(side.lanes.values(), default=-1) + 1 for side in (layout.senders, layout.receivers)]
-    left, right = (max(least, lanes) for least, lanes in zip(MIN_LANE_WIDTHS, needed, strict=True))
-    names = max(3 * MIN_NAME_WIDTH, width - left - right - RATE_WIDTH - 2 * ARROW_WIDTH)
-    nodes = names // 3
-    pitches = tuple(
-        2 if lanes and 2 * lanes <= room else 1 for lanes, room in zip(needed, (left, right), strict=True)
-    )
-    return ColumnLayout(
-        width,
-        nodes,
-        left + RATE_WIDTH + ARROW_WIDTH,
-        names - 2 * nodes,
-        right + ARROW_WIDTH,
-        (pitches[0], pitches[1]),
-    )
-
-
-@dataclass(frozen=True, slots=True)
-class _LinkRoute:
-    """A link's cells from the sender to the receiver, and where they lead."""
-
-    cells: tuple[tuple[GraphCell, int], ...]
-    branch_cell: GraphCell
-    """The cell where the node's lane meets the item's row; the middle of a straight line."""
-
-
-@dataclass(frozen=True)
-class GraphDrawing:
-    """The cells of every node, item and link of a graph, in a picture of this width."""
-
-    graph: GraphData
-    layout: GraphLayout
-    width: int
-
-    @cached_property
-    def columns(self) -> ColumnLayout:
-        return fit_columns(self.width, self.layout)
-
-    @cached_property
-    def routes(self) -> Mapping[GraphLink, _LinkRoute]:
-        routes: dict[GraphLink, _LinkRoute] = {}
-        for item in self.graph.items:
-            for node in item.senders:
-                routes[GraphLink(node, item.label, is_sender=True)] = self._sender_route(node, item)
-            for node in item.receivers:
-                routes[GraphLink(node, item.label, is_sender=False)] = self._receiver_route(node, item)
-        return routes
-
-    def link_cells(self, link: GraphLink) -> tuple[GraphCell, ...]:
-        """The characters that a message on this link goes through, from sender to receiver."""
-        return tuple(cell for cell, _ in self.routes[link].cells)
-
-    def links_of(self, element: GraphElement | None) -> Collection[GraphLink]:
-        """Returns the links of the selected element: a node's on both its sides."""
-        if element is None:
-            return ()
-        return {
-            link
-            for link in self.routes
-            if element.name == (link.item if element.column == "item" else link.node)
-        }
-
-    def element_rows(self) -> Mapping[GraphElement, int]:
-        """Returns every element that can be selected, with its row."""
-        rows = {GraphElement("sender", node): row for node, row in self.layout.senders.rows.items()}
-        rows |= {GraphElement("item", label): row for label, row in self.layout.items.items()}
-        return rows | {
-            GraphElement("receiver", node): row for node, row in self.layout.receivers.rows.items()
-        }
-
-    def _sender_route(self, node: str, item: GraphItem) -> _LinkRoute:
-        columns, node_row, row = self.columns, self.layout.senders.rows[node], self.layout.items[item.label]
-        start, end = min(len(node), columns.node_width - 2) + 2, columns.item_start - 1
-        lane = self.layout.senders.lanes.get(node)
-        lane_column = None if lane is None else columns.node_width + lane * columns.lane_pitch[0]
-        return _route_link(start, end, lane_column, node_row, row)
-
-    def _receiver_route(self, node: str, item: GraphItem) -> _LinkRoute:
-        columns, node_row, row = self.columns, self.layout.receivers.rows[node], self.layout.items[item.label]
-        start = columns.item_start + min(len(item.label), columns.item_width - 2) + 2
-        end = columns.receiver_start - 1
-        lane = self.layout.receivers.lanes.get(node)
-        lane_column = (
-            None if lane is None else columns.receiver_start - ARROW_WIDTH - 1 - lane * columns.lane_pitch[1]
-        )
-        return _route_link(start, end, lane_column, row, node_row)
-
-
-def _route_link(start: int, end: int, lane: int | None, first: int, last: int) -> _LinkRoute:
-    """A way along row ``first`` to the lane, along that, and on row ``last`` to the end (exclusive)."""
-    if lane is None:
-        cells = [(GraphCell(column, first), HORIZONTAL) for column in range(start, end)]
-        return _LinkRoute(tuple(cells), cells[len(cells) // 2][0])
-    cells = [(GraphCell(column, first), HORIZONTAL) for column in range(start, lane)]
-    if first == last:
-        cells.append((GraphCell(lane, first), HORIZONTAL))
-    else:
-        down = last > first
-        onward, back = (SOUTH, NORTH) if down else (NORTH, SOUTH)
-        cells.append((GraphCell(lane, first), WEST | onward))
-        cells += [
-            (GraphCell(lane, row), VERTICAL)
-            for row in range(first + (1 if down else -1), last, 1 if down else -1)
-        ]
-        cells.append((GraphCell(lane, last), back | EAST))
-    cells += [(GraphCell(column, last), HORIZONTAL) for column in range(lane + 1, end)]
-    return _LinkRoute(tuple(cells), GraphCell(lane, first))
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kit.render.graph import ColumnName, GraphDrawing, GraphElement, GraphLink
+from kit.render.graph_drawing import ColumnName, GraphDrawing, GraphElement, GraphLink
 
 _COLUMNS: tuple[ColumnName, ...] = ("sender", "item", "receiver")
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
-from kit.render.graph import GraphCell, GraphDrawing, GraphLink
 from kit.render.graph_data import GraphData, GraphItem
+from kit.render.graph_drawing import GraphCell, GraphDrawing, GraphLink
 from kit.ros.graph.topic_statistics import FlowStats, MessageFlow
 
 FRAMES_PER_LEG: Final = 6

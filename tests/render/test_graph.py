@@ -7,19 +7,9 @@ from itertools import pairwise
 import pytest
 
 from kit.render.encode import Frame
-from kit.render.graph import (
-    MESSAGE_ROLE,
-    MISMATCH_ROLE,
-    SELECTED_ROLE,
-    GraphCell,
-    GraphDrawing,
-    GraphElement,
-    GraphLink,
-    GraphView,
-    draw_graph,
-    rate_text,
-)
+from kit.render.graph import MESSAGE_ROLE, MISMATCH_ROLE, SELECTED_ROLE, GraphView, draw_graph, rate_text
 from kit.render.graph_data import GraphData
+from kit.render.graph_drawing import GraphCell, GraphDrawing, GraphElement, GraphLink
 from kit.render.graph_glyphs import ASCII_LINES
 from kit.render.graph_layout import arrange_graph
 from kit.render.message_animation import FRAMES_PER_LEG, MAX_DOTS, MessageAnimation

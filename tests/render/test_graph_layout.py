@@ -18,8 +18,8 @@ from kit.msg.message import Message
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import Float32, String
 from kit.msg.std_srvs import Empty, SetBool, Trigger
-from kit.render.graph import GraphDrawing, GraphLink
 from kit.render.graph_data import GraphData, GraphItem, build_graph_data
+from kit.render.graph_drawing import GraphDrawing, GraphLink
 from kit.render.graph_glyphs import HORIZONTAL, VERTICAL
 from kit.render.graph_layout import GraphLayout, arrange_graph
 from kit.render.message_rows import MAX_NUMBER_ROWS, message_rows

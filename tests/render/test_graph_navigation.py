@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from kit.render.graph import GraphDrawing, GraphElement
 from kit.render.graph_data import GraphData
+from kit.render.graph_drawing import GraphDrawing, GraphElement
 from kit.render.graph_layout import arrange_graph
 from kit.render.graph_selection import initial_selection, kept_selection, move_horizontally, move_vertically
 from tests.render.conversations import DOZEN, MAZE, WORLD

@@ -8,8 +8,9 @@ from typing import Final
 from kit.plain_text import counted
 from kit.render.encode import AsciiEncoder, Encoder, Frame
 from kit.render.frame_text import paste_frame, write_text
-from kit.render.graph import GraphDrawing, GraphView, draw_graph
+from kit.render.graph import GraphView, draw_graph
 from kit.render.graph_data import GraphData, GraphItem
+from kit.render.graph_drawing import GraphDrawing
 from kit.render.graph_glyphs import ASCII_LINES, UNICODE_LINES
 from kit.render.graph_layout import arrange_graph
 from kit.render.message_animation import MessageAnimation

@@ -9,8 +9,9 @@ from typing import Final
 from kit.document.rows import PLAIN, Row, at_both_edges, row
 from kit.msg.message import Message
 from kit.plain_text import counted, wrap
-from kit.render.graph import GraphElement, rate_text
+from kit.render.graph import rate_text
 from kit.render.graph_data import GraphData
+from kit.render.graph_drawing import GraphElement
 from kit.render.message_rows import message_field_rows
 from kit.ros.graph.snapshot import EndpointState, GraphState, ServiceState, TopicState
 from kit.ros.graph.topic_statistics import FieldSample, FlowStats, MessageFlow

@@ -18,8 +18,9 @@ from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
 from kit.document.rows import row
 from kit.msg.conversion import FieldValue, field_values
-from kit.render.graph import GraphDrawing, GraphElement, GraphView, draw_graph
+from kit.render.graph import GraphView, draw_graph
 from kit.render.graph_data import GraphData, build_graph_data
+from kit.render.graph_drawing import GraphDrawing, GraphElement
 from kit.render.graph_glyphs import ASCII_LINES, UNICODE_LINES
 from kit.render.graph_layout import GraphLayout, arrange_graph
 from kit.render.graph_selection import kept_selection, move_horizontally, move_vertically
