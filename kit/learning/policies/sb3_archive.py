@@ -10,6 +10,7 @@ from __future__ import annotations
 import base64
 import io
 import json
+import pickle
 import pickletools
 import re
 import zipfile
@@ -141,6 +142,10 @@ def _read_archive(file: Path) -> tuple[Weights, dict[str, Any]]:
             for name, value in found.items()
             if isinstance(value, torch.Tensor)
         }
+    except pickle.UnpicklingError:  # torch's own text says how to load what may run anything
+        raise PolicyError(
+            f"{file}: its weights hold something else than arrays of numbers, which might run code, and were not read."
+        ) from None
     except Exception as error:  # noqa: BLE001 - whatever a damaged or hostile archive makes zipfile and torch raise
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise PolicyError(f"{file}: not a model of stable-baselines3, or damaged ({reason[:200]}).") from None
