@@ -36,6 +36,8 @@ MAP_FILE: Final = "map.yaml"
 OVERLAY_FILE: Final = "overlay.png"
 ROBOT_FILE: Final = "serp.model.yaml"
 
+NEAR_POINT: Final = 12
+"""This point of a way is near its start, and far enough to tell its direction."""
 FINEST: Final = 0.01
 """Finest resolution of a map's picture [m per pixel]."""
 
@@ -320,8 +322,20 @@ def _place(made: Path, plan: WallPlan, title: str, middle: Point) -> tuple[Pose,
         )
     route = widest_route(grid, start, target)
     check_closed(grid, start)
-    ahead = route.points[min(len(route.points) - 1, 12)]
+    ahead = _straight_ahead(grid, route.points)
     return Pose(*start, math.atan2(ahead[1] - start[1], ahead[0] - start[0])), target, route, grid
+
+
+def _straight_ahead(grid: OccupancyGrid, way: tuple[Point, ...]) -> Point:
+    """The last point of the way to which a robot can drive straight from its first: the way itself may begin sideways, towards
+    the middle of a corridor. Where there is none, a point near the start."""
+    start = np.array(way[0])
+    for point in reversed(way[NEAR_POINT:]):
+        steps = max(2, int(math.dist(start, point) / grid.cell_size))
+        line = start + np.linspace(0.0, 1.0, steps)[:, None] * (np.array(point) - start)
+        if all(grid.clearance[grid.cell_at(x, y)] > ROBOT_RADIUS for x, y in line.tolist()):
+            return point
+    return way[min(len(way) - 1, NEAR_POINT)]
 
 
 def _is_wall(plan: WallPlan, grid: OccupancyGrid) -> BoolArray:

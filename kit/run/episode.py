@@ -132,7 +132,7 @@ def run_until(
         for end in ends:
             if end.is_met():
                 return end.reason
-        if number == ticks:
+        if ticks is not None and number >= ticks:
             return EndReason.LIMIT
         if schedule is not None:
             schedule.wait()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, nullcontext
@@ -192,13 +193,15 @@ def run_episode(
     file. ``case``: the map's case (default: the first). ``seconds``: the longest simulated time. ``until_reached``: end
     the episode when the target is reached. ``record``: a file for the recording. The same arguments give the same run.
 
-    Raises LookupError for an unknown map, case or controller, WorldError for an invalid world file, and OSError if the
-    recording cannot be written.
+    Raises LookupError for an unknown map, case or controller, ValueError for a time that is none, WorldError for an invalid
+    world file, and OSError if the recording cannot be written.
 
     >>> summary = kit.run_episode("maze", "forward", seconds=2.0)
     >>> summary.metrics.time_s, summary.failure
     (2.0, None)
     """
+    if not 0.0 <= seconds < math.inf:
+        raise ValueError(f"seconds must be a finite number, at least 0, not {seconds}")
     return run_headless(
         find_scenario(scenario, case),
         find_controller(controller),

@@ -47,7 +47,7 @@ class MapCase:
     """The start of the map's partner, if it has one; None: its pose in the world file."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class MapCard:
     """One map of the catalogue."""
 
@@ -64,6 +64,11 @@ class MapCard:
     cases: tuple[MapCase, ...]
     root: Path
     """The folder its world may read: that of all maps, since they share their robots."""
+
+    def __repr__(self) -> str:
+        """``MapCard(turn: cases turn_a_to_b, turn_b_to_a)``"""
+        cases = ", ".join(case.name for case in self.cases)
+        return f"MapCard({self.name}: cases {cases or 'none'})"
 
 
 def maps_folder() -> Path:

@@ -5,6 +5,7 @@ Field for field Flatland's format (world, layer and model YAML). Lengths in metr
 
 from __future__ import annotations
 
+import copyreg
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -23,6 +24,17 @@ MAX_LAYERS = 16
 
 ALL_LAYERS = 0xFFFF
 """The bits of ``layers: ["all"]``, the default of a footprint and of a laser."""
+
+
+def _read_only(values: dict[str, object]) -> MappingProxyType[str, object]:
+    return MappingProxyType(values)
+
+
+def _reduce_read_only(mapping: MappingProxyType[str, object]) -> tuple[object, ...]:
+    return _read_only, (dict(mapping),)
+
+
+copyreg.pickle(MappingProxyType, _reduce_read_only)  # type: ignore[arg-type]  # so that a world can be pickled and copied
 
 Color = tuple[float, float, float, float]
 """Red, green, blue, alpha, each 0 to 1."""

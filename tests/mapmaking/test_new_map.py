@@ -210,3 +210,18 @@ def test_robots_that_share_their_topics_are_told_at_the_check(tmp_path: Path) ->
     told = " ".join(CliRunner().invoke(main, ["task", "check", "alike"]).output.split())
     assert "left and right share cmd_vel" in told.replace("/", "")
     assert "namespace" in told
+
+
+def test_a_robot_looks_where_it_can_drive_straight(tmp_path: Path) -> None:
+    for number, (text, degrees) in enumerate(
+        (
+            ("###########\n#S       T#\n#         #\n###########\n", 0.0),
+            ("###########\n#T       S#\n#         #\n###########\n", 180.0),
+            ("#####\n#S  #\n#   #\n#   #\n#   #\n#T  #\n#####\n", -90.0),
+        )
+    ):
+        result = make(tmp_path / str(number), text)
+        assert result.exit_code == 0, result.output
+        case = find_scenario(str(tmp_path / str(number) / "worlds" / "hall")).case
+        assert case is not None
+        assert math.cos(case.start.theta - math.radians(degrees)) > 0.98

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import cast
 
 import pytest
 
+import kit
 from grader.assignment import Assignment, Shift, Trial
 from grader.driving.episodes import run_episode
 from grader.evidence.contract import EpisodeSpec
@@ -320,8 +322,15 @@ def test_a_limit_is_so_many_seconds_or_ticks() -> None:
     assert run.count == 10
     assert run_until(run, ticks=3) is EndReason.LIMIT
     assert run.count == 13
-    assert run_until(run, ticks=0) is EndReason.LIMIT
-    assert run.count == 13
+    for ticks in (0, -1):
+        assert run_until(run, ticks=ticks) is EndReason.LIMIT
+        assert run.count == 13
+
+
+def test_a_time_that_is_none_is_refused() -> None:
+    for seconds in (-1.0, math.nan, math.inf):
+        with pytest.raises(ValueError, match="seconds"):
+            kit.run_episode("maze", "forward", seconds=seconds)
 
 
 def test_the_first_end_that_is_met_counts() -> None:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import copy
 import math
+import pickle
 from pathlib import Path
 
 import pytest
 
 from kit.geometry import Pose
+from kit.sim.simulation import load_world
+from kit.world.catalogue import find_map
 from kit.world.records import Model, SourceLocation
 
 
@@ -42,3 +46,14 @@ def test_points_are_carried_into_a_frame(
 
 def test_places_are_written_as_editors_read_them() -> None:
     assert str(SourceLocation(Path("worlds/a.yaml"), 3, 7)) == "worlds/a.yaml:3:7"
+
+
+def test_a_world_can_be_pickled_and_copied() -> None:
+    for name in ("turn", "crossing"):  # the second has bodies that move by themselves
+        world = load_world(find_map(name).world_file)
+        for again in (pickle.loads(pickle.dumps(world)), copy.deepcopy(world)):
+            assert repr(again) == repr(world)
+            assert dict(again.layer_bits) == dict(world.layer_bits)
+            assert [model.pose for model in again.models] == [model.pose for model in world.models]
+            with pytest.raises(TypeError):
+                again.layer_bits["new"] = 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -18,7 +19,7 @@ from kit.learning.environment.disturbance_state import DisturbanceState
 from kit.learning.maps.batch_map import BatchMap
 from kit.learning.tasks.actions import DiscreteActions, TwistTable
 from kit.learning.tasks.learning_task import LearningTask
-from kit.learning.tasks.reward import Reward, RewardFunction
+from kit.learning.tasks.reward import Reward, RewardFunction, check_reward
 from kit.learning.tasks.reward_terms import FORWARD_SHARE
 from kit.learning.tasks.task_case import TaskCase
 from kit.learning.tasks.transition import (
@@ -29,6 +30,7 @@ from kit.learning.tasks.transition import (
     average_speeds,
     distance_to_target,
 )
+from kit.plain_text import counted
 from kit.world.catalogue import MapCard
 
 ALL_WORLDS = slice(None)
@@ -57,7 +59,8 @@ class BatchEnv:
     every case gets equally many episodes; or, if ``fixed_cases``, number ``first + i``, so that they get equally many steps.
     ``reward``: instead of the task's own. ``autoreset``: whether a world whose episode has ended begins its next one
     in the same step; else it waits for ``reset``.
-    Raises UnsupportedWorld for a map that it cannot represent.
+    Raises ValueError for fewer than one world, TypeError for a reward that is no function, and UnsupportedWorld for a map that
+    it cannot represent.
     """
 
     render_mode: None = None
@@ -74,11 +77,15 @@ class BatchEnv:
         autoreset: bool = True,
         fixed_cases: bool = False,
     ) -> None:
+        if n < 1:
+            raise ValueError(f"there must be at least one world, not {n}")
+        check_reward(reward)
         self.task = task
         self.n = n
         self.cases: tuple[TaskCase, ...] = tuple(case for _, case in task.map_cases())
         self.observation_space = task.observation.space(task.robots)
         self.action_space = task.actions.space(task.robots)
+        self._action_numbers = n * math.prod(self.action_space.shape or ())
         self._reward_function: RewardFunction = task.reward if reward is None else reward
         self._case_arrays = CaseArrays(task)
         self._goal_count = task.goal.make_count(self._case_arrays.goal_cases, n, task.step_time)
@@ -107,6 +114,10 @@ class BatchEnv:
         self._random_keys = self._seed(seed)
         self._state = BatchState.allocate(task, self._loops.allocate_robots(n))
         self._state.episode -= 1  # the first reset leads to number 0
+
+    def __repr__(self) -> str:
+        """``BatchEnv(turn, 64 worlds)``"""
+        return f"{type(self).__name__}({self.task.name}, {counted(self.n, 'world')})"
 
     @property
     def state(self) -> BatchState:
@@ -209,8 +220,11 @@ class BatchEnv:
 
         Raises ValueError for actions that are not in the space, and RewardError.
         """
-        if len(actions) != self.n:
-            raise ValueError(f"{self.n} worlds need {self.n} actions, not {len(actions)}")
+        if len(actions) != self.n or np.size(actions) != self._action_numbers:
+            shape = (self.n, *(self.action_space.shape or ()))
+            raise ValueError(
+                f"{counted(self.n, 'world')} must get actions of shape {shape}, not {np.shape(actions)}"
+            )
         transition = self._simulate(actions)
         observations = self._observe_step()
         terminated, truncated = self.task.endings(transition)

@@ -25,7 +25,7 @@ from kit.learning.maps.batch_map import BatchMap
 from kit.learning.maps.obstacles import Obstacle
 from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS, find_task
 from kit.learning.tasks.learning_task import LearningTask, UnknownTask
-from kit.learning.tasks.reward import RewardFunction
+from kit.learning.tasks.reward import RewardFunction, check_reward
 from kit.plain_text import quoted, suggestion
 from kit.render.image import draw_image, image_camera
 from kit.render.scene import Disc, Scene, SceneBody, Trail
@@ -69,8 +69,10 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         ``render_mode``: ``human`` paints every step in the terminal, where the last one was, at the robot's own pace;
         ``rgb_array`` and ``ansi`` are what ``render`` returns.
 
-        Raises UnknownTask, UnsupportedWorld, and WorldError if a task's file is wrong."""
+        Raises UnknownTask, UnsupportedWorld, TypeError for a reward that is no function, and WorldError if a task's file is
+        wrong."""
         check_render_mode(render_mode)
+        check_reward(reward)
         self.task = resolve_task(task, self.default_task)
         if case is not None:
             self.task = self.task.on(case)
@@ -92,9 +94,7 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
 
     @spec.setter
     def spec(self, spec: EnvSpec | None) -> None:
-        if spec is not None and spec.max_episode_steps is None:
-            spec = dataclasses.replace(spec, max_episode_steps=self.task.max_steps)
-        self._spec = spec
+        self._spec = with_step_limit(spec, self.task.max_steps)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -154,6 +154,13 @@ class TaskEnv(gymnasium.Env[Observation, Action]):
         assert self._batch is not None
         for trail, (x, y, _) in zip(self._trails, self._batch.state.pose[0].tolist(), strict=True):
             trail.add(x, y)
+
+
+def with_step_limit(spec: EnvSpec | None, steps: int) -> EnvSpec | None:
+    """The spec, with the steps after which an episode is over where it does not say."""
+    if spec is None or spec.max_episode_steps is not None:
+        return spec
+    return dataclasses.replace(spec, max_episode_steps=steps)
 
 
 def check_render_mode(mode: str | None) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -10,7 +11,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from kit.installation import install_command
-from kit.learning.environment.env import Observation, TaskEnv, resolve_task
+from kit.learning.environment.env import Observation, TaskEnv, check_options, resolve_task
 from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.catalogue import WHEELCHAIRS
 from kit.learning.tasks.learning_task import LearningTask
@@ -65,6 +66,10 @@ class RobotsParallelEnv(ParallelEnv):
             agent: found.actions.space(1) for agent in self.possible_agents
         }
 
+    def __repr__(self) -> str:
+        """``RobotsParallelEnv(wheelchairs: left, right)``"""
+        return f"{type(self).__name__}({self.task.name}: {', '.join(self.possible_agents)})"
+
     def observation_space(self, agent: str) -> spaces.Box:
         return self.observation_spaces[agent]
 
@@ -74,12 +79,14 @@ class RobotsParallelEnv(ParallelEnv):
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Observation], dict[str, dict[str, Any]]]:
-        """Begins an episode. ``options={"case": name}``: on this case, instead of the next one in turn."""
+        """Begins an episode. ``options={"case": name}``: on this case, instead of the next one in turn. Warns of other options."""
         self.agents = list(self.possible_agents)
         known = {name: value for name, value in (options or {}).items() if name == "case"}
-        seen, info = self._env.reset(
-            seed=seed, options=known
-        )  # PettingZoo's own test gives options that are none
+        try:
+            check_options(options, "case")
+        except ValueError as error:  # PettingZoo's own test gives options that are none, and wants no error
+            warnings.warn(str(error), stacklevel=2)
+        seen, info = self._env.reset(seed=seed, options=known)
         return self._split_observation(seen), {agent: dict(info) for agent in self.agents}
 
     def step(

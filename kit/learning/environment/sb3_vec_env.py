@@ -18,6 +18,7 @@ from kit.learning.environment.mirror import TaskMirror
 from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.reward import RewardFunction
+from kit.plain_text import counted
 
 try:
     from stable_baselines3.common.vec_env import VecEnv, VecEnvWrapper
@@ -43,6 +44,10 @@ class BatchVecEnv(VecEnv):
         self._actions: NDArray[np.integer] = np.zeros(0, dtype=np.int64)
         self._started = time.perf_counter()
         super().__init__(batch.n, batch.observation_space, batch.action_space)
+
+    def __repr__(self) -> str:
+        """``BatchVecEnv(turn, 64 worlds)``"""
+        return f"{type(self).__name__}({self.batch.task.name}, {counted(self.num_envs, 'world')})"
 
     def reset(self) -> VecEnvObs:
         """Begins new episodes in all worlds; after ``seed``, with that seed."""
@@ -142,7 +147,8 @@ def make_vec_env(
     ``task``: a task, the name of one of the kit's, or the file of one of your own. ``reward``: instead of the task's, a
     function of a transition, for all worlds at once. ``fixed_cases``: whether each world runs one case for good.
 
-    Raises UnknownTask if there is no such task, and WorldError if its file is wrong.
+    Raises UnknownTask if there is no such task, WorldError if its file is wrong, ValueError for fewer than one world, and
+    TypeError for a reward that is no function.
 
     >>> worlds = kit.make_vec_env("turn", 64, seed=1)
     >>> worlds.reset().shape

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
+from gymnasium.envs.registration import EnvSpec
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
@@ -28,6 +29,7 @@ from kit.learning.environment.env import (
     picture_title,
     resolve_task,
     step_info,
+    with_step_limit,
 )
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS
@@ -62,10 +64,8 @@ class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
         ended begins the next one in the next step, in the same, or by ``reset`` with a mask. ``max_episode_steps``: after so
         many an episode is truncated, as by Gymnasium's TimeLimit.
 
-        Raises ValueError for fewer than one world or another mode, UnknownTask, UnsupportedWorld, and WorldError if a
-        task's file is wrong."""
-        if num_envs < 1:
-            raise ValueError(f"there must be at least one environment, not {num_envs}")
+        Raises ValueError for fewer than one world or another mode, TypeError for a reward that is no function, UnknownTask,
+        UnsupportedWorld, and WorldError if a task's file is wrong."""
         check_render_mode(render_mode)
         if max_episode_steps is not None and max_episode_steps < 1:
             raise ValueError(f"an episode has at least one step, not {max_episode_steps}")
@@ -91,6 +91,16 @@ class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
         self._is_begun = False
         self._observations: ObservationArray = np.zeros(self.observation_space.shape or (), dtype=np.float32)
         self._picture: TerminalPicture | None = None
+        self._spec: EnvSpec | None = None
+
+    @property
+    def spec(self) -> EnvSpec | None:
+        """What ``gymnasium.make_vec`` made it by, with the steps after which an episode is over."""
+        return self._spec
+
+    @spec.setter
+    def spec(self, spec: EnvSpec | None) -> None:
+        self._spec = with_step_limit(spec, self._most_steps or self.batch.task.max_steps)
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -43,8 +44,8 @@ def export_policy(model: Any, task: Path | str) -> Policy:
     """Makes a policy of the kit's of what was trained elsewhere on a task, by its name or file: it can be saved, evaluated,
     watched, raced and exported as any other.
 
-    ``model``: a model of stable-baselines3 or sb3-contrib, or a torch module of linear layers with Tanh or ReLU between
-    them, which gives (n, actions) scores of (n, numbers) observations, or (n, numbers) continuous actions. What was made is
+    ``model``: a model of stable-baselines3 or sb3-contrib, or a torch module of linear layers with tanh or ReLU between
+    them, as modules or functions, which gives (n, actions) scores of (n, numbers) observations, or (n, numbers) continuous actions. What was made is
     tried beside the model before it is returned.
 
     Raises PolicyError if the model is of an unknown kind, or does not fit the task.
@@ -56,9 +57,11 @@ def export_policy(model: Any, task: Path | str) -> Policy:
     spec = TaskSpec(str(task)).frozen()
     resolved = spec.resolve()
     choices = action_counts(resolved.actions.space(resolved.robots))
+    space = resolved.observation.space(resolved.robots)
+    seen = np.random.default_rng(0).uniform(space.low, space.high, (TRIED, *space.shape)).astype(np.float32)
     try:
         if isinstance(model, nn.Module):
-            policy = _policy_of_module(model, choices, spec, task_interface(resolved))
+            policy = _policy_of_module(model, choices, spec, task_interface(resolved), seen)
         elif hasattr(model, "policy") and hasattr(model, "predict"):
             policy = Policy(
                 export_network(model),
@@ -79,18 +82,18 @@ def export_policy(model: Any, task: Path | str) -> Policy:
         raise PolicyError(
             f"this {type(model).__name__} cannot be a policy of task {resolved.name}: {error}"
         ) from None
-    space = resolved.observation.space(resolved.robots)
-    seen = np.random.default_rng(0).uniform(space.low, space.high, (TRIED, *space.shape)).astype(np.float32)
     _check_same(policy, model, seen)
     return policy
 
 
 def _policy_of_module(
-    module: nn.Module, choices: tuple[int, ...], spec: TaskSpec, interface: Mapping[str, Any]
+    module: nn.Module,
+    choices: tuple[int, ...],
+    spec: TaskSpec,
+    interface: Mapping[str, Any],
+    seen: Float32Array,
 ) -> Policy:
-    parts = [
-        each for each in module.modules() if not list(each.children()) and not isinstance(each, UNCHANGED)
-    ]
+    parts, scores = _called_by(module, seen)
     if unknown := [each for each in parts if not isinstance(each, (nn.Linear, *BETWEEN))]:
         raise TypeError(f"it has a {type(unknown[0]).__name__}; the kit reads Linear, Tanh and ReLU")
     if not any(isinstance(each, nn.Linear) for each in parts):
@@ -102,6 +105,11 @@ def _policy_of_module(
             "between its layers must lie Tanh or ReLU, everywhere the same, and nothing after the last"
         )
     network = convert_modules(parts)
+    if not inner:  # functions may lie between the layers, which are no modules: what comes out tells which
+        network.check_shapes()
+        tried = [replace(network, activation=each) for each in BETWEEN.values()]
+        memory = np.zeros((len(seen), 2, 0), np.float32)
+        network = min(tried, key=lambda each: float(np.abs(each.scores(seen, memory)[0] - scores).max()))
     if choices:
         sampling = ActionSampling("softmax")
     else:
@@ -110,21 +118,47 @@ def _policy_of_module(
     return Policy(network, choices, sampling, spec, 0, interface)
 
 
+def _called_by(module: nn.Module, seen: Float32Array) -> tuple[list[nn.Module], Float32Array]:
+    """The modules that the module calls for what is ``seen`` (n, numbers), in that order, but for those that change nothing; and
+    what it gives (n, outputs). A critic beside the actor is left out, a Tanh that is called twice comes twice."""
+    called: list[nn.Module] = []
+    inner = [
+        each for each in module.modules() if not list(each.children()) and not isinstance(each, UNCHANGED)
+    ]
+    hooks = [each.register_forward_hook(lambda part, *_: called.append(part)) for each in inner]
+    try:
+        found = _outputs_of(module, seen)
+    finally:
+        for hook in hooks:
+            hook.remove()
+    if not isinstance(found, torch.Tensor) or found.ndim != 2 or len(found) != len(seen):
+        raise TypeError(
+            f"for {len(seen)} observations it must return one tensor, a row for each. Of an actor-critic, give the actor alone"
+        )
+    return called, _to_array(found)
+
+
+def _outputs_of(module: nn.Module, seen: Float32Array) -> Any:
+    """What the module gives for (n, numbers). TypeError where it does not take so many numbers."""
+    was_training = module.training
+    module.eval()
+    try:
+        with torch.no_grad():
+            return module(torch.as_tensor(seen))
+    except (RuntimeError, NotImplementedError) as error:
+        raise TypeError(
+            f"it does not take the {seen.shape[1]} numbers of an observation ({str(error).splitlines()[0]})"
+        ) from None
+    finally:
+        module.train(was_training)
+
+
 def _check_same(policy: Policy, model: Any, seen: Float32Array) -> None:
     """PolicyError unless the policy does what the model does for what is ``seen`` (n, numbers)."""
     player = policy.make_player(len(seen))
     ours = player.act(seen)
     if isinstance(model, nn.Module):
-        was_training = model.training
-        model.eval()
-        with torch.no_grad():
-            found = model(torch.as_tensor(seen))
-        model.train(was_training)
-        if not isinstance(found, torch.Tensor) or tuple(found.shape) != player.scores.shape:
-            raise PolicyError(
-                f"the module must return one tensor of shape {player.scores.shape} for {len(seen)} observations; of an "
-                "actor-critic give the actor alone."
-            )
+        found = _outputs_of(model, seen)
         theirs = found.cpu().numpy() if policy.choices else found.clamp(-1, 1).cpu().numpy()
         ours = player.scores if policy.choices else ours
         is_same = np.isclose(ours, theirs, rtol=TOLERANCE, atol=TOLERANCE).mean()

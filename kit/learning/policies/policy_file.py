@@ -104,7 +104,8 @@ def load_policy(
         if task is None:
             raise PolicyError(
                 f"{file} is a model of stable-baselines3, which does not say what it was trained on: "
-                f"kit.load_policy({str(file)!r}, task='turn')."
+                f"kit.load_policy({str(file)!r}, task='turn') reads it, and kit.save_policy(policy, {file.stem + '.npz'!r}) makes a "
+                "file of it that every command takes."
             )
         return read_sb3_policy(
             file,

@@ -12,7 +12,7 @@ import io
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -101,6 +101,13 @@ def find_kinds(names: Sequence[str]) -> tuple[DisturbanceKind, ...]:
     return tuple(kind for name, kind in known.items() if not wanted or name in wanted)
 
 
+def _whole(value: object) -> object:
+    """The value with every record in it as the name of its class and all its fields, which its own text may leave out."""
+    if is_dataclass(value):
+        return type(value).__name__, tuple(_whole(getattr(value, each.name)) for each in fields(value))
+    return tuple(map(_whole, value)) if isinstance(value, tuple) else value
+
+
 class PolicySweep:
     """A sweep of ``policy`` on ``task``, whose own disturbances are the middle from which one at a time is changed."""
 
@@ -144,7 +151,7 @@ class PolicySweep:
     def _make_key(self) -> str:
         """What tells this sweep's results from those of others in the journal."""
         plain = replace(self._task, disturbances=Disturbances())
-        told = repr((plain, self._episodes, self._seed, self._greedy)).encode()
+        told = repr((_whole(plain), self._episodes, self._seed, self._greedy)).encode()
         return hashlib.sha256(policy_bytes(self._policy) + told).hexdigest()[:32]
 
     def _read_journal(self) -> dict[str, dict[str, Any]]:

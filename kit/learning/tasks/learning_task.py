@@ -45,7 +45,7 @@ class StartVariation:
     """m between two robots; None: as in the case."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class LearningTask:
     """A task to learn: maps, observations, actions, reward, goal and end conditions."""
 
@@ -106,6 +106,10 @@ class LearningTask:
     """The task's file."""
     version: str = ""
     """The first 12 digits of the SHA-256 of the file's text."""
+
+    def __repr__(self) -> str:
+        """``LearningTask(turn: Round one corner and back again)``"""
+        return f"LearningTask({self.name}: {self.summary})"
 
     def endings(self, transition: Transition) -> tuple[Array, Array]:
         """(...) bool each: which episodes have terminated, and which were truncated."""

@@ -16,6 +16,15 @@ RewardFunction: TypeAlias = Callable[[Transition], Array]
 """A student's reward: a transition of ``n`` worlds -> (n,) rewards."""
 
 
+def check_reward(reward: object) -> None:
+    """Raises TypeError for what was given as a reward and is neither None nor a function, such as a file's name."""
+    if reward is not None and not callable(reward):
+        raise TypeError(
+            f"reward must be a function of a transition, not {quoted(str(reward))}. A file is the reward of a task whose file "
+            "says `reward: {file: NAME}`, or of a training with `kit train --reward NAME`."
+        )
+
+
 class UnknownRewardTerm(LookupError):
     """No term has that name; the message offers the nearest one."""
 

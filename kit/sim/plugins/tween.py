@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
@@ -16,11 +17,24 @@ from kit.world.plugin_reader import ModelScope
 from kit.world.yaml_section import Section
 
 Easing = Callable[[float], float]
-"""Maps the elapsed fraction of the time, 0 to 1, to the fraction of the distance: 0 at 0 and 1 at 1."""
+"""Maps the elapsed fraction of the time, 0 to 1, to the fraction of the distance: 0 at 0 and 1 at 1. A function of a module, or a
+partial one, so that a world can be pickled."""
 
 
-def _power_easing(exponent: int) -> Easing:
-    return lambda t: t**exponent
+def _power_easing(exponent: int, t: float) -> float:
+    return float(t**exponent)
+
+
+def _linear(t: float) -> float:
+    return t
+
+
+def _exponential(t: float) -> float:
+    return 0.0 if t == 0.0 else float(2.0 ** (10.0 * (t - 1.0)))
+
+
+def _circular(t: float) -> float:
+    return 1.0 - math.sqrt(1.0 - t * t)
 
 
 def _back_easing(t: float) -> float:
@@ -39,37 +53,37 @@ def _bouncing_ball(t: float) -> float:
     return min(7.5625 * (t - middle / 2.75) ** 2 + height for middle, height in bottoms)
 
 
-def _ease_in(curve: Easing) -> Easing:
-    return curve
+def _ease_in(curve: Easing, t: float) -> float:
+    return curve(t)
 
 
-def _ease_out(curve: Easing) -> Easing:
-    """An easing reversed in time: slow at the end."""
-    return lambda t: 1.0 - curve(1.0 - t)
+def _ease_out(curve: Easing, t: float) -> float:
+    """Reversed in time: slow at the end."""
+    return 1.0 - curve(1.0 - t)
 
 
-def _ease_in_out(curve: Easing) -> Easing:
+def _ease_in_out(curve: Easing, t: float) -> float:
     """Half of it, and half of it backwards."""
-    return lambda t: 0.5 * curve(2.0 * t) if t < 0.5 else 1.0 - 0.5 * curve(2.0 - 2.0 * t)
+    return 0.5 * curve(2.0 * t) if t < 0.5 else 1.0 - 0.5 * curve(2.0 - 2.0 * t)
 
 
 _EASING_CURVES: Mapping[str, Easing] = {
-    "quadratic": _power_easing(2),
-    "cubic": _power_easing(3),
-    "quartic": _power_easing(4),
-    "quintic": _power_easing(5),
-    "exponential": lambda t: 0.0 if t == 0.0 else 2.0 ** (10.0 * (t - 1.0)),
-    "circular": lambda t: 1.0 - math.sqrt(1.0 - t * t),
+    "quadratic": partial(_power_easing, 2),
+    "cubic": partial(_power_easing, 3),
+    "quartic": partial(_power_easing, 4),
+    "quintic": partial(_power_easing, 5),
+    "exponential": _exponential,
+    "circular": _circular,
     "back": _back_easing,
     "elastic": _elastic_easing,
-    "bounce": _ease_out(_bouncing_ball),
+    "bounce": partial(_ease_out, _bouncing_ball),
 }
 _EASING_KINDS = {"In": _ease_in, "Out": _ease_out, "InOut": _ease_in_out}
 
 EASINGS: Mapping[str, Easing] = MappingProxyType(
-    {"linear": lambda t: t}
+    {"linear": _linear}
     | {
-        f"{name}{end}": shaped(curve)
+        f"{name}{end}": partial(shaped, curve)
         for name, curve in _EASING_CURVES.items()
         for end, shaped in _EASING_KINDS.items()
     }

@@ -11,6 +11,7 @@ import pytest
 
 from kit.learning.environment.batch import BatchEnv, RewardError
 from kit.learning.environment.batch_state import BatchStep
+from kit.learning.environment.env import TaskEnv
 from kit.learning.tasks.actions import Move
 from kit.learning.tasks.catalogue import HALLWAY, TASKS, TURN, WHEELCHAIRS
 from kit.learning.tasks.learning_task import LearningTask, StartVariation
@@ -455,3 +456,18 @@ def test_another_reward_record_tells_its_terms() -> None:
     batch = BatchEnv(TURN, 2, seed=0, reward=ALGORITHM_1)
     batch.reset()
     assert list(next(steps(batch, 1)).terms) == [weight.term for weight in ALGORITHM_1.weights]
+
+
+def test_at_least_one_world_and_a_reward_that_can_be_called() -> None:
+    for count in (0, -1):
+        with pytest.raises(ValueError, match=f"not {count}"):
+            BatchEnv(TURN, count)
+    for make in (lambda: BatchEnv(TURN, 1, reward="mine.py"), lambda: TaskEnv(TURN, reward="mine.py")):  # type: ignore[arg-type]
+        with pytest.raises(TypeError, match=r"mine\.py"):
+            make()
+
+
+def test_a_notebook_shows_a_task_and_its_worlds_in_a_line() -> None:
+    for shown in (TURN, BatchEnv(TURN, 2), TURN.map_cases()[0][0]):
+        assert "turn" in repr(shown)
+        assert len(repr(shown)) < 80

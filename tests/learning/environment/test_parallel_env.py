@@ -25,6 +25,10 @@ TASKS = {
 }
 
 
+NO_OPTION = r"reset\(\) has no option"
+"""PettingZoo's own test gives an option that is none."""
+
+
 def make(task: LearningTask | str):  # type: ignore[no-untyped-def]  # the module is imported where PettingZoo is
     return import_module("kit.learning.environment.parallel_env").RobotsParallelEnv(task)
 
@@ -34,10 +38,18 @@ def make(task: LearningTask | str):  # type: ignore[no-untyped-def]  # the modul
 def test_pettingzoos_own_test_passes(task: LearningTask, capsys: pytest.CaptureFixture[str]) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
+        warnings.filterwarnings("ignore", NO_OPTION)
         pettingzoo_test.parallel_api_test(make(task), num_cycles=300)
     assert "Passed" in capsys.readouterr().out
 
 
+def test_an_option_that_is_none_is_warned_of() -> None:
+    env = make("smooth-turn")
+    with pytest.warns(UserWarning, match='"case"'):
+        env.reset(seed=1, options={"cse": "turn_a_to_b"})
+
+
+@pytest.mark.filterwarnings(f"ignore:{NO_OPTION}")
 def test_one_robot_is_an_environment_too() -> None:
     env = make("smooth-turn")
     assert env.possible_agents == ["serp"]

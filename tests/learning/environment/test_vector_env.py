@@ -193,9 +193,26 @@ def test_the_spec_says_how_long_an_episode_is() -> None:
         again = gymnasium.make(env.spec)
         assert again.spec is not None
         assert again.spec.max_episode_steps == steps
-    env = gymnasium.make("RobotKit/Turn-v0", task="smooth-turn", max_episode_steps=7)
-    assert env.spec is not None
-    assert env.spec.max_episode_steps == 7
+        worlds = gymnasium.make_vec(f"RobotKit/{name}-v0", num_envs=2)
+        assert worlds.spec is not None
+        assert worlds.spec.max_episode_steps == steps
+    for env in (
+        gymnasium.make("RobotKit/Turn-v0", task="smooth-turn", max_episode_steps=7),
+        gymnasium.make_vec("RobotKit/Turn-v0", num_envs=2, task="smooth-turn", max_episode_steps=7),
+    ):
+        assert env.spec is not None
+        assert env.spec.max_episode_steps == 7
+
+
+def test_actions_of_another_shape_are_refused_with_the_right_one() -> None:
+    env = gymnasium.make("RobotKit/Wheelchairs-v0")
+    env.reset(seed=1)
+    with pytest.raises(ValueError, match=r"\(1, 2\), not \(1,\)"):
+        env.step(0)
+    worlds = gymnasium.make_vec("RobotKit/Turn-v0", num_envs=3, task="smooth-turn")
+    worlds.reset(seed=1)
+    with pytest.raises(ValueError, match=r"\(3, 2\), not \(3, 1\)"):
+        worlds.step(np.zeros((3, 1)))
 
 
 def test_a_copy_of_an_environment_goes_on_the_same() -> None:

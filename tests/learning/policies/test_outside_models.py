@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -209,6 +210,31 @@ def test_a_torch_module_becomes_a_policy(tmp_path: Path) -> None:
         policy.predict(seen[:, :5])
 
 
+class ActorCritic(nn.Module):
+    """As many write it: a critic beside the actor, functions between its layers."""
+
+    def __init__(self, between: Callable[[torch.Tensor], torch.Tensor]) -> None:
+        super().__init__()
+        self.critic = nn.Linear(9, 1)
+        self.first, self.second, self.last = nn.Linear(9, 8), nn.Linear(8, 8), nn.Linear(8, 3)
+        self.between = between
+
+    def forward(self, seen: torch.Tensor) -> torch.Tensor:
+        scores: torch.Tensor = self.last(self.between(self.second(self.between(self.first(seen)))))
+        return scores
+
+
+def test_what_a_module_calls_is_its_policy() -> None:
+    seen = np.random.default_rng(1).uniform(0, 1, (50, 9)).astype(np.float32)
+    for between in (nn.Tanh(), nn.ReLU(), torch.tanh, torch.relu):
+        module = ActorCritic(between)
+        policy = kit.export_policy(module, "turn")
+        best = module(torch.as_tensor(seen)).argmax(dim=1).numpy()
+        np.testing.assert_array_equal(policy.predict(seen)[0], best)
+    with pytest.raises(PolicyError, match="something else"):
+        kit.export_policy(ActorCritic(torch.nn.functional.gelu), "turn")
+
+
 class Doubled(nn.Module):
     """Does more than its layers one after the other."""
 
@@ -226,7 +252,7 @@ class Doubled(nn.Module):
         (nn.Sequential(nn.Linear(9, 8), nn.GELU(), nn.Linear(8, 3)), "GELU"),
         (nn.Sequential(nn.Linear(9, 8), nn.Tanh(), nn.Linear(8, 8), nn.ReLU(), nn.Linear(8, 3)), "the same"),
         (nn.Sequential(nn.Linear(9, 3), nn.Tanh()), "after the last"),
-        (nn.Sequential(nn.Linear(7, 3)), "7 numbers"),
+        (nn.Sequential(nn.Linear(7, 3)), "the 9 numbers"),
         (nn.Sequential(nn.Linear(9, 4)), "4 scores|4 actions|from 3"),
         (nn.Identity(), "no linear layer"),
         (Doubled(), "something else"),

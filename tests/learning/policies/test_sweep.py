@@ -103,3 +103,14 @@ def test_kinds_are_found_by_name() -> None:
     ]
     with pytest.raises(DisturbanceError, match="latency"):
         find_kinds(["latncy"])
+
+
+def test_the_journal_tells_apart_tasks_that_differ_in_a_record_of_theirs(tmp_path: Path) -> None:
+    journal = tmp_path / "sweep.jsonl"
+    for start in (StartVariation(), StartVariation(noise=0.01), StartVariation()):
+        next(
+            PolicySweep(
+                FORWARD, replace(AHEAD, start=start), DRIFT, episodes=2, seed=1, journal=journal
+            ).points()
+        )
+    assert len({json.loads(line)["key"] for line in journal.read_text().splitlines()}) == 2
