@@ -26,6 +26,7 @@ from kit.msg.flatland_msgs import Collision, Collisions
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.msg.sensor_msgs import LaserScan
 from kit.msg.std_msgs import String
+from kit.plain_text import counted
 from kit.ros import bag_reader
 from kit.ros.bag_storage import MCAP_END, MCAP_MAGIC, RECORD_HEAD, BagError, Storage, restore_bags
 from kit.ros.bags import MAX_PENDING, BagRecorder, read_bag, read_messages
@@ -169,7 +170,7 @@ def test_what_a_killed_recording_left_is_restored_at_the_next_start(
     assert (
         kept == ["0", "1"] if storage == "sqlite3" or torn < 40 else kept == ["0"]
     )  # 1: of the index after it
-    assert f"{len(kept)} messages" in notice
+    assert counted(len(kept), "message") in notice
     assert sorted(path.name for path in left.iterdir()) == ["bag"]
     assert list(restore_bags(left)) == []
     killed.close()

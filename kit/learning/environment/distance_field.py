@@ -32,8 +32,13 @@ class DistanceField(NamedTuple):
 
 
 @cache
-def compute_distance_field(batch_map: BatchMap, target: tuple[float, float]) -> DistanceField:
-    """The length of the way to ``target`` from everywhere on the map, keeping ``CLEARANCE`` [m] of walls where it can.
+def compute_distance_field(
+    batch_map: BatchMap,
+    target: tuple[float, float],
+    clearance: float = CLEARANCE,
+    wall_price: float = WALL_PRICE,
+) -> DistanceField:
+    """The length of the way to ``target`` from everywhere on the map, keeping ``clearance`` [m] of walls where it can.
 
     Bellman's equation on a grid with eight neighbours, iterated to its fixed point; a step counts for its length
     times the mean price of its ends.
@@ -42,8 +47,8 @@ def compute_distance_field(batch_map: BatchMap, target: tuple[float, float]) -> 
     origin = points.min(axis=0) - 2 * CELL
     columns, rows = np.ceil((points.max(axis=0) + 2 * CELL - origin) / CELL).astype(int) + 1
     x, y = origin[0] + CELL * np.arange(columns), origin[1] + CELL * np.arange(rows)
-    room = wall_distances(x, y, batch_map.walls, CLEARANCE)
-    price = 1.0 + (WALL_PRICE - 1.0) * np.maximum(0.0, 1.0 - room / CLEARANCE)
+    room = wall_distances(x, y, batch_map.walls, clearance)
+    price = 1.0 + (wall_price - 1.0) * np.maximum(0.0, 1.0 - room / clearance)
     # A way from cell to cell cannot slip through a wall when the cells that a wall comes so near are blocked.
     price[room < CELL / math.sqrt(2)] = math.inf
     lengths = np.full((rows, columns), math.inf)
