@@ -444,7 +444,7 @@ def panel_rows(panels: Sequence[Panel], width: int, room: int) -> list[Row]:
     >>> from kit.document.rows import row_text
     >>> panels = [Panel("one", (Text("first"),)), Panel("two", (Text("second"),))]
     >>> [row_text(each) for each in panel_rows(panels, 12, 5)]
-    ['', '── one ────', 'first']
+    ['', '── one ─────', 'first']
     """
     made: list[Row] = []
     for panel in panels:
@@ -459,8 +459,8 @@ def panel_rows(panels: Sequence[Panel], width: int, room: int) -> list[Row]:
 def centred(
     rows: Sequence[Row], width: int, room: int, widest: int = WIDEST, *, is_at_top: bool = False
 ) -> list[Row]:
-    """The rows as a column in the middle of a wide screen, lower on a high one if not ``is_at_top``. The place depends on the screen alone:
-    nothing moves as rows are added.
+    """The rows as a column in the middle of a wide screen, lower on a high one if not ``is_at_top``. The place depends on
+    the screen alone: nothing moves as rows are added.
 
     >>> centred([row("one")], 100, 20)
     [(('    ', ''), ('one', ''))]
