@@ -118,7 +118,9 @@ def publish(queue: Queue, *, is_graded: bool) -> int:
     if attention := [*attention_blocks(table), *class_blocks(table)]:
         click.echo("\n".join(lines_of(attention)))
     if told := passed_over_line(queue.passed_over(), "graded"):
-        click.echo(told)
+        click.echo(
+            f"{told} If one is a student's work, give it a name of its own without a dot at the beginning."
+        )
     verdicts = {row.verdict for row in table}
     if is_graded and WAITING in verdicts:
         click.echo(

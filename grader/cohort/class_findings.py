@@ -35,11 +35,11 @@ def attention_blocks(table: Sequence[GradebookRow]) -> list[Block]:
 
 
 def passed_over_line(names: Sequence[str], done: str) -> str:
-    """Returns a sentence that names what was not taken for a work; empty if there is nothing. ``done``: what works are."""
+    """Returns a sentence that names what was not taken for a work; empty if there is nothing. ``done``: what is done to works."""
     if not names:
         return ""
     shown = join_names(tuple(clean_line(each, 80) for each in names), 8)
-    return f"Not {done}: {shown}. If one is a student's work, give it a name of its own without a dot at the beginning."
+    return f"Not {done}: {shown}."
 
 
 def equal_works(table: Sequence[GradebookRow]) -> tuple[tuple[GradebookRow, ...], ...]:
