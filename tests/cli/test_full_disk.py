@@ -37,7 +37,7 @@ WRITERS = {
     "kit lesson": "kit lesson 1 --plain --workspace {out}",
     "kit help --html": "kit help --html {out}",
     "grader new": "grader new {out}",
-    "grader check --output": "grader check {made}/work/solution.py --assignment {made}/work --output {out}",
+    "grader check --output": "grader check {made}/assignment/solution.py --assignment {made}/assignment --output {out}",
     "grader report --output": "grader report {made}/result.json --output {out}",
 }
 """By what names the output: a command that writes to ``{out}``. ``{made}``: a folder with what the commands read."""
@@ -127,8 +127,8 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "kit run simple --steps 30 --record {made}/drive",
         "kit task new mine",
         "kit task pack {made}/mine --to {made}/packed",
-        "grader new {made}/work",
-        "grader check {made}/work/solution.py --assignment {made}/work --json --output {made}/result.json",
+        "grader new {made}/assignment",
+        "grader check {made}/assignment/solution.py --assignment {made}/assignment --json --output {made}/result.json",
     ):
         done = run(words, folder, folder)
         assert done.returncode == 0, done.stderr
