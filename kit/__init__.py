@@ -41,6 +41,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from kit.blas_kernels import choose_blas_kernels
 from kit.environment_ids import register_when_imported
 
 if TYPE_CHECKING:
@@ -108,4 +109,5 @@ def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
 
 
+choose_blas_kernels()
 register_when_imported()

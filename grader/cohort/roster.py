@@ -244,19 +244,20 @@ def owners_of(works: Iterable[str], roster: Roster) -> WorkOwners:
 def _possible_names(work: str, platform: str, prefix: str | None) -> Iterator[str]:
     """Yields what the name of a work may mean, the surest first. ``prefix``: that of GitHub Classroom's repositories here.
 
-    No part of it that a student has chosen may mean another student: of a platform's roster only that platform's names are
-    read, and of others' those that one platform alone can have given.
+    No part of it that a student has chosen may mean another student: what has the form of the roster's own platform is read
+    so, and else only what one platform alone can have named.
     """
     yield look(work)
-    found = [
-        match
+    matches = {
+        name: match
         for name, pattern in PLATFORM_NAMES.items()
-        if platform in (name, "own") and (match := pattern.fullmatch(work)) is not None
-    ]
-    if len(found) == 1:
-        yield look(found[0]["number"])
-        if "name" in found[0].groupdict():
-            yield look(found[0]["name"])
+        if (match := pattern.fullmatch(work)) is not None
+    }
+    found = matches.get(platform) or (next(iter(matches.values())) if len(matches) == 1 else None)
+    if found is not None:
+        yield look(found["number"])
+        if "name" in found.groupdict():
+            yield look(found["name"])
     yield look(work.partition("@")[0])
     if prefix is not None and work.startswith(prefix):
         yield look(work.removeprefix(prefix))

@@ -25,6 +25,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Final, Literal, NoReturn, Protocol, Self, TypeAlias
 
+from kit.blas_kernels import blas_environment
 from kit.host.failure import (
     Budget,
     Failure,
@@ -595,6 +596,7 @@ def process_environment(scratch: str) -> dict[str, str]:
         "OMP_NUM_THREADS": "1",
         "OPENBLAS_NUM_THREADS": "1",
         "MKL_NUM_THREADS": "1",
+        **blas_environment(),
     }
     # Where a computing cluster keeps the libraries of the very Python that runs this.
     library_path = ":".join(loader_folders())

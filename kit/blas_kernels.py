@@ -1,0 +1,40 @@
+"""Which kernels numpy's OpenBLAS multiplies matrices with.
+
+By itself it takes the newest that the processor has, and these round differently: the same training would learn otherwise
+on another machine. Only what is set before numpy is loaded counts.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from functools import cache
+from typing import Final
+
+VARIABLE: Final = "OPENBLAS_CORETYPE"
+KERNELS: Final = "Haswell"
+"""Those of x86-64 processors with AVX2 since 2013, of Intel's and AMD's."""
+NEEDED: Final = frozenset({"avx2", "fma"})
+"""What a processor must have to run them, as Linux names it."""
+HEAD: Final = 16_384
+"""Characters of the system's list of processors that hold the first one."""
+
+
+@cache
+def blas_environment() -> Mapping[str, str]:
+    """The variable that chooses the kernels; nothing where the processor does not have them."""
+    if os.uname().machine != "x86_64":
+        return {}
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as opened:  # noqa: PTH123 - pathlib would take longer than all of this
+            lines = opened.read(HEAD).splitlines()
+    except OSError:
+        return {}
+    flags = next((line.partition(":")[2].split() for line in lines if line.startswith("flags")), [])
+    return {VARIABLE: KERNELS} if frozenset(flags) >= NEEDED else {}
+
+
+def choose_blas_kernels() -> None:
+    """Sets the variable for this process and those that it starts, unless the user has."""
+    for name, value in blas_environment().items():
+        os.environ.setdefault(name, value)
