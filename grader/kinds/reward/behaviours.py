@@ -63,14 +63,19 @@ class LoopComparison:
 
     @property
     def is_profitable(self) -> bool:
-        return self.round_pay > 0.0 or self.loop_return >= self.arrival_return - 1e-9 * max(
-            abs(self.loop_return), abs(self.arrival_return)
-        )
+        return self.round_pay > 0.0 or self._pays_as_well
+
+    @property
+    def _pays_as_well(self) -> bool:
+        """Whether it pays as well as driving to the target."""
+        least = self.arrival_return - 1e-9 * max(abs(self.loop_return), abs(self.arrival_return))
+        return self.loop_return >= least
 
     def __str__(self) -> str:
-        if self.round_pay > 0.0:
-            return f"{self.name.capitalize()} earns {self.round_pay:.3g} each time round, and can go on for ever."
-        return f"{self.name.capitalize()} forever earns {self.loop_return:.3g}, driving to the target only {self.arrival_return:.3g}."
+        name = self.name.capitalize()
+        if self._pays_as_well:
+            return f"{name} forever earns {self.loop_return:.3g}, driving to the target only {self.arrival_return:.3g}."
+        return f"{name} earns {self.round_pay:.3g} each time round, and can go on for ever."
 
 
 def compare_behaviours(
