@@ -520,8 +520,8 @@ CONTROLS: Final = (
     Control(
         "a student's file name that means another student",
         "grader/cohort/roster.py",
-        "    if len(found) == 1:\n",
-        "    if found:\n",
+        "    found = matches.get(platform) or (next(iter(matches.values())) if len(matches) == 1 else None)\n",
+        "    found = next(iter(matches.values()), None)\n",
         "grader/cohort/test_class_list.py::test_what_a_student_chooses_of_a_name_means_no_other_student",
     ),
     Control(
