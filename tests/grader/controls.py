@@ -113,7 +113,7 @@ CONTROLS: Final = (
     ),
     Control(
         "a lesson that is checked at its own level",
-        "grader/grading.py",
+        "grader/grading_level.py",
         "    return max(assignment.level, Level.FILTERED) if requested is None else requested\n",
         "    return assignment.level if requested is None else requested\n",
         "grader/cli/test_check_level.py::test_a_lesson_checked_for_somebody_else_writes_nothing",
