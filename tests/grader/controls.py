@@ -49,6 +49,13 @@ class Control:
 
 CONTROLS: Final = (
     Control(
+        "formulas of a platform's own export",
+        "grader/cohort/exports.py",
+        "[without_formula(cell) for cell in row]",
+        "row",
+        "grader/cohort/test_class_list.py::test_nothing_of_a_platforms_export_comes_back_as_a_formula",
+    ),
+    Control(
         "a power of powers in a launch file",
         "kit/ros/launch/expressions.py",
         "        _check_size(base.bit_length() * exponent, MAX_BITS)\n",
