@@ -49,6 +49,20 @@ class Control:
 
 CONTROLS: Final = (
     Control(
+        "formulas of a platform's own export",
+        "grader/cohort/exports.py",
+        "[without_formula(cell) for cell in row]",
+        "row",
+        "grader/cohort/test_class_list.py::test_nothing_of_a_platforms_export_comes_back_as_a_formula",
+    ),
+    Control(
+        "a power of powers in a launch file",
+        "kit/ros/launch/expressions.py",
+        "        _check_size(base.bit_length() * exponent, MAX_BITS)\n",
+        "        pass\n",
+        "ros/launch/test_bounds.py::test_an_expression_whose_result_would_be_very_large_is_not_computed",
+    ),
+    Control(
         "a long text in a platform's worksheet",
         "grader/cohort/csv_file.py",
         "csv.field_size_limit(MAX_BYTES)",
