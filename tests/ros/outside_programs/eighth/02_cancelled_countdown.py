@@ -58,7 +58,6 @@ class Client(Node):
         self.client = ActionClient(self, Fibonacci, "fibonacci")
         self.goals = [10, 5, 99, 30]
         self.seen = 0
-        self.handle = None
 
     def send(self):
         if not self.goals:
@@ -74,17 +73,17 @@ class Client(Node):
         future.add_done_callback(self.on_response)
 
     def on_response(self, future):
-        self.handle = future.result()
-        if not self.handle.accepted:
+        self.goal_handle = future.result()
+        if not self.goal_handle.accepted:
             self.get_logger().info(f"goal {self.order} was refused")
             self.send()
             return
-        self.handle.get_result_async().add_done_callback(self.on_result)
+        self.goal_handle.get_result_async().add_done_callback(self.on_result)
 
     def on_feedback(self, message):
         self.seen += 1
         if self.order == 10 and self.seen == 4:
-            self.handle.cancel_goal_async().add_done_callback(self.on_cancelled)
+            self.goal_handle.cancel_goal_async().add_done_callback(self.on_cancelled)
 
     def on_cancelled(self, future):
         self.get_logger().info(f"cancelling: {len(future.result().goals_canceling)} goals")
