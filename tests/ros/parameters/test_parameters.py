@@ -180,6 +180,8 @@ class TestSetting:
         with pytest.raises(ParameterNotDeclaredException):
             node.set_parameters([Parameter("a", value=2), Parameter("nobody", value=2)])
         assert node.get_parameter("a").value == 2
+        with pytest.raises(TypeError, match="Parameter"):
+            node.set_parameters([("a", 2)])
 
     def test_all_or_none(self, node: Node) -> None:
         node.declare_parameters("", [("a", 1), ("b", 1)])
