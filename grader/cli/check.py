@@ -75,7 +75,8 @@ def check(
     Exit code: 0 passed; 1 not passed; 2 an argument is wrong or something is missing; 3 the grader failed, no grade.
     """
     from grader.cli.progress import shown_progress
-    from grader.grading import GradingOptions, LevelTooLow, open_grading
+    from grader.grading import GradingOptions, open_grading
+    from grader.grading_level import LevelTooLow
     from grader.reports import FORMATS
     from grader.submission import read_submission
     from grader.submitted_files import SubmissionRefused

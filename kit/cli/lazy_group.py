@@ -15,6 +15,8 @@ from kit.cli.process import BAD_INPUT
 from kit.extensions import Extension, ExtensionError, extensions, load
 
 Verbs = Mapping[str, tuple[str, str]]
+PLAIN: Final = "kit.plain"
+"""In a context's ``meta``: whether ``--plain`` stands before the command, and holds for whichever it is."""
 _HELD: Final = "\ue000"
 """In the place of a hyphen while click wraps a text: it would break an option there."""
 

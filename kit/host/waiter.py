@@ -1,8 +1,9 @@
 """Waiters of a child's graph: block until the parent's next tick.
 
 A tick is answered when nothing is left to do, that is, when every thread of the program waits in its graph. Threads
-that do not (one that computes, or blocks elsewhere) are waited for briefly and then left out until they come back:
-their messages go with a later answer. A thread that says that it waits for the user (``waiting_for_user``) is left out at
+that do not are waited for briefly if they block elsewhere, and while they compute for a share of the processor time that the
+answer may take, so that a busy machine decides nothing; then they are left out until they come back: their messages go with a
+later answer. A thread that says that it waits for the user (``waiting_for_user``) is left out at
 once; where it is the only one, a thread of the waiter's own answers the ticks, at most in real time.
 """
 
@@ -20,9 +21,13 @@ if TYPE_CHECKING:
 OTHER_THREAD_WAIT_S: Final = 0.05
 """How long to wait for a thread that has never waited in the graph."""
 CALLBACK_WAIT_S: Final = 0.5
-"""How long to wait for a callback in a pool, and for a thread that has waited in the graph before."""
+"""How long to wait for a callback in a pool, and for a thread that has waited in the graph before, while nothing computes."""
+MAX_COMPUTING_FACTOR: Final = 10.0
+"""How many times as long to wait for them at most while something computes: it may be another thread."""
 PAUSE_S: Final = 0.01
 """The waits above are so many pauses of this length in which nothing changed."""
+COMPUTED_S: Final = 0.001
+"""The processor time of a pause from which something other than the pause itself has computed [s]."""
 MAX_PAUSE_S: Final = 0.1
 """How long an answer waits at most to keep the run from going faster than the user's clock."""
 
@@ -68,6 +73,9 @@ class AllThreadsWaiter:
         """When the first of them began: on the monotonic clock [s], and in the graph's time [ns]."""
         self._substitute: threading.Thread | None = None
         """The thread that answers ticks while the others wait for the user."""
+        self.max_computing_s = CALLBACK_WAIT_S
+        """How much processor time of a tick may have passed when threads that compute are no longer waited for [s]."""
+        self._tick_began_s = time.process_time()
 
     def is_alone(self, graph: Graph) -> bool:
         """Whether the program has no other thread: what others are doing at the moment differs from machine to machine."""
@@ -93,6 +101,7 @@ class AllThreadsWaiter:
             if self._absent or self._abandoned_callbacks or self._users:
                 wakes.append(graph.now_ns)  # they may publish at any time: ask for every tick
         self._ticks.next_tick(min(wakes, default=None))
+        self._tick_began_s = time.process_time()
 
     @contextmanager
     def waiting_for_user(self, graph: Graph) -> Iterator[None]:
@@ -137,7 +146,7 @@ class AllThreadsWaiter:
 
     def _wait_for_other_threads(self, graph: Graph) -> bool:
         """Waits until all threads wait or time is up; False if there is something to do for this one meanwhile."""
-        me, waited_s = threading.get_ident(), 0.0
+        me, waited_s, idle_s, seen_s = threading.get_ident(), 0.0, 0.0, time.process_time()
         while True:
             waiting = graph.waiting_threads
             if waiting[me].seen_changes != graph.change_count:
@@ -158,8 +167,12 @@ class AllThreadsWaiter:
             has_callbacks = callbacks > self._abandoned_callbacks
             if not (is_waking or others or has_callbacks):
                 return True
-            timeout_s = CALLBACK_WAIT_S if has_callbacks or others & self._expected else OTHER_THREAD_WAIT_S
-            if waited_s >= timeout_s and not is_waking:
+            if has_callbacks or others & self._expected:
+                has_time = idle_s < CALLBACK_WAIT_S and waited_s < MAX_COMPUTING_FACTOR * CALLBACK_WAIT_S
+                has_time &= seen_s - self._tick_began_s < self.max_computing_s
+            else:
+                has_time = waited_s < OTHER_THREAD_WAIT_S
+            if not (has_time or is_waking):
                 self._absent |= others
                 self._unreliable |= others
                 self._expected -= others
@@ -167,4 +180,6 @@ class AllThreadsWaiter:
                 return True
             # Not by the clock: on a busy machine a pause takes longer, and so do the threads that are waited for.
             if not graph.wait_started.wait(PAUSE_S):
+                before_s, seen_s = seen_s, time.process_time()
                 waited_s += PAUSE_S
+                idle_s = 0.0 if seen_s - before_s > COMPUTED_S else idle_s + PAUSE_S

@@ -49,6 +49,20 @@ class Control:
 
 CONTROLS: Final = (
     Control(
+        "formulas of a platform's own export",
+        "grader/cohort/exports.py",
+        "[without_formula(cell) for cell in row]",
+        "row",
+        "grader/cohort/test_class_list.py::test_nothing_of_a_platforms_export_comes_back_as_a_formula",
+    ),
+    Control(
+        "a power of powers in a launch file",
+        "kit/ros/launch/expressions.py",
+        "        _check_size(base.bit_length() * exponent, MAX_BITS)\n",
+        "        pass\n",
+        "ros/launch/test_bounds.py::test_an_expression_whose_result_would_be_very_large_is_not_computed",
+    ),
+    Control(
         "a long text in a platform's worksheet",
         "grader/cohort/csv_file.py",
         "csv.field_size_limit(MAX_BYTES)",
@@ -113,7 +127,7 @@ CONTROLS: Final = (
     ),
     Control(
         "a lesson that is checked at its own level",
-        "grader/grading.py",
+        "grader/grading_level.py",
         "    return max(assignment.level, Level.FILTERED) if requested is None else requested\n",
         "    return assignment.level if requested is None else requested\n",
         "grader/cli/test_check_level.py::test_a_lesson_checked_for_somebody_else_writes_nothing",

@@ -218,6 +218,26 @@ def test_a_busy_machine_stops_nobody(student: Student) -> None:
 
 
 @pytest.mark.long
+def test_who_computes_now_and_then_is_not_ended_by_the_wall_clock(student: Student) -> None:
+    """As on a machine that gives it a fifth of the time."""
+    file = student(
+        """
+        import select, time
+        def f():
+            began = time.process_time()
+            while time.process_time() - began < 0.5:
+                until = time.process_time() + 0.01
+                while time.process_time() < until: pass
+                select.select([], [], [], 0.04)
+            return 1.0
+        """
+    )
+    limits = dataclasses.replace(QUICK, reply_s=1.0, wall_factor=0.8)
+    with StudentFunctions(file, limits=limits) as functions:
+        assert functions.call_batch("f", [{}]) == [1.0]
+
+
+@pytest.mark.long
 def test_a_file_that_never_loads_is_ended(student: Student) -> None:
     limits = dataclasses.replace(QUICK, start_s=1.5)
     failure = fail(student("x = 1\nwhile x:\n  x += 1"), limits)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -9,6 +10,8 @@ import pytest
 
 from kit.host.child.simulated_waits import LOCK_WEIGHT
 from kit.host.node_process import NodeProcess
+from kit.host.sandbox.limits import Limits
+from kit.host.waiter import CALLBACK_WAIT_S
 from kit.msg.std_msgs import String
 from kit.ros.graph.graph import MAX_READS, READS_PER_STEP, Graph
 from kit.ros.node.node import create_graph_node
@@ -114,13 +117,13 @@ def said_by(student: Student, wait: str, use: str, seconds: float = 2.5) -> list
     return run(student(PROGRAM.format(wait=body, use=USES[use])), seconds)
 
 
-def run(file: Path, seconds: float) -> list[str]:
+def run(file: Path, seconds: float, limits: Limits = QUICK) -> list[str]:
     """What a program says in so many simulated seconds."""
     heard: list[str] = []
     graph = Graph(log_sink=lambda record: None)
     node = create_graph_node(graph, "listener")
     node.create_subscription(String, "said", lambda message: heard.append(message.data), 100)
-    with NodeProcess.start(graph, file, limits=QUICK) as process:
+    with NodeProcess.start(graph, file, limits=limits) as process:
         while graph.now_ns < seconds * 1e9:
             exchange_until_idle(graph, [process])
             assert process.failure is None, process.failure
@@ -149,7 +152,7 @@ for."""
 @pytest.mark.parametrize(("name", "use"), COUNTED)
 def test_a_loop_takes_as_many_readings_on_every_machine(student: Student, name: str, use: str) -> None:
     """As many as the steps of a second take, not as the machine makes in a second: also where each takes longer."""
-    slow = WAITS[name].replace("reads += 1", "reads += 1; sum(range(2_000))")
+    slow = WAITS[name].replace("reads += 1", "reads += 1; sum(range(1_000))")
     counts = []
     for wait in (WAITS[name], slow):
         body = "\n".join(f"    {line}" for line in wait.splitlines())
@@ -164,6 +167,35 @@ def test_a_few_readings_let_no_time_pass(student: Student) -> None:
     body = f"for _ in range({MAX_READS // 2 - 2}): node.get_clock().now(); time.time()"
     file = student(PROGRAM.format(wait=f"    {body}", use=USES["in a callback"]))
     assert run(file, 0.5) == ["x 0.00 0"]
+
+
+@pytest.mark.long
+def test_a_thread_that_computes_is_waited_for_by_its_processor_time(student: Student) -> None:
+    """Time stands still meanwhile, longer than for one that blocks elsewhere."""
+    file = student(
+        f"""
+        import threading, time
+        import rclpy
+        from std_msgs.msg import String
+
+        rclpy.init()
+        node = rclpy.create_node("thinker")
+        says = node.create_publisher(String, "said", 10)
+        begin = threading.Event()
+
+        def think():
+            begin.wait()
+            until = time.process_time() + {1.4 * CALLBACK_WAIT_S}
+            while time.process_time() < until:
+                pass
+            says.publish(String(data=f"{{node.get_clock().now().nanoseconds / 1e9:.2f}}"))
+
+        threading.Thread(target=think).start()
+        timer = node.create_timer(0.2, lambda: (timer.cancel(), begin.set()))
+        rclpy.spin(node)
+        """
+    )
+    assert run(file, 0.5, replace(QUICK, reply_s=4 * CALLBACK_WAIT_S)) == ["0.20"]
 
 
 def test_a_stopwatch_never_shows_the_same_time_twice(student: Student) -> None:

@@ -45,6 +45,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     waits = use_simulated_time(bridge.graph, start["libraries"])
     waiter = bridge.graph.waiter
     assert isinstance(waiter, AllThreadsWaiter)  # the bridge's default
+    waiter.max_computing_s = session.reply_s / 2
     if "folder" in start:  # the user's own, not a submission
         answer_ticks_meanwhile(partial(waiter.waiting_for_user, bridge.graph))
     if start["has_input"]:

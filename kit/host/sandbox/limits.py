@@ -1,7 +1,7 @@
 """Limits of a student process, and what counts against that of its disk.
 
 Where a reply or the start is waited for, processor time counts, so that a busy machine stops nobody; a longer limit by the wall
-clock ends what neither computes nor answers. The limit of all waiting together is of the wall clock.
+clock ends what neither computes nor answers; a twentieth of the time is enough, for a machine may be that busy. The limit of all waiting together is of the wall clock.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Limits:
     reply_s: float = 3.0
     """Processor time until each complete reply."""
     wall_factor: float = 10.0
-    """How many times as long the start and a reply may take by the wall clock."""
+    """How many times as long the start and a reply may take by the wall clock without computing."""
     total_s: float | None = None
     """Limit for all waiting for replies together; None: no limit."""
     cpu_s: int | None = None

@@ -19,10 +19,12 @@ from kit.ros.exceptions import (
 )
 from kit.ros.graph.naming import validate_parameter_name
 from kit.ros.parameters.parameter import PARAMETER_SEPARATOR_STRING, Parameter
-from kit.ros.parameters.parameter_store import NOT_SET, OnSet, ParameterStore, PostSet, PreSet
+from kit.ros.parameters.parameter_store import NOT_SET, OnSet, PostSet, PreSet
 
 if TYPE_CHECKING:
     from kit.ros.node.node_handle import NodeHandle
+
+_EMPTIED = "parameter list cannot be empty: a pre_set_parameters_callback returned no parameter"
 
 
 class NodeParameterMethods:
@@ -125,18 +127,21 @@ class NodeParameterMethods:
         return ListParametersResult(names=names, prefixes=groups)
 
     def set_parameters(self, parameter_list: list[Parameter]) -> list[SetParametersResult]:
-        """Sets one after the other; each result says whether it succeeded, or why not.
+        """Sets one after the other, each with what the pre-set callbacks add to it; a result says whether, or why not.
 
-        Raises ParameterNotDeclaredException before setting anything.
+        Raises ParameterNotDeclaredException; what stands before that parameter stays set.
         """
-        return [
-            self.handle.parameters.set([parameter])
-            for parameter in _apply_pre_set_callbacks(self.handle.parameters, parameter_list)
-        ]
+        return [self.set_parameters_atomically([parameter]) for parameter in parameter_list]
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Sets all or none. Raises ParameterNotDeclaredException."""
-        return self.handle.parameters.set(_apply_pre_set_callbacks(self.handle.parameters, parameter_list))
+        store = self.handle.parameters
+        for callback in store.pre_set:
+            parameter_list = callback(parameter_list)
+        if store.pre_set and not parameter_list:
+            return SetParametersResult(successful=False, reason=_EMPTIED)
+        store.check_known(parameter_list)
+        return store.set(parameter_list)
 
     def describe_parameter(self, name: str) -> ParameterDescriptor:
         """Raises ParameterNotDeclaredException."""
@@ -196,14 +201,6 @@ class NodeParameterMethods:
 
     def remove_post_set_parameters_callback(self, callback: PostSet) -> None:
         self.handle.parameters.post_set.remove(callback)
-
-
-def _apply_pre_set_callbacks(store: ParameterStore, parameters: list[Parameter]) -> list[Parameter]:
-    """The parameters to set, after the pre-set callbacks have changed the list."""
-    for callback in store.pre_set:
-        parameters = callback(parameters)
-    store.check_known(parameters)
-    return parameters
 
 
 def _is_below(name: str, prefix: str, depth: int) -> bool:

@@ -63,7 +63,7 @@ class ParameterServices:
         results = []
         for message in request.parameters:
             try:
-                results += self._node.set_parameters([Parameter.from_parameter_msg(message)])
+                results.append(self._node.set_parameters_atomically([Parameter.from_parameter_msg(message)]))
             except (ParameterException, RuntimeError) as problem:
                 results.append(SetParametersResult(successful=False, reason=str(problem)))
         response.results = results

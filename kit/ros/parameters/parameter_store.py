@@ -88,7 +88,7 @@ class ParameterStore:
                 self.must_be_declared(*undeclared)
 
     def set(self, parameters: list[Parameter], *, declaring: bool = False) -> SetParametersResult:
-        """Sets all or none: checks descriptors, then callbacks; then publishes the event."""
+        """Sets all or none: checks descriptors, then callbacks; then publishes the event, and calls back."""
         for parameter in parameters:
             reason = self._descriptor_error(parameter, declaring=declaring)
             if reason:
@@ -102,9 +102,9 @@ class ParameterStore:
         event = ParameterEvent()
         for parameter in parameters:
             self._store(parameter, event, declaring=declaring)
+        self.publish_event(event)
         for after in self.post_set:
             after(parameters)
-        self.publish_event(event)
         return SetParametersResult(successful=True)
 
     def _store(self, parameter: Parameter, event: ParameterEvent, *, declaring: bool) -> None:

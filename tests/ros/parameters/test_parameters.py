@@ -175,11 +175,11 @@ class TestSetting:
         node.declare_parameter("p", [1.0])
         assert node.set_parameters([Parameter("p", Type.DOUBLE_ARRAY, [])])[0].successful
 
-    def test_undeclared_ones_are_refused_before_anything_is_set(self, node: Node) -> None:
+    def test_what_stands_before_an_undeclared_one_stays_set(self, node: Node) -> None:
         node.declare_parameter("a", 1)
         with pytest.raises(ParameterNotDeclaredException):
-            node.set_parameters([Parameter("a", value=2), Parameter("b", value=2)])
-        assert node.get_parameter("a").value == 1
+            node.set_parameters([Parameter("a", value=2), Parameter("nobody", value=2)])
+        assert node.get_parameter("a").value == 2
         with pytest.raises(TypeError, match="Parameter"):
             node.set_parameters([("a", 2)])
 
@@ -271,6 +271,23 @@ class TestCallbacks:
         assert node.set_parameters_atomically([Parameter("a", value=2)]).successful
         assert node.get_parameter("b").value == 5
         assert after == [["a", "b"]]
+
+    def test_each_is_set_together_with_what_is_added_to_it(self, node: Node) -> None:
+        node.declare_parameters("", [("a", 1), ("b", 1), ("c", 1)])
+        node.add_pre_set_parameters_callback(lambda given: [*given, Parameter("b", value=given[0].value)])
+        node.add_on_set_parameters_callback(
+            lambda given: SetParametersResult(successful=all(each.name != "c" for each in given))
+        )
+        results = node.set_parameters([Parameter("a", value=2), Parameter("c", value=9)])
+        assert [result.successful for result in results] == [True, False]
+        assert [node.get_parameter(name).value for name in "abc"] == [2, 2, 1]
+
+    def test_a_callback_that_leaves_nothing_refuses(self, node: Node) -> None:
+        node.declare_parameter("a", 1)
+        node.add_pre_set_parameters_callback(lambda parameters: [])
+        (result,) = node.set_parameters([Parameter("a", value=2)])
+        assert not result.successful
+        assert "pre_set" in result.reason
 
     def test_changes_are_published(self, graph: Graph) -> None:
         listener = create_graph_node(graph, "listener")
