@@ -377,12 +377,6 @@ class ExerciseCheck:
             return _without_result(f"The check broke: {last_line}", GradingVerdict.BROKEN)
 
 
-def check_exercise(exercise: Exercise, file: Path, *, recording: Path | None = None) -> CheckReport:
-    """Checks an exercise and waits for the report."""
-    with ExerciseCheck(exercise, file, recording=recording) as running:
-        return running.wait()
-
-
 def submission_path(exercise: Exercise, file: Path) -> Path:
     """The path to submit: the file, or its folder where the starter is a folder."""
     return file.parent if has_other_files(exercise) else file
