@@ -303,7 +303,13 @@ class LayerReader:
             section.error(f"cannot read {quoted(str(source), 200)}: {error}", key)
             return None
         local.setflags(write=False)
-        return Walls(local_segments=local, origin=origin, file=file, drawing_file=source, readings=tuple(sorted(filter(None, readings))))
+        return Walls(
+            local_segments=local,
+            origin=origin,
+            file=file,
+            drawing_file=source,
+            readings=tuple(sorted(filter(None, readings))),
+        )
 
     def _read_keys(self, section: Section) -> MapServerKeys:
         """The keys of ROS's map_server. Flatland uses the first alone, so what it does not use may be anything."""

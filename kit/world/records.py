@@ -265,7 +265,9 @@ class World:
     @property
     def remarks(self) -> tuple[ReadingRemark, ...]:
         """How values were read that others may read otherwise, each once, in the order of the files."""
-        readings = {remark for layer in self.layers if layer.walls is not None for remark in layer.walls.readings}
+        readings = {
+            remark for layer in self.layers if layer.walls is not None for remark in layer.walls.readings
+        }
         bodies = {
             (body.location, f"{body.name} of {model.file.name}", body.pose.theta)
             for model in self.models

@@ -150,7 +150,9 @@ def test_a_heading_that_looks_like_degrees_is_said(tmp_path: Path) -> None:
 
 def test_an_origin_and_a_body_that_look_turned_by_degrees_are_said(tmp_path: Path) -> None:
     file = world(tmp_path, "image: rgb.png\noccupied_thresh: 0.65")
-    (tmp_path / "m.yaml").write_text("image: rgb.png\nresolution: 1\norigin: [0, 0, 90]\noccupied_thresh: 0.65\n")
+    (tmp_path / "m.yaml").write_text(
+        "image: rgb.png\nresolution: 1\norigin: [0, 0, 90]\noccupied_thresh: 0.65\n"
+    )
     (tmp_path / "bot.yaml").write_text(
         "bodies:\n- {name: arm, pose: [0, 0, -45], footprints: [{type: circle, radius: 0.1, density: 1}]}\n"
     )

@@ -75,7 +75,8 @@ def read_params(section: Section, scope: ModelScope) -> LaserParams:
     if max(abs(low), abs(high)) > MAX_TURNS * math.tau:
         turns = max(abs(low), abs(high)) / math.tau
         angles.error(
-            f'"min" and "max" are radians: {turns:.3g} turns. {high:g} degrees are {math.radians(high):.4g}', "max"
+            f'"min" and "max" are radians: {turns:.3g} turns. {high:g} degrees are {math.radians(high):.4g}',
+            "max",
         )
     rays = math.floor((max(high, low) - low) / increment + 0.5) + 1
     if rays > MAX_RAYS:
