@@ -226,7 +226,7 @@ class SessionHost:
         self._live = self._session = self.view_builder = self._inspection_server = None
         if session is not None:
             if live is not None and live.stop(POLITE_S):
-                session.switcher.interrupt()  # it may save what it has, as at Ctrl-C
+                session.interrupt()  # it may save what it has, as at Ctrl-C
             session.disconnect()  # or a controller that loops would have us wait for its deadline
         if live is not None:
             live.stop()
