@@ -13,7 +13,7 @@ from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol
 
 from kit.host.codec import Codec, NotFiniteError
 from kit.host.proxy_nodes import GraphDiff, NameScope, ProxyClient, ProxyNodes
@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     from kit.host.protocol import (
         GraphEvent,
     )  # read by the parent alone: it would take a seventh of a child's start
+
+INTERRUPT: Final = "interrupt"
+"""The event by which the parent asks a program to end, as Ctrl-C does."""
 
 
 class PendingEvent(NamedTuple):
@@ -297,6 +300,9 @@ class ChildBridge(GraphBridge):
         self.graph.add_message_listener(self._record_message)
         self._handlers["excess"] = self._apply_excess
         self._handlers["limits"] = self._apply_limits
+        self._handlers[INTERRUPT] = self._apply_interrupt
+        self.on_interrupt: Callable[[], object] = lambda: None
+        """Called when the parent asks the program to end, as Ctrl-C does."""
 
     def next_tick(self, wake_ns: int | None) -> None:
         """Answers that the program waits, until ``wake_ns`` at the latest, and applies the next tick."""
@@ -379,6 +385,9 @@ class ChildBridge(GraphBridge):
     def _apply_excess(self, fields: list[Json]) -> None:
         node, topic, field, *excess = map(str, fields)
         self.graph.directory.note_excess(node, topic, field, Excess(*excess))
+
+    def _apply_interrupt(self, fields: list[Json]) -> None:
+        self.on_interrupt()
 
     def _apply_limits(self, fields: list[Json]) -> None:
         topic, most = fields

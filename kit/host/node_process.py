@@ -8,25 +8,30 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Self
+from typing import Final, Self
 
 from kit.host.failure import (
+    FailureKind,
     StudentCodeError,
     protocol_violation,
     refused_name,
     too_many_messages,
     too_much_kept,
 )
-from kit.host.graph_bridge import KeptLimitError, MessageLimitError, ParentBridge
+from kit.host.graph_bridge import INTERRUPT, KeptLimitError, MessageLimitError, ParentBridge
 from kit.host.process import HostedFile, PackageProgram, StudentProcess
 from kit.host.program_terminal import ProgramStreams
 from kit.host.protocol import HOLD_NS, Ended, Frame, Reply
 from kit.host.proxy_nodes import ForeignNameError, NameScope, ReservedNameError
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
-from kit.host.wire import ProtocolError
+from kit.host.wire import Json, ProtocolError
 from kit.ros.graph.graph import Graph
+
+INTERRUPT_S: Final = 3.0
+"""How long a program may go on that has been asked to end, simulated and by the wall clock [s]."""
 
 
 class NodeProcess(HostedFile):
@@ -168,6 +173,24 @@ class NodeProcess(HostedFile):
         self._is_tick_requested = True
         self._graph.notify()
 
+    def interrupt(self) -> None:
+        """Lets the program end as at Ctrl-C: it gets KeyboardInterrupt, and time of its own while it goes on, INTERRUPT_S at
+        most. What it publishes meanwhile counts now. To be closed all the same."""
+        if not self.is_running:
+            return
+        end_s, now_ns = time.monotonic() + INTERRUPT_S, self._graph.now_ns
+        end_ns = now_ns + round(INTERRUPT_S * 1e9)
+        self._apply_answer(partial(self._process.finish_request, INTERRUPT_S), is_optional=True)
+        events: list[Json] = [*self._bridge.take_pending(), [INTERRUPT]]
+        while self.is_running and now_ns <= end_ns and (left_s := end_s - time.monotonic()) > 0:
+            self._apply_answer(partial(self._process.request, "tick", now_ns, events, wall_s=left_s))
+            if self._wake_ns is None and not self._bridge.has_pending:
+                break
+            now_ns = max(now_ns, self._wake_ns or 0)
+            events = self._bridge.take_pending()
+        if self.failure is not None and self.failure.kind is FailureKind.TIMEOUT:
+            self._process.failure = None  # it was to be ended
+
     def disconnect(self) -> None:
         """Disconnects, from any thread: whatever waits for an answer fails at once. Still to be closed."""
         self._process.disconnect()
@@ -178,10 +201,12 @@ class NodeProcess(HostedFile):
         self._bridge.clear()
         super().close()
 
-    def _apply_answer(self, answer: Callable[[], Frame | None]) -> None:
-        """Applies an answer. A wrong or missing one ends the process."""
+    def _apply_answer(self, answer: Callable[[], Frame | None], *, is_optional: bool = False) -> None:
+        """Applies an answer. A wrong or missing one ends the process. ``is_optional``: there may be none."""
         try:
             frame = answer()
+            if frame is None and is_optional:
+                return
             if not isinstance(frame, (Reply, Ended)):
                 raise ProtocolError("another kind of answer")
             if isinstance(frame, Reply) and frame.wake_ns == HOLD_NS:

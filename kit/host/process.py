@@ -334,17 +334,26 @@ class StudentProcess:
         frame = self._receive_within(left_s, self._limits.start_wall_s, "start")
         return self._check_answer(frame)
 
-    def request(self, kind: str, *content: Json) -> Frame:
-        """Sends one command and waits for its answer. Raises StudentCodeError."""
+    def request(self, kind: str, *content: Json, wall_s: float | None = None) -> Frame:
+        """Sends one command and waits for its answer, for ``wall_s`` by the wall clock, by default the limit [s]. Raises
+        StudentCodeError."""
         limits = self._limits
         self._send_command(kind, *content)
         if limits.total_s is not None and self._waited_s >= limits.total_s:
             self._fail_timeout("total", limits.total_s)
         began = time.monotonic()
         try:
-            return self._check_answer(self._receive_within(limits.reply_s, limits.reply_wall_s, "reply"))
+            wall_s = limits.reply_wall_s if wall_s is None else wall_s
+            return self._check_answer(self._receive_within(limits.reply_s, wall_s, "reply"))
         finally:
             self._waited_s += time.monotonic() - began
+
+    def finish_request(self, wall_s: float) -> Frame | None:
+        """Waits for the answer to a command whose ``request`` was interrupted; None if there is none. Raises
+        StudentCodeError."""
+        if self._state is ProcessState.IDLE:
+            return None
+        return self._check_answer(self._receive_within(self._limits.reply_s, wall_s, "reply"))
 
     def _receive_within(self, processor_s: float, wall_s: float, budget: Literal["start", "reply"]) -> Frame:
         """Returns the answer to a command. Ends a child that uses more processor time before it answers, or more of the wall

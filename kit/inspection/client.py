@@ -150,8 +150,11 @@ class InspectionClient:
 
     def close(self) -> None:
         """Disconnects. May be called twice."""
-        if self._connection.may_answer:
-            with suppress(WorldDisconnected, ProtocolError):
+        if self._connection.may_answer or self._bridge.pending:
+            with suppress(WorldDisconnected, ProtocolError, TimeoutError):
+                if not self._connection.may_answer:  # who waited for the world was interrupted
+                    self._connection.deadline = time.monotonic() + CLOSE_TIMEOUT_S
+                    self._connection.next_command()
                 self._bridge.end()
                 self._connection.wait_until_closed()
         self._connection.close()

@@ -282,12 +282,8 @@ class Launch:
         self._connection_watch.tell_all()
 
     def close(self) -> None:
-        """Ends all processes at once. May be called twice."""
-        self.is_over = True
-        self._waiting.clear()
-        for running in self._running.values():
-            running.process.close()
-        self._running.clear()
+        """Ends all processes. May be called twice."""
+        self._end_all_processes()
         self._transitions.close()
         self._launch_file.close()
 

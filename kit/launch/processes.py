@@ -87,8 +87,16 @@ class NodeProgramProcess:
 
     is_builtin = False
 
-    def __init__(self, node_process: NodeProcess, on_loaded: Callable[[], object] | None = None) -> None:
-        """``on_loaded``: called before a program that ``loads_first`` goes on into the graph."""
+    def __init__(
+        self,
+        node_process: NodeProcess,
+        on_loaded: Callable[[], object] | None = None,
+        *,
+        is_interruptible: bool = False,
+    ) -> None:
+        """``on_loaded``: called before a program that ``loads_first`` goes on into the graph. ``is_interruptible``: whether it
+        is told of its end, and may do then what it does at Ctrl-C."""
+        self._is_interruptible = is_interruptible
         self._node_process = node_process
         self._on_loaded = on_loaded
         self._has_joined = False
@@ -140,7 +148,11 @@ class NodeProgramProcess:
         return self._has_joined and self._node_process.exchange()
 
     def close(self) -> None:
-        self._node_process.close()
+        try:
+            if self._is_interruptible:
+                self._node_process.interrupt()
+        finally:  # Ctrl-C once more
+            self._node_process.close()
 
     def _join(self) -> None:
         self._node_process.join()

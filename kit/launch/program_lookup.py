@@ -214,7 +214,7 @@ def _start_node_program(
         streams=context.streams,
         loads_first=context.on_loaded is not None,
     )
-    return NodeProgramProcess(node_process, context.on_loaded)
+    return NodeProgramProcess(node_process, context.on_loaded, is_interruptible=context.bounds.is_interactive)
 
 
 def _environment(request: StartRequest, context: StartContext) -> dict[str, str]:

@@ -53,8 +53,7 @@ class SingleProgram:
                     graph.wait(partial(_has_changed, graph, seen), wake_ns)
             return ended
         finally:
-            self._print(process, on_output)
-            process.close()
+            self._end(process, on_output)
 
     def run_alone(self, sockets: Path, on_output: OutputCallback) -> ProcessExit:
         """Runs it until it ends, in real time, with a socket for other terminals. Raises ProcessStartError, OSError."""
@@ -78,8 +77,7 @@ class SingleProgram:
                 assert ended is not None  # nothing else ends this
                 return ended
             finally:
-                self._print(process, on_output)
-                process.close()
+                self._end(process, on_output)
 
     def _started(self, graph: Graph, on_loaded: Callable[[], object] | None = None) -> Process:
         if is_builtin(self._request) and self._request.package != "tf2_ros":
@@ -110,6 +108,11 @@ class SingleProgram:
         ended = process.poll()
         self._print(process, on_output)
         return ended
+
+    def _end(self, process: Process, on_output: OutputCallback) -> None:
+        self._print(process, on_output)
+        process.close()
+        self._print(process, on_output)  # what it has said because of its end
 
     def _print(self, process: Process, on_output: OutputCallback) -> None:
         lines: Iterable[PrintedLine] = process.take_lines()

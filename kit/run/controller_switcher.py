@@ -120,6 +120,12 @@ class ControllerSwitcher:
         if self._active is not None:
             self._pass_on_output(self._active)
 
+    def interrupt(self) -> None:
+        """Lets the active controller do what it does at Ctrl-C."""
+        if self._active is not None:
+            self._active.interrupt()
+            self.read_output()
+
     def close(self) -> None:
         """Ends both processes."""
         self._cancel_pending()

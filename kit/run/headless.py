@@ -124,6 +124,7 @@ def run_headless(
                 until_reached=until_reached,
                 output_interval=OUTPUT_INTERVAL if streams is None else INPUT_INTERVAL,
             )
+            session.interrupt()
             session.read_output()
             connection_watch.tell_all()
         except KeyboardInterrupt:  # before the controller drives

@@ -209,6 +209,10 @@ class Session:
         self.runner.call_service("reset", seed)
         self._switcher.restart()
 
+    def interrupt(self) -> None:
+        """Lets the controller do what it does at Ctrl-C. Only ``disconnect`` and ``close`` may follow."""
+        self._switcher.interrupt()
+
     def disconnect(self) -> None:
         """Ends a tick that waits for the controller, from any thread. Only ``close`` may follow."""
         self._switcher.disconnect()

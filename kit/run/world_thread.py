@@ -13,6 +13,8 @@ from typing import Final
 from kit.run.pacing import REAL_TIME, PacingStatus, Schedule, SpeedMeter
 from kit.run.runner import Runner
 
+STOP_S: Final = 10.0
+"""How long to wait for the end of the current tick [s]."""
 MAX_BURST_S: Final = 0.02
 """Longest time [s] of ticks in a row before posted jobs are done: keys never wait longer than this."""
 
@@ -73,14 +75,16 @@ class WorldThread:
             self._steps += ticks
             self._wake.notify()
 
-    def stop(self) -> None:
-        """Ends the run after the current tick and waits for the thread; not for the first tick, which loads the kernels."""
+    def stop(self, wait_s: float = STOP_S) -> bool:
+        """Ends the run after the current tick and waits for the thread; not for the first tick, which loads the kernels.
+        Returns whether it has ended."""
         with self._wake:
             self._stopping = True
             self._wake.notify()
         is_loading = self._runner.simulation.tick == 0 and not self._runner.paused
         if self._thread.is_alive() and not is_loading and threading.current_thread() is not self._thread:
-            self._thread.join(timeout=10)
+            self._thread.join(timeout=wait_s)
+        return not self._thread.is_alive()
 
     def _run_guarded(self) -> None:
         try:

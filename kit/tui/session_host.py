@@ -26,6 +26,8 @@ if TYPE_CHECKING:  # the physics takes a moment to import: the frame is drawn fi
     from kit.run.view import View, ViewBuilder
     from kit.run.world_thread import WorldThread
 
+POLITE_S: Final = 0.3
+"""How long to wait for a controller that is in its callback, when the user leaves [s]."""
 VIEW_INTERVAL: Final = 0.045
 """Seconds between two views while the world runs: a little over twenty a second."""
 
@@ -223,6 +225,8 @@ class SessionHost:
         live, session, server = self._live, self._session, self._inspection_server
         self._live = self._session = self.view_builder = self._inspection_server = None
         if session is not None:
+            if live is not None and live.stop(POLITE_S):
+                session.interrupt()  # it may save what it has, as at Ctrl-C
             session.disconnect()  # or a controller that loops would have us wait for its deadline
         if live is not None:
             live.stop()

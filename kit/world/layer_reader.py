@@ -22,7 +22,15 @@ from kit.plain_text import counted, join_with_and, quoted
 from kit.world.documents import UnusableFile, WorldDocuments, read_bytes
 from kit.world.map_server import FREE_THRESH, MODES, MapServerKeys, count_read_otherwise
 from kit.world.problems import ProblemCollector
-from kit.world.records import MAX_LAYERS, Color, Layer, ReadingRemark, SourceLocation, Walls
+from kit.world.records import (
+    MAX_LAYERS,
+    Color,
+    Layer,
+    ReadingRemark,
+    SourceLocation,
+    Walls,
+    turn_remark,
+)
 from kit.world.yaml_section import MAX_NUMBER, Section
 from kit.world.yaml_tree import parse_number
 
@@ -158,8 +166,8 @@ def _parse_segment(line: str) -> tuple[float, ...] | None:
     return found if len(found) == 4 else None
 
 
-NEGATED: Final = ("1", "true", "yes", "on")
-"""What ``negate`` may be, as text, for map_server to take light pixels as occupied."""
+NEGATED: Final = ("true", "yes", "on", "y")
+"""What ``negate`` may be, as text, for map_server to take light pixels as occupied; so it does for every number but 0."""
 
 WHITE: Color = (1.0, 1.0, 1.0, 1.0)
 
@@ -270,7 +278,7 @@ class LayerReader:
         section.finish(ignore_unknown=True)
         if source is None:
             return None
-        reading = None
+        readings = {turn_remark(section.location_of("origin"), "the origin", origin.theta)}
         try:
             if keys is None:
                 local = walls_from_lines(source, scale, self._documents.problems)
@@ -278,21 +286,28 @@ class LayerReader:
                 grey, alpha = read_image(source)
                 dark = dark_pixels(grey, keys.occupied_thresh)
                 local = trace_edges(dark, resolution)
-                reading = _reading(section, dark, grey, alpha, keys)
+                readings.add(_reading(section, dark, grey, alpha, keys))
         except UnusableFile as error:
             section.error(f"cannot read {quoted(str(source), 200)}: {error}", key)
             return None
         local.setflags(write=False)
-        return Walls(local_segments=local, origin=origin, file=file, drawing_file=source, reading=reading)
+        return Walls(
+            local_segments=local,
+            origin=origin,
+            file=file,
+            drawing_file=source,
+            readings=tuple(sorted(filter(None, readings))),
+        )
 
     def _read_keys(self, section: Section) -> MapServerKeys:
         """The keys of ROS's map_server. Flatland uses the first alone, so what it does not use may be anything."""
         threshold = self._read_threshold(section)
         free = parse_number(section.text("free_thresh", "") or "")
+        negate = section.text("negate", "0").lower()
         return MapServerKeys(
             threshold,
             FREE_THRESH if free is None else free,
-            section.text("negate", "0").lower() in NEGATED,
+            bool(parse_number(negate)) or negate in NEGATED,
             MODES.get(section.text("mode", "trinary").lower(), "trinary"),
         )
 

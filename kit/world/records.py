@@ -65,6 +65,17 @@ class ReadingRemark:
         return f"{self.location}: {self.message}"
 
 
+def turn_remark(location: SourceLocation, name: str, theta: float) -> ReadingRemark | None:
+    """How a heading [rad] was read, if it is more than a whole turn, as those in degrees are."""
+    if abs(theta) <= math.tau:
+        return None
+    return ReadingRemark(
+        location,
+        f"the heading {theta:g} of {name} was read as radians: {math.degrees(theta):g} degrees. "
+        f"{theta:g} degrees are {math.radians(theta):.4g}.",
+    )
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Walls:
     """The zero-thickness, two-sided wall segments of one map, all in one static body.
@@ -79,8 +90,8 @@ class Walls:
     """The map YAML."""
     drawing_file: Path
     """The image or .dat file it names."""
-    reading: ReadingRemark | None = None
-    """How the picture was read, if others read it otherwise."""
+    readings: tuple[ReadingRemark, ...] = ()
+    """How its values were read, where others read them otherwise."""
 
     @property
     def segments(self) -> FloatArray:
@@ -253,17 +264,17 @@ class World:
     @property
     def remarks(self) -> tuple[ReadingRemark, ...]:
         """How values were read that others may read otherwise, each once, in the order of the files."""
-        readings = {layer.walls.reading for layer in self.layers if layer.walls is not None} - {None}
-        turns = (
-            ReadingRemark(
-                model.location,
-                f"the heading {model.pose.theta:g} of {model.name} was read as radians: {math.degrees(model.pose.theta):g} "
-                f"degrees. {model.pose.theta:g} degrees are {math.radians(model.pose.theta):.4g}.",
-            )
+        readings = {
+            remark for layer in self.layers if layer.walls is not None for remark in layer.walls.readings
+        }
+        bodies = {
+            (body.location, f"{body.name} of {model.file.name}", body.pose.theta)
             for model in self.models
-            if abs(model.pose.theta) > math.tau
-        )
-        return (*sorted(filter(None, readings)), *turns)
+            for body in model.bodies
+        }
+        headings = [(model.location, model.name, model.pose.theta) for model in self.models]
+        turns = (turn_remark(*turn) for turn in (*headings, *sorted(bodies)))
+        return (*sorted(readings), *filter(None, turns))
 
     @property
     def wall_segments(self) -> FloatArray:

@@ -49,6 +49,34 @@ class Control:
 
 CONTROLS: Final = (
     Control(
+        "one-sided progress behind a cost of every step",
+        "grader/kinds/reward/behaviours.py",
+        "self.round_pay > 0.0 or self.kept_progress > 0.0 or",
+        "self.round_pay > 0.0 or",
+        "grader/kinds/reward/test_kind.py::test_a_loop_that_pays_is_not_hidden_by_what_arriving_pays",
+    ),
+    Control(
+        "a space that changes in mid-episode",
+        "grader/kinds/environment/examination.py",
+        "self.record.changed_spaces.setdefault(name, what)",
+        "pass",
+        "grader/kinds/environment/test_kind.py::test_a_mistake_loses_what_it_is_about",
+    ),
+    Control(
+        "a value that fails when it is looked at",
+        "grader/kinds/environment/environment_examiner.py",
+        "        return _describe_value(value, depth)\n    except Exception:",
+        "        return _describe_value(value, depth)\n    except ZeroDivisionError:",
+        "grader/kinds/environment/test_kind.py::test_a_reward_that_is_no_number_is_told_in_the_words_of_the_task",
+    ),
+    Control(
+        "a loop that sleeps where a timer is asked",
+        "grader/driving/service_calls.py",
+        "                    self._late.add(name)\n",
+        "                    pass\n",
+        "grader/driving/test_episodes.py::test_an_answer_that_comes_late_is_none",
+    ),
+    Control(
         "formulas of a platform's own export",
         "grader/cohort/exports.py",
         "[without_formula(cell) for cell in row]",

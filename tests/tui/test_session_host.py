@@ -151,3 +151,36 @@ def test_closing_does_not_wait_for_a_controller_that_does_not_come_back(
     start = time.monotonic()
     face.host.close()
     assert time.monotonic() - start < 2.0  # a reply may take three seconds
+
+
+SAVER = """
+import pathlib
+
+import rclpy
+
+rclpy.init()
+node = rclpy.create_node("saver")
+ticks = []
+node.create_timer(0.05, lambda: ticks.append(1))
+try:
+    rclpy.spin(node)
+finally:
+    pathlib.Path({saved!r}).write_text(str(len(ticks)))
+"""
+
+
+@pytest.mark.parametrize("leaves", [True, False])
+def test_a_program_saves_what_it_has_when_the_user_leaves_or_opens_another_world(
+    face: Face, tmp_path: Path, leaves: bool
+) -> None:
+    saved = tmp_path / "saved.txt"
+    (tmp_path / "saver.py").write_text(SAVER.format(saved=str(saved)))
+    face.host.open(lambda: find_scenario("simple"), find_controller(str(tmp_path / "saver.py")))
+    face.until(lambda: face.views and face.views[-1].time_s > 1)
+    if leaves:
+        face.host.close()
+    else:
+        face.host.open(lambda: find_scenario("maze"), None)
+    face.until(saved.exists)
+    face.until(lambda: saved.read_text() and int(saved.read_text()) > 1)
+    assert not face.troubles

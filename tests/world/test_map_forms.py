@@ -119,6 +119,9 @@ def loaded(file: Path) -> tuple[World, int]:
         ("occupied_thresh: 0.65\nmode: scale", 0, None),  # unknown there: neither occupied nor free
         ("occupied_thresh: 0.65\nnegate: 1", 255, 5),
         ("occupied_thresh: 0.65\nnegate: true", 255, 5),
+        ("occupied_thresh: 0.65\nnegate: 2", 255, 5),
+        ("occupied_thresh: 0.65\nnegate: -1", 255, 5),
+        ("occupied_thresh: 0.65\nnegate: 00", 255, None),
         ("occupied_thresh: 0.65\nmode: raw", 255, 5),
         ("occupied_thresh: 0.65\nfree_thresh: 0.9\nmode: Raw", 255, 6),
         ("occupied_thresh: 0.65\nfree_thresh: junk\nnegate: junk\nmode: junk", 255, None),
@@ -143,6 +146,20 @@ def test_a_heading_that_looks_like_degrees_is_said(tmp_path: Path) -> None:
         remarks = load_world(file).remarks
         assert len(remarks) == count
         assert all(remark.location.line == 4 and heading in remark.message for remark in remarks)
+
+
+def test_an_origin_and_a_body_that_look_turned_by_degrees_are_said(tmp_path: Path) -> None:
+    file = world(tmp_path, "image: rgb.png\noccupied_thresh: 0.65")
+    (tmp_path / "m.yaml").write_text(
+        "image: rgb.png\nresolution: 1\norigin: [0, 0, 90]\noccupied_thresh: 0.65\n"
+    )
+    (tmp_path / "bot.yaml").write_text(
+        "bodies:\n- {name: arm, pose: [0, 0, -45], footprints: [{type: circle, radius: 0.1, density: 1}]}\n"
+    )
+    models = "models: [{name: a, model: bot.yaml}, {name: b, model: bot.yaml}]"
+    file.write_text(f"properties: {{}}\nlayers: [{{name: static, map: m.yaml}}]\n{models}\n")
+    said = [(remark.location.file.name, remark.location.line) for remark in load_world(file).remarks]
+    assert said == [("m.yaml", 3), ("bot.yaml", 2)]
 
 
 @pytest.mark.parametrize(

@@ -26,9 +26,10 @@ SHEET_KEYS: Final[Mapping[str, str]] = MappingProxyType(
         "trials.calls": "Calls that the grader makes to services of the program",
         "trials.calls.name": "What checks call it",
         "trials.calls.at": "When it is made [simulated s]",
-        "trials.calls.service": "The service",
+        "trials.calls.service": "The service; without a slash in front that of the program's own node, whatever its name",
         "trials.calls.type": "Its type: std_srvs/srv/Trigger",
         "trials.calls.request": "The fields of the request",
+        "trials.calls.within": "A later answer counts as none [simulated s]",
         "secret.seeds": "In secret.yaml: seeds for the grade, by the trial's name",
         "secret.seeds.NAME": "Those of one trial; make each with `python3 -c 'import secrets; print(secrets.randbits(62))'`",
     }

@@ -48,8 +48,9 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     waiter.max_computing_s = session.reply_s / 2
     if "folder" in start:  # the user's own, not a submission
         answer_ticks_meanwhile(partial(waiter.waiting_for_user, bridge.graph))
+    session.interrupts.install()
+    bridge.on_interrupt = session.interrupts.ask
     if start["has_input"]:
-        session.interrupts.install()
         mark_reading(partial(waiter.waiting_for_user, bridge.graph))
     bridge.graph.directory.replaced_names = frozenset(start.get("replaced", ()))
     if start["events"] is None:
@@ -71,6 +72,12 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
             raise
     except MemoryError:
         raise
+    except KeyboardInterrupt:
+        if not session.interrupts.are_asked:
+            bridge.send_last_messages()
+            raise
+        _end_program(waits)
+        bridge.end()
     except BaseException:
         bridge.send_last_messages()
         raise

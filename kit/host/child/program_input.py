@@ -33,10 +33,19 @@ class DeferredInterrupts:
     def __init__(self) -> None:
         self._depth = 0
         self._is_pending = False
+        self.are_asked = False
+        """Whether the kit has asked the program to end."""
 
     def install(self) -> None:
         """Handles the signal from now on."""
         signal.signal(signal.SIGINT, self._on_signal)
+
+    def ask(self) -> None:
+        """Asks the program to end, from any thread: the main thread gets the signal, whatever it waits for."""
+        self.are_asked = True
+        main = threading.main_thread().ident
+        assert main is not None
+        signal.pthread_kill(main, signal.SIGINT)
 
     @contextmanager
     def deferred(self) -> Iterator[None]:

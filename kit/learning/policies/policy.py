@@ -260,6 +260,17 @@ def action_counts(space: spaces.Space[Any]) -> tuple[int, ...]:
     raise PolicyError(f"a policy cannot act in the space {space}")
 
 
+def check_network(network: PolicyNetwork, task: LearningTask) -> None:
+    """ValueError unless a network that was trained elsewhere sees what an agent of the task sees, and scores its actions."""
+    sees, choices = task.observation.size * task.robots, action_counts(task.actions.space(task.robots))
+    if network.inputs != sees or (choices and network.outputs != sum(choices)):
+        has = f"one of {_product_text(choices)} actions" if choices else "continuous actions"
+        raise ValueError(
+            f"its network sees {network.inputs} numbers and gives {network.outputs}; an agent of task {task.name} sees {sees} "
+            f"and does {has}"
+        )
+
+
 class PolicyPlayer:
     """A policy at play in ``n`` worlds, with its memory of their episodes."""
 

@@ -25,6 +25,8 @@ from kit.world.records import LaserMount
 from kit.world.yaml_section import Section
 
 MAX_RAYS = 10_000
+MAX_TURNS = 2.0
+"""Directions of more turns than this are no radians."""
 
 REFLECTANCE_LAYER = "reflectance"
 """The layer whose walls and footprints shine."""
@@ -70,6 +72,12 @@ def read_params(section: Section, scope: ModelScope) -> LaserParams:
     angles.finish()
     if high < low:
         angles.error('"max" must not be below "min"', "max")
+    if max(abs(low), abs(high)) > MAX_TURNS * math.tau:
+        turns = max(abs(low), abs(high)) / math.tau
+        angles.error(
+            f'"min" and "max" are radians: {turns:.3g} turns. {high:g} degrees are {math.radians(high):.4g}',
+            "max",
+        )
     rays = math.floor((max(high, low) - low) / increment + 0.5) + 1
     if rays > MAX_RAYS:
         angles.error(f"{rays} rays are too many: at most {MAX_RAYS}", "increment")

@@ -147,7 +147,8 @@ class LeagueScreen(RowsScreen[None]):
         self._rows("body").show(body)
         self._rows("note").show([row((f"  {self._note}", "dim"))])
         labels = {"open": "matches" if self._match is None else "replay"}
-        self._rows("keys").show([footer(self.screen_actions, width, labels=labels)])
+        idle = () if self._entrants else ("choose", "open", "run_matches")
+        self._rows("keys").show([footer(self.screen_actions, width, labels=labels, without=idle)])
 
     def _body(self, standings: Standings, width: int, height: int) -> list[Row]:
         is_wide = width >= WIDE

@@ -240,6 +240,7 @@ def test_moving_the_robot_moves_the_scan(workshop: Workshop) -> None:
         ({"angle": {"min": 1, "max": 0, "increment": 0.1}}, "max"),
         ({"angle": {"min": 0, "max": 1, "increment": 0}}, "increment"),
         ({"angle": {"min": 0, "max": 6, "increment": 1e-9}}, "too many"),
+        ({"angle": {"min": -90, "max": 90, "increment": 1}}, "90 degrees are 1.571"),
         ({"angle": {"min": 0, "max": 1, "increment": 1, "step": 1}}, "step"),
         ({"topic": "a b"}, "topic name"),
         ({"layers": ["nope"]}, "nope"),
