@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from kit.arrays import BoolArray, FloatArray
+from kit.segments import nearest_on_segments
 from kit.world.catalogue import allowed_root_of
 from kit.world.loading import load_world
 from kit.world.records import World
@@ -229,18 +230,11 @@ def wall_depth(grid: OccupancyGrid, faces: FloatArray, x: float, y: float) -> fl
     """How far [m] a place lies behind the nearest of the floor's ``wall_faces``; 0 before it, or on it."""
     if grid.inside[grid.cell_at(x, y)] or not len(faces):
         return 0.0
-    ax, ay, bx, by = faces.T
-    dx, dy = bx - ax, by - ay
-    share = np.clip(((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy), 0.0, 1.0)
-    away_x, away_y = x - ax - share * dx, y - ay - share * dy
-    distance = np.hypot(away_x, away_y)
-    nearest = int(distance.argmin())
-    depth = float(distance[nearest])
+    ((distances,), (places,)) = nearest_on_segments(np.array([[x, y]]), faces)
+    nearest = int(distances.argmin())
+    depth = float(distances[nearest])
     if depth < 1e-9:
         return 0.0
-    beyond = 1.5 * grid.cell_size / depth
-    before = (
-        x + (beyond - 1.0) * float(away_x[nearest]),
-        y + (beyond - 1.0) * float(away_y[nearest]),
-    )
+    beyond, (face_x, face_y) = 1.5 * grid.cell_size / depth, places[nearest].tolist()
+    before = x + (beyond - 1.0) * (x - face_x), y + (beyond - 1.0) * (y - face_y)
     return 0.0 if grid.inside[grid.cell_at(*before)] else depth

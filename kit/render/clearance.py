@@ -10,6 +10,7 @@ import numpy as np
 from kit.arrays import BoolArray, FloatArray
 from kit.render.raster import polyline
 from kit.render.scene import Disc, SceneBody
+from kit.segments import nearest_on_segments
 
 POSES_AT_ONCE = 32
 """Poses whose distances are computed together: more take memory and save no time."""
@@ -34,21 +35,23 @@ def nearest_wall(robot: SceneBody, walls: FloatArray) -> tuple[float, tuple[floa
 def nearest_wall_distances(robots: Sequence[SceneBody], walls: FloatArray) -> FloatArray:
     """Returns (k,) the distances [m] that ``nearest_wall`` has for k poses of one robot, k > 0, all at once."""
     chunks = (robots[first : first + POSES_AT_ONCE] for first in range(0, len(robots), POSES_AT_ONCE))
-    return np.concatenate([_wall_distances(each, walls[_may_be_nearest(each, walls)]) for each in chunks])
+    return np.concatenate(
+        [_wall_distances(each, walls[_may_be_nearest(each, walls)]) for each in chunks]
+    )
 
 
 def _wall_distances(robots: Sequence[SceneBody], walls: FloatArray) -> FloatArray:
     found = []
     hulls = [[*robot.polygons] or [np.array([robot.pose[:2]])] for robot in robots]
     for polygons in zip(*hulls, strict=True):
-        corners, _ = _distances(np.concatenate(polygons), walls)
+        corners, _ = nearest_on_segments(np.concatenate(polygons), walls)
         edges = np.concatenate([polyline(polygon, closed=True) for polygon in polygons])
-        ends, _ = _distances(walls.reshape(-1, 2), edges)
+        ends, _ = nearest_on_segments(walls.reshape(-1, 2), edges)
         nearest = corners.min(axis=1), ends.min(axis=0)
         found += [each.reshape(len(robots), -1).min(axis=1) for each in nearest]
     for discs in zip(*(robot.discs for robot in robots), strict=True):
         centers, radii = np.array([disc[:2] for disc in discs]), np.array([disc.radius for disc in discs])
-        distance, _ = _distances(centers, walls)
+        distance, _ = nearest_on_segments(centers, walls)
         found.append(np.maximum(0.0, distance.min(axis=1) - radii))
     shortest: FloatArray = np.min(found, axis=0)
     return shortest
@@ -70,13 +73,15 @@ def side_wall_distances(
     found = []
     for first in range(0, len(poses), POSES_AT_ONCE):
         chunk = poses[first : first + POSES_AT_ONCE]
-        is_near = (_distances(chunk[:, :2], walls)[0] <= within + _outer_radius(shape)).any(axis=0)
+        is_near = (nearest_on_segments(chunk[:, :2], walls)[0] <= within + _outer_radius(shape)).any(axis=0)
         found.append(_left_distances(shape, chunk, walls[is_near], mirror))
     distances = np.concatenate(found)
     return np.where(distances <= within, distances, math.inf)
 
 
-def _left_distances(hull: SceneBody, poses: FloatArray, walls: FloatArray, mirror: FloatArray) -> FloatArray:
+def _left_distances(
+    hull: SceneBody, poses: FloatArray, walls: FloatArray, mirror: FloatArray
+) -> FloatArray:
     if not len(walls):
         return np.full(len(poses), math.inf)
     away = walls.reshape(1, -1, 2) - poses[:, None, :2]
@@ -101,11 +106,12 @@ def _hull_distances(hull: SceneBody, segments: FloatArray) -> FloatArray:
     """(s,) the distances of the hull from each segment."""
     found = [np.full(len(segments), math.inf)]
     for polygon in hull.polygons:
-        found.append(_distances(polygon, segments)[0].min(axis=0))
-        ends = _distances(segments.reshape(-1, 2), polyline(polygon, closed=True))[0]
+        found.append(nearest_on_segments(polygon, segments)[0].min(axis=0))
+        ends = nearest_on_segments(segments.reshape(-1, 2), polyline(polygon, closed=True))[0]
         found.append(ends.min(axis=1).reshape(-1, 2).min(axis=1))
     found += [
-        np.maximum(0.0, _distances(np.array([disc[:2]]), segments)[0][0] - disc.radius) for disc in hull.discs
+        np.maximum(0.0, nearest_on_segments(np.array([disc[:2]]), segments)[0][0] - disc.radius)
+        for disc in hull.discs
     ]
     shortest: FloatArray = np.min(found, axis=0)
     return shortest
@@ -119,7 +125,7 @@ def _may_be_nearest(robots: Sequence[SceneBody], walls: FloatArray) -> BoolArray
     """(n,) whether a wall may be the one that is nearest to the hull of a robot, by its distance from the robots' poses:
     few may, and the rest need not be compared with every corner and edge."""
     reach = np.array([_outer_radius(robot) for robot in robots])
-    distance, _ = _distances(np.array([robot.pose[:2] for robot in robots]), walls)
+    distance, _ = nearest_on_segments(np.array([robot.pose[:2] for robot in robots]), walls)
     limit = distance.min(axis=1) + 2.0 * reach + 1e-6
     may: BoolArray = (distance <= limit[:, None]).any(axis=0)
     return may
@@ -137,16 +143,7 @@ def _nearest_point(
 ) -> tuple[float, tuple[float, float]]:
     """The shortest distance between points (p, 2) and segments (s, 4), and its end on the segment or, if not
     ``on_segment``, the point it starts from."""
-    distance, foot = _distances(points, segments)
+    distance, foot = nearest_on_segments(points, segments)
     which = np.unravel_index(int(distance.argmin()), distance.shape)
     x, y = (foot[which] if on_segment else points[which[0]]).tolist()
     return float(distance[which]), (x, y)
-
-
-def _distances(points: FloatArray, segments: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The distances (p, s) [m] of points (p, 2) from segments (s, 4), and the segments' nearest points (p, s, 2)."""
-    start, along = segments[:, :2], segments[:, 2:] - segments[:, :2]
-    length = np.maximum((along**2).sum(axis=1), 1e-18)
-    share = np.clip(((points[:, None] - start) * along).sum(axis=2) / length, 0.0, 1.0)
-    foot = start + share[..., None] * along
-    return np.hypot(*np.moveaxis(foot - points[:, None], 2, 0)), foot

@@ -34,6 +34,7 @@ from kit.school.game.levels import (
 from kit.school.game.player_progress import drive_from_event
 from kit.school.game.task_levels import find_task_level
 from kit.school.progress import EventKind, ProgressEvent
+from kit.segments import nearest_on_segments
 from kit.sim.simulation import STEP_SIZE_S
 
 DAILY_PREFIX: Final = "daily-"
@@ -239,7 +240,9 @@ def daily_drive(drawn: DailyMap) -> ReferenceDrive:
     the walls leave room for. That it arrives and touches nothing proves the map drivable."""
     walls = wall_segments(drawn)
     tried = [_pursue_path(drawn, lookahead) for lookahead in LOOKAHEADS]
-    safe = [drive for drive, places in tried if _least_clearance(places, walls) >= LEAST_CLEARANCE]
+    safe = [
+        drive for drive, places in tried if nearest_on_segments(places, walls)[0].min() >= LEAST_CLEARANCE
+    ]
     return min(safe, key=lambda drive: drive.seconds)
 
 
@@ -267,15 +270,6 @@ def _pursue_path(drawn: DailyMap, lookahead: float) -> tuple[ReferenceDrive, Flo
             y += SPEED * STEP_SIZE_S * math.sin(theta)
         places.append((x, y))
     return ReferenceDrive(tuple(commands), round(len(commands) * dt, 3)), np.array(places)
-
-
-def _least_clearance(places: FloatArray, walls: FloatArray) -> float:
-    """The least distance of places (k, 2) from walls (n, 4) [m]."""
-    starts, ends = walls[:, :2], walls[:, 2:]
-    along = ends - starts
-    shares = ((places[:, None] - starts) * along).sum(axis=2) / np.maximum((along**2).sum(axis=1), 1e-12)
-    nearest = starts + np.clip(shares, 0.0, 1.0)[..., None] * along
-    return float(np.linalg.norm(places[:, None] - nearest, axis=2).min())
 
 
 def today() -> datetime.date:
