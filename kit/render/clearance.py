@@ -35,9 +35,7 @@ def nearest_wall(robot: SceneBody, walls: FloatArray) -> tuple[float, tuple[floa
 def nearest_wall_distances(robots: Sequence[SceneBody], walls: FloatArray) -> FloatArray:
     """Returns (k,) the distances [m] that ``nearest_wall`` has for k poses of one robot, k > 0, all at once."""
     chunks = (robots[first : first + POSES_AT_ONCE] for first in range(0, len(robots), POSES_AT_ONCE))
-    return np.concatenate(
-        [_wall_distances(each, walls[_may_be_nearest(each, walls)]) for each in chunks]
-    )
+    return np.concatenate([_wall_distances(each, walls[_may_be_nearest(each, walls)]) for each in chunks])
 
 
 def _wall_distances(robots: Sequence[SceneBody], walls: FloatArray) -> FloatArray:
@@ -79,9 +77,7 @@ def side_wall_distances(
     return np.where(distances <= within, distances, math.inf)
 
 
-def _left_distances(
-    hull: SceneBody, poses: FloatArray, walls: FloatArray, mirror: FloatArray
-) -> FloatArray:
+def _left_distances(hull: SceneBody, poses: FloatArray, walls: FloatArray, mirror: FloatArray) -> FloatArray:
     if not len(walls):
         return np.full(len(poses), math.inf)
     away = walls.reshape(1, -1, 2) - poses[:, None, :2]
