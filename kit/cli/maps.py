@@ -20,8 +20,15 @@ from kit.cli.process import ScreenClosed
 from kit.document.blocks import Block, Picture, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.mapmaking.doubts import DOUBTS
+from kit.mapmaking.doubts_dialogue import DoubtsDialogue, dotted_boxes
+from kit.mapmaking.map_drawing import DrawingError, read_drawing
+from kit.mapmaking.map_sketch import MapSketch
+from kit.mapmaking.new_map import MapExists, check_name, tint_strokes, write_map
+from kit.mapmaking.photo import PAPER, PhotoError, PhotoScale, open_photo, plan_from_photo, whole_picture
 from kit.mapmaking.route import NoRoute
+from kit.mapmaking.sketch_draft import SketchDraft
 from kit.render.encode import ENCODERS
+from kit.render.world_text import scene_rows
 from kit.run.scenario import scenario_on_map
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.catalogue import (
@@ -127,7 +134,6 @@ def _own_card_of(name: str, own_card: Any, world_file: str) -> MapCard | None:
 
 
 def _show_card(card: MapCard, glyphs: str | None, paths: tuple[ScenePath, ...] = ()) -> None:
-    from kit.render.world_text import scene_rows
     from kit.run.command_limits import describe_limits
     from kit.run.session import Session
     from kit.run.view import ViewBuilder
@@ -197,8 +203,6 @@ def new(
 
     Without S or T, the kit chooses two places far apart. The robot must be able to drive from S to T.
     """
-    from kit.mapmaking.map_drawing import DrawingError, read_drawing
-    from kit.mapmaking.new_map import MapExists, check_name, write_map
 
     try:
         folder = check_name(name, open_workspace(workspace).worlds)
@@ -226,10 +230,6 @@ def _draw(
     folder: Path, cell: float, size: str, glyphs: str | None, color: str | None, *, is_pair: bool
 ) -> None:
     """Opens the sheet, and tells what was made of it. The drawing is kept beside the map, to be changed later."""
-    from kit.mapmaking.map_drawing import read_drawing
-    from kit.mapmaking.map_sketch import MapSketch
-    from kit.mapmaking.new_map import write_map
-    from kit.mapmaking.sketch_draft import SketchDraft
 
     terminal = terminal_options.full_screen(
         "Drawing on the screen",
@@ -341,9 +341,6 @@ def from_photo(
     kit maps from-photo plan.jpg hall --walls-width 4  outer walls 4 m apart
     kit maps from-photo plan.jpg --width 5 --click     click the corners
     """
-    from kit.mapmaking.doubts_dialogue import dotted_boxes
-    from kit.mapmaking.new_map import MapExists, check_name, tint_strokes, write_map
-    from kit.mapmaking.photo import PAPER, PhotoError, PhotoScale, open_photo, plan_from_photo
 
     try:
         scale = PhotoScale(width, walls_width)
@@ -397,7 +394,6 @@ def _kept_doubts(
         return DOUBTS if "all" in keep else [each for each in keep if each != "none"]
     if not found.strokes.doubts or not (sys.stdin.isatty() and sys.stdout.isatty()):
         return ()
-    from kit.mapmaking.doubts_dialogue import DoubtsDialogue
 
     terminal = terminal_options.decide(glyphs=glyphs, color=color)
     dialogue = DoubtsDialogue(found.strokes, ENCODERS[terminal.glyphs.value](True))
@@ -460,7 +456,6 @@ def _point(text: str | None, option: str) -> tuple[float, float] | None:
 
 
 def _corners(text: str | None, photo: Image) -> Corners | None:
-    from kit.mapmaking.photo import whole_picture
 
     if text is None:
         return None

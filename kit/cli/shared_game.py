@@ -12,6 +12,7 @@ from kit.cli import messages, terminal_options
 from kit.cli.full_screen import run_screen
 from kit.cli.process import ScreenClosed
 from kit.controllers import prepare_workspace
+from kit.school.game.shared_sockets import Audience, SharedGameError, find_game, games_folder, own_user_name
 from kit.workspace import Workspace, WorkspaceError
 from kit.world.problems import WorldError
 
@@ -46,7 +47,6 @@ def host(
     """
     from kit.run.recording import save_recording
     from kit.school.game.levels import UnknownLevel, find_level
-    from kit.school.game.shared_sockets import Audience, SharedGameError, games_folder, own_user_name
     from kit.school.game.two_players import CannotShare, SharedMode, shared_scenario
 
     try:
@@ -103,7 +103,6 @@ def join_shared_game(
     message if there is no such game. ``workspace``: whose best drives are ghosts."""
     from kit.school.game.levels import UnknownLevel
     from kit.school.game.shared_server import SharedGameClient
-    from kit.school.game.shared_sockets import SharedGameError, find_game, games_folder, own_user_name
     from kit.school.game.two_players import CannotShare
 
     if plays:

@@ -25,6 +25,7 @@ from grader.evidence.training_results import (
     TrainingResults,
     TrainingSettings,
 )
+from grader.kinds.policy.kind import load_submitted_policy
 from grader.kinds.task.task_process import PosedMeasure
 from grader.kinds.training.trainings import run_trainings
 from kit.arrays import IntArray
@@ -186,7 +187,6 @@ class PosedTask:
     @cached_property
     def policy_test(self) -> EvaluationResult | str:
         """The test of the policy that was handed in with the task; what is wrong with it where it cannot be tested."""
-        from grader.kinds.policy.kind import load_submitted_policy  # only here: a kind imports this module
 
         file = self._folder / self.plan.policy
         if not is_file_there(file):
