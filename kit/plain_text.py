@@ -166,7 +166,7 @@ def join_names(names: Sequence[str], at_most: int = 4) -> str:
 # Lines
 
 
-def printable_text(text: str) -> str:
+def printable_line(text: str) -> str:
     """Removes control characters that a terminal would obey, and joins lines to one."""
     return "".join(c if is_printable(c) else " " if c.isspace() else "?" for c in text)
 

@@ -10,6 +10,8 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from kit.host.wire import printable
+from kit.msg.conversion import from_dict, to_dict
+from kit.msg.interfaces import find_service
 from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
@@ -42,8 +44,6 @@ class ServiceCall:
 def read_service_call(section: Section) -> ServiceCall:
     """Reads one call; notes mistakes and finishes the section."""
     # Imported only where there are calls: every assignment imports this module.
-    from kit.msg.conversion import from_dict
-    from kit.msg.interfaces import find_service
 
     given = section.section("request", None)
     request: Mapping[str, Any] = {} if given is None else given.remaining_values()
@@ -92,8 +92,6 @@ class ServiceCaller:
             self._make(self._calls.pop(0))
 
     def _make(self, call: ServiceCall) -> None:
-        from kit.msg.conversion import from_dict
-        from kit.msg.interfaces import find_service
 
         assert self._node is not None
         service_type, service = find_service(call.type), self._full_name(call.service)
@@ -120,7 +118,6 @@ class ServiceCaller:
 
 
 def _answer_text(future: Future[Any] | None) -> str:
-    from kit.msg.conversion import to_dict
 
     if future is None:
         return NO_SERVICE

@@ -7,7 +7,8 @@ from typing import Final, NoReturn
 import click
 
 import kit
-from kit.cli.lazy_group import PLAIN, LazyGroup
+from kit.cli.lazy_group import LazyGroup
+from kit.cli.plain_flag import PLAIN
 from kit.cli.process import run_as_process
 
 VERBS: Final[dict[str, tuple[str, str]]] = {

@@ -13,10 +13,9 @@ from click.types import StringParamType
 
 from kit.cli.process import BAD_INPUT
 from kit.extensions import Extension, ExtensionError, extensions, load
+from kit.plain_text import nearest_name
 
 Verbs = Mapping[str, tuple[str, str]]
-PLAIN: Final = "kit.plain"
-"""In a context's ``meta``: whether ``--plain`` stands before the command, and holds for whichever it is."""
 _HELD: Final = "\ue000"
 """In the place of a hyphen while click wraps a text: it would break an option there."""
 
@@ -115,8 +114,6 @@ class LazyGroup(click.Group):
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError:
-            from kit.plain_text import nearest_name
-
             path = ctx.command_path
             if args[0] in self._absent:
                 raise click.UsageError(

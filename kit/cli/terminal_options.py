@@ -8,9 +8,9 @@ from typing import Any
 
 import click
 
-from kit.cli.lazy_group import PLAIN
 from kit.cli.messages import fail
 from kit.cli.options import Decorator
+from kit.cli.plain_flag import PLAIN
 from kit.tui.terminal import (
     COLOUR_CHOICES,
     GLYPH_CHOICES,

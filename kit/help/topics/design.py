@@ -31,7 +31,7 @@ DRAWING: Final = """
                  kit/environment_ids  kit/interruption  kit/plain_files
                  kit/array_archives  kit/field_types  kit/installation
                  kit/extensions  (others' packages)   kit/blas
-                 kit/breadth_first
+                 kit/breadth_first  kit/line_log
 """
 """The rooms of the kit, floor by floor; an import only goes down."""
 

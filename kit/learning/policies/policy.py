@@ -21,7 +21,7 @@ from kit.arrays import BoolArray, Float32Array, IntArray
 from kit.learning.policies.policy_network import ActionValueTable, PolicyNetwork
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.plain_text import printable_text
+from kit.plain_text import printable_line
 
 SamplingKind = Literal["softmax", "epsilon", "normal", "tanh-normal", "noisy-tanh"]
 
@@ -48,7 +48,7 @@ class PolicyError(Exception):
     """
 
     def __init__(self, message: str) -> None:
-        super().__init__("\n".join(map(printable_text, message.split("\n"))))
+        super().__init__("\n".join(map(printable_line, message.split("\n"))))
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from kit.school.game.board import Board
 from kit.school.game.challenge import Challenge
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
-from kit.school.game.needed import Bin
+from kit.school.game.players_histogram import HistogramBin
 from kit.school.lessons.reading import lesson_number
 from kit.school.lessons.shell_lines import shell_path
 from kit.tui.rows.drive_end_rows import needed_rows
@@ -219,7 +219,7 @@ def beside_others(judgement: Judgement, width: int) -> list[Row]:
     return rows if judgement.comparison is None else rows + _comparison_rows(judgement.comparison)
 
 
-def answers_needed_rows(bins: Sequence[Bin], comparison: AnswerComparison) -> list[Row]:
+def answers_needed_rows(bins: Sequence[HistogramBin], comparison: AnswerComparison) -> list[Row]:
     """A histogram of what all players of this machine needed; empty for one without bins."""
     decimals = 0 if float(comparison.answer).is_integer() else 2
     return needed_rows(bins, comparison.unit, decimals)

@@ -15,6 +15,7 @@ from textual.binding import BindingType
 from kit.dialogue.actions import ScreenActions
 from kit.document.rows import Row, row
 from kit.host.file_watcher import FileWatcher
+from kit.learning.training.run_folders import list_runs
 from kit.school.game.challenge import AnswerSubmission, Challenge, ChallengeError
 from kit.school.game.challenges import answers_folder, challenge_medals, prepare_answer, record_judgement
 from kit.school.game.judgement import Judgement
@@ -194,7 +195,6 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         self._doing = progress
 
     async def _choose_run(self) -> str | None:
-        from kit.learning.training.run_folders import list_runs
 
         runs = [run.name for run in await to_thread(list_runs, self._workspace.runs)]
         if not runs:
