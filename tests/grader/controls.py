@@ -49,6 +49,13 @@ class Control:
 
 CONTROLS: Final = (
     Control(
+        "a task that pays for driving up and down",
+        "grader/kinds/task/posed_task.py",
+        "return (*driven, *self._drive_loops([*self._up_and_down(driven[: len(alone)])]))",
+        "return driven",
+        "grader/kinds/test_task.py::test_driving_up_and_down_is_a_loop_too",
+    ),
+    Control(
         "one-sided progress behind a cost of every step",
         "grader/kinds/reward/behaviours.py",
         "self.round_pay > 0.0 or self.kept_progress > 0.0 or",
@@ -247,8 +254,8 @@ CONTROLS: Final = (
     Control(
         "a loop that pays, beside a great reward for arriving",
         "grader/kinds/reward/behaviours.py",
-        "        return self.round_pay > 0.0 or self._pays_as_well",
-        "        return self._pays_as_well",
+        "return self.round_pay > 0.0 or self.kept_progress > 0.0 or self._pays_as_well",
+        "return self._pays_as_well",
         "grader/kinds/reward/test_kind.py::test_a_loop_that_pays_is_not_hidden_by_what_arriving_pays",
     ),
     Control(

@@ -401,7 +401,7 @@ def _first_difference(expected: Json, actual: Json) -> str:
         return f": {counted(len(actual), 'entry')} instead of {len(expected)}"
     for index, (one, other) in enumerate(zip(expected, actual, strict=True)):
         if not is_close(one, other, 1e-6):
-            return f": [{index}] should be {format_value(one)}, and is {format_value(other)}"
+            return f": item [{index}] should be {format_value(one)}, and is {format_value(other)}"
     return ""
 
 

@@ -157,7 +157,7 @@ class LevelDrive(WatchScreen):
         return self._referee is not None
 
     def open_world(self) -> None:
-        self._referee, self._is_over, self.view, self._result_row = None, False, None, ()
+        self._referee, self._is_over, self._result_row = None, False, ()
         self._recorder, self._behind = None, None
         self._comparison = None if self._reference is None else GhostComparison(self._reference)
         scenario = self._level.find_scenario()
@@ -171,6 +171,7 @@ class LevelDrive(WatchScreen):
             self.host.open(
                 lambda: scenario, find_controller(TWO if len(scenario.partners) > 1 else ONE), paused=True
             )
+        self.view = None  # only now: until another world was asked for, there were views of the one before
         self.renew_laser_map(draws=self._level.conditions.fog)
 
     def _open_race(self) -> Session:
