@@ -169,6 +169,7 @@ def run(context: click.Context, level: str | None, executor: JobExecutor) -> Non
     Exit code: 0 all matches are driven; 1 some are not; 2 the league cannot be run.
     """
     from kit.host.sandbox.probe import is_level_available
+    from kit.school.game.league.entries import record_holders
 
     with _open_league(context) as (league, _):
         if not league.is_mine:
@@ -182,6 +183,10 @@ def run(context: click.Context, level: str | None, executor: JobExecutor) -> Non
             messages.fail(
                 f"This machine cannot confine programs at level {confinement:d}. If all of them are your own: kit league run --level 0"
             )
+        try:
+            record_holders(league.folder)
+        except OSError as error:
+            messages.fail(messages.describe_error(error))
         keys = league.waiting()
         league.remove_stale_results()
         done: list[str] = []

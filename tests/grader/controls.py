@@ -49,6 +49,20 @@ class Control:
 
 CONTROLS: Final = (
     Control(
+        "an impostor's name while its holder renews",
+        "kit/school/game/league/entries.py",
+        "    return not is_holder, status.st_ctime_ns, file.name\n",
+        "    return False, status.st_ctime_ns, file.name\n",
+        "school/game/league/test_league.py::test_who_renews_an_entry_keeps_its_name",
+    ),
+    Control(
+        "a league full of one user's entries",
+        "kit/school/game/league/entries.py",
+        "            elif user != owner and others >= MAX_OF_ONE_USER:\n",
+        "            elif user != owner and others >= MAX_ENTRIES:\n",
+        "school/game/league/test_league.py::test_one_user_has_few_entries_in_anothers_league",
+    ),
+    Control(
         "a task that pays for driving up and down",
         "grader/kinds/task/posed_task.py",
         "return (*driven, *self._drive_loops([*self._up_and_down(driven[: len(alone)])]))",

@@ -1,15 +1,17 @@
 """The entries of a league: a folder with one program for each entrant, named after it and after who drives.
 
 An agent enters as the ROS 2 node that it would be on a robot, so a match runs programs alone. A file belongs to who has put it
-there; in a class's folder nobody can replace or remove another's.
+there; in a class's folder nobody can replace or remove another's. Whose name is whose, the league's owner records with each run, so
+that who renews an entry keeps its name.
 """
 
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -25,6 +27,12 @@ DRIVERS: Final = (DriverKind.CONTROLLER, DriverKind.AGENT)
 MAX_BYTES: Final = 4 << 20
 """Of an entry's file; an agent's network lies in it."""
 MAX_ENTRIES: Final = 500
+MAX_OF_ONE_USER: Final = 3
+"""Entries of one user in another's league: more could drive against each other for one of them, and take the owner's time."""
+MANIFEST: Final = "league.json"
+HOLDERS: Final = "holders.json"
+"""Users by the names that they hold, as the league's owner has recorded them."""
+MAX_HOLDERS_BYTES: Final = 1 << 20
 NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
 
 
@@ -42,6 +50,8 @@ class Entry:
     digest: str
     """Of the program; a match counts for exactly these programs."""
     is_mine: bool
+    user: int = -1
+    """The number of the user whose file it is; -1 for one that cannot be read."""
     problem: str = ""
     """Why it takes part in no match; empty if it does."""
 
@@ -53,11 +63,12 @@ class Entry:
 def read_entries(folder: Path) -> tuple[Entry, ...]:
     """All entries of a league, by name. What is no entry's file is passed over. Raises LeagueError.
 
-    Of two entries of one name or program, the one that has been there for longer takes part: whoever copies another's
-    file into the folder, under whatever name, keeps nobody out.
+    Of two entries of one name or program, that of the name's recorded holder takes part, or else the one that has been there for
+    longer: whoever copies another's file into the folder, under whatever name, keeps nobody out, also when that is renewed.
     """
+    holders, owner = _read_holders(folder), _owner_of(folder / MANIFEST)
     try:
-        files = sorted((folder / FOLDER).iterdir(), key=_last_changed)
+        files = sorted((folder / FOLDER).iterdir(), key=lambda file: _rank(file, holders))
     except OSError:
         raise LeagueError(f"{folder}: there is no league; `kit league new {folder}` makes one.") from None
     shipped = {_digest(each.file.read_bytes()) for each in kit_controllers()}
@@ -72,15 +83,16 @@ def read_entries(folder: Path) -> tuple[Entry, ...]:
             or len(found) == MAX_ENTRIES
         ):
             continue
-        content, is_mine, problem = b"", False, ""
+        content, user, problem = b"", -1, ""
         try:
             with open_plain_file(file, follows_links=False) as opened:
-                is_mine = os.fstat(opened.fileno()).st_uid == os.getuid()
+                user = os.fstat(opened.fileno()).st_uid
                 content = opened.read(MAX_BYTES + 1)
         except OSError as error:
             problem = f"its file cannot be read ({error.strerror})"
         digest = _digest(content)
         same = [each.name for each in found if each.digest == digest]
+        others = sum(each.user == user and not each.problem for each in found)
         if not problem:
             if len(content) > MAX_BYTES:
                 problem = f"its file is larger than {MAX_BYTES >> 20} MiB"
@@ -90,16 +102,47 @@ def read_entries(folder: Path) -> tuple[Entry, ...]:
                 problem = "its name is taken"
             elif same:
                 problem = f"it is the same program as {same[0]}"
-        found.append(Entry(name, drivers[0], file, digest, is_mine, problem))
+            elif user != owner and others >= MAX_OF_ONE_USER:
+                problem = f"its user has {MAX_OF_ONE_USER} other entries"
+        found.append(Entry(name, drivers[0], file, digest, user == os.getuid(), user, problem))
     return tuple(sorted(found, key=lambda each: (each.name, each.driver.value)))
 
 
-def _last_changed(file: Path) -> tuple[int, str]:
-    """When a file was put there, by the system's clock, which its owner cannot set back as he can ``st_mtime`` [ns]."""
+def record_holders(folder: Path) -> None:
+    """Records who holds which name: to be called by the league's owner before matches are driven. Raises LeagueError and OSError."""
+    holders = {each.name.casefold(): each.user for each in read_entries(folder) if not each.problem}
+    write_atomically(folder / HOLDERS, (json.dumps(holders, indent=1, sort_keys=True) + "\n").encode())
+
+
+def _read_holders(folder: Path) -> dict[str, int]:
+    """Returns what ``record_holders`` has written; nothing for a file that is not the league's owner's, or holds something else."""
     try:
-        return file.lstat().st_ctime_ns, file.name
+        with open_plain_file(folder / HOLDERS, follows_links=False) as opened:
+            if os.fstat(opened.fileno()).st_uid != _owner_of(folder / MANIFEST):
+                return {}
+            found = json.loads(opened.read(MAX_HOLDERS_BYTES))
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def _owner_of(file: Path) -> int:
+    """Returns the number of a file's user; -1 if there is no such file."""
+    try:
+        return file.lstat().st_uid
+    except OSError:
+        return -1
+
+
+def _rank(file: Path, holders: Mapping[str, int]) -> tuple[bool, int, str]:
+    """Returns by what entries are ordered: those of a name's holder first, then by when a file was put there, by the system's
+    clock, which its owner cannot set back as he can ``st_mtime`` [ns]."""
+    try:
+        status = file.lstat()
     except FileNotFoundError:  # withdrawn meanwhile
-        return 0, file.name
+        return True, 0, file.name
+    is_holder = holders.get(file.name.partition(".")[0].casefold()) == status.st_uid
+    return not is_holder, status.st_ctime_ns, file.name
 
 
 def submit(folder: Path, name: str, driver: DriverKind, program: bytes) -> Path:
@@ -109,7 +152,8 @@ def submit(folder: Path, name: str, driver: DriverKind, program: bytes) -> Path:
     if len(program) > MAX_BYTES:
         raise LeagueError(f"The program is larger than {MAX_BYTES >> 20} MiB.")
     for each in read_entries(folder):
-        if each.name.casefold() == name.casefold() and (each.name != name or not each.is_mine):
+        is_taken = not each.problem and each.name.casefold() == name.casefold()
+        if is_taken and (each.name != name or not each.is_mine):
             whose = "You have" if each.is_mine else "Another user has"
             raise LeagueError(f"{whose} entered {each.name}: choose another name with --name.")
         if each.digest == _digest(program) and each.name != name:
@@ -123,9 +167,9 @@ def submit(folder: Path, name: str, driver: DriverKind, program: bytes) -> Path:
         if problem := open_common_folder(file.parent):
             raise LeagueError(f"{file.parent}: {problem}.")
         write_atomically(file, program)
-        for other in DRIVERS:
-            if other is not driver:
-                file.with_name(f"{name}.{other.value}.py").unlink(missing_ok=True)
+        for other in (file.with_name(f"{name}.{each.value}.py") for each in DRIVERS if each is not driver):
+            if _owner_of(other) == os.getuid():
+                other.unlink(missing_ok=True)
     except OSError as error:
         raise LeagueError(f"{file} cannot be written ({error.strerror}).") from None
     return file

@@ -30,7 +30,7 @@ from kit.host.sandbox.sandbox_config import Level as Confinement
 from kit.plain_files import open_plain_file, read_plain_file
 from kit.run.recording import Recording, RecordingError
 from kit.school.game.league.entries import FOLDER as ENTRIES
-from kit.school.game.league.entries import Entry, LeagueError, read_entries
+from kit.school.game.league.entries import MANIFEST, Entry, LeagueError, read_entries
 from kit.school.game.league.tag_game import play_tag, tag_again, tag_scenario
 from kit.school.game.levels import GameLevel, UnknownLevel, find_level
 from kit.school.game.race import RaceFinish, race_controller
@@ -48,7 +48,6 @@ from kit.school.game.two_players import TAG_SECONDS, CannotShare, SharedPhase
 from kit.workspace import Workspace, make_private_folder, open_common_folder, write_atomically
 
 FOLDER_VARIABLE: Final = "KIT_LEAGUE"
-MANIFEST: Final = "league.json"
 MAX_MANIFEST_BYTES: Final = 1 << 16
 RESULTS: Final = "results"
 RACES: Final = ("left-turn", "parking", "slalom", "racetrack")

@@ -7,6 +7,7 @@ import json
 import os
 import shutil
 import time
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,16 @@ from kit.document.layout import lines_of
 from kit.host.sandbox.sandbox_config import Level
 from kit.school.game.league import entries as entries_module
 from kit.school.game.league import league as league_module
-from kit.school.game.league.entries import MAX_BYTES, LeagueError, read_entries, submit, withdraw
+from kit.school.game.league.entries import (
+    HOLDERS,
+    MAX_BYTES,
+    MAX_OF_ONE_USER,
+    LeagueError,
+    read_entries,
+    record_holders,
+    submit,
+    withdraw,
+)
 from kit.school.game.league.league import League, LeagueJob, drive_job, own_league, read_programme, tag_job
 from kit.school.game.league.league_blocks import standings_table, summary_blocks
 from kit.school.game.league.standings import DRAW, Match, Standings, match_recordings, read_standings
@@ -327,6 +337,47 @@ def test_many_files_push_nobody_out(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     entries = read_entries(league.folder)
     assert len(entries) == 4
     assert set(honest) <= set(entries)
+
+
+ANOTHER, THIRD = 60001, 60002
+
+
+def enter_as(user: int, league: League, name: str, program: bytes) -> Path:
+    file = league.folder / "entries" / name
+    file.write_bytes(program)
+    os.chown(file, user, -1)
+    return file
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="files of other users")
+@pytest.mark.parametrize("name", ["Ada.controller.py", "ada.agent.py"])
+def test_who_renews_an_entry_keeps_its_name(tmp_path: Path, name: str) -> None:
+    league = make_league(tmp_path, ada=LASER, bob=GIVES_UP)
+    record_holders(league.folder)
+    enter_as(ANOTHER, league, name, LASER + b"#")
+    time.sleep(CLOCK_STEP_S)
+    submit(league.folder, "ada", CONTROLLER, LASER + b"# better")
+    (ada,) = (each for each in league.entrants() if each.name.casefold() == "ada")
+    assert (ada.user, ada.file.name) == (os.getuid(), "ada.controller.py")
+    for forged in (b"[" * 9000, b'{"ada": "x"}', b'{"ada": %d}' % ANOTHER):
+        (league.folder / HOLDERS).write_bytes(forged)
+        assert len(league.entrants()) == 2
+    assert ANOTHER in {each.user for each in league.entrants()}, "what the owner records is read"
+    os.chown(league.folder / HOLDERS, ANOTHER, -1)
+    os.utime(ada.file)
+    time.sleep(CLOCK_STEP_S)
+    os.utime(league.folder / "entries" / name)
+    assert ANOTHER not in {each.user for each in league.entrants()}, "what others record is not"
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="files of other users")
+def test_one_user_has_few_entries_in_anothers_league(tmp_path: Path) -> None:
+    league = make_league(tmp_path, **{f"mine{number}": LASER + b"#%d" % number for number in range(6)})
+    for number in range(9):
+        enter_as(ANOTHER, league, f"a{number}.controller.py", STANDS + b"#%d" % number)
+    enter_as(THIRD, league, "third.controller.py", STANDS)
+    counts = Counter(each.user for each in league.entrants())
+    assert counts == {os.getuid(): 6, ANOTHER: MAX_OF_ONE_USER, THIRD: 1}
 
 
 # Cheats: results
