@@ -13,8 +13,6 @@ from kit.cli.lazy_group import LazyGroup
 from kit.cli.process import run_as_process
 from kit.extensions import PACKAGES_VARIABLE
 
-# Before numpy is imported: it starts a thread for each core otherwise, for sums that one adds up in no time.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Parts of other packages are loaded where an assignment names them, and nowhere else.
 os.environ.setdefault(PACKAGES_VARIABLE, "")
 

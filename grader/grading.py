@@ -29,6 +29,7 @@ from grader.evidence.findings import (
 from grader.evidence.submission_clock import SubmissionClock
 from grader.failure_status import status_of_failure
 from grader.file_formats import YAML_ENDINGS
+from grader.grading_level import grading_level, level_for_untrusted
 from grader.kinds.contract import find_kind
 from grader.scoring import DEFAULT_STEPS, round_share
 from grader.seeds import SeedSet
@@ -40,7 +41,6 @@ from grader.teacher_tests.running import TestOutcome, run_teacher_tests
 from grader.version import grader_version
 from kit.extensions import admitting
 from kit.host.failure import Failure, FailureKind, StudentCodeError
-from kit.host.sandbox.probe import highest_level_up_to
 from kit.host.sandbox.process_control import shield_this_process
 from kit.host.sandbox.sandbox_config import Level
 from kit.plain_text import counted, holds_text
@@ -78,16 +78,6 @@ COARSE_RATIONALES: Final[Mapping[CriterionStatus, str]] = MappingProxyType(
 
 
 NOT_ITS_TURN: Final = "Not graded: pass “{}” first."
-
-LEVEL_NOT_REACHED: Final = "This machine does not reach confinement level {}; `kit doctor` says why."
-
-
-class LevelTooLow(Exception):
-    """Secret seeds would be used at a lower confinement level than the assignment allows."""
-
-
-class LevelUnavailable(LevelTooLow):
-    """This machine does not reach the confinement level that was requested; the message says what to do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -589,28 +579,15 @@ class Grading:
         return next(each for each in self.assignment.criteria if each.id == identity)
 
 
-def level_for_untrusted(assignment: Assignment, requested: Level | None) -> Level:
-    """The confinement level for programs that other people wrote: as requested, else as the assignment says, but at
-    least 1."""
-    return max(assignment.level, Level.FILTERED) if requested is None else requested
-
-
 @contextmanager
 def open_grading(
     assignment: Assignment, submission: Submission, options: GradingOptions, *, is_recorded: bool = False
 ) -> Iterator[Grading]:
-    """Opens a grading of one submission. ``is_recorded``: whether it notes what is found. Raises LevelTooLow, and SubmissionRefused for files that cannot be read.
-
-    The level is decided here, by trying this machine with an empty program: no submission can influence it.
-    """
-    level = level_for_untrusted(assignment, options.level)
-    if options.secret and level < assignment.level:
-        raise LevelTooLow(
-            f"{assignment.title} uses its secret.yaml at confinement level {int(assignment.level)} or higher, not at "
-            f"{int(level)}: that is the `level` of its assignment.yaml. `kit doctor` says what this machine can do."
-        )
-    may_lower_level = options.may_lower_level and options.level is None and not options.secret
-    available = _available_level(assignment, level, secret=options.secret, may_lower_level=may_lower_level)
+    """Opens a grading of one submission. ``is_recorded``: whether it notes what is found. Raises LevelTooLow, and
+    SubmissionRefused for files that cannot be read."""
+    available = grading_level(
+        assignment, options.level, secret=options.secret, may_lower_level=options.may_lower_level
+    )
     with suppress(OSError, AttributeError):  # a C library without prctl: then level 1 is out of reach as well
         shield_this_process()
     with submission.in_temporary_folder() as file:
@@ -636,28 +613,6 @@ def open_grading(
                 examples=options.examples,
                 is_recorded=is_recorded,
             )
-
-
-def level_unavailable_text(assignment: Assignment, level: Level, *, secret: bool) -> str:
-    """Says that this machine does not reach a level, and how to grade at the one that it has."""
-    text, available = LEVEL_NOT_REACHED.format(int(level)), highest_level_up_to(level)
-    if secret and available < assignment.level:
-        return text  # its secret file is never used below the assignment's level
-    if available is Level.LIMITED:
-        return f"{text} To grade without it, use --level 0: a submitted program can then read and change anything that you can."
-    return f"{text} To grade at level {int(available)}, use --level {int(available)}."
-
-
-def _available_level(assignment: Assignment, level: Level, *, secret: bool, may_lower_level: bool) -> Level:
-    """The level to use: ``level``, or the highest below it that this machine has, at least 1. Raises LevelUnavailable."""
-    available = highest_level_up_to(level)
-    if available == level:
-        return level
-    if not may_lower_level or available < Level.FILTERED:
-        raise LevelUnavailable(level_unavailable_text(assignment, level, secret=secret))
-    message = LEVEL_NOT_REACHED.format(int(level))
-    sys.stderr.write(f"WARNING: {message} The program runs at level {int(available)}, for practice only.\n")
-    return available
 
 
 def grade(assignment: Assignment, submission: Submission, options: GradingOptions) -> GradingResult:

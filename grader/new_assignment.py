@@ -3,33 +3,18 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import Final
 
 from grader.evidence_digest import ASSIGNMENT_FILE
+from grader.kinds.contract import find_kind
 from grader.reading import read_assignment
 from kit.plain_text import quoted, suggestion
 from kit.school.lessons.reading import find_lesson, lessons_folder, solutions_folder
 from kit.workspace import write_atomically
 
 TEMPLATES: Final = Path(__file__).parent / "templates"
-
-EXERCISES_OF_KINDS: Final[Mapping[str, str]] = MappingProxyType(
-    {
-        "answers": "20-q-learning/by_hand",
-        "drive": "01-drive/flag",
-        "environment": "10-words-of-learning/hallway",
-        "field": "13-potential-fields/pair",
-        "function": "30-quality-of-service/heard",
-        "launch": "04-launch-files/driver",
-        "task": "24-train-your-own/pays",
-        "training": "12-training-strategies/forget",
-    }
-)
-"""The lessons' exercise that is the example of each kind which has no folder of its own in ``templates``."""
 
 CARD: Final = "README.md"
 """The page of an assignment that its students read."""
@@ -52,11 +37,12 @@ def example_of_kind(kind: str) -> AssignmentExample:
     """Returns the example of a kind of submission. Raises NoExample for a kind without one, FileNotFoundError."""
     if (TEMPLATES / kind).is_dir():
         return AssignmentExample((TEMPLATES / kind,), kind)
-    if kind not in EXERCISES_OF_KINDS:
+    exercise = find_kind(kind).exercise
+    if not exercise:
         raise NoExample(
             f"The kind {quoted(kind)} comes with no example; write its {ASSIGNMENT_FILE} by hand."
         )
-    return example_of_exercise(EXERCISES_OF_KINDS[kind])
+    return example_of_exercise(exercise)
 
 
 def example_of_exercise(name: str) -> AssignmentExample:

@@ -19,14 +19,8 @@ import pytest
 
 from grader.assignment import Assignment, Criterion
 from grader.evidence_digest import ASSIGNMENT_FILE
-from grader.grading import (
-    Grading,
-    GradingOptions,
-    LevelTooLow,
-    LevelUnavailable,
-    level_for_untrusted,
-    open_grading,
-)
+from grader.grading import Grading, GradingOptions, open_grading
+from grader.grading_level import LevelTooLow, LevelUnavailable, level_for_untrusted
 from grader.reading import read_assignment
 from grader.reports.cleaning import plain
 from grader.submission import read_submission

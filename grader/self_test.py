@@ -10,6 +10,7 @@ are separated by lines that begin with ``@@``.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
@@ -100,6 +101,10 @@ WRONG: Final = "wrong"
 
 STARTER_SHARE: Final = 0.2
 """The most of an assignment's points that an untouched starter may earn: doing nothing does not pay."""
+STARTER_RULE: Final = (
+    "a starter is read and runs without an error, so that a student's first check says what to do: fill it in so far that "
+    "nothing stops there, and that it earns next to nothing"
+)
 SUCCESS_RATES: Final = (0.9, 0.95, 0.99)
 """Success probabilities of a good work, for which the odds of a fail are computed."""
 
@@ -246,9 +251,11 @@ def _try_starter(assignment: Assignment, file: Path, options: GradingOptions) ->
         CriterionStatus.RESOURCE_LIMIT,
         CriterionStatus.PROTOCOL_ERROR,
     }
-    problems += [
+    errors = [
         f"{test.id}: {test.status.value}: {test.rationale}" for test in result.tests if test.status in stopped
     ]
+    if errors:
+        problems += [*errors, STARTER_RULE]
     return WorkReport(file.name, tuple(problems), _summary(result))
 
 
@@ -323,10 +330,20 @@ def _grade(assignment: Assignment, file: Path, options: GradingOptions) -> Gradi
 
 def _grader_errors(result: GradingResult) -> list[str]:
     return [
-        f"{test.id}: the grader failed: {(test.log.strip().splitlines() or ['?'])[-1]}"
+        f"{test.id}: the grader failed: {_error_line(test.log)}"
         for test in result.tests
         if test.status is CriterionStatus.GRADER_ERROR
     ]
+
+
+def _error_line(log: str) -> str:
+    """Returns the last line of a traceback with the innermost place in the code: ``IndexError: ..., in route/kind.py:77``."""
+    error = (log.strip().splitlines() or ["?"])[-1]
+    places = re.findall(r'^ *File "(.+)", line (\d+), in ', log, re.MULTILINE)
+    if not places:
+        return error
+    file, line = places[-1]
+    return f"{error}, in {'/'.join(Path(file).parts[-2:])}:{line}"
 
 
 def _summary(result: GradingResult) -> str:

@@ -19,13 +19,13 @@ from typing import Final
 import yaml
 
 from grader.evidence_digest import ASSIGNMENT_FILE, YAML_LOADER
+from grader.kinds.contract import find_kind
 from grader.new_assignment import example_of_kind
 from grader.reading import SECRET_FILE, read_sheet
-from kit.world.documents import open_document
+from grader.sheet_keys import COMMON_KEYS
 from kit.world.key_table import OWN_NAME, FormatKey, format_keys
 from kit.world.yaml_section import Section
 
-MEANINGS_FILE: Final = Path(__file__).parent / "sheet_keys.yaml"
 SECRET: Final = "secret"
 """Stands before the keys of the secret file."""
 LONGEST_EXAMPLE: Final = 40
@@ -60,14 +60,6 @@ def asked_keys(kind: str) -> Mapping[str, FormatKey]:
     }
 
 
-@cache
-def meanings() -> Mapping[str, Mapping[str, str]]:
-    """Returns what keys mean: for ``all`` kinds, and for each kind those of its own."""
-    with open_document(MEANINGS_FILE) as section:
-        groups = [(name, section.section(name)) for name in section.keys()]  # noqa: SIM118  # a section is no mapping
-        return {name: {key: part.text(key) for key in part.keys()} for name, part in groups}  # noqa: SIM118
-
-
 def sheet_keys(kind: str) -> tuple[SheetKey, ...]:
     """Returns the keys of a kind's sheets, in the order of their meanings: those of all kinds, then its own.
 
@@ -76,7 +68,7 @@ def sheet_keys(kind: str) -> tuple[SheetKey, ...]:
     asked = asked_keys(kind)
     folder = example_of_kind(kind).folders[0]
     sheet, secret = (_nodes(folder / name) for name in (ASSIGNMENT_FILE, SECRET_FILE))
-    words = {**meanings()["all"], **meanings().get(kind, {})}
+    words = {**COMMON_KEYS, **find_kind(kind).sheet_keys}
     return tuple(
         SheetKey(
             asked[path],

@@ -41,7 +41,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from kit.blas_kernels import choose_blas_kernels
+from kit.blas import prepare_blas
 from kit.environment_ids import register_when_imported
 
 if TYPE_CHECKING:
@@ -109,5 +109,5 @@ def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
 
 
-choose_blas_kernels()
+prepare_blas()
 register_when_imported()

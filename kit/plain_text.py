@@ -8,6 +8,7 @@ import textwrap
 import unicodedata
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import zip_longest
+from typing import Final
 
 WIDTH = 80
 """Characters in a line."""
@@ -27,6 +28,10 @@ _HELD = "\x1f"
 _PARTS_END = "/,_"
 """Signs behind which a long word is broken."""
 _PART = re.compile(rf"[^{_PARTS_END}]*[{_PARTS_END}]?")
+_FORMULA: Final = ("=", "+", "-", "@", "\t", "\r", "|", "%", "\uff1d", "\uff0b", "\uff0d", "\uff20")
+"""First characters by which a spreadsheet takes a text for a formula. The last four are the full-width forms, which it takes for
+the plain ones in some languages."""
+_NUMBER: Final = re.compile(r"[+-]?[0-9]+([.,][0-9]+)?")
 MAX_KNOWN_NAMES = 12
 """Names that ``suggestion`` lists when none of them is close."""
 
@@ -47,6 +52,16 @@ def escape_controls(text: str) -> str:
     'a\\\\x1b[2Jb'
     """
     return "".join(c if c == "\n" or is_printable(c) else ascii(c)[1:-1] for c in text)
+
+
+def without_formula(cell: str) -> str:
+    """Returns the text of a table's cell so that no spreadsheet takes it for a formula; a plain number, or a sign alone, stays.
+
+    >>> without_formula("=1+1"), without_formula("-2.5")
+    ("'=1+1", '-2.5')
+    """
+    is_formula = cell.startswith(_FORMULA) or cell.lstrip().startswith(_FORMULA)
+    return f"'{cell}" if is_formula and len(cell) > 1 and not _NUMBER.fullmatch(cell) else cell
 
 
 def format_clock(seconds: float, digits: int = 1) -> str:
@@ -151,7 +166,7 @@ def join_names(names: Sequence[str], at_most: int = 4) -> str:
 # Lines
 
 
-def printable_text(text: str) -> str:
+def printable_line(text: str) -> str:
     """Removes control characters that a terminal would obey, and joins lines to one."""
     return "".join(c if is_printable(c) else " " if c.isspace() else "?" for c in text)
 

@@ -20,7 +20,7 @@ from kit.host.sandbox.probe import highest_level_up_to
 from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import GradingResult
 from kit.school.game.challenges import all_challenges
-from kit.school.lessons.checking import check_exercise, install_exercise, read_solution, submission_path
+from kit.school.lessons.checking import install_exercise, read_solution, submission_path
 from kit.school.lessons.reading import (
     ASSIGNMENT_FILE,
     lesson_names,
@@ -34,6 +34,7 @@ from kit.school.lessons.records import Exercise, Lesson, StepKind
 from kit.workspace import open_workspace
 from tests.cases import every_case
 from tests.driving_program import driving_program
+from tests.exercise_checks import check_exercise
 from tests.kit_content import kit_lesson
 from tests.solutions.misconceptions import Misconception, misconceptions
 

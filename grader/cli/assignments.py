@@ -17,7 +17,8 @@ from grader.check import Check
 from grader.cli import confinement, exits, loading, options
 from grader.cli.progress import shown_progress
 from grader.evidence_digest import ASSIGNMENT_FILE
-from grader.grading import GradingOptions, LevelTooLow
+from grader.grading import GradingOptions
+from grader.grading_level import LevelTooLow
 from grader.kinds.contract import KINDS_PACKAGE, find_kind, kind_names
 from grader.new_assignment import example_of_exercise, example_of_kind, make_assignment
 from grader.reading import SECRET_FILE

@@ -11,7 +11,10 @@ from typing import TYPE_CHECKING
 import click
 
 from grader.cli import confinement, exits, loading, options
+from grader.submitted_files import SubmissionRefused
 from kit.cli.existing_path import ExistingPath
+from kit.results.grading_result import GradingResult
+from kit.workspace import write_atomically
 
 if TYPE_CHECKING:
     from grader.evidence.contract import Evidence, WatchableEvidence
@@ -75,10 +78,10 @@ def check(
     Exit code: 0 passed; 1 not passed; 2 an argument is wrong or something is missing; 3 the grader failed, no grade.
     """
     from grader.cli.progress import shown_progress
-    from grader.grading import GradingOptions, LevelTooLow, open_grading
+    from grader.grading import GradingOptions, open_grading
+    from grader.grading_level import LevelTooLow
     from grader.reports import FORMATS
     from grader.submission import read_submission
-    from grader.submitted_files import SubmissionRefused
 
     format_name = "json" if as_json else format_name
     if format_name not in FORMATS:
@@ -112,8 +115,6 @@ def check(
     if output is None:
         click.echo(text, nl=False)
     else:
-        from kit.workspace import write_atomically
-
         write_atomically(output.absolute(), text.encode())
     # Whoever reads a report without what is shown later reads the exit code too.
     shown = result.for_student() if is_for_student else result
@@ -196,8 +197,6 @@ def report(file: Path, format_name: str, output: Path | None, for_student: bool,
     """Convert a result of `grader check --json` to another format."""
     from grader.reports import FORMATS
     from grader.reports.formats.annotations import write_annotations
-    from kit.results.grading_result import GradingResult
-    from kit.workspace import write_atomically
 
     if format_name not in FORMATS:
         exits.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")

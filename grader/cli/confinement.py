@@ -20,15 +20,15 @@ def level_for_untrusted(
     ``text``: the option ``--level``. Without it, the level is the highest of this machine where secrets are used or a class
     is graded, and else the assignment's; at least 1 in any case.
     """
-    from grader import grading
+    from grader import grading_level
     from kit.host.sandbox.probe import highest_level_up_to
     from kit.host.sandbox.sandbox_config import Level
 
-    level = grading.level_for_untrusted(assignment, to_level(text))
+    level = grading_level.level_for_untrusted(assignment, to_level(text))
     if text is None and (secret or for_class):
         level = max(level, highest_level_up_to(Level.ANOTHER_USER))
     if runs_here and highest_level_up_to(level) < level:
-        fail(grading.level_unavailable_text(assignment, level, secret=secret))
+        fail(grading_level.level_unavailable_text(assignment, level, secret=secret))
     return level
 
 

@@ -20,6 +20,7 @@ from grader.cli import exits, loading
 from grader.evidence_digest import ASSIGNMENT_FILE
 from grader.kinds.contract import kind_names
 from grader.new_assignment import CARD
+from grader.reading import read_assignment
 from grader.sheet_reference import SheetKey, documented_attributes, sheet_keys
 from grader.student_version import ReleaseRefused, StudentVersion, missing_for_practice, student_version
 from grader.teacher_tests import reading as teacher_tests
@@ -162,7 +163,6 @@ def _write_handout(files: Mapping[str, bytes], target: Path) -> None:
 
 def _check_readable(folder: Path) -> None:
     """Says what the student's version lacks, where it cannot be read any more without what stays."""
-    from grader.reading import read_assignment
 
     try:
         read_assignment(folder)

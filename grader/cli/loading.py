@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from grader.cli.exits import fail
+from grader.seeds import short_seeds_warning
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
     from grader.assignment import Assignment
@@ -21,7 +23,6 @@ NO_SECRETS_WARNING: Final = (
 def load_assignment(folder: Path) -> Assignment:
     """Reads the assignment; ends with its mistakes and exit code 2 if it has any."""
     from grader.reading import read_assignment
-    from kit.world.problems import WorldError
 
     try:
         return read_assignment(folder)
@@ -37,7 +38,6 @@ def warn_of_unused_secrets(assignment: Assignment, *, secret: bool) -> None:
 
 def warn_of_short_seeds(assignment: Assignment) -> None:
     """Prints a warning on standard error where secret seeds can be guessed."""
-    from grader.seeds import short_seeds_warning
 
     warning = short_seeds_warning(assignment.secret_seeds)
     if warning:

@@ -14,7 +14,8 @@ from typing import Final
 
 from grader.cohort.gradebook import GradebookRow, as_csv, comment_text, late_text
 from grader.cohort.roster import Roster
-from grader.reports.cleaning import clean_line, spreadsheet_cell
+from grader.reports.cleaning import clean_line
+from kit.plain_text import without_formula
 from kit.results.result_blocks import format_points
 
 MOODLE_GRADE: Final = "Grade"
@@ -34,7 +35,7 @@ def for_moodle(
     if roster is None or MOODLE_GRADE not in roster.titles or MOODLE_FEEDBACK not in roster.titles:
         rows = [
             [
-                spreadsheet_cell(row.name),
+                clean_line(row.name),
                 "" if row.student is None else row.student.id,
                 "" if row.student is None else row.student.email,
                 number(row.final),
@@ -74,7 +75,7 @@ def for_canvas(
             known = row.student
             rows.append(
                 [
-                    spreadsheet_cell(row.name),
+                    clean_line(row.name),
                     "" if known is None else known.number,
                     "" if known is None else known.id,
                     "" if known is None else known.login or known.email,
@@ -115,8 +116,8 @@ EXPORTS: Final[Mapping[str, GradebookWriter]] = MappingProxyType(
 
 
 def feedback_text(row: GradebookRow) -> str:
-    """What a student reads beside the grade, in one line that is no formula: lateness, comments, and why points were lost."""
-    return spreadsheet_cell(" ".join(filter(None, (comment_text(row), late_text(row), row.feedback))), 1000)
+    """What a student reads beside the grade, in one line: lateness, comments, and why points were lost."""
+    return clean_line(" ".join(filter(None, (comment_text(row), late_text(row), row.feedback))), 1000)
 
 
 def _number_writer(*, decimal_comma: bool) -> Callable[[float | None], str]:
@@ -128,8 +129,9 @@ def _number_writer(*, decimal_comma: bool) -> Callable[[float | None], str]:
 
 
 def _table_text(titles: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Formats a table whose texts are no formulas, those of the platform's own export neither: students chose some of them."""
     out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\r\n")
-    writer.writerow(titles)
-    writer.writerows(rows)
+    # In quotes, a cell stays one cell where another sign than the comma separates them.
+    writer = csv.writer(out, lineterminator="\r\n", quoting=csv.QUOTE_ALL)
+    writer.writerows([without_formula(cell) for cell in row] for row in (titles, *rows))
     return out.getvalue()

@@ -16,7 +16,8 @@ from typing import Any, ClassVar, Final
 
 from grader.assignment import Assignment
 from grader.evidence.findings import Findings
-from grader.grading import GradingOptions, grade_and_keep, judge_findings, level_for_untrusted
+from grader.grading import GradingOptions, grade_and_keep, judge_findings
+from grader.grading_level import level_for_untrusted
 from grader.look_alikes import distinct_name
 from grader.reading import read_assignment
 from grader.shown_names import readable_name

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -34,6 +35,8 @@ COLUMNS, ROWS = 60, 18
 
 BARE_CHECKS = frozenset({"runs", "obeys", "bumps", "clearance"})
 """Checks that a connection without another end does not explain."""
+COUNTED_CHECKS = frozenset({"says", "rate"})
+"""Checks of how often something comes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +190,28 @@ class GradedDrive:
             [TIMER_WITHOUT_CALLBACK] if any(TIMER_WITHOUT_CALLBACK in line for line in self.printed) else []
         )
         topics = self._topic_mistakes(params.topics) if check == "topics" else ()
-        return " ".join([*timers, *topics, *self.connections.mistakes])
+        counts = self._counts(check, params) if check in COUNTED_CHECKS and params is not None else ()
+        return " ".join([*counts, *timers, *topics, *self.connections.mistakes])
+
+    def lines_with(self, text: str) -> Counter[int]:
+        """How many lines with the text, in whatever letters, were printed in each second of the episode."""
+        lines = zip(self.printed_at, self.printed, strict=True)
+        return Counter(second for second, line in lines if text.casefold() in line.casefold())
+
+    def _counts(self, check: str, params: Any) -> Iterator[str]:
+        """Yields how often something came that is asked for at a rate, and how often it should; see ``PrintedTextParams`` and
+        ``TopicRateParams``."""
+        if check == "says":
+            count = self.lines_with(params.text).total()
+            what, asked = (
+                f"It printed “{params.text}” {counted(count, 'time')}",
+                self.seconds / max(1e-9, params.seconds),
+            )
+        else:
+            traffic = self.traffic.get(params.topic)
+            came = counted(0 if traffic is None else traffic.count, "message")
+            what, asked = f"{came} came on {params.topic}", self.seconds * params.rate
+        yield f"{what} in {self.seconds:.0f} s; {asked:.0f} are asked for."
 
     def _explain_profiles(self, ends: Iterable[str]) -> str:
         """Says what the first of the asked ends is instead; see ``ProfilesParams``."""

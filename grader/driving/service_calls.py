@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from kit.host.wire import printable
+from kit.msg.conversion import from_dict, to_dict
+from kit.msg.interfaces import find_service
 from kit.world.yaml_section import Section
 
 if TYPE_CHECKING:
@@ -31,16 +34,16 @@ class ServiceCall:
     at_s: float
     """Simulated."""
     service: str
-    """Full name, such as ``/driver/set_parameters``."""
+    """Full name, such as ``/driver/set_parameters``; without a slash in front that of the program's first node by name."""
     type: str
     request: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    within_s: float = math.inf
+    """A later answer counts as none: a program whose callbacks wait for something else cannot be spoken to meanwhile."""
 
 
 def read_service_call(section: Section) -> ServiceCall:
     """Reads one call; notes mistakes and finishes the section."""
     # Imported only where there are calls: every assignment imports this module.
-    from kit.msg.conversion import from_dict
-    from kit.msg.interfaces import find_service
 
     given = section.section("request", None)
     request: Mapping[str, Any] = {} if given is None else given.remaining_values()
@@ -50,6 +53,7 @@ def read_service_call(section: Section) -> ServiceCall:
         section.name("service"),
         section.name("type"),
         MappingProxyType(dict(request)),
+        section.number("within", above=0) if section.has("within") else math.inf,
     )
     try:
         from_dict(find_service(call.type).Request, call.request)
@@ -69,33 +73,51 @@ class ServiceCaller:
         self._node = create_graph_node(graph, "grader_calls") if calls else None
         if self._node is not None:
             graph.reserved_names.add(self._node.handle.full_name)
+        self._graph = graph
+        self._others = frozenset(graph.directory.nodes)
         self._clients: dict[str, Client[Any, Any]] = {}
         self._futures: dict[str, Future[Any] | None] = {}
+        self._deadlines: dict[str, float] = {}
+        self._late: set[str] = set()
 
     def call_due(self, time_s: float) -> None:
         """Makes the calls due by ``time_s``; to be called once per tick."""
+        for name, deadline in [*self._deadlines.items()]:
+            future = self._futures[name]
+            if time_s > deadline or future is None or future.done():
+                del self._deadlines[name]
+                if future is not None and not future.done():
+                    self._late.add(name)
         while self._calls and self._calls[0].at_s <= time_s:
             self._make(self._calls.pop(0))
 
     def _make(self, call: ServiceCall) -> None:
-        from kit.msg.conversion import from_dict
-        from kit.msg.interfaces import find_service
 
         assert self._node is not None
-        service_type = find_service(call.type)
-        if call.service not in self._clients:
-            self._clients[call.service] = self._node.create_client(service_type, call.service)
-        client = self._clients[call.service]
+        service_type, service = find_service(call.type), self._full_name(call.service)
+        if service not in self._clients:
+            self._clients[service] = self._node.create_client(service_type, service)
+        client = self._clients[service]
         request = from_dict(service_type.Request, call.request)
         self._futures[call.name] = client.call_async(request) if client.service_is_ready() else None
+        self._deadlines[call.name] = call.at_s + call.within_s
+
+    def _full_name(self, service: str) -> str:
+        if service.startswith("/"):
+            return service
+        with self._graph.lock:
+            nodes = sorted(each.full_name for each in self._graph.directory.nodes if each not in self._others)
+        return f"{nodes[0] if nodes else ''}/{service}"
 
     def answers(self) -> Mapping[str, str]:
-        """Returns the answers by call, each as JSON in one line; or ``NO_SERVICE`` or ``NO_ANSWER``."""
-        return {name: _answer_text(future) for name, future in self._futures.items()}
+        """Returns the answers by call, each as JSON in one line; or ``NO_SERVICE``, or ``NO_ANSWER`` for none in time."""
+        return {
+            name: NO_ANSWER if name in self._late else _answer_text(future)
+            for name, future in self._futures.items()
+        }
 
 
 def _answer_text(future: Future[Any] | None) -> str:
-    from kit.msg.conversion import to_dict
 
     if future is None:
         return NO_SERVICE

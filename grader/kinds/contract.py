@@ -5,7 +5,7 @@ from __future__ import annotations
 import pkgutil
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
@@ -69,6 +69,11 @@ class SubmissionKind:
     """A sentence on what differs between seeds: for a student whose work is right with the public ones alone."""
     limits: Limits = GRADER_LIMITS
     """Limits of each of its processes, where the assignment's budget sets no others."""
+    sheet_keys: Mapping[str, str] = field(default_factory=dict)
+    """What each key means that ``read_settings`` asks for, by its path: ``functions.within``. An entry of a list or of a mapping
+    adds nothing to a path, or ``NAME``; keys of ``secret.yaml`` begin with ``secret.``."""
+    exercise: str = ""
+    """The lessons' exercise that is its example, ``LESSON/EXERCISE``, where it has no folder in ``grader/templates``."""
 
 
 def _own_kinds() -> tuple[str, ...]:

@@ -10,14 +10,13 @@ import unicodedata
 from typing import Final
 
 from grader.look_alikes import INVISIBLE
+from kit.plain_text import without_formula
 
 MAX_TEXT: Final = 4000
 """Characters of one text in a report."""
 CUT_MARK: Final = " … (shortened)"
 
 _COMMAND: Final = re.compile(r"::|##(?=[A-Za-z]*\[)")
-_FORMULA: Final = ("=", "+", "-", "@", "\t", "\r", "|", "%", "\uff1d", "\uff0b", "\uff0d", "\uff20")
-"""The last four are the full-width forms, which a spreadsheet takes for the plain ones in some languages."""
 _UNSEEN: Final = re.compile(f"[{INVISIBLE}]")
 _MARKUP: Final = re.compile(r"([\\`*_{}\[\]()#+\-.!|~<>&@:$])")
 
@@ -62,8 +61,7 @@ def fenced_block(text: str) -> str:
 
 def spreadsheet_cell(text: str, limit: int = 300) -> str:
     """Returns one cell of a table that no spreadsheet takes for a formula."""
-    shown = clean_line(text, limit)
-    return f"'{shown}" if shown.startswith(_FORMULA) else shown
+    return without_formula(clean_line(text, limit))
 
 
 def xml_text(text: str) -> str:

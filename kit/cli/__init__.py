@@ -8,6 +8,7 @@ import click
 
 import kit
 from kit.cli.lazy_group import LazyGroup
+from kit.cli.plain_flag import PLAIN
 from kit.cli.process import run_as_process
 
 VERBS: Final[dict[str, tuple[str, str]]] = {
@@ -101,14 +102,18 @@ VERSION: Final[str] = getattr(kit, "__version__", "unknown")
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="`kit COMMAND --help` explains a command, `kit help` lists pages to read. Ctrl-C leaves any screen.",
 )
+@click.option(
+    "--plain", is_flag=True, help="Work line by line instead of on a full screen; also `kit COMMAND --plain`."
+)
 @click.version_option(VERSION, prog_name="kit")
 @click.pass_context
-def main(ctx: click.Context) -> None:
+def main(ctx: click.Context, plain: bool) -> None:
     """The terminal robot-learning kit: drive a robot, program it, train it.
 
     `kit` alone opens a menu and a robot in a maze, which you drive with W, A, S and D. Enter starts the first lesson,
     or continues where you left off.
     """
+    ctx.meta[PLAIN] = plain
     if ctx.invoked_subcommand is None:
         start = main.get_command(ctx, "start")
         assert start is not None

@@ -18,8 +18,11 @@ from kit.controllers import find_controller, prepare_workspace
 from kit.document.blocks import Block, CellStyle, Column, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.document.rows import row_text
+from kit.host.private_folder import private_folder
 from kit.plain_text import counted
+from kit.school.progress import ProgressError
 from kit.workspace import Workspace, WorkspaceError
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
     from kit.learning.policies.policy import Policy
@@ -40,8 +43,6 @@ def _open_journal(workspace: Path | None) -> Iterator[tuple[ProgressJournal, Wor
     """Opens the journal and the workspace; every error of the user's ends the verb with a message."""
     from kit.school.game.leaderboard import LeaderboardError
     from kit.school.game.levels import UnknownLevel
-    from kit.school.progress import ProgressError
-    from kit.world.problems import WorldError
 
     try:
         opened_workspace = prepare_workspace(workspace)
@@ -353,7 +354,6 @@ command.add_command(guest)
 def _drive_line_by_line(level: GameLevel, opened_workspace: Workspace) -> tuple[RaceFinish, Recording]:
     """Lets the player drive with lines of text, in simulated time. Ends the verb where nothing was driven."""
     from kit.cli.plain import PlainSession, run_plain_session
-    from kit.host.private_folder import private_folder
     from kit.run.recording import RecordingError, load_recording
     from kit.run.recording_file import RecordingFile
     from kit.school.game.race import RaceReferee, judge_recording

@@ -14,6 +14,7 @@ from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen
 from kit.host.failure import StudentCodeError
 from kit.inspection.sockets import sockets_folder, world_name
+from kit.msg.interfaces import PACKAGES
 from kit.ros.graph.graph import Graph
 from kit.ros.packages import (
     Package,
@@ -288,7 +289,6 @@ def list_packages(opened_workspace: Workspace, folders: Sequence[Path]) -> None:
     """List the packages found, and those that the kit brings: the interfaces of ROS 2, turtlesim and others."""
     from kit.launch.launch_file_process import SHARE_FOLDER
     from kit.launch.program_lookup import BUILTIN_PROGRAMS
-    from kit.msg.interfaces import PACKAGES
 
     found = _found(opened_workspace, folders)
     brought = {

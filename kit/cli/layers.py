@@ -30,7 +30,16 @@ from kit.layers.explain import greedy_end_text, patch_text, world_verdict_text
 from kit.layers.flatland.world_patch import PatchError, WorldPatch, apply_patch, build_patch, make_recheck
 from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.greedy import GreedyRun, run_greedy
-from kit.layers.plan_data import check_data, graphviz_text, greedy_data, mermaid_text
+from kit.layers.plan_data import (
+    check_data,
+    graphviz_text,
+    greedy_data,
+    mermaid_text,
+    patch_data,
+    plan_data,
+    sacrifice_data,
+    world_data,
+)
 from kit.layers.planning import LayerPlan
 from kit.layers.relaxations import Relaxation, allow_unwanted, drop_requirements
 from kit.layers.requirements import LayerCase
@@ -200,7 +209,7 @@ def plan(
         patch = _make_patch(task, world_plan, also_shared) if show_patch or do_apply else None
         assignment = found.assignment if world_plan is None else world_plan.assignment
         if as_json:
-            click.echo(json.dumps(plan_data(found, world_plan, patch, reading.time_limit), indent=2))
+            click.echo(json.dumps(plan_json(found, world_plan, patch, reading.time_limit), indent=2))
         elif graph:
             show_graph(task.case, assignment, graph)
         else:
@@ -393,12 +402,10 @@ def _find_relaxations(
     )
 
 
-def plan_data(
+def plan_json(
     found: LayerPlan, world_plan: WorldPlan | None, patch: WorldPatch | None, time_limit: float
 ) -> dict[str, Any]:
     """The content of ``show_plan`` and the patch as JSON-able data."""
-    from kit.layers.plan_data import patch_data, plan_data, sacrifice_data, world_data
-
     facts = plan_data(found, run_greedy(found.case))
     kept = 0 if world_plan is None else len(world_plan.world_case.layer_lists.kept_layers)
     if world_plan is not None:

@@ -13,6 +13,7 @@ from click.types import StringParamType
 
 from kit.cli.process import BAD_INPUT
 from kit.extensions import Extension, ExtensionError, extensions, load
+from kit.plain_text import nearest_name
 
 Verbs = Mapping[str, tuple[str, str]]
 _HELD: Final = "\ue000"
@@ -113,8 +114,6 @@ class LazyGroup(click.Group):
         try:
             return super().resolve_command(ctx, args)
         except click.UsageError:
-            from kit.plain_text import nearest_name
-
             path = ctx.command_path
             if args[0] in self._absent:
                 raise click.UsageError(

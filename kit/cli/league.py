@@ -15,6 +15,9 @@ from kit.cli.executor_options import executor_options
 from kit.cli.full_screen import show_screen
 from kit.controllers import find_controller, prepare_workspace
 from kit.document.layout import lines_of
+from kit.host.job_executors import ExecutorUnavailable, read_shard
+from kit.host.job_folder import serve_keys
+from kit.host.sandbox.sandbox_config import Level
 from kit.plain_text import counted
 from kit.workspace import Workspace, WorkspaceError
 
@@ -165,9 +168,7 @@ def run(context: click.Context, level: str | None, executor: JobExecutor) -> Non
 
     Exit code: 0 all matches are driven; 1 some are not; 2 the league cannot be run.
     """
-    from kit.host.job_executors import ExecutorUnavailable
     from kit.host.sandbox.probe import is_level_available
-    from kit.host.sandbox.sandbox_config import Level
 
     with _open_league(context) as (league, _):
         if not league.is_mine:
@@ -273,8 +274,6 @@ def verify(context: click.Context) -> None:
 @click.option("--shard", help="Share i of n, such as 0/4.")
 def work(league_folder: Path, shard: str | None) -> None:
     """Drive the matches whose keys come on standard input, or a share of all that are missing."""
-    from kit.host.job_executors import read_shard
-    from kit.host.job_folder import serve_keys
     from kit.school.game.league.entries import LeagueError
     from kit.school.game.league.league import League
 

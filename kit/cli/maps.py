@@ -20,6 +20,8 @@ from kit.cli.process import ScreenClosed
 from kit.document.blocks import Block, Picture, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.mapmaking.doubts import DOUBTS
+from kit.mapmaking.route import NoRoute
+from kit.render.encode import ENCODERS
 from kit.run.scenario import scenario_on_map
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.catalogue import (
@@ -125,7 +127,6 @@ def _own_card_of(name: str, own_card: Any, world_file: str) -> MapCard | None:
 
 
 def _show_card(card: MapCard, glyphs: str | None, paths: tuple[ScenePath, ...] = ()) -> None:
-    from kit.render.encode import ENCODERS
     from kit.render.world_text import scene_rows
     from kit.run.command_limits import describe_limits
     from kit.run.session import Session
@@ -198,7 +199,6 @@ def new(
     """
     from kit.mapmaking.map_drawing import DrawingError, read_drawing
     from kit.mapmaking.new_map import MapExists, check_name, write_map
-    from kit.mapmaking.route import NoRoute
 
     try:
         folder = check_name(name, open_workspace(workspace).worlds)
@@ -344,7 +344,6 @@ def from_photo(
     from kit.mapmaking.doubts_dialogue import dotted_boxes
     from kit.mapmaking.new_map import MapExists, check_name, tint_strokes, write_map
     from kit.mapmaking.photo import PAPER, PhotoError, PhotoScale, open_photo, plan_from_photo
-    from kit.mapmaking.route import NoRoute
 
     try:
         scale = PhotoScale(width, walls_width)
@@ -399,7 +398,6 @@ def _kept_doubts(
     if not found.strokes.doubts or not (sys.stdin.isatty() and sys.stdout.isatty()):
         return ()
     from kit.mapmaking.doubts_dialogue import DoubtsDialogue
-    from kit.render.encode import ENCODERS
 
     terminal = terminal_options.decide(glyphs=glyphs, color=color)
     dialogue = DoubtsDialogue(found.strokes, ENCODERS[terminal.glyphs.value](True))

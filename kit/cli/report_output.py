@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kit.cli import messages, terminal_options
+from kit.document.glyphs import ASCII_GLYPHS, BLOCK_GLYPHS
 from kit.school.progress import ProgressError
 from kit.workspace import write_atomically
 from kit.world.problems import WorldError
@@ -101,7 +102,6 @@ def write_outputs(made: Document, outputs: ReportOutputs, *, printed: Document |
     ``printed``: what is printed instead of the whole.
     """
     from kit.document.data_files import document_to_json, table_to_csv
-    from kit.document.glyphs import ASCII_GLYPHS, BLOCK_GLYPHS
     from kit.document.html import document_to_html
     from kit.document.layout import document_lines
     from kit.document.svg import plot_to_svg

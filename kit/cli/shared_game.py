@@ -13,6 +13,7 @@ from kit.cli.full_screen import run_screen
 from kit.cli.process import ScreenClosed
 from kit.controllers import prepare_workspace
 from kit.workspace import Workspace, WorkspaceError
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
     from kit.school.game.shared_server import SharedGameClient
@@ -47,7 +48,6 @@ def host(
     from kit.school.game.levels import UnknownLevel, find_level
     from kit.school.game.shared_sockets import Audience, SharedGameError, games_folder, own_user_name
     from kit.school.game.two_players import CannotShare, SharedMode, shared_scenario
-    from kit.world.problems import WorldError
 
     try:
         own_workspace = prepare_workspace(workspace)
@@ -105,7 +105,6 @@ def join_shared_game(
     from kit.school.game.shared_server import SharedGameClient
     from kit.school.game.shared_sockets import SharedGameError, find_game, games_folder, own_user_name
     from kit.school.game.two_players import CannotShare
-    from kit.world.problems import WorldError
 
     if plays:
         terminal = terminal_options.full_screen(

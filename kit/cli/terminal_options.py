@@ -10,6 +10,7 @@ import click
 
 from kit.cli.messages import fail
 from kit.cli.options import Decorator
+from kit.cli.plain_flag import PLAIN
 from kit.tui.terminal import (
     COLOUR_CHOICES,
     GLYPH_CHOICES,
@@ -48,7 +49,9 @@ def color(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def decide(*, plain: bool = False, glyphs: str | None = None, color: str | None = None) -> TerminalDecision:
-    """Decides what this terminal can show."""
+    """Decides what this terminal can show. ``--plain`` before the verb counts as after it."""
+    context = click.get_current_context(silent=True)
+    plain = plain or (context is not None and context.meta.get(PLAIN, False))
     glyph_choice = next((choice for choice in GLYPH_CHOICES if choice == glyphs), None)
     return decide_terminal(os.environ, TerminalFacts.here(), TerminalOptions(plain, glyph_choice, color))
 

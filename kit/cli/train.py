@@ -405,7 +405,7 @@ def _list_settings(task: str, algo: str, preset: PresetName) -> list[str]:
     lines = [f"Settings of {algo} on {task}, preset {preset}:"]
     for name in found.setting_types(algorithm):
         number = found.learning_rate if name == LEARNING_RATE else getattr(found.settings, name)
-        own = f"{algorithm.own_defaults().get(name)} (the library's)"
+        own = f"{algorithm.library_defaults().get(name)} (the library's)"
         if isinstance(number, int | float):
             number = format_setting(number)
         lines.append(f"  {name:24} {own if number is None else number}")

@@ -9,6 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import click
+import numpy as np
 
 from kit.cli import messages
 from kit.controllers import find_controller
@@ -78,7 +79,6 @@ def _drive(place: str, controller: str) -> None:
 
 
 def _step(task: LearningTask) -> None:
-    import numpy as np
 
     from kit.learning.environment.batch import BatchEnv
 

@@ -26,10 +26,7 @@ from kit.document.blocks import (
     ToneText,
 )
 from kit.document.layout import lines_of
-from kit.plain_text import escape_controls
-
-_FORMULA = ("=", "+", "-", "@", "\t", "\r", "|", "%", "\uff1d", "\uff0b", "\uff0d", "\uff20")
-"""First characters by which a spreadsheet takes a text for a formula, which a student's name must not become."""
+from kit.plain_text import escape_controls, without_formula
 
 
 def table_to_csv(table: Table) -> str:
@@ -61,8 +58,7 @@ def _csv_parts(cell: Cell, *, span: bool) -> Iterator[str]:
 
 def _csv_text(cell: str | float | None) -> str:
     if isinstance(cell, str):
-        shown = escape_controls(cell)
-        return f"'{shown}" if cell.startswith(_FORMULA) else shown
+        return escape_controls(without_formula(cell))
     return "" if cell is None or not math.isfinite(cell) else repr(cell)
 
 

@@ -27,7 +27,7 @@ from kit.document.blocks import (
 from kit.document.layout import lines_of
 from kit.document.markup import StyledText, TextStyle, parse_markup, styled_pieces
 from kit.document.svg import plot_to_svg
-from kit.plain_text import escape_controls, printable_text
+from kit.plain_text import escape_controls, printable_line
 
 _STYLE: Final = """
 :root { color-scheme: light dark; --text: #222; --page: #fff; --line: #999; --code: #f2f2ef; --link: #1a4f8a; --mark: #a0522d; }
@@ -148,4 +148,4 @@ def _table_lines(table: Table) -> Iterator[str]:
 
 
 def _html_text(text: str) -> str:
-    return escape(printable_text(text))
+    return escape(printable_line(text))

@@ -32,7 +32,7 @@ from kit.document.glyphs import BLOCK_GLYPHS, WIDTH, PlotGlyphs
 from kit.document.markup import TextStyle, parse_markup, wrap_blocks
 from kit.document.rows import Row, StyledText, entry_rows, row, row_text
 from kit.document.tables import table_rows
-from kit.plain_text import printable_text, wrap
+from kit.plain_text import printable_line, wrap
 
 POINT_WIDTH: Final = 12
 """Columns of a point of a scale where there is room."""
@@ -91,9 +91,9 @@ def lines_of(blocks: Sequence[Block], page: Page = HEARD) -> list[str]:
 def document_lines(document: Document, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Iterator[str]:
     """A whole document, line by line, 79 columns wide."""
     page = Page(glyphs=glyphs)
-    yield from wrap(printable_text(document.title), WIDTH)
+    yield from wrap(printable_line(document.title), WIDTH)
     for chapter in document.chapters:
-        title = printable_text(chapter.title)
+        title = printable_line(chapter.title)
         yield from ("", title, "=" * min(len(title), WIDTH), "")
         yield from lines_of(chapter.blocks, page)
 
@@ -131,10 +131,10 @@ def _block_rows(block: Block, page: Page) -> list[Row]:
         case Table():
             return list(_table_rows(block, page))
         case Caution():
-            return [row(line) for line in wrap(printable_text(block.text), page.width, "! ", "  ")]
+            return [row(line) for line in wrap(printable_line(block.text), page.width, "! ", "  ")]
         case Quote():
-            head = f"  {printable_text(block.student)}: "
-            return [row(line) for line in wrap(printable_text(block.text), page.width, head, " " * 6)]
+            head = f"  {printable_line(block.student)}: "
+            return [row(line) for line in wrap(printable_line(block.text), page.width, head, " " * 6)]
         case BarChart() | Histogram() | ScatterPlot() | ScenePlot():
             from kit.document.plots import plot_lines  # numpy, which few pages need
 
@@ -144,7 +144,7 @@ def _block_rows(block: Block, page: Page) -> list[Row]:
 
 def _text_rows(block: Text, page: Page) -> list[Row]:
     """One paragraph with its lead and its tail, which stays with the last word."""
-    text = printable_text(block.text)
+    text = printable_line(block.text)
     lead = f"{block.lead} " if block.lead and text else block.lead
     held = text + "\0" * len(block.tail)  # wrapped as one word, and taken off again
     begin, later = " " * (block.indent + len(lead)), " " * (block.indent + block.hang)
@@ -191,7 +191,7 @@ def _code_line_rows(line: str, page: Page) -> list[Row]:
 
 def _choice_rows(entry: Choice, page: Page) -> list[Row]:
     mark = " " if page.is_heard else entry.mark
-    made = entry_rows(mark, entry.key, printable_text(entry.text), entry.tone, page.width)
+    made = entry_rows(mark, entry.key, printable_line(entry.text), entry.tone, page.width)
     return [*made, ()] if page.is_roomy else made
 
 
@@ -232,13 +232,13 @@ def _scale_rows(block: RatingScale, page: Page) -> list[Row]:
 
 def _table_rows(table: Table, page: Page) -> Iterator[Row]:
     if table.title:
-        yield from (row(line) for line in wrap(printable_text(table.title), page.width))
+        yield from (row(line) for line in wrap(printable_line(table.title), page.width))
     placed = table_rows(table, page.width - table.indent)
     indent = row(" " * table.indent) if table.indent else ()
     for each in (*placed.heads, *(each for entry in placed.entries for each in entry)):
         yield (*indent, *each)
     if table.note:
-        yield from (row(line) for line in wrap(printable_text(table.note), page.width))
+        yield from (row(line) for line in wrap(printable_line(table.note), page.width))
 
 
 def text_blocks(lines: Iterable[str]) -> list[Text]:

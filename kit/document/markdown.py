@@ -21,7 +21,7 @@ from kit.document.blocks import (
     format_cell,
 )
 from kit.document.layout import lines_of
-from kit.plain_text import printable_text
+from kit.plain_text import printable_line
 
 _ESCAPED = str.maketrans({"|": "\\|", "<": "&lt;", "*": "\\*", "_": "\\_"})
 
@@ -88,4 +88,4 @@ def _table_line(cells: Iterator[str]) -> str:
 
 
 def _markdown_text(text: str) -> str:
-    return printable_text(text).translate(_ESCAPED)
+    return printable_line(text).translate(_ESCAPED)

@@ -8,7 +8,7 @@ from typing import Final
 
 from kit.document.blocks import BarChart, Histogram, Plot, ScatterPlot, ScenePlot
 from kit.document.glyphs import BLOCK_GLYPHS, WIDTH, PlotGlyphs
-from kit.plain_text import printable_text, wrap
+from kit.plain_text import printable_line, wrap
 
 BAR_WIDTH: Final = 40
 SCATTER_SIZE: Final = (56, 15)
@@ -19,7 +19,7 @@ SCENE_ROWS: Final = 18
 
 def plot_lines(plot: Plot, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Iterator[str]:
     """The title of a plot, and the plot."""
-    yield from wrap(printable_text(plot.title), WIDTH)
+    yield from wrap(printable_line(plot.title), WIDTH)
     match plot:
         case BarChart():
             yield from _bar_lines(plot, glyphs)
@@ -37,7 +37,7 @@ def _bar_lines(bars: BarChart, glyphs: PlotGlyphs) -> Iterator[str]:
     indent = " " * (labels + groups + 3)
     yield f"{indent}{bars.low:<{BAR_WIDTH // 2}g}{bars.high:>{BAR_WIDTH - BAR_WIDTH // 2}g}"
     for label, values in bars.rows:
-        text = wrap(printable_text(label), labels)
+        text = wrap(printable_line(label), labels)
         text += [""] * (len(values) - len(text))
         for i, part in enumerate(text):
             if i >= len(values):
@@ -86,7 +86,7 @@ def _scatter_lines(scatter: ScatterPlot, glyphs: PlotGlyphs) -> Iterator[str]:
         seen[place(x, y)] = seen.get(place(x, y), 0) + 1
     for (row, column), count in seen.items():
         field[row][column] = glyphs.point if count == 1 else str(count) if count < 10 else "+"
-    yield f"{printable_text(scatter.y)} (up) by {printable_text(scatter.x)} (right)"
+    yield f"{printable_line(scatter.y)} (up) by {printable_line(scatter.x)} (right)"
     margin = max(len(f"{low:g}"), len(f"{high:g}"))
     for number, dots in enumerate(field):
         label = {0: f"{high:g}", rows - 1: f"{low:g}"}.get(number, "")

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 from kit.document.blocks import Cell, CellStyle, Column, Table, Tone, ToneText, format_cell
 from kit.document.rows import Row, at_both_edges, lines_shown, row, row_text
-from kit.plain_text import COLUMN_GAP, fit_widths, longest_part, printable_text, wrap
+from kit.plain_text import COLUMN_GAP, fit_widths, longest_part, printable_line, wrap
 
 MIN_TEXT_WIDTH: Final = 8
 """Columns that a column of words keeps when room is short."""
@@ -131,7 +131,7 @@ def _natural_widths(rows: Sequence[Sequence[str]]) -> list[int]:
 
 def _cell_text(cell: Cell, column: Column) -> str:
     """A cell's text, shortened so that it does not push other columns off the screen."""
-    text = printable_text(format_cell(cell, column))
+    text = printable_line(format_cell(cell, column))
     return text if len(text) <= MAX_CELL_LENGTH else text[: MAX_CELL_LENGTH - 3] + "..."
 
 

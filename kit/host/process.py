@@ -25,7 +25,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Final, Literal, NoReturn, Protocol, Self, TypeAlias
 
-from kit.blas_kernels import blas_environment
+from kit.blas import blas_environment
 from kit.host.failure import (
     Budget,
     Failure,
@@ -607,7 +607,6 @@ def process_environment(scratch: str) -> dict[str, str]:
         "ROS_DISTRO": ROS_DISTRO,
         # One thread each: more would differ between machines, and each reserves memory.
         "OMP_NUM_THREADS": "1",
-        "OPENBLAS_NUM_THREADS": "1",
         "MKL_NUM_THREADS": "1",
         **blas_environment(),
     }

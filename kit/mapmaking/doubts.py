@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from kit.arrays import BoolArray, FloatArray
-from kit.mapmaking.pixels import brightest_around
+from kit.mapmaking.pixels import grown
 from kit.world.connected_parts import connected_parts
 
 PALE: Final = 0.5
@@ -280,11 +280,6 @@ def _extent(mask: BoolArray) -> float:
     """The longest diagonal of a part's box [pixels]."""
     boxes = _boxes(connected_parts(mask, across_corners=True))
     return max((box.diagonal for box in boxes.values()), default=0.0)
-
-
-def grown(mask: BoolArray, size: int) -> BoolArray:
-    """The mask with all pixels in a square of ``size`` (odd) around its own."""
-    return np.asarray(brightest_around((mask * 255).astype(np.uint8), size | 1) > 0)
 
 
 def _odd(length: float) -> int:

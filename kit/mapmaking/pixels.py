@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from kit.arrays import BoolArray, FloatArray, Uint8Array
+from kit.arrays import BoolArray, FloatArray, IndexArray, Uint8Array
+from kit.world.connected_parts import connected_parts
 
 Corners = tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]
 """Upper left, upper right, lower right, lower left [pixels], x to the right and y down."""
@@ -54,6 +55,11 @@ def brightest_around(levels: Uint8Array, size: int) -> Uint8Array:
     return levels
 
 
+def grown(mask: BoolArray, size: int) -> BoolArray:
+    """The mask with all pixels in a square of ``size`` (odd) around its own."""
+    return np.asarray(brightest_around((mask * 255).astype(np.uint8), size | 1) > 0)
+
+
 def homography(corners: Corners, width: float, height: float) -> FloatArray:
     """(3, 3): takes a rectangle of that size, in pixels from its upper left corner, to the four corners."""
     rectangle = ((0.0, 0.0), (width, 0.0), (width, height), (0.0, height))
@@ -93,11 +99,28 @@ def bridged(mask: BoolArray, gap: int, along: int, directions: int = 24) -> Bool
     """The mask with its strokes joined over breaks of up to ``gap`` pixels, where they go straight on.
 
     In each of ``directions`` the strokes are taken that go that way for ``along`` pixels at least; what is missing
-    between two of them is filled, and between one that is twice as long and whatever comes next. Corners and doors
-    stay as they are: what lies across does not count.
+    between two of them is filled, and between one that is twice as long and whatever comes next. What has been joined is
+    one stroke, which is joined to the next in its turn: a piece between two breaks is often too short alone. Corners and
+    doors stay as they are: what lies across does not count, nor what is joined near by already.
     """
-    image = Image.fromarray((mask * 255).astype(np.uint8))
     result = mask.copy()
+    windows = whole = [np.s_[0 : mask.shape[0], 0 : mask.shape[1]]]
+    while windows:
+        gaps = np.zeros_like(mask)
+        for each in windows:
+            gaps[each] |= _short_gaps(result[each], gap, along, directions)
+        breaks = _breaks(result, gaps, gap)
+        for rows, columns in breaks:
+            result[rows, columns] = True
+        around = [_window(mask, places, 4 * along + gap) for places in breaks]
+        windows = around if sum(mask[each].size for each in around) < mask.size else whole
+    return result
+
+
+def _short_gaps(mask: BoolArray, gap: int, along: int, directions: int) -> BoolArray:
+    """What is missing between strokes that go straight on, in any of ``directions``; see ``bridged``."""
+    image = Image.fromarray((mask * 255).astype(np.uint8))
+    result = np.zeros_like(mask)
     height, width = mask.shape
     for number in range(directions):
         angle = 180.0 * number / directions
@@ -105,7 +128,7 @@ def bridged(mask: BoolArray, gap: int, along: int, directions: int = 24) -> Bool
         strokes = dilated_along_rows(eroded_along_rows(turned, along), along) & turned
         if not strokes.any():
             continue
-        strokes = (brightest_around((strokes * 255).astype(np.uint8), 5) > 0) & turned
+        strokes = grown(strokes, 5) & turned
         long_ones = dilated_along_rows(eroded_along_rows(turned, 2 * along), 2 * along) & turned
         added = _short_breaks(turned, strokes, long_ones, gap)
         if not added.any():
@@ -113,7 +136,30 @@ def bridged(mask: BoolArray, gap: int, along: int, directions: int = 24) -> Bool
         back = Image.fromarray((added * 255).astype(np.uint8)).rotate(-angle, expand=True)
         left, top = (back.width - width) // 2, (back.height - height) // 2
         result |= np.asarray(back.crop((left, top, left + width, top + height))) > 127
-    return result
+    return result & ~mask
+
+
+def _breaks(mask: BoolArray, gaps: BoolArray, around: int) -> list[tuple[IndexArray, IndexArray]]:
+    """The rows and columns of each gap between pieces that are not joined within ``around`` pixels: no notch and no corner."""
+    parts = connected_parts(gaps, across_corners=True)
+    rows, columns = np.nonzero(parts)
+    order = np.argsort(parts[rows, columns], kind="stable")
+    cuts = np.flatnonzero(np.diff(parts[rows, columns][order])) + 1
+    found = []
+    for chosen in np.split(order, cuts) if len(order) else ():
+        places = rows[chosen], columns[chosen]
+        window = _window(mask, places, around)
+        beside = grown(parts[window] == parts[places][0], 5) & mask[window]
+        pieces = connected_parts(mask[window], across_corners=True)
+        if len(np.unique(pieces[beside])) > 1:
+            found.append(places)
+    return found
+
+
+def _window(mask: BoolArray, places: tuple[IndexArray, IndexArray], around: int) -> tuple[slice, slice]:
+    """The part of a mask within ``around`` rows and columns of these places."""
+    rows, columns = (slice(max(0, int(each.min()) - around), int(each.max()) + around + 1) for each in places)
+    return rows, columns
 
 
 def _short_breaks(mask: BoolArray, strokes: BoolArray, long_ones: BoolArray, gap: int) -> BoolArray:

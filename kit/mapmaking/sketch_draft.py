@@ -6,6 +6,7 @@ import json
 from contextlib import suppress
 from pathlib import Path
 
+from kit.line_log import LineLog
 from kit.mapmaking.map_drawing import MAX_SIDE
 from kit.mapmaking.map_sketch import MIN_SIDE, MapSketch
 from kit.part_file import lock_part, part_path
@@ -24,12 +25,14 @@ class SketchDraft:
         self._file = lock_part(part_path(folder), folder)
         self.found = self._read()
         """The drawing as it was left the last time; None where there is none."""
+        self._log = LineLog(self._file)
+        if self._log.was_cut and self.found is not None:
+            self.keep(self.found)  # its line may have been whole but for its end
 
     def keep(self, sketch: MapSketch) -> str:
         """Writes the drawing as it is now. Returns why that was not possible; empty if it was."""
         try:
-            self._file.write(json.dumps({"cell": sketch.cell, "rows": sketch.rows}).encode() + b"\n")
-            self._file.flush()
+            self._log.append(json.dumps({"cell": sketch.cell, "rows": sketch.rows}).encode())
         except OSError as error:
             return f"The drawing is not on the disk: {error.strerror}."
         return ""

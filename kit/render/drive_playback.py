@@ -15,6 +15,7 @@ import numpy as np
 
 from kit.arrays import FloatArray
 from kit.geometry import Pose
+from kit.plain_text import printable_line
 from kit.render.scene import Disc, Scene, SceneBody, Trail
 
 MAX_POSES: Final = 40
@@ -111,7 +112,11 @@ class DrivePlayback:
             seconds = float(_parse_numbers(content["seconds"], 1)[0])
             place = DrivenPlace(walls, hull, target)
             return cls(
-                _printable_text(content["case"]), _printable_text(content["result"]), poses, seconds, place
+                printable_line(str(content["case"]))[:MAX_TEXT],
+                printable_line(str(content["result"]))[:MAX_TEXT],
+                poses,
+                seconds,
+                place,
             )
         except (KeyError, TypeError, IndexError, OverflowError, RecursionError) as error:
             raise ValueError(f"not a drive: {error}") from None
@@ -137,10 +142,6 @@ def _parse_numbers(values: Any, *shape: int) -> FloatArray:
     if not found.size or not (np.abs(found) <= MAX_NUMBER).all():
         raise ValueError("not the numbers of a place")
     return found
-
-
-def _printable_text(text: Any) -> str:
-    return "".join(filter(str.isprintable, str(text)))[:MAX_TEXT]
 
 
 def _make_trail(points: FloatArray) -> FloatArray:

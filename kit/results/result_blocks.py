@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Final
 
 from kit.document.blocks import Picture, Text, Tone
-from kit.plain_text import printable_text
+from kit.plain_text import printable_line
 from kit.results.grading_result import CriterionResult, CriterionStatus, GradingVerdict
 
 INDENT: Final = 5
@@ -87,7 +87,7 @@ def criterion_blocks(
         blocks.append(_paragraph(more_hints, Tone.DIM))
     if log_lines and criterion.log:
         # A character before each: no line of a report begins with what a student's program printed.
-        lines = tuple(f"| {printable_text(line)}" for line in criterion.log.splitlines()[-log_lines:])
+        lines = tuple(f"| {printable_line(line)}" for line in criterion.log.splitlines()[-log_lines:])
         blocks.append(_paragraph("what the program printed:", Tone.DIM))
         blocks.append(Picture(lines, INDENT, Tone.DIM, is_tight=True))
     return [each for each in blocks if not isinstance(each, Text) or each.text]

@@ -126,7 +126,7 @@ def run_headless(
             )
             session.read_output()
             connection_watch.tell_all()
-            session.switcher.interrupt()
+            session.interrupt()
         except KeyboardInterrupt:  # before the controller drives
             interrupted = True
         finally:  # also where a terminal is gone, or Ctrl-C comes twice

@@ -100,7 +100,7 @@ class Session:
         self.metrics = MetricsRecorder.for_scenario(scenario)
         self.runner.observers.append(self.metrics)
         self.keys = KeystrokePublisher(self.graph, is_hidden=is_hidden)
-        self.switcher = ControllerSwitcher(
+        self._switcher = ControllerSwitcher(
             self.runner,
             controller_arguments(scenario),
             seed=seed,
@@ -123,16 +123,16 @@ class Session:
     @property
     def controller(self) -> ControllerFile | None:
         """The controller that drives, or is about to."""
-        return self.switcher.controller
+        return self._switcher.controller
 
     @property
     def failure(self) -> Failure | None:
         """Why the controller does not run, or why its newest version was not taken; None while all is well."""
-        return self.switcher.failure
+        return self._switcher.failure
 
     def drive_with(self, controller: ControllerFile | None) -> None:
         """Starts a controller, which replaces the present one once it has started well. None: nobody drives."""
-        self.switcher.load(controller)
+        self._switcher.load(controller)
 
     def watch_connections(self) -> ConnectionWatch:
         """Warns from now on of what the controller's nodes connect to that has no other end, and ask for that is too much.
@@ -140,7 +140,7 @@ class Session:
         The kit's own controllers need not hear all that they can: of one of them that is told while the robot stands still.
         """
         watch = ConnectionWatch(
-            self.graph, self._watched_nodes, self._warn, commanders=lambda: self.switcher.node_names
+            self.graph, self._watched_nodes, self._warn, commanders=lambda: self._switcher.node_names
         )
         self.runner.observers.append(watch)
         return watch
@@ -154,16 +154,16 @@ class Session:
 
     def wait_until_driven(self) -> None:
         """Waits until the controller drives, or has failed to."""
-        self.switcher.wait()
+        self._switcher.wait()
 
     def poll(self) -> None:
         """Follows the controller: new versions, ones that have started, ones that failed. Call it a few times a second."""
-        self.switcher.poll()
+        self._switcher.poll()
         self.keys.resend_held_keys()
 
     def read_output(self) -> None:
         """Turns what the controller has printed since the last time into messages."""
-        self.switcher.read_output()
+        self._switcher.read_output()
 
     def stop_robot(self) -> None:
         """Commands zero speed to all robots that drive in this scenario."""
@@ -180,7 +180,7 @@ class Session:
         drives = self.metrics.metrics.distance_m >= STANDS_STILL_M
         if drives and self.controller is not None and self.controller.file in _files_of_kit():
             return frozenset()
-        return self.switcher.node_names
+        return self._switcher.node_names
 
     def _warn(self, text: str) -> None:
         self._log(LogRecord(self.graph.now_ns, LoggingSeverity.WARN, "kit", text, "", "", 0))
@@ -207,14 +207,18 @@ class Session:
     def reset(self, seed: int | None = None) -> None:
         """Puts the world back to its start and restarts the controller."""
         self.runner.call_service("reset", seed)
-        self.switcher.restart()
+        self._switcher.restart()
+
+    def interrupt(self) -> None:
+        """Lets the controller do what it does at Ctrl-C. Only ``disconnect`` and ``close`` may follow."""
+        self._switcher.interrupt()
 
     def disconnect(self) -> None:
         """Ends a tick that waits for the controller, from any thread. Only ``close`` may follow."""
-        self.switcher.disconnect()
+        self._switcher.disconnect()
 
     def close(self) -> None:
-        self.switcher.close()
+        self._switcher.close()
 
     def _has_subscribers(self, topic: str) -> bool:
         return topic in self._scanned_topics or self.graph.has_subscriptions(topic)

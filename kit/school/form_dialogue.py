@@ -11,7 +11,7 @@ from kit.dialogue.effects import Effect, Leave, StartTyping
 from kit.dialogue.screen_action import ScreenAction, digits, letter
 from kit.dialogue.shared_actions import ACTIONS
 from kit.document.blocks import Block, Choice, Choices, RatingScale, Text, Tone
-from kit.plain_text import counted, printable_text
+from kit.plain_text import counted, printable_line
 from kit.school.form_answers import InvalidAnswer, parse_answer
 from kit.school.form_session import PHASE_LABELS, FormSession
 from kit.school.lessons.glossary import glossary_action
@@ -297,4 +297,4 @@ def shown_answer(value: AnswerValue, question: SurveyQuestion) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     shown = dict(zip(question.options, question.shown_options, strict=False)).get(str(value), value)
-    return "blank" if shown is None else printable_text(str(shown))
+    return "blank" if shown is None else printable_line(str(shown))

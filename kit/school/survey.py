@@ -126,8 +126,5 @@ class SurveyForm:
     def find_question(self, identity: str) -> SurveyQuestion | None:
         return next((each for each in self.questions if each.id == identity), None)
 
-    def questions_for(self, purpose: QuestionPurpose) -> tuple[SurveyQuestion, ...]:
-        return tuple(each for each in self.questions if each.purpose is purpose)
-
     def questions_in_phase(self, phase: SurveyPhase) -> Iterator[SurveyQuestion]:
         return (each for each in self.questions if phase in each.phases)

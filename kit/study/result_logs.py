@@ -8,6 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
+from kit.line_log import LineLog
 from kit.study.printed_tables import (
     PrintedTable,
 )
@@ -145,8 +146,5 @@ def append_event(file: Path, event: Event) -> None:
     """Adds a line. Raises OSError."""
     name = EVENT_NAMES[type(event)]
     file.parent.mkdir(parents=True, exist_ok=True)
-    text = file.read_bytes() if file.exists() else b""
-    if text and not text.endswith(b"\n"):  # a process was killed while it wrote
-        file.write_bytes(text[: text.rfind(b"\n") + 1])
-    with file.open("a", encoding="utf-8") as log:
-        log.write(json.dumps({"event": name, **asdict(event)}) + "\n")
+    with file.open("a+b") as opened:
+        LineLog(opened).append(json.dumps({"event": name, **asdict(event)}).encode())

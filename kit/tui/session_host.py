@@ -66,6 +66,11 @@ class SessionHost:
         self._is_closed = False
         self._swap_lock = threading.Lock()
         """Held while one world replaces another."""
+        self._asked = self._opening = self._shown = 0
+        """Numbers of the world that was asked for last, of the one that is being opened, and of the one whose views are handed
+        on."""
+        self._view_lock = threading.Lock()
+        """Held while a view is handed on, or another world asked for."""
         self._jobs: SimpleQueue[Callable[[], None] | None] = SimpleQueue()
         self._helper = threading.Thread(target=self._run_jobs, name="helper", daemon=True)
         self._helper.start()
@@ -75,7 +80,8 @@ class SessionHost:
         return self._live.pacing if self._live is not None else PacingStatus(1.0, 0.0, False)
 
     def open(self, find: Callable[[], Scenario], controller: ControllerFile, *, paused: bool = False) -> None:
-        """Opens another world in place of the present one, which stays if that fails. ``paused``: it stands still."""
+        """Opens another world in place of the present one, which stays if that fails, and is not seen meanwhile. ``paused``: it
+        stands still."""
 
         def job() -> None:
             from kit.run.session import Session
@@ -87,7 +93,7 @@ class SessionHost:
             session.runner.paused = paused
             self._replace(session)
 
-        self._jobs.put(job)
+        self._put_opening(job)
 
     def open_session(self, make: Callable[[], Session], factor: Callable[[Session], float]) -> None:
         """Opens a world that makes its session by itself, at a speed of its own."""
@@ -96,7 +102,29 @@ class SessionHost:
             session = make()
             self._replace(session, factor(session))
 
-        self._jobs.put(job)
+        self._put_opening(job)
+
+    def _put_opening(self, job: Callable[[], None]) -> None:
+        """Queues the opening of a world; until it ends, nobody sees the present one any more, or does something to it that was
+        meant for the other."""
+
+        with self._view_lock:
+            self._asked += 1
+            number = self._asked
+
+        def open_world() -> None:
+            self._opening = number
+            try:
+                job()
+            finally:  # also where it failed: the present world stays
+                self._show_opening()
+
+        self._jobs.put(open_world)
+
+    def _show_opening(self) -> None:
+        """From now on there are views again, unless another world was asked for meanwhile."""
+        with self._view_lock:
+            self._shown = self._opening
 
     def post(self, job: SessionJob) -> None:
         """Has something done to the session, in the world's thread, between two ticks."""
@@ -214,6 +242,7 @@ class SessionHost:
             self._inspection_server = open_inspection_server(session.graph, self._socket_dir, name, wake)
             if self._inspection_server is not None:
                 runner.participants.append(self._inspection_server)
+        self._show_opening()
         self._on_view(
             self.view_builder.build()
         )  # before the first tick, which loads the kernels of the laser
@@ -226,7 +255,7 @@ class SessionHost:
         self._live = self._session = self.view_builder = self._inspection_server = None
         if session is not None:
             if live is not None and live.stop(POLITE_S):
-                session.switcher.interrupt()  # it may save what it has, as at Ctrl-C
+                session.interrupt()  # it may save what it has, as at Ctrl-C
             session.disconnect()  # or a controller that loops would have us wait for its deadline
         if live is not None:
             live.stop()
@@ -247,7 +276,10 @@ class SessionHost:
             self._last_view_s = now
             session.poll()
             view_builder.shows_beams = self._beams
-            self._on_view(view_builder.build())
+            view = view_builder.build()
+            with self._view_lock:
+                if self._shown == self._asked:
+                    self._on_view(view)
             if (listener := self._listener) is not None:
                 listener(session)
 

@@ -23,7 +23,8 @@ HOLD_S: Final = 1.0
 
 
 class TrainingFollower:
-    """Callbacks are called in other threads."""
+    """Reads a training's events as they come, and shows how its newest policy drives. It calls its callbacks in threads of its
+    own."""
 
     def __init__(
         self,

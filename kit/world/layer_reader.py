@@ -49,14 +49,6 @@ _LUMA = np.array([9798, 19235, 3735], dtype=np.uint32)
 _LUMA_SHIFT = 15
 
 
-def walls_from_image(file: Path, *, resolution: float, occupied_thresh: float) -> FloatArray:
-    """The walls (n, 4) ``x1 y1 x2 y2`` [m] of a picture whose lower left corner is the origin.
-
-    ``resolution``: metres per pixel; ``occupied_thresh``: a pixel is dark below this share of white. Raises Unusable.
-    """
-    return trace_edges(dark_pixels(read_grey_image(file), occupied_thresh), resolution)
-
-
 def dark_pixels(grey: Uint8Array, occupied_thresh: float) -> BoolArray:
     """Which pixels of (rows, columns) grey levels are dark: not between ``occupied_thresh`` and 1 of white."""
     shades = (np.arange(256) * (1 / 255)).astype(np.float32)
@@ -64,13 +56,9 @@ def dark_pixels(grey: Uint8Array, occupied_thresh: float) -> BoolArray:
     return found
 
 
-def read_grey_image(file: Path) -> Uint8Array:
-    """A picture as (rows, columns) grey levels, the top row first; transparency is ignored. Raises Unusable."""
-    return _read_image(file)[0]
-
-
-def _read_image(file: Path) -> tuple[Uint8Array, Uint8Array | None]:
-    """Grey levels, and the opacity of the pixels; None if the picture has none. Raises Unusable."""
+def read_image(file: Path) -> tuple[Uint8Array, Uint8Array | None]:
+    """A picture as (rows, columns) grey levels, the top row first, and the opacity of the pixels likewise; None if it has none.
+    Raises UnusableFile."""
     content = read_bytes(file, MAX_IMAGE_BYTES)
     try:
         with warnings.catch_warnings():
@@ -295,7 +283,7 @@ class LayerReader:
             if keys is None:
                 local = walls_from_lines(source, scale, self._documents.problems)
             else:
-                grey, alpha = _read_image(source)
+                grey, alpha = read_image(source)
                 dark = dark_pixels(grey, keys.occupied_thresh)
                 local = trace_edges(dark, resolution)
                 readings.add(_reading(section, dark, grey, alpha, keys))

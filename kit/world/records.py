@@ -25,6 +25,11 @@ MAX_LAYERS = 16
 ALL_LAYERS = 0xFFFF
 """The bits of ``layers: ["all"]``, the default of a footprint and of a laser."""
 
+Color = tuple[float, float, float, float]
+"""Red, green, blue, alpha, each 0 to 1."""
+
+BodyKind = Literal["dynamic", "kinematic", "static"]
+
 
 def _read_only(values: dict[str, object]) -> MappingProxyType[str, object]:
     return MappingProxyType(values)
@@ -35,9 +40,6 @@ def _reduce_read_only(mapping: MappingProxyType[str, object]) -> tuple[object, .
 
 
 copyreg.pickle(MappingProxyType, _reduce_read_only)  # type: ignore[arg-type]  # so that a world can be pickled and copied
-
-Color = tuple[float, float, float, float]
-"""Red, green, blue, alpha, each 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -154,9 +156,6 @@ class Footprint:
     def mask(self) -> int:
         """The bits that it collides with: its category, or none with ``collision: false``."""
         return self.category if self.collision else 0
-
-
-BodyKind = Literal["dynamic", "kinematic", "static"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -141,7 +141,7 @@ def _hallway(config: RunConfig, folder: Path, seeds: Iterable[int]) -> None:
     print(
         f"  the worst cases are {min(worst):.3f} to {max(worst):.3f}, on average {sum(worst) / len(worst):.4f}"
     )
-    print("\n".join(f"    {row}" for row in found[0].result.rows()))
+    print("\n".join(f"    {row}" for row in lines_of([found[0].result.table()])))
 
 
 def left_out(folder: Path, seeds: Seeds) -> None:
@@ -175,7 +175,7 @@ def table(folder: Path, seeds: Seeds) -> None:
 def wheelchairs(folder: Path, seeds: Seeds) -> None:
     """Success 0.96 in every case, adjacency 0.90 on the straight and 0.80 on turns and curves, with start noise."""
     for each in several(RunConfig(TaskSpec("wheelchairs")), folder, seeds(1), 500):
-        print("\n".join(f"    {row}" for row in each.result.rows()))
+        print("\n".join(f"    {row}" for row in lines_of([each.result.table()])))
 
 
 def forgetting(folder: Path, seeds: Seeds) -> None:

@@ -37,9 +37,10 @@ from grader.kinds.environment.examination import EnvironmentTask
 from grader.reading import read_assignment
 from grader.submission import read_submission
 from kit.host.sandbox.sandbox_config import Level
-from kit.school.lessons.checking import check_exercise, submission_path
+from kit.school.lessons.checking import submission_path
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson, solutions_folder
 from kit.school.lessons.records import Exercise, Lesson
+from tests.exercise_checks import check_exercise
 
 ROOT: Final = Path(__file__).parents[2]
 RUNS: Final = 3

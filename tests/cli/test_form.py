@@ -69,10 +69,8 @@ def test_what_was_learned_is_asked_once_more_after_the_quiz(tmp_path: Path) -> N
     twice = {each.id for each in form.questions_in_phase(SurveyPhase.QUIZZED)}
     assert twice == {
         each.id
-        for each in (
-            *form.questions_for(QuestionPurpose.GAINED),
-            *form.questions_for(QuestionPurpose.OUTCOME),
-        )
+        for each in form.questions
+        if each.purpose in (QuestionPurpose.GAINED, QuestionPurpose.OUTCOME)
     }
     with ProgressJournal(tmp_path) as progress:
         for each in form.questions_in_phase(SurveyPhase.AFTER):

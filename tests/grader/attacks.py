@@ -17,7 +17,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
-from grader.grading import LevelUnavailable
+from grader.grading_level import LevelUnavailable
 from kit.host.sandbox.sandbox_config import Level
 from tests.grader.attack import (
     DISOBEYED,

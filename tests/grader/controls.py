@@ -49,6 +49,55 @@ class Control:
 
 CONTROLS: Final = (
     Control(
+        "a task that pays for driving up and down",
+        "grader/kinds/task/posed_task.py",
+        "return (*driven, *self._drive_loops([*self._up_and_down(driven[: len(alone)])]))",
+        "return driven",
+        "grader/kinds/test_task.py::test_driving_up_and_down_is_a_loop_too",
+    ),
+    Control(
+        "one-sided progress behind a cost of every step",
+        "grader/kinds/reward/behaviours.py",
+        "self.round_pay > 0.0 or self.kept_progress > 0.0 or",
+        "self.round_pay > 0.0 or",
+        "grader/kinds/reward/test_kind.py::test_a_loop_that_pays_is_not_hidden_by_what_arriving_pays",
+    ),
+    Control(
+        "a space that changes in mid-episode",
+        "grader/kinds/environment/examination.py",
+        "self.record.changed_spaces.setdefault(name, what)",
+        "pass",
+        "grader/kinds/environment/test_kind.py::test_a_mistake_loses_what_it_is_about",
+    ),
+    Control(
+        "a value that fails when it is looked at",
+        "grader/kinds/environment/environment_examiner.py",
+        "        return _describe_value(value, depth)\n    except Exception:",
+        "        return _describe_value(value, depth)\n    except ZeroDivisionError:",
+        "grader/kinds/environment/test_kind.py::test_a_reward_that_is_no_number_is_told_in_the_words_of_the_task",
+    ),
+    Control(
+        "a loop that sleeps where a timer is asked",
+        "grader/driving/service_calls.py",
+        "                    self._late.add(name)\n",
+        "                    pass\n",
+        "grader/driving/test_episodes.py::test_an_answer_that_comes_late_is_none",
+    ),
+    Control(
+        "formulas of a platform's own export",
+        "grader/cohort/exports.py",
+        "[without_formula(cell) for cell in row]",
+        "row",
+        "grader/cohort/test_class_list.py::test_nothing_of_a_platforms_export_comes_back_as_a_formula",
+    ),
+    Control(
+        "a power of powers in a launch file",
+        "kit/ros/launch/expressions.py",
+        "        _check_size(base.bit_length() * exponent, MAX_BITS)\n",
+        "        pass\n",
+        "ros/launch/test_bounds.py::test_an_expression_whose_result_would_be_very_large_is_not_computed",
+    ),
+    Control(
         "a long text in a platform's worksheet",
         "grader/cohort/csv_file.py",
         "csv.field_size_limit(MAX_BYTES)",
@@ -113,7 +162,7 @@ CONTROLS: Final = (
     ),
     Control(
         "a lesson that is checked at its own level",
-        "grader/grading.py",
+        "grader/grading_level.py",
         "    return max(assignment.level, Level.FILTERED) if requested is None else requested\n",
         "    return assignment.level if requested is None else requested\n",
         "grader/cli/test_check_level.py::test_a_lesson_checked_for_somebody_else_writes_nothing",
@@ -205,8 +254,8 @@ CONTROLS: Final = (
     Control(
         "a loop that pays, beside a great reward for arriving",
         "grader/kinds/reward/behaviours.py",
-        "        return self.round_pay > 0.0 or self._pays_as_well",
-        "        return self._pays_as_well",
+        "return self.round_pay > 0.0 or self.kept_progress > 0.0 or self._pays_as_well",
+        "return self._pays_as_well",
         "grader/kinds/reward/test_kind.py::test_a_loop_that_pays_is_not_hidden_by_what_arriving_pays",
     ),
     Control(

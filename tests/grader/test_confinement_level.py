@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.grading import GradingOptions, LevelUnavailable, grade
+from grader.grading import GradingOptions, grade
+from grader.grading_level import LevelUnavailable
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox import probe

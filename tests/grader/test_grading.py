@@ -18,7 +18,8 @@ from grader.__main__ import VERBS, main
 from grader.assignment import Assignment
 from grader.budgets import BUDGET_KEYS
 from grader.driving import check_table
-from grader.grading import GradingOptions, LevelTooLow, grade, open_grading
+from grader.grading import GradingOptions, grade, open_grading
+from grader.grading_level import LevelTooLow
 from grader.kinds.contract import find_kind, kind_names
 from grader.kinds.controller import kind as controller
 from grader.reading import read_assignment

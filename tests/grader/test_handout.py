@@ -12,10 +12,11 @@ import yaml
 from click.testing import CliRunner
 
 from grader.__main__ import main
-from grader.kinds.contract import kind_names
+from grader.kinds.contract import find_kind, kind_names
 from grader.new_assignment import example_of_exercise, example_of_kind, make_assignment
 from grader.reading import read_assignment
-from grader.sheet_reference import asked_keys, meanings
+from grader.sheet_keys import COMMON_KEYS
+from grader.sheet_reference import asked_keys
 from grader.student_version import ReleaseRefused, StudentVersion, student_version
 from kit.school.lessons.reading import lesson_names, lessons_folder, read_lesson
 
@@ -174,10 +175,10 @@ def test_the_reference_stays_unless_it_is_asked_for(tmp_path: Path) -> None:
 
 
 def test_every_key_that_the_reader_asks_for_has_a_meaning_and_no_other() -> None:
-    common = set(meanings()["all"])
+    common = set(COMMON_KEYS)
     for kind in kind_names():
         asked = {path for path in asked_keys(kind) if not path.startswith("budget.")}
-        own = set(meanings()[kind])
+        own = set(find_kind(kind).sheet_keys)
         assert asked - common - own == set(), kind
         assert own - asked == set(), kind
         assert common - asked == set(), kind

@@ -17,7 +17,7 @@ from tests.grader.conftest import QUICK, TEMPLATES, write_assignment
 @pytest.mark.parametrize("kind", sorted(each.name for each in TEMPLATES.iterdir() if each.is_dir()))
 def test_the_templates_can_be_read(kind: str) -> None:
     made = read_assignment(TEMPLATES / kind)
-    assert made.max_points == 10
+    assert made.max_points > 0
     assert made.kind == kind
 
 

@@ -1,4 +1,4 @@
-"""Wrong works as edits of their solution: made as written, or refused with what does not fit."""
+"""What an author is told of the works of an assignment; wrong works as edits of their solution."""
 
 from __future__ import annotations
 
@@ -11,8 +11,18 @@ import pytest
 
 from grader import self_test
 from grader.grading import GradingOptions
+from grader.kinds.plan import kind
 from grader.reading import read_assignment
-from grader.self_test import ENDING, EditsError, apply_edits, list_wrong_works, try_works, written_out
+from grader.self_test import (
+    ENDING,
+    STARTER_RULE,
+    EditsError,
+    WorkReport,
+    apply_edits,
+    list_wrong_works,
+    try_works,
+    written_out,
+)
 from grader.submission import Submission
 from grader.submitted_files import SubmissionUnreadable
 from kit.host.sandbox.sandbox_config import Level
@@ -112,3 +122,28 @@ def test_where_a_reader_failed_is_told(tmp_path: Path, monkeypatch: pytest.Monke
     reports = list(try_works(read_assignment(folder), GradingOptions(Level.LIMITED)))
     assert reports
     assert all("my_kind/kind.py:57" in problem for each in reports for problem in each.problems)
+
+
+def plan_reports(folder: Path) -> list[WorkReport]:
+    return list(try_works(read_assignment(folder), GradingOptions(Level.LIMITED)))
+
+
+def test_a_starter_that_stops_is_told_the_rule(tmp_path: Path) -> None:
+    folder = tmp_path / "plan"
+    shutil.copytree(TEMPLATES / "plan", folder)
+    assert STARTER_RULE not in plan_reports(folder)[0].problems
+    (folder / "starter.yaml").write_text("layers: nothing yet\n")
+    problems = plan_reports(folder)[0].problems
+    assert problems[-1] == STARTER_RULE
+    assert "starter.yaml:1" in problems[0] or "plan.yaml:1" in problems[0]
+
+
+def test_where_a_check_failed_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(case: object, plan: object) -> object:
+        return ()[1]
+
+    monkeypatch.setattr(kind, "find_breaches", fail)
+    folder = tmp_path / "plan"
+    shutil.copytree(TEMPLATES / "plan", folder)
+    problems = plan_reports(folder)[1].problems
+    assert any("IndexError" in each and "grader/test_self_test.py:" in each for each in problems)

@@ -26,6 +26,14 @@ def test_the_last_whole_change_is_found(tmp_path: Path, lost: int, kept: str) ->
     again = SketchDraft(tmp_path / "hall")
     assert again.found is not None
     assert (again.found.rows[2][2], again.found.cell) == (kept, 0.25)
+    again.close(keeps=True)
+    third = SketchDraft(tmp_path / "hall")
+    assert third.found == again.found
+    assert third.keep(SKETCH.drawn("T", (3, 3))) == ""
+    third.close(keeps=True)
+    again = SketchDraft(tmp_path / "hall")
+    assert again.found is not None
+    assert again.found.rows[3][3] == "T", "what was drawn after half a line is found too"
     again.close(keeps=False)
     assert list(tmp_path.iterdir()) == []
 

@@ -20,7 +20,7 @@ from kit.run.laser_map import LaserMap, LaserMapper, save_laser_map
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from kit.sim.state import LatestScan
-from kit.world.layer_reader import walls_from_image
+from tests.world.picture_walls import walls_from_image
 
 LESSON = Path(__file__).parents[2] / "lessons/40-where-am-i/grid/reference.py"
 

@@ -63,6 +63,10 @@ def open_after(*events: ProgressEvent) -> list[str]:
     ]
 
 
+def questions_for(form: SurveyForm, purpose: QuestionPurpose) -> list[SurveyQuestion]:
+    return [each for each in form.questions if each.purpose is purpose]
+
+
 def test_a_blank_is_an_answer_and_stays_blank() -> None:
     answers = FormAnswers.from_events(FORM, [said("rated", None)])
     assert answers.is_answered("rated", SurveyPhase.AFTER)
@@ -187,7 +191,7 @@ groups:
 
 def test_the_kits_form_asks_what_the_report_needs() -> None:
     form = read_form()
-    assert {each.topic for each in form.questions_for(QuestionPurpose.EXPERIENCE)} >= {
+    assert {each.topic for each in questions_for(form, QuestionPurpose.EXPERIENCE)} >= {
         "robotics",
         "ros1",
         "ros2",
@@ -196,19 +200,19 @@ def test_the_kits_form_asks_what_the_report_needs() -> None:
         "rl",
     }
     for purpose in QuestionPurpose:
-        assert form.questions_for(purpose), purpose
+        assert questions_for(form, purpose), purpose
     rated = [each for each in form.questions if each.shape is AnswerShape.SCALE]
     assert all(each.low and each.high for each in rated)
     assert all(each.topic for each in rated if each.purpose is not QuestionPurpose.SETUP)
     hard, told = (
-        form.questions_for(QuestionPurpose.DIFFICULTY),
-        form.questions_for(QuestionPurpose.EXPLANATION),
+        questions_for(form, QuestionPurpose.DIFFICULTY),
+        questions_for(form, QuestionPurpose.EXPLANATION),
     )
     assert {each.topic for each in hard} == {each.topic for each in told}
 
 
 def test_experience_is_asked_twice_the_same_way() -> None:
-    both = {each.phases for each in read_form().questions_for(QuestionPurpose.EXPERIENCE)}
+    both = {each.phases for each in questions_for(read_form(), QuestionPurpose.EXPERIENCE)}
     assert both == {(SurveyPhase.BEFORE, SurveyPhase.AFTER)}
 
 

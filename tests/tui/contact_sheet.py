@@ -82,6 +82,10 @@ OPENING: Final = (
 """What a screen says while it is not yet what is to be seen."""
 LONGEST_WAIT: Final = 60.0
 """For a world to be open [s]."""
+BETWEEN_FRAMES: Final = 0.02
+"""For so long nothing comes between two frames [s]."""
+LONGEST_FRAME: Final = 3.0
+"""After which a picture is taken all the same [s]."""
 VISITS: Final = {
     "start": ScreenVisit(),
     "drive": ScreenVisit(("play", "maze", "--controller", "random_walk"), (), 9.0),
@@ -169,11 +173,21 @@ def picture_of(
 
 
 def _read_until_open(terminal: int, stream: pyte.ByteStream, screen: pyte.Screen, seconds: float) -> None:
-    """Feeds the stream for that long, and on a busy machine until nothing is being opened any more."""
+    """Feeds the stream for that long, and on a busy machine until something is shown, nothing is being opened any more, and
+    the last frame is whole."""
     end = time.monotonic() + LONGEST_WAIT
     _read(terminal, stream, seconds)
-    while any(word in line for line in screen.display for word in OPENING) and time.monotonic() < end:
+    while _is_opening(screen) and time.monotonic() < end:
         _read(terminal, stream, seconds)
+    end = time.monotonic() + LONGEST_FRAME
+    while select.select([terminal], [], [], BETWEEN_FRAMES)[0] and time.monotonic() < end:
+        _read(terminal, stream, BETWEEN_FRAMES)
+
+
+def _is_opening(screen: pyte.Screen) -> bool:
+    """Whether nothing is shown yet, or that something is being opened."""
+    lines = screen.display
+    return not any(line.strip() for line in lines) or any(word in line for line in lines for word in OPENING)
 
 
 def _read(terminal: int, stream: pyte.ByteStream, seconds: float, until_drawn: bool = False) -> None:

@@ -101,6 +101,29 @@ def test_no_time_passes_before_the_controller_drives(face: Face, tmp_path: Path)
 
 
 @pytest.mark.long
+def test_a_world_is_not_seen_any_more_once_another_was_asked_for(face: Face) -> None:
+    begun, opened = threading.Event(), threading.Event()
+
+    def slowly() -> Scenario:
+        begun.set()
+        opened.wait(20)
+        return find_scenario("maze")
+
+    face.host.open(lambda: find_scenario("simple"), find_controller("forward"))
+    face.until(lambda: face.views and face.views[-1].tick)
+    face.host.open(slowly, find_controller("forward"), paused=True)
+    seen = len(face.views)
+    assert begun.wait(20)
+    ticked = threading.Event()
+    face.host.post(lambda session: ticked.set())
+    assert ticked.wait(20), "the world before goes on"
+    assert len(face.views) == seen
+    opened.set()
+    face.until(lambda: len(face.views) > seen + 1)
+    assert {each.title for each in face.views[seen:]} == {"maze"}
+
+
+@pytest.mark.long
 def test_what_cannot_be_opened_leaves_the_world_as_it_is(face: Face) -> None:
     face.host.open(lambda: find_scenario("simple"), find_controller("forward"))
     face.until(lambda: face.views)

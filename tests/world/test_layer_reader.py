@@ -21,12 +21,12 @@ from kit.world.layer_reader import (
     MAX_LINES_BYTES,
     MAX_PIXELS,
     MAX_SEGMENTS,
-    read_grey_image,
+    read_image,
     trace_edges,
-    walls_from_image,
     walls_from_lines,
 )
 from kit.world.problems import ProblemCollector, WorldError
+from tests.world.picture_walls import walls_from_image
 
 Segments = set[tuple[float, ...]]
 
@@ -164,7 +164,7 @@ def test_every_kind_of_picture_becomes_grey(
 ) -> None:
     file = tmp_path / "picture"
     Image.new(mode, (3, 2), pixel).save(file, format_)
-    assert read_grey_image(file).tolist() == [[grey] * 3] * 2
+    assert read_image(file)[0].tolist() == [[grey] * 3] * 2
 
 
 def test_a_palette_is_looked_up_and_its_transparency_ignored(tmp_path: Path) -> None:
@@ -172,7 +172,7 @@ def test_a_palette_is_looked_up_and_its_transparency_ignored(tmp_path: Path) -> 
     picture.putpalette([0, 0, 0, 255, 255, 255])
     picture.putpixel((1, 0), 1)
     picture.save(tmp_path / "palette.png", transparency=1)
-    assert read_grey_image(tmp_path / "palette.png").tolist() == [[0, 255]]
+    assert read_image(tmp_path / "palette.png")[0].tolist() == [[0, 255]]
 
 
 def test_a_large_map_is_quick(tmp_path: Path) -> None:
@@ -216,7 +216,7 @@ def test_a_picture_that_would_unpack_to_too_many_pixels_is_refused(
 ) -> None:
     (tmp_path / "bomb.png").write_bytes(png(width, height))
     with pytest.raises(UnusableFile, match=str(MAX_PIXELS)):
-        read_grey_image(tmp_path / "bomb.png")
+        read_image(tmp_path / "bomb.png")
 
 
 BROKEN = {
@@ -234,7 +234,7 @@ BROKEN = {
 def test_a_broken_picture_is_refused(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "broken.png").write_bytes(content)
     with pytest.raises(UnusableFile):
-        read_grey_image(tmp_path / "broken.png")
+        read_image(tmp_path / "broken.png")
 
 
 @given(st.data())
@@ -251,7 +251,7 @@ def test_a_damaged_picture_is_read_or_refused(
     file = tmp_path_factory.mktemp("damaged") / "picture"
     file.write_bytes(damaged[: data.draw(st.integers(0, len(damaged)))])
     try:
-        grey = read_grey_image(file)
+        grey = read_image(file)[0]
     except UnusableFile:
         return
     assert grey.dtype == np.uint8
@@ -263,7 +263,7 @@ def test_a_huge_picture_file_is_not_read(tmp_path: Path) -> None:
         file.write(png(10, 10))
         file.truncate(1 << 30)
     with pytest.raises(UnusableFile, match=f"{MAX_IMAGE_BYTES // 1_000_000} MB"):
-        read_grey_image(tmp_path / "huge.png")
+        read_image(tmp_path / "huge.png")
 
 
 def lines(tmp_path: Path, text: str, scale: float = 1.0) -> FloatArray:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -127,9 +126,7 @@ def says(drive: GradedDrive, params: PrintedTextParams) -> float:
     allowed. A timer sets the rate, and `self.get_logger().info(...)` prints."""
     if drive.seconds == 0.0 or params.seconds <= 0.0:
         return math.nan
-    seconds = zip(drive.printed_at, drive.printed, strict=True)
-    said = Counter(second for second, line in seconds if params.text.casefold() in line.casefold())
-    return _rate_error(said, 1.0 / params.seconds, drive.seconds)
+    return _rate_error(drive.lines_with(params.text), 1.0 / params.seconds, drive.seconds)
 
 
 @check(none=0, full=1, unit="%", params=NodeNamesParams)

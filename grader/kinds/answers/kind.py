@@ -23,6 +23,7 @@ from typing import Final
 from grader.assignment import Assignment
 from grader.check import check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, FixedEvidence
+from grader.kinds.answers.sheet_keys import SHEET_KEYS
 from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind, read_submitted_yaml
 from kit.host.failure import Failure
 from kit.plain_text import counted, quoted, suggestion
@@ -221,4 +222,11 @@ def _normalize_word(word: str) -> str:
     return " ".join(word.split()).casefold()
 
 
-KIND: Final = SubmissionKind((".yaml", ".yml"), {answers.name: answers}, read_settings, collect)
+KIND: Final = SubmissionKind(
+    (".yaml", ".yml"),
+    {answers.name: answers},
+    read_settings,
+    collect,
+    sheet_keys=SHEET_KEYS,
+    exercise="20-q-learning/by_hand",
+)

@@ -19,6 +19,7 @@ from grader.evidence.contract import (
     EvidenceOptions,
 )
 from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
+from grader.kinds.controller.sheet_keys import SHEET_KEYS
 from grader.seeds import read_seeds
 from kit.geometry import Pose
 from kit.plain_text import quoted, suggestion
@@ -153,4 +154,5 @@ KIND: Final = SubmissionKind(
     read_settings,
     collect,
     seed_decides="A seed decides where the robot starts, the noise of its sensors, and the random numbers that a program draws.",
+    sheet_keys=SHEET_KEYS,
 )

@@ -33,6 +33,7 @@ from grader.evidence.contract import (
 from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.kinds.controller.kind import read_scenario
+from grader.kinds.drive.sheet_keys import SHEET_KEYS
 from grader.submitted_files import reading_submission
 from kit.array_archives import READ_ERRORS, check_arrays
 from kit.host.failure import Failure, FailureKind, StudentCodeError
@@ -316,5 +317,10 @@ def _cut_attempt(recording: Recording, poses: np.ndarray[Any, np.dtype[np.float6
 
 
 KIND: Final = SubmissionKind(
-    (".npz",), MappingProxyType({**CHECKS, genuine.name: genuine}), read_settings, collect
+    (".npz",),
+    MappingProxyType({**CHECKS, genuine.name: genuine}),
+    read_settings,
+    collect,
+    sheet_keys=SHEET_KEYS,
+    exercise="01-drive/flag",
 )

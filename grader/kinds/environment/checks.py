@@ -63,13 +63,19 @@ def spaces(record: EnvironmentRecord) -> Iterator[str]:
     expected = len(record.task.moves)
     # The spaces are what the program says of itself; that it acts on what it says is seen in the world.
     unproved = "" if _has_acted(record) else UNPROVED_SPACE
-    yield (
+    changed = {
+        name: f"{name} was another one after {what}: what an agent may do and sees stays the same for good."
+        for name, what in record.changed_spaces.items()
+    }
+    yield changed.get("action_space") or (
         unproved and unproved.format(name="action_space")
         if (action.get("kind"), action.get("n"), action.get("start")) == ("Discrete", expected, 0)
         else f"action_space should be Discrete({expected}), one number for each action, and is {_space_text(action)}."
     )
     fits = observation.get("kind") == "Box" and observation.get("shape") == [SECTORS]
-    if not fits:
+    if "observation_space" in changed:
+        yield changed["observation_space"]
+    elif not fits:
         yield f"observation_space should be a Box of shape ({SECTORS},), and is {_space_text(observation)}."
     elif observation.get("low") != 0.0 or observation.get("high") != record.task.clip:
         yield f"observation_space should reach from 0 to {record.task.clip:g}, and is {_space_text(observation)}."
@@ -354,7 +360,9 @@ def _has_happened(step_records: Sequence[StepRecord], record: EnvironmentRecord,
 @complaint_check(none=0, full=1, words=("complains", "content"))
 def checker(record: EnvironmentRecord) -> Iterator[str]:
     """Gymnasium's own checker is not content."""
-    if record.checker_complaint:
+    if record.changed_spaces:
+        yield "It looked at spaces that were other ones later."
+    elif record.checker_complaint:
         yield f"It says: {record.checker_complaint}"
     else:
         has_lasted = record.task.has_lasted(record.checker_step_durations)

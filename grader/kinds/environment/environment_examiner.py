@@ -24,7 +24,17 @@ PlainData = dict[str, Any]
 
 
 def describe_value(value: object, depth: int = MAX_DEPTH) -> PlainData:
-    """Describes a value as plain data: its type and its numbers; None for a number that is not finite."""
+    """Describes a value as plain data: its type and its numbers; None for a number that is not finite.
+
+    Of what cannot be looked at, such as a list of a class of their own that fails, the type alone is told.
+    """
+    try:
+        return _describe_value(value, depth)
+    except Exception:  # noqa: BLE001  # whatever their own classes raise
+        return {"kind": type(value).__name__[:80]}
+
+
+def _describe_value(value: object, depth: int) -> PlainData:
     kind = type(value).__name__[:80]
     if isinstance(value, np.ndarray):
         plain = value.ravel()[:MAX_NUMBERS].tolist() if value.dtype.kind in "fiub" else []
@@ -47,11 +57,23 @@ def describe_value(value: object, depth: int = MAX_DEPTH) -> PlainData:
 
 
 def finite_or_none(value: Any) -> float | None:
-    return float(value) if math.isfinite(value) else None
+    """Returns a number as a float; None for one that is not finite, is complex, or is larger than any float."""
+    try:
+        number = float(value)
+    except (OverflowError, TypeError, ValueError):
+        return None
+    return number if math.isfinite(number) else None
 
 
 def describe_space(value: object) -> PlainData:
-    """Describes a space as plain data."""
+    """Describes a space as plain data; of one that cannot be looked at, the type alone is told."""
+    try:
+        return _describe_space(value)
+    except Exception:  # noqa: BLE001  # whatever their own classes raise
+        return {"kind": type(value).__name__[:80], "is_space": isinstance(value, gymnasium.Space)}
+
+
+def _describe_space(value: object) -> PlainData:
     kind = type(value).__name__[:80]
     if isinstance(value, gymnasium.spaces.Discrete):
         return {"kind": "Discrete", "n": int(value.n), "start": int(value.start)}
@@ -72,10 +94,12 @@ def make_environment(module: ModuleType, name: str) -> tuple[Any, PlainData]:
     if not isinstance(cls, type):
         return None, {"missing": classes}
     env = cls()
-    spaces = {
-        each: describe_space(getattr(env, each, None)) for each in ("action_space", "observation_space")
-    }
-    return env, {"is_env": isinstance(env, gymnasium.Env), **spaces}
+    return env, {"is_env": isinstance(env, gymnasium.Env), **describe_spaces(env)}
+
+
+def describe_spaces(env: Any) -> PlainData:
+    """Describes both spaces of an environment, as they are now."""
+    return {each: describe_space(getattr(env, each, None)) for each in ("action_space", "observation_space")}
 
 
 class CallRunner:
@@ -83,9 +107,19 @@ class CallRunner:
 
     def __init__(self, env: Any) -> None:
         self._env = env
+        self._spaces = describe_spaces(env)
         self._kept: list[tuple[object, object]] = []
 
     def answer(self, question: PlainData) -> PlainData:
+        """Makes one call, and tells of spaces that it has changed; see ``_answer``."""
+        answer, spaces = self._answer(question), describe_spaces(self._env)
+        return (
+            answer
+            if spaces == self._spaces
+            else {**answer, "changed": [each for each in spaces if spaces[each] != self._spaces[each]]}
+        )
+
+    def _answer(self, question: PlainData) -> PlainData:
         """Makes one call; while Gymnasium's checker runs, an exception is an answer too."""
         if not question.get("checking"):
             return {"returned": describe_value(self._call(question))}

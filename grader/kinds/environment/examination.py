@@ -128,6 +128,8 @@ class EnvironmentRecord:
     task: EnvironmentTask
     description: Mapping[str, Json] = field(default_factory=dict)
     """The environment's spaces, and whether it is a gymnasium.Env."""
+    changed_spaces: dict[str, str] = field(default_factory=dict)
+    """What was called when a space was another one than at first, by the space's name."""
     episodes: dict[str, EnvironmentEpisode] = field(default_factory=dict)
     checker_complaint: str = ""
     """The first complaint of Gymnasium's own checker; empty if there is none."""
@@ -337,6 +339,10 @@ class _EnvironmentExaminer:
         self._call_s = (self._runner.graph.now_ns - began_ns) / 1e9
         if self._call_s == 0:  # calls that wait for nothing must not all come at one moment
             self._runner.tick()
+        changed = answer.get("changed", [])
+        for name in self._spaces:
+            if isinstance(changed, list) and name in changed:
+                self.record.changed_spaces.setdefault(name, what)
         try:
             if not (question.get("checking") and isinstance(answer.get("raised"), str)):
                 check_description(answer.get("returned"))

@@ -41,6 +41,7 @@ from grader.kinds.environment.examination import (
     EnvironmentTask,
     examine_environment,
 )
+from grader.kinds.environment.sheet_keys import SHEET_KEYS
 from grader.seeds import read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.process import child_seed
@@ -173,4 +174,11 @@ def _missing_environment(record: EnvironmentRecord, task: EnvironmentTask, file:
     return ""
 
 
-KIND: Final = SubmissionKind((".py",), CHECKS, read_settings, collect_once(collect_evidence))
+KIND: Final = SubmissionKind(
+    (".py",),
+    CHECKS,
+    read_settings,
+    collect_once(collect_evidence),
+    sheet_keys=SHEET_KEYS,
+    exercise="10-words-of-learning/hallway",
+)

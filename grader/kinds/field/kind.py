@@ -35,6 +35,7 @@ from grader.evidence.contract import (
 from grader.evidence.submission_clock import SubmissionClock
 from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.kinds.controller.kind import read_settings as read_trials
+from grader.kinds.controller.sheet_keys import SHEET_KEYS
 from grader.problem_text import problems_text
 from grader.submitted_files import reading_submission
 from kit.fields import adjacency
@@ -317,4 +318,11 @@ def collect(
     return nullcontext(EpisodeCollector(assignment, options, run))
 
 
-KIND: Final = SubmissionKind((".yaml", ".yml"), CHECKS, read_settings, collect)
+KIND: Final = SubmissionKind(
+    (".yaml", ".yml"),
+    CHECKS,
+    read_settings,
+    collect,
+    sheet_keys=SHEET_KEYS,
+    exercise="13-potential-fields/pair",
+)

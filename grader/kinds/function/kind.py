@@ -44,6 +44,7 @@ from grader.evidence.contract import (
     EvidenceRecord,
 )
 from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
+from grader.kinds.function.sheet_keys import SHEET_KEYS
 from grader.seeds import SeedSet, counterpart_seed, read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox.limits import GRADER_LIMITS
@@ -400,7 +401,7 @@ def _first_difference(expected: Json, actual: Json) -> str:
         return f": {counted(len(actual), 'entry')} instead of {len(expected)}"
     for index, (one, other) in enumerate(zip(expected, actual, strict=True)):
         if not is_close(one, other, 1e-6):
-            return f": [{index}] should be {format_value(one)}, and is {format_value(other)}"
+            return f": item [{index}] should be {format_value(one)}, and is {format_value(other)}"
     return ""
 
 
@@ -418,4 +419,6 @@ KIND: Final = SubmissionKind(
     collect,
     seed_decides="A seed decides with which values it is called.",
     limits=CALL_LIMITS,
+    sheet_keys=SHEET_KEYS,
+    exercise="30-quality-of-service/heard",
 )

@@ -31,6 +31,7 @@ from grader.kinds.launch.launch_record import (
     copied_package,
     run_launch,
 )
+from grader.kinds.launch.sheet_keys import SHEET_KEYS
 from kit.plain_files import is_file_there
 from kit.plain_text import quoted
 from kit.world.yaml_section import Section
@@ -313,4 +314,6 @@ CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (starts, nodes, arguments, parameters, wired, drives)}
 )
 
-KIND: Final = SubmissionKind((".py",), CHECKS, read_settings, collect)
+KIND: Final = SubmissionKind(
+    (".py",), CHECKS, read_settings, collect, sheet_keys=SHEET_KEYS, exercise="04-launch-files/driver"
+)

@@ -30,6 +30,7 @@ from grader.kinds.contract import (
     collect_once,
     read_submitted_yaml,
 )
+from grader.kinds.plan.sheet_keys import SHEET_KEYS
 from kit.host.failure import Failure
 from kit.layers.assignment import LayerAssignment as Plan
 from kit.layers.assignment import NamedLayer, RequirementBreach, find_breaches
@@ -194,5 +195,9 @@ def _requirement(section: Section, number: int, line: str, case: LayerCase) -> R
 
 
 KIND: Final = SubmissionKind(
-    (".yaml", ".yml"), {each.name: each for each in CHECKS}, read_settings, collect_once(collect_evidence)
+    (".yaml", ".yml"),
+    {each.name: each for each in CHECKS},
+    read_settings,
+    collect_once(collect_evidence),
+    sheet_keys=SHEET_KEYS,
 )

@@ -24,6 +24,7 @@ from grader.assignment import Assignment
 from grader.check import Check, NoParams, check
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
 from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind, collect_once
+from grader.kinds.policy.sheet_keys import SHEET_KEYS
 from grader.seeds import read_seed
 from grader.submitted_files import reading_submission
 from grader.task_files import read_task_choice
@@ -148,4 +149,6 @@ def load_submitted_policy(file: Path) -> Policy:
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (succeeds, every_case, collisions)}
 )
-KIND: Final = SubmissionKind((".npz",), CHECKS, read_settings, collect_once(collect_evidence))
+KIND: Final = SubmissionKind(
+    (".npz",), CHECKS, read_settings, collect_once(collect_evidence), sheet_keys=SHEET_KEYS
+)

@@ -11,6 +11,7 @@ from grader.evidence.contract import EvidenceCollector, EvidenceOptions, FixedEv
 from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.kinds.reward.checks import CHECKS
 from grader.kinds.reward.evidence import RewardEvidence
+from grader.kinds.reward.sheet_keys import SHEET_KEYS
 from kit.plain_text import quoted
 from kit.world.yaml_section import Section
 
@@ -52,4 +53,4 @@ def _grid(section: Section) -> GridTask:
     return made
 
 
-KIND: Final = SubmissionKind((".py",), CHECKS, read_settings, collect)
+KIND: Final = SubmissionKind((".py",), CHECKS, read_settings, collect, sheet_keys=SHEET_KEYS)

@@ -29,6 +29,7 @@ from grader.check import Check, NoParams, check
 from grader.evidence.contract import EvidenceCollector, EvidenceOptions, EvidenceRecord, SingleEvidence
 from grader.evidence.training_results import PosedTaskPlan
 from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
+from grader.kinds.task.sheet_keys import SHEET_KEYS
 from grader.kinds.task.task_process import PosedTaskProcess
 from grader.problem_text import problems_text
 from grader.seeds import read_seed
@@ -227,4 +228,11 @@ def _explain(posed: PosedTaskProcess, name: str, params: object) -> str:
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (sound, places, way, returns, loops, learns, arrives, quick)}
 )
-KIND: Final = SubmissionKind((".yaml", ".yml"), CHECKS, read_settings, collect)
+KIND: Final = SubmissionKind(
+    (".yaml", ".yml"),
+    CHECKS,
+    read_settings,
+    collect,
+    sheet_keys=SHEET_KEYS,
+    exercise="24-train-your-own/pays",
+)

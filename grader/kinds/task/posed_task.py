@@ -7,7 +7,7 @@ No program of the student's runs. Everything is worked out when a check first as
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import permutations
@@ -27,7 +27,6 @@ from grader.evidence.training_results import (
 )
 from grader.kinds.task.task_process import PosedMeasure
 from grader.kinds.training.trainings import run_trainings
-from kit.arrays import IntArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeStats
 from kit.learning.policies.confidence_intervals import lower_bound
@@ -50,6 +49,10 @@ TEACHING_REWARD: Final = "progress"
 """The kit's reward by which a robot is taught to arrive, to see what its drives earn by the task's own reward."""
 REPEATS: Final = (1, 5, 15)
 """Numbers of steps for which each action of a loop is repeated."""
+STRETCH: Final = 0.75
+"""The share of the free way ahead that a robot drives up and down."""
+LoopPlan = tuple[tuple[int, int], ...]
+"""The actions of a loop, each with the number of steps for which it is kept up."""
 TEACHERS: Final = 4
 """Most robots that are trained, one after the other, until one arrives."""
 DRIVES: Final = 32
@@ -67,15 +70,23 @@ class ActionLoop:
     """What a robot earns that repeats a few actions until time is up, or it meets a wall."""
 
     actions: tuple[str, ...]
-    repeats: int
+    repeats: tuple[int, ...]
     """Steps for which each action is kept up."""
     total_reward: float
     is_arriving: bool
+    steps: int = 0
+    """For which it went on."""
 
     def __str__(self) -> str:
         if len(self.actions) == 1:
             return f"only {self.actions[0]}"
-        steps = "one step" if self.repeats == 1 else f"{self.repeats} steps"
+        if len(set(self.repeats)) > 1:
+            parts = (
+                f"{name} for {counted(count, 'step')}"
+                for name, count in zip(self.actions, self.repeats, strict=True)
+            )
+            return f"{' and '.join(parts)}, again and again"
+        steps = "one step" if self.repeats[0] == 1 else f"{self.repeats[0]} steps"
         return f"{' and '.join(self.actions)}, {steps} each, again and again"
 
 
@@ -125,27 +136,60 @@ class PosedTask:
 
     @cached_property
     def loops(self) -> tuple[ActionLoop, ...]:
-        """Every action alone, and every two in turn, each driven once from the first case's start."""
-        actions = self.task.actions
-        assert isinstance(actions, DiscreteActions)  # others are refused before
-        names = list(actions.names)
-        plans: list[tuple[tuple[int, ...], int]] = [((number,), 1) for number in range(len(names))]
-        plans += [(pair, repeats) for repeats in REPEATS for pair in permutations(range(len(names)), 2)]
+        """Every action alone, every two in turn, and up and down the way ahead, each driven once from the first case's start."""
+        assert isinstance(self.task.actions, DiscreteActions)  # others are refused before
+        actions = range(len(self.task.actions.names))
+        alone: list[LoopPlan] = [((number, 1),) for number in actions]
+        pairs: list[LoopPlan] = [
+            tuple((number, repeats) for number in pair)
+            for repeats in REPEATS
+            for pair in permutations(actions, 2)
+        ]
+        driven = self._drive_loops([*alone, *pairs])
+        return (*driven, *self._drive_loops([*self._up_and_down(driven[: len(alone)])]))
+
+    def _up_and_down(self, alone: Sequence[ActionLoop]) -> Iterator[LoopPlan]:
+        """Yields plans that drive straight ahead or back, turn round, and so on. ``alone``: how each action went by itself."""
+        assert isinstance(self.task.actions, DiscreteActions)  # as above
+        twists = self.task.actions.twist_table
+        longest = self.task.max_steps // 4
+        for straight, (speed, turn) in enumerate(twists):
+            if not speed or turn:
+                continue
+            stretch = max(1, min(longest, int(STRETCH * alone[straight].steps)))
+            for turning, (speed, turn) in enumerate(twists):
+                half_turn = 0 if speed or not turn else round(math.pi / abs(turn) / self.task.step_time)
+                if half_turn:
+                    yield (straight, stretch), (turning, half_turn)
+
+    def _drive_loops(self, plans: Sequence[LoopPlan]) -> tuple[ActionLoop, ...]:
+        if not plans:
+            return ()
+        assert isinstance(self.task.actions, DiscreteActions)  # as above
+        names = self.task.actions.names
+        numbers = [[number for number, count in plan for _ in range(count)] for plan in plans]
         batch = BatchEnv(self.task, len(plans), derive_seed(self._seed, "loops"), autoreset=False)
         batch.reset(cases=np.zeros(len(plans), dtype=np.int64))
         earned, running = np.zeros(len(plans)), np.ones(len(plans), dtype=np.bool_)
-        reached = np.zeros(len(plans), dtype=np.bool_)
+        reached, lasted = np.zeros(len(plans), dtype=np.bool_), np.zeros(len(plans), dtype=np.int64)
         step_number = 0
         while running.any():
             self._clock.check()
-            step = batch.step(self._loop_actions(plans, step_number))
+            step = batch.step(np.array([each[step_number % len(each)] for each in numbers], dtype=np.int64))
             earned += np.where(running, step.rewards, 0.0)
+            lasted += running
             reached |= running & step.ended & step.transition.reached
             running &= ~step.ended
             step_number += 1
         return tuple(
-            ActionLoop(tuple(names[each] for each in which), repeats, float(total), bool(arrived))
-            for (which, repeats), total, arrived in zip(plans, earned, reached, strict=True)
+            ActionLoop(
+                tuple(names[number] for number, _ in plan),
+                tuple(count for _, count in plan),
+                float(total),
+                bool(arrived),
+                int(steps),
+            )
+            for plan, total, arrived, steps in zip(plans, earned, reached, lasted, strict=True)
         )
 
     @cached_property
@@ -274,9 +318,6 @@ class PosedTask:
         steps = [case.steps for case in self.policy_test.cases if case.reached]
         ratio = max(steps) * self.task.step_time / self.shortest_seconds() if steps else math.nan
         return PosedMeasure(ratio, _worst_case(self.policy_test))
-
-    def _loop_actions(self, plans: list[tuple[tuple[int, ...], int]], step: int) -> IntArray:
-        return np.array([which[step // repeats % len(which)] for which, repeats in plans], dtype=np.int64)
 
     def _taught_policy(self, number: int) -> Policy:
         """A robot that was taught the task by the kit's own reward."""

@@ -37,6 +37,7 @@ from grader.kinds.contract import (
     collect_once,
     read_submitted_yaml,
 )
+from grader.kinds.training.sheet_keys import SHEET_KEYS
 from grader.seeds import MAX_SEED
 from grader.task_files import read_task_choice
 from kit.host.failure import Failure, FailureKind, StudentCodeError
@@ -255,4 +256,11 @@ def _read_schedule(section: Section, key: str, default: tuple[float, float]) -> 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {each.name: each for each in (succeeds, every_case, remembers, reliable, honest, steps_used)}
 )
-KIND: Final = SubmissionKind((".yaml", ".yml"), CHECKS, read_settings, collect_once(collect_evidence))
+KIND: Final = SubmissionKind(
+    (".yaml", ".yml"),
+    CHECKS,
+    read_settings,
+    collect_once(collect_evidence),
+    sheet_keys=SHEET_KEYS,
+    exercise="12-training-strategies/forget",
+)

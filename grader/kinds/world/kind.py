@@ -31,6 +31,7 @@ from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind
 from grader.kinds.world.checks import CHECKS, NAMES_NEEDING_RUN, explain
 from grader.kinds.world.facts import RunFacts, WorldFacts, WorldRunSpec
 from grader.kinds.world.faults import WorldContents, WorldRun
+from grader.kinds.world.sheet_keys import SHEET_KEYS
 from grader.kinds.world.world_process import READ_TIMEOUT_S, WorldProcess
 from grader.seeds import read_seeds
 from kit.controllers import find_controller
@@ -202,4 +203,4 @@ def collect(
     return WorldCollector(assignment, file, options)
 
 
-KIND: Final = SubmissionKind((".yaml", ".yml"), CHECKS, read_settings, collect)
+KIND: Final = SubmissionKind((".yaml", ".yml"), CHECKS, read_settings, collect, sheet_keys=SHEET_KEYS)

@@ -30,7 +30,8 @@ DRAWING: Final = """
                  kit/arrays  kit/workspace  kit/plain_text  kit/part_file
                  kit/environment_ids  kit/interruption  kit/plain_files
                  kit/array_archives  kit/field_types  kit/installation
-                 kit/extensions  (others' packages)   kit/blas_kernels
+                 kit/extensions  (others' packages)   kit/blas
+                 kit/breadth_first  kit/line_log
 """
 """The rooms of the kit, floor by floor; an import only goes down."""
 

@@ -93,18 +93,3 @@ PROMISES: Final = (
 def promises_since(level: Level | None) -> list[Promise]:
     """Returns the promises that begin to hold at this level; None: those that hold at none."""
     return [promise for promise in PROMISES if promise.since == level]
-
-
-def markdown_table() -> str:
-    """Returns the promises as a Markdown table with a column for each level."""
-    rows = [["A student's program cannot", *(f"level {level:d}" for level in Level)]]
-    rows.append(["---", *("---" for _ in Level)])
-    rows += [[promise.action, *(_table_cell(promise, level) for level in Level)] for promise in PROMISES]
-    return "".join(f"| {' | '.join(row)} |\n" for row in rows)
-
-
-def _table_cell(promise: Promise, level: Level) -> str:
-    if not promise.holds_at(level):
-        return "**possible**"
-    # At level 0 the program has its user's rights: with intent it can undo all of it.
-    return "not by accident" if level is Level.LIMITED else "prevented"

@@ -425,7 +425,12 @@ class BatchEnv:
         if isinstance(self._reward_function, Reward):
             terms = self._reward_function.terms(transition)
             return np.asarray(sum(terms.values()), dtype=np.float32), terms
-        rewards = self._check_values(np.asarray(self._reward_function(transition)), "reward")
+        returned = self._reward_function(transition)
+        if returned is None:
+            raise RewardError(
+                "the reward function returned nothing: does every path through it end with a return?"
+            )
+        rewards = self._check_values(np.asarray(returned), "reward")
         count_metrics = getattr(self._reward_function, "metrics", None)  # of a student's file
         metrics = {} if count_metrics is None else count_metrics(transition)
         return rewards, {
@@ -436,8 +441,9 @@ class BatchEnv:
         """(n,) what code from outside gave, in single precision. RewardError unless it is a finite number for each world."""
         if values.shape != (self.n,) or values.dtype.kind not in "fiub":
             raise RewardError(
-                f"the {name} must be {self.n} numbers, one for each world: this is an array of shape "
-                f"{values.shape} and type {values.dtype}"
+                f"the {name} must be an array of numbers, one for each world, of shape ({self.n},): this has the shape "
+                f"{values.shape} and the type {values.dtype}. The fields of its record are such arrays; "
+                "numpy.full(len(step.reached), 1.0) is a constant one"
             )
         numbers: Float32Array = values.astype(np.float32)
         if not np.isfinite(numbers).all():

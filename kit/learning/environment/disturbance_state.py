@@ -127,12 +127,17 @@ class DisturbanceState:
         if depth == 1:
             yield self.commands[:, 0], np.full(n, length)
             return
+        worlds, own = np.arange(n)[:, None], np.arange(robots)
+        before = self.due[:, :-1]
+        if not ((before > start) & (before < start + length)).any():  # nobody changes a command now
+            newest: IntArray = (before > start).sum(axis=1)
+            yield self.commands[worlds, newest, own], np.full(n, start + length - start)
+            return
         end = np.full((n, 1), start + length)
         begins = np.clip(self.due, start, start + length)
         begins[:, -1] = start
         changes = np.sort(begins.reshape(n, -1), axis=1)
         seconds = np.diff(changes, axis=1, append=end)
-        worlds, own = np.arange(n)[:, None], np.arange(robots)
         for place in range(changes.shape[1]):
             later: IntArray = (begins[:, :-1] > changes[:, place, None, None]).sum(axis=1)
             yield self.commands[worlds, later, own], seconds[:, place]

@@ -16,6 +16,7 @@ from kit.learning.tasks.actions import DiscreteActions
 from kit.learning.tasks.catalogue import WHEELCHAIRS
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.reward import RewardFunction
+from kit.plain_text import join_names, quoted, suggestion
 
 try:
     from pettingzoo import ParallelEnv
@@ -98,7 +99,7 @@ class RobotsParallelEnv(ParallelEnv):
         dict[str, bool],
         dict[str, dict[str, Any]],
     ]:
-        """The robots do one step. KeyError if one of them has no action."""
+        """The robots do one step. KeyError if one of them has no action, or what is no robot has one."""
         agents = list(self.agents)
         seen, reward, terminated, truncated, info = self._env.step(self._join_actions(actions))
         if terminated or truncated:
@@ -130,6 +131,13 @@ class RobotsParallelEnv(ParallelEnv):
 
     def _join_actions(self, actions: dict[str, Any]) -> Any:
         """One action of all robots, from those of each."""
+        for agent in actions:
+            if agent not in self.possible_agents:
+                raise KeyError(
+                    f"there is no agent {quoted(str(agent))}: {suggestion(str(agent), self.possible_agents)}"
+                )
+        if without := [agent for agent in self.possible_agents if agent not in actions]:
+            raise KeyError(f"every agent needs an action: there is none of {join_names(without)}")
         each = [np.asarray(actions[agent]) for agent in self.possible_agents]
         if not isinstance(self._actions, DiscreteActions):
             return np.concatenate(each)

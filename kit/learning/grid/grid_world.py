@@ -7,11 +7,12 @@ cliff puts the robot back to the start instead).
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
+
+from kit.breadth_first import reached_from
 
 MOVES: Final = ("right", "up", "left", "down")
 """Moves by number: quarter turns, counter-clockwise from the right."""
@@ -95,17 +96,21 @@ class GridWorld:
     @cached_property
     def shortest_path_length(self) -> int | None:
         """Moves from the start to the nearest G, past no other end; None if none can be reached."""
-        distances, waiting = {self.start: 0}, deque([self.start])
-        while waiting:
-            cell = waiting.popleft()
-            if self.sign(cell) == TARGET:
-                return distances[cell]
-            for move in range(len(MOVES)):
-                reached = self._neighbor(cell, move)
-                if reached not in distances and self.sign(reached) not in (SMALL_TARGET, CLIFF):
-                    distances[reached] = distances[cell] + 1
-                    waiting.append(reached)
-        return None
+        return next(
+            (
+                len(moves)
+                for cell, moves in reached_from(self.start, self._moves_past_ends)
+                if self.sign(cell) == TARGET
+            ),
+            None,
+        )
+
+    def _moves_past_ends(self, cell: GridCell) -> Iterator[tuple[int, GridCell]]:
+        """The moves from a cell that end at neither a small target nor a cliff, each with the cell that it leads to."""
+        for move in range(len(MOVES)):
+            reached = self._neighbor(cell, move)
+            if self.sign(reached) not in (SMALL_TARGET, CLIFF):
+                yield move, reached
 
     def cells(self) -> Iterator[GridCell]:
         """Every cell, row by row."""

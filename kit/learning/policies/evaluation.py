@@ -20,6 +20,7 @@ from kit.learning.policies.episode_paths import PathRecorder
 from kit.learning.policies.policy import Policy, PolicyError
 from kit.learning.policies.policy_file import load_policy
 from kit.learning.policies.seeds import derive_seed
+from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.reward import RewardFunction
 from kit.learning.tasks.student_reward import StudentReward, metric_parameters
@@ -101,13 +102,18 @@ def _mean(numbers: Iterable[float]) -> float:
     return float(np.mean(list(numbers)))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class EvaluationResult:
     """Results of an evaluation on all cases."""
 
     task: str
     greedy: bool
     cases: tuple[CaseResult, ...]
+
+    def __repr__(self) -> str:
+        """``EvaluationResult(turn: success 0.985, worst 0.970 in turn_b_to_a)``"""
+        worst = self.worst
+        return f"{type(self).__name__}({self.task}: success {self.mean:.3f}, worst {worst.share:.3f} in {worst.case})"
 
     @property
     def mean(self) -> float:
@@ -334,17 +340,18 @@ def evaluate_on(
 def evaluate_policy(
     policy: Policy | Path | str,
     *,
-    task: LearningTask | None = None,
+    task: LearningTask | Path | str | None = None,
     episodes: int = 100,
     seed: int = 0,
     greedy: bool = True,
 ) -> EvaluationResult:
     """Tests a policy on at least ``episodes`` episodes of each case and returns its success rate by case.
 
-    ``policy``: a policy or its file. ``task``: default: the one that it was trained on. ``greedy``: whether it takes
+    ``policy``: a policy or its file. ``task``: one, its name or its file; default: the one that it was trained on. ``greedy``: whether it takes
     its best action, or draws actions as it did in training. The same arguments give the same result.
 
-    Raises PolicyError if the file is damaged or the policy does not fit the task.
+    Raises PolicyError if the file is damaged or the policy does not fit the task, UnknownTask, and ValueError for fewer than one
+    episode.
 
     >>> result = kit.evaluate_policy("best.npz", episodes=10)
     >>> [case.case for case in result.cases]
@@ -356,6 +363,11 @@ def evaluate_policy(
         raise PolicyError(
             f"a {type(policy).__name__} is not a policy of the kit's: kit.export_policy(model, task) makes one of it."
         )
+    if episodes < 1:
+        raise ValueError(f"there must be at least one episode of each case, not {episodes}")
     policy = policy if isinstance(policy, Policy) else load_policy(policy)
-    place = policy.trained_on.resolve() if task is None else task
-    return evaluate_on(place, policy, episodes, seed, greedy=greedy)
+    if task is None:
+        task = policy.trained_on.resolve()
+    elif not isinstance(task, LearningTask):
+        task = find_task(str(task))
+    return evaluate_on(task, policy, episodes, seed, greedy=greedy)

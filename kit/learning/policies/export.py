@@ -18,6 +18,7 @@ from kit.learning.policies.policy import (
     PolicyError,
     SamplingKind,
     action_counts,
+    check_network,
     task_interface,
 )
 from kit.learning.policies.policy_network import (
@@ -63,8 +64,10 @@ def export_policy(model: Any, task: Path | str) -> Policy:
         if isinstance(model, nn.Module):
             policy = _policy_of_module(model, choices, spec, task_interface(resolved), seen)
         elif hasattr(model, "policy") and hasattr(model, "predict"):
+            network = export_network(model)
+            check_network(network, resolved)
             policy = Policy(
-                export_network(model),
+                network,
                 choices,
                 export_sampling(model),
                 spec,

@@ -21,7 +21,7 @@ from kit.arrays import BoolArray, Float32Array, IntArray
 from kit.learning.policies.policy_network import ActionValueTable, PolicyNetwork
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.plain_text import printable_text
+from kit.plain_text import printable_line
 
 SamplingKind = Literal["softmax", "epsilon", "normal", "tanh-normal", "noisy-tanh"]
 
@@ -48,7 +48,7 @@ class PolicyError(Exception):
     """
 
     def __init__(self, message: str) -> None:
-        super().__init__("\n".join(map(printable_text, message.split("\n"))))
+        super().__init__("\n".join(map(printable_line, message.split("\n"))))
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,6 +258,17 @@ def action_counts(space: spaces.Space[Any]) -> tuple[int, ...]:
     if isinstance(space, spaces.Box):
         return ()
     raise PolicyError(f"a policy cannot act in the space {space}")
+
+
+def check_network(network: PolicyNetwork, task: LearningTask) -> None:
+    """ValueError unless a network that was trained elsewhere sees what an agent of the task sees, and scores its actions."""
+    sees, choices = task.observation.size * task.robots, action_counts(task.actions.space(task.robots))
+    if network.inputs != sees or (choices and network.outputs != sum(choices)):
+        has = f"one of {_product_text(choices)} actions" if choices else "continuous actions"
+        raise ValueError(
+            f"its network sees {network.inputs} numbers and gives {network.outputs}; an agent of task {task.name} sees {sees} "
+            f"and does {has}"
+        )
 
 
 class PolicyPlayer:

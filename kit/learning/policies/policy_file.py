@@ -118,6 +118,10 @@ def load_policy(
     except FileNotFoundError:
         raise
     except Exception as error:  # noqa: BLE001 - whatever a damaged archive makes numpy raise
+        if file.suffix == ".zip":
+            raise PolicyError(
+                f"{file}: not a model of stable-baselines3, or damaged: save it again."
+            ) from None
         raise PolicyError(f"{file}: not a policy, or damaged ({error}). `kit runs` lists the runs.") from None
     if task is not None:
         policy.check_fits(find_task(str(task)))

@@ -22,7 +22,14 @@ import numpy as np
 
 from kit.array_archives import MAX_PACKED_BYTES, MAX_UNPACKED_BYTES, READ_ERRORS, read_arrays
 from kit.arrays import Float32Array, FloatArray
-from kit.learning.policies.policy import ActionSampling, Policy, PolicyError, action_counts, task_interface
+from kit.learning.policies.policy import (
+    ActionSampling,
+    Policy,
+    PolicyError,
+    action_counts,
+    check_network,
+    task_interface,
+)
 from kit.learning.policies.policy_network import (
     Activation,
     LinearLayer,
@@ -97,6 +104,7 @@ def read_sb3_policy(
         between = activation or _activation(about, weights)
         parts = _parts_of(weights, between, about, choices)
         model, critic = parts.model, parts.critic
+        check_network(model, task)
         if statistics is not None:
             normal = _Normalisation.read(statistics, task)
             model = normal.before(model)
@@ -115,7 +123,7 @@ def read_sb3_policy(
         policy.check_consistent()
     except (LookupError, ValueError, OverflowError) as error:
         raise PolicyError(
-            f"{file}: its weights do not fit one another, or task {task.name} ({error})."
+            f"{file}: its weights do not fit one another, or task {task.name}: {error}. Was it trained on another task?"
         ) from None
     return policy
 

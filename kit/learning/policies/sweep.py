@@ -31,7 +31,8 @@ from kit.learning.tasks.disturbances import (
     UniformRange,
 )
 from kit.learning.tasks.learning_task import LearningTask
-from kit.plain_text import quoted, suggestion
+from kit.line_log import LineLog
+from kit.plain_text import quoted, suggestion, without_formula
 from kit.render.curve import Axes, Curve, draw_curves
 from kit.render.encode import Encoder
 
@@ -169,8 +170,8 @@ class PolicySweep:
     def _append(self, name: str, counts: dict[str, Any]) -> None:
         if self._journal is not None:
             entry = {"key": self._key, "disturbances": name, "counts": counts}
-            with self._journal.open("a") as file:
-                file.write(f"{json.dumps(entry)}\n")
+            with self._journal.open("a+b") as file:
+                LineLog(file).append(json.dumps(entry).encode())
 
 
 def _outcome_counts(result: EvaluationResult) -> dict[str, Any]:
@@ -254,7 +255,7 @@ def sweep_csv(points: Sequence[SweepPoint]) -> str:
     units = {kind.name: kind.unit for kind in DISTURBANCE_KINDS}
     for point in points:
         measured = (point.episodes, point.share, *point.interval, point.reached, point.collided)
-        tail = (point.timed_out, point.worst_case, point.worst_share)
+        tail = (point.timed_out, without_formula(point.worst_case), point.worst_share)
         metrics = (point.metrics.get(name, "") for name in own)
         writer.writerow((point.kind, units[point.kind], point.value, *measured, *tail, *metrics))
     return text.getvalue()

@@ -52,7 +52,7 @@ class Algorithm:
         """Whether it needs the extra ``learn``."""
         return self.family != "table"
 
-    def own_defaults(self) -> Mapping[str, Any]:
+    def library_defaults(self) -> Mapping[str, Any]:
         """The arguments of a library's class and their defaults; none for the kit's own. ImportError without the extra
         ``learn``."""
         if self.library == "kit":

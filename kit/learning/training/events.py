@@ -6,7 +6,6 @@ A reader may look at any time, also while a line is half written; a writer may b
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -14,6 +13,7 @@ from types import MappingProxyType
 from typing import Literal, Self, TypeAlias
 
 from kit.field_types import check_field_types
+from kit.line_log import LineLog, whole_lines
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +103,8 @@ _EVENT_NAMES = {kind: name for name, kind in EVENT_TYPES.items()}
 
 
 def encode_event(event: TrainingEvent) -> bytes:
-    """One line of JSON."""
-    return json.dumps({"event": _EVENT_NAMES[type(event)], **asdict(event)}).encode() + b"\n"
+    """A line of JSON, without its end."""
+    return json.dumps({"event": _EVENT_NAMES[type(event)], **asdict(event)}).encode()
 
 
 def decode_event(line: bytes) -> TrainingEvent | None:
@@ -119,23 +119,15 @@ def decode_event(line: bytes) -> TrainingEvent | None:
 
 
 class EventWriter:
-    """Appends events to a file. A half line that a killed writer left is cut off first."""
+    """Appends events to a file."""
 
     def __init__(self, file: Path) -> None:
-        self._file = file.open("ab")
-        whole = _length_of_whole_lines(file)
-        if whole < self._file.tell():
-            os.truncate(file, whole)
+        self._file = file.open("a+b")
+        self._log = LineLog(self._file)
 
     def write(self, event: TrainingEvent) -> None:
         """OSError if the disk is full; nothing of the event stands in the file then."""
-        start = os.fstat(self._file.fileno()).st_size
-        try:
-            self._file.write(encode_event(event))
-            self._file.flush()
-        except OSError:
-            os.truncate(self._file.fileno(), start)
-            raise
+        self._log.append(encode_event(event))
 
     def close(self) -> None:
         self._file.close()
@@ -147,18 +139,13 @@ class EventWriter:
         self.close()
 
 
-def _length_of_whole_lines(file: Path) -> int:
-    """Returns the size of the whole lines at the start of the file [bytes]."""
-    return file.read_bytes().rfind(b"\n") + 1
-
-
 class EventReader:
     """Reads a run's events as they come, each once."""
 
     def __init__(self, file: Path, *, from_now: bool = False) -> None:
         """``from_now``: leave out what stands in the file already."""
         self._file = file
-        self._offset = _length_of_whole_lines(file) if from_now and file.exists() else 0
+        self._offset = whole_lines(file.read_bytes()) if from_now and file.exists() else 0
 
     def read_new(self) -> Iterator[TrainingEvent]:
         """Returns the events written since the last call; none while there is no file."""
@@ -168,7 +155,7 @@ class EventReader:
                 data = file.read()
         except FileNotFoundError:
             return
-        whole = data.rfind(b"\n") + 1
+        whole = whole_lines(data)
         self._offset += whole
         for line in data[:whole].splitlines():
             event = decode_event(line)

@@ -77,7 +77,7 @@ class Preset:
     def setting_types(self, algorithm: Algorithm | None = None) -> Mapping[str, type]:
         """The settings that are numbers, by name: int, float or LinearSchedule. Of an ``algorithm``, only those that it takes;
         to know them, its library is imported."""
-        accepted = None if algorithm is None else algorithm.own_defaults()
+        accepted = None if algorithm is None else algorithm.library_defaults()
         found: dict[str, type] = {}
         for name, declared in get_type_hints(type(self.settings)).items():
             declared_kinds = get_args(declared) if get_origin(declared) is UnionType else (declared,)

@@ -7,16 +7,14 @@ is asked to do; ``lock`` held by the learner while it lives; ``log.txt`` what it
 
 from __future__ import annotations
 
-import fcntl
 import io
 import json
-import time
 import zipfile
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import IO, get_args
+from typing import get_args
 
 from kit.array_archives import READ_ERRORS
 from kit.learning.policies.policy import Policy
@@ -26,26 +24,10 @@ from kit.learning.training.events import (
     EventReader,
     TrainingEvent,
 )
+from kit.learning.training.process_lock import LockedError, is_locked, process_lock
 from kit.learning.training.run_config import RunConfig, RunError
 from kit.learning.training.training_summary import TrainingCommand, TrainingSummary, summarise_events
 from kit.workspace import write_atomically
-
-LOCK_WAIT_S = 0.2
-"""Seconds a learner waits for the lock, which a process that checks the run holds for a moment."""
-
-
-def _try_lock(lock: IO[bytes]) -> bool:
-    """Locks the file for this process alone; False if another one keeps it."""
-    until = time.monotonic() + LOCK_WAIT_S
-    while True:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            if time.monotonic() >= until:
-                return False
-            time.sleep(LOCK_WAIT_S / 20)
-        else:
-            return True
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,22 +130,23 @@ class TrainingRun:
 
         RunError if a process trains it already.
         """
-        with (self.folder / "lock").open("ab") as lock:
-            if not _try_lock(lock):
-                raise RunError(f"{self.name} is already training. `kit watch {self.name}` shows it.")
+        with ExitStack() as stack:
+            try:
+                stack.enter_context(process_lock(self._lock_file))
+            except LockedError:
+                raise RunError(
+                    f"{self.name} is already training. `kit watch {self.name}` shows it."
+                ) from None
             yield
 
     @property
     def is_active(self) -> bool:
         """Whether a process trains it."""
-        try:
-            with (self.folder / "lock").open("rb") as lock:
-                fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
-                return False
-        except FileNotFoundError:
-            return False
-        except OSError:
-            return True
+        return is_locked(self._lock_file)
+
+    @property
+    def _lock_file(self) -> Path:
+        return self.folder / "lock"
 
     # What has happened
 

@@ -13,6 +13,7 @@ from kit.document.blocks import Cell, CellStyle, Column, Table
 from kit.learning.policies.confidence_intervals import wilson_interval
 from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_sweep import SweepEntry, SweepGroup, SweepResult, TrainingSweep
+from kit.plain_text import without_formula
 
 DEFAULT_GOAL = 0.9
 """A seed has learned where its worst case succeeds this often, if the task does not say."""
@@ -130,15 +131,16 @@ def sweep_table_csv(sweep: TrainingSweep) -> str:
     own = tuple(dict.fromkeys(name for _, result in _tested_entries(sweep) for name in result.metrics))
     writer.writerow((*CSV_HEADER, *own))
     for entry, result in _tested_entries(sweep):
-        found = (result.steps, result.seconds, result.mean, result.worst, result.worst_case)
+        worst_case = without_formula(result.worst_case)
+        found = (result.steps, result.seconds, result.mean, result.worst, worst_case)
         writer.writerow(
             (
-                *entry.group,
+                *(without_formula(str(each)) for each in entry.group),
                 entry.config.seed,
                 *found,
                 result.reached,
                 result.episodes,
-                result.problem,
+                without_formula(result.problem),
                 *(result.metrics.get(name, "") for name in own),
             )
         )

@@ -8,18 +8,19 @@ checkpoint of the training that runs.
 
 from __future__ import annotations
 
-import fcntl
 import os
 import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Final
 
 from kit.host.job_executors import read_shard
 from kit.host.job_folder import JobExecutor, serve_keys
+from kit.learning.training.process_lock import LockedError, process_lock
 from kit.learning.training.training_sweep import LOCK_FILE, TrainingSweep
 from kit.learning.training.worker import EXIT_SIGNALS, ExitRequest
 
@@ -48,13 +49,9 @@ def _run_all(sweep: TrainingSweep) -> int:
     """Trains all that has no result yet, unless another process does."""
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    with (sweep.folder / LOCK_FILE).open("a+") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            return 0
+    with suppress(LockedError), process_lock(sweep.folder / LOCK_FILE) as lock:
         lock.truncate(0)
-        lock.write(str(os.getpid()))
+        lock.write(b"%d" % os.getpid())
         lock.flush()
         JobExecutor(jobs=_available_processors()).run(sweep, sweep.waiting(), lambda key: None)
     return 0

@@ -494,7 +494,7 @@ class _SeededPolicyTest:
         seed = derive_seed(self._seed, "test", self.test_count)
         self.test_count += 1
         self.result = self._evaluator.test(self._policy, each, seed, greedy=self._greedy)
-        return {case.case: _case_count(case) for case in self.result.cases}
+        return {case.case: _count_of_case(case) for case in self.result.cases}
 
 
 def practice_shares(counts: CaseCounts, hard_case_share: float) -> FloatArray:
@@ -507,7 +507,8 @@ def practice_shares(counts: CaseCounts, hard_case_share: float) -> FloatArray:
     return shares
 
 
-def _case_count(case: CaseResult) -> CaseCount:
+def _count_of_case(case: CaseResult) -> CaseCount:
+    """What counts of a test's result on one case; an adjacency that was not measured as 0."""
     return CaseCount(case.reached, case.episodes, 0.0 if math.isnan(case.adjacency) else case.adjacency)
 
 

@@ -7,7 +7,6 @@ goes on where it was.
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import itertools
 import json
@@ -28,6 +27,7 @@ from kit.host.python_command import python_command
 from kit.learning.policies.evaluation import evaluate_on
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.task_spec import TaskSpec
+from kit.learning.training.process_lock import is_locked
 from kit.learning.training.run_config import PresetName, RunConfig, RunError, format_settings
 from kit.learning.training.run_folders import create_run
 from kit.learning.training.runs import TrainingRun
@@ -154,14 +154,7 @@ class TrainingSweep(JobFolder):
     @property
     def is_active(self) -> bool:
         """Whether a process of its own trains it, as ``sweep_worker.start_sweep`` starts one."""
-        try:
-            with (self.folder / LOCK_FILE).open("rb") as lock:
-                fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
-                return False
-        except FileNotFoundError:
-            return False
-        except OSError:  # it is locked
-            return True
+        return is_locked(self.folder / LOCK_FILE)
 
     def stop(self) -> None:
         """Ends the process that trains it; the training that runs leaves a checkpoint. Nothing if there is none."""

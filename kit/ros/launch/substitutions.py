@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import ast
-import math
 import shutil
 from collections.abc import Iterable
 from pathlib import Path
-from types import CodeType
 from typing import Any, Final
 
 from kit.plain_text import nearest_name
 from kit.ros.launch.bounds import MAX_TEXT_LENGTH
 from kit.ros.launch.context import LaunchContext, SubstitutionFailure
+from kit.ros.launch.expressions import ExpressionTooLarge, evaluate
 
 KIT_COMMANDS = frozenset({"ros2"})
 """Commands that are always found, since the kit brings them."""
@@ -150,8 +148,9 @@ class PythonExpression(Substitution):
     def perform(self, context: LaunchContext) -> str:
         expression = perform_substitutions(context, self.expression)
         try:
-            # The launch file's author's own code, in the launch file's own process.
-            return str(eval(_compiled(expression, context), {}, dict(vars(math))))
+            return evaluate(expression, context.location)
+        except ExpressionTooLarge as problem:
+            raise SubstitutionFailure(f"the expression {expression!r} is not computed: {problem}.") from None
         except Exception as problem:  # noqa: BLE001 - whatever the author's expression raises
             raise SubstitutionFailure(
                 f"the expression {expression!r} fails: {type(problem).__name__}: {problem}. "
@@ -160,15 +159,6 @@ class PythonExpression(Substitution):
 
     def describe(self) -> str:
         return f"PythonExpr({describe_substitutions(self.expression)})"
-
-
-def _compiled(expression: str, context: LaunchContext) -> CodeType:
-    """Compiles an expression as if it stood in its line of the launch file: one that never ends is told by that line."""
-    if context.location is None:
-        return compile(expression, "<string>", "eval")
-    file, line = context.location
-    tree = ast.parse(expression.lstrip(" \t"), filename="<string>", mode="eval")
-    return compile(ast.increment_lineno(tree, line - 1), file, "eval")
 
 
 class LocalSubstitution(Substitution):

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from typing import ClassVar, Final, Generic, TypeAlias, TypeVar
 
+from kit.breadth_first import reached_from
 from kit.document.rows import Row
 from kit.school.game.judgement import Judgement
 
@@ -106,15 +106,8 @@ def step(grid: Grid, cell: Cell, move: str) -> Cell:
 
 def distances_to(grid: Grid, goal: Cell) -> dict[Cell, int]:
     """The number of moves to a cell from every cell that leads there."""
-    found, waiting = {goal: 0}, deque([goal])
-    while waiting:
-        cell = waiting.popleft()
-        for move in MOVES:  # every move can be undone by its opposite
-            beside = step(grid, cell, move)
-            if beside not in found:
-                found[beside] = found[cell] + 1
-                waiting.append(beside)
-    return found
+    reached = reached_from(goal, lambda cell: ((move, step(grid, cell, move)) for move in MOVES))
+    return {cell: len(moves) for cell, moves in reached}  # every move can be undone by its opposite
 
 
 def shortest_way(grid: Grid, start: Cell, goal: Cell) -> str:

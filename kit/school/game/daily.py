@@ -9,16 +9,16 @@ import datetime
 import math
 import random
 import re
-from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from itertools import pairwise
 from typing import Final, TypeAlias
 
 import numpy as np
 
 from kit.arrays import FloatArray
+from kit.breadth_first import reached_from
 from kit.geometry import Pose, wrap_angle
 from kit.run.scenario import BEACON, Scenario
 from kit.school.game.drive_commands import DriveCommand, ReferenceDrive
@@ -151,14 +151,14 @@ def daily_map(day: datetime.date) -> DailyMap:
         columns, rows = chance.randint(*COLUMNS), chance.randint(*ROWS)
         openings = _draw_maze(chance, columns, rows)
         start = (0, chance.randrange(rows))
-        before = _search(openings, start)
-        far = max(before, key=lambda cell: (len(_path_to(before, cell)), cell))
-        way = _path_to(before, far)
+        ways = dict(reached_from(start, partial(_moves_through, sorted(openings))))
+        far = max(ways, key=lambda cell: (len(ways[cell]), cell))
+        way = (start, *ways[far])
         bends = sum(
             _direction(a, b) != _direction(b, c) for a, b, c in zip(way, way[1:], way[2:], strict=False)
         )
         if len(way) >= LEAST_CELLS and bends >= LEAST_BENDS:
-            return DailyMap(columns, rows, frozenset(openings), tuple(way))
+            return DailyMap(columns, rows, frozenset(openings), way)
 
 
 def _draw_maze(chance: random.Random, columns: int, rows: int) -> set[tuple[Cell, Cell]]:
@@ -187,26 +187,9 @@ def _neighbours(cell: Cell, columns: int, rows: int) -> list[Cell]:
     return [(a, b) for a, b in around if 0 <= a < columns and 0 <= b < rows]
 
 
-def _search(openings: set[tuple[Cell, Cell]], start: Cell) -> dict[Cell, Cell | None]:
-    """The cell before each on a shortest way from the start: breadth first."""
-    before: dict[Cell, Cell | None] = {start: None}
-    waiting = deque([start])
-    while waiting:
-        cell = waiting.popleft()
-        for first, second in sorted(openings):
-            if first == cell and second not in before:
-                before[second] = cell
-                waiting.append(second)
-    return before
-
-
-def _path_to(before: dict[Cell, Cell | None], end: Cell) -> list[Cell]:
-    way: list[Cell] = []
-    cell: Cell | None = end
-    while cell is not None:
-        way.append(cell)
-        cell = before[cell]
-    return way[::-1]
+def _moves_through(openings: Sequence[tuple[Cell, Cell]], cell: Cell) -> Iterator[tuple[Cell, Cell]]:
+    """The cells beside one that an opening leads to, each as the move there and where that leads."""
+    return ((second, second) for first, second in openings if first == cell)
 
 
 def _direction(a: Cell, b: Cell) -> tuple[int, int]:

@@ -17,7 +17,7 @@ from kit.school.game.challenge import Challenge, ChallengeError
 from kit.school.game.challenges import answers_folder, find_challenge
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
-from kit.school.game.needed import Bin, histogram
+from kit.school.game.players_histogram import HistogramBin, histogram
 from kit.workspace import Workspace, write_atomically
 from kit.world.problems import WorldError
 
@@ -60,7 +60,7 @@ def figures_needed(folder: Path, challenge: Challenge) -> list[float]:
     return [each.answer for each in found if each is not None]
 
 
-def share_answer(challenge: Challenge, answer: str, judgement: Judgement) -> tuple[Bin, ...]:
+def share_answer(challenge: Challenge, answer: str, judgement: Judgement) -> tuple[HistogramBin, ...]:
     """Puts an answer that was judged beside those of others, where the player has joined the leaderboard; returns what all of them
     needed, as a histogram with one's own figure. Empty for an answer without a medal, and where there are few players."""
     folder = leaderboard.leaderboard_folder()

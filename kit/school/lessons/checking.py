@@ -19,6 +19,7 @@ from kit.host.python_command import python_command
 from kit.results.grading_result import PUBLIC_CASES, CriterionResult, GradingResult, GradingVerdict
 from kit.school.lessons.reading import solutions_folder
 from kit.school.lessons.records import Exercise, Lesson
+from kit.school.lessons.shell_lines import shell_path
 from kit.school.lessons.training_curves import TrainingCurves, is_drive_line, read_training_curves
 from kit.school.lessons.translation import translated_result, translation_of
 from kit.workspace import Workspace, write_atomically
@@ -231,12 +232,14 @@ class ExerciseCheck:
         self._process: subprocess.Popen[bytes] | None = None
         if not file.exists():
             self._report = _without_result(
-                f"{file} does not exist. `x` restarts the exercise with new files.", GradingVerdict.FAIL
+                f"{shell_path(file)} does not exist. `x` restarts the exercise with new files.",
+                GradingVerdict.FAIL,
             )
             return
         if not file.is_file():
             self._report = _without_result(
-                f"{file} is not a file. Save your work under that name; `x` restarts the exercise and keeps a copy of what is there.",
+                f"{shell_path(file)} is not a file. Save your work under that name; `x` restarts the exercise and keeps a copy of "
+                "what is there.",
                 GradingVerdict.FAIL,
             )
             return
@@ -375,12 +378,6 @@ class ExerciseCheck:
             if is_refused:
                 return _without_result(errors, GradingVerdict.FAIL)
             return _without_result(f"The check broke: {last_line}", GradingVerdict.BROKEN)
-
-
-def check_exercise(exercise: Exercise, file: Path, *, recording: Path | None = None) -> CheckReport:
-    """Checks an exercise and waits for the report."""
-    with ExerciseCheck(exercise, file, recording=recording) as running:
-        return running.wait()
 
 
 def submission_path(exercise: Exercise, file: Path) -> Path:

@@ -14,6 +14,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from kit.run.episode import run_until, when_failed
+from kit.world.problems import WorldError
+
 if TYPE_CHECKING:
     from kit.run.recording import Recording
     from kit.run.scenario import Scenario
@@ -68,11 +71,9 @@ def prepare_defence(program: Path, run: Path, seed: int) -> Defence:
     ``seed``: of that start, and of the world. Raises DefenceError.
     """
     from kit.controllers import find_controller
-    from kit.run.episode import run_until, when_failed
     from kit.run.recording import Recorder, RecordingError, load_recording
     from kit.run.scenario import find_scenario
     from kit.run.session import Session
-    from kit.world.problems import WorldError
 
     try:
         before = load_recording(run)
@@ -102,7 +103,6 @@ def prepare_defence(program: Path, run: Path, seed: int) -> Defence:
 
 def _free_start(place: Scenario, before: Recording, robot: str, seed: int) -> tuple[float, float, float]:
     """A pose on the way of an earlier run, with another heading, in which the robot touches nothing."""
-    from kit.run.episode import run_until
     from kit.run.session import Session
 
     way = before.track(robot)

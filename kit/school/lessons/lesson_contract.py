@@ -13,6 +13,7 @@ from kit.host.python_command import python_command
 from kit.host.sandbox.probe import highest_level_up_to
 from kit.host.sandbox.sandbox_config import Level
 from kit.plain_text import quoted, suggestion
+from kit.run.scenario import find_scenario
 from kit.school.lessons.checking import SOLUTIONS
 from kit.school.lessons.reading import LESSON_FILE, read_lesson
 from kit.school.lessons.records import Lesson, LessonStep, StepKind
@@ -75,7 +76,6 @@ def _check_commands(lesson: Lesson, verbs: Collection[str]) -> Iterator[Contract
 
 
 def _check_scenes(lesson: Lesson) -> Iterator[ContractFinding]:
-    from kit.run.scenario import find_scenario
 
     for step in lesson.steps:
         if step.scene is None:

@@ -388,11 +388,11 @@ class LessonDialogue(Dialogue):
         ]
 
     def poll(self) -> Effect:
-        said = [text for step in self.checked_elsewhere if (text := self._poll_elsewhere(step))]
-        effect = self._poll_here()
+        said = [text for step in self.checked_elsewhere if (text := self._poll_other_check(step))]
+        effect = self._poll_present_check()
         return Remark(" ".join(said), Tone.DIM) if effect is None and said else effect
 
-    def _poll_elsewhere(self, step: LessonStep) -> str:
+    def _poll_other_check(self, step: LessonStep) -> str:
         """Takes in the check of another step; what it found, once it has ended."""
         assert step.exercise is not None
         work = self._works[step.exercise.name]
@@ -401,7 +401,7 @@ class LessonDialogue(Dialogue):
         found = "passed" if work.report.is_passed else "not yet passed"
         return f"The check of step {step.number} has ended: {found}."
 
-    def _poll_here(self) -> Effect:
+    def _poll_present_check(self) -> Effect:
         work = self.work
         if work is None:
             return None

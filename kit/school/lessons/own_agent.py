@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox.sandbox_config import Level
 from kit.learning.grid.grid_world import FLOOR, START, TARGET, WALL, GridCell, GridWorld
+from kit.run.episode import run_until, when
 from kit.school.lessons.own_learners import OwnLinesError, StudentLines, make_own_learner
 from kit.school.lessons.records import LearningScene
 
@@ -79,7 +81,6 @@ def make_film(scene: LearningScene, files: list[Path], level: Level) -> OwnAgent
 
 def _drive(world: GridWorld, path: tuple[GridCell, ...], folder: Path) -> tuple[Recording, Scenario]:
     """A robot drives along the cells of a path, in a world that is the floor. Raises OwnAgentError."""
-    from kit.run.episode import run_until, when
     from kit.run.place_driver import WayDriver
     from kit.run.recording import Recorder, save_recording
     from kit.run.scenario import find_scenario
@@ -102,7 +103,6 @@ def _drive(world: GridWorld, path: tuple[GridCell, ...], folder: Path) -> tuple[
 
 def _floor_map(world: GridWorld, folder: Path) -> Path:
     """Writes the floor as a map, once; returns its folder. Raises OSError and ValueError."""
-    import shutil
 
     from kit.mapmaking.map_drawing import read_drawing
     from kit.mapmaking.new_map import write_map

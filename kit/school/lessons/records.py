@@ -8,6 +8,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal
 
+from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
 from kit.learning.grid.grid_learner import GridLearnerSettings
 from kit.learning.grid.grid_world import GridWorld
 
@@ -287,6 +288,5 @@ def scene_confinement_level(scene: LessonScene) -> Level:
     """How far the controller of a lesson's scene is confined: the kit's own run as a student's do; somebody else's as
     confined as this machine can. Slow the first time: the machine is asked what it can."""
     from kit.host.sandbox.probe import highest_level_up_to
-    from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
 
     return highest_level_up_to(max(Level)) if scene.is_foreign else INTERACTIVE_LEVEL

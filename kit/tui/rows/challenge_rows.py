@@ -12,7 +12,7 @@ from kit.school.game.board import Board
 from kit.school.game.challenge import Challenge
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
-from kit.school.game.needed import Bin
+from kit.school.game.players_histogram import HistogramBin
 from kit.school.lessons.reading import lesson_number
 from kit.school.lessons.shell_lines import shell_path
 from kit.tui.rows.drive_end_rows import needed_rows
@@ -202,23 +202,24 @@ def worth_now(judgement: Judgement | str, width: int) -> tuple[list[Row], list[R
     return rows, _wrap_with_lead("      ", judgement.text, width, "dim")
 
 
-def judged(judgement: Judgement, previous: Medal, following: str | None, width: int) -> list[Row]:
-    """What an answer earned, how far it is from others, and after a medal what comes next.
+def judged(judgement: Judgement, previous: Medal, following: str | None, beside: Sequence[Row]) -> list[Row]:
+    """What an answer earned, how it stands ``beside`` others, and after a medal what comes next.
 
     ``previous``: the best medal before. ``following``: the title of the next challenge; None after the last one.
     """
-    rows = [
-        medal_row(judgement.medal, is_new=judgement.medal > previous),
-        *_wrap_with_lead("  ", judgement.text, width),
-    ]
-    if judgement.comparison is not None:
-        rows += _comparison_rows(judgement.comparison)
+    rows = [medal_row(judgement.medal, is_new=judgement.medal > previous), *beside]
     if following is not None and judgement.medal is not Medal.NONE:
         rows.append(row(("   next ", "dim"), following))
     return rows
 
 
-def answers_needed_rows(bins: Sequence[Bin], comparison: AnswerComparison) -> list[Row]:
+def beside_others(judgement: Judgement, width: int) -> list[Row]:
+    """A sentence about an answer, and how far it is from others."""
+    rows = _wrap_with_lead("  ", judgement.text, width)
+    return rows if judgement.comparison is None else rows + _comparison_rows(judgement.comparison)
+
+
+def answers_needed_rows(bins: Sequence[HistogramBin], comparison: AnswerComparison) -> list[Row]:
     """A histogram of what all players of this machine needed; empty for one without bins."""
     decimals = 0 if float(comparison.answer).is_integer() else 2
     return needed_rows(bins, comparison.unit, decimals)
@@ -228,12 +229,13 @@ def _comparison_rows(comparison: AnswerComparison) -> list[Row]:
     """The differences of an answer to others; one that is no worse than the other is told by its style too."""
     rows = []
     for name, figure in comparison.others:
-        difference = round(comparison.answer - figure, 2)
-        is_good = difference >= 0 if comparison.more_is_better else difference <= 0
+        difference = round(figure - comparison.answer, 2)
+        is_good = difference <= 0 if comparison.more_is_better else difference >= 0
+        apart = f"{_number_text(abs(difference))} {'more' if difference > 0 else 'less'} than yours"
         rows.append(
             row(
-                f"   {name:<{NAME_COLUMNS}} {_number_text(figure):>9} {comparison.unit}  ",
-                (f"{'+' if difference > 0 else ''}{_number_text(difference)}", "good" if is_good else "warn"),
+                f"   {name:<{NAME_COLUMNS}} {_number_text(figure):>9} {comparison.unit}   ",
+                (apart if difference else "as yours", "good" if is_good else "warn"),
             )
         )
     return rows

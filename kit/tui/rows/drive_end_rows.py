@@ -10,7 +10,7 @@ from kit.plain_text import counted, wrap
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.levels import GameLevel, all_worlds
-from kit.school.game.needed import Bin
+from kit.school.game.players_histogram import HistogramBin
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.tui.rows.level_rows import BAR
 from kit.tui.rows.medal_rows import medal_row
@@ -86,7 +86,7 @@ def sector_rows(splits: Sequence[Split]) -> list[Row]:
     ]
 
 
-def needed_rows(bins: Sequence[Bin], unit: str = "s", decimals: int = 2) -> list[Row]:
+def needed_rows(bins: Sequence[HistogramBin], unit: str = "s", decimals: int = 2) -> list[Row]:
     """A histogram of what all players of this machine needed; empty for one without bins."""
     most = max((each.count for each in bins), default=0)
     if not most:

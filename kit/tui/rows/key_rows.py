@@ -15,6 +15,8 @@ KEY_WIDTH: Final = 17
 """Columns of the keys on a help page."""
 KEPT: Final = frozenset(("help", "back", "quit", "palette"))
 """Actions that a narrow line of keys leaves out last."""
+MORE: Final = "more"
+"""What the key of all commands is called where keys that work are left out; no longer than its usual word."""
 _NO_LABELS: Final[Mapping[str, str]] = MappingProxyType({})
 
 
@@ -35,8 +37,9 @@ def footer(
     labels: Mapping[str, str] = _NO_LABELS,
     keys: Mapping[str, str] = _NO_LABELS,
 ) -> Row:
-    """One row of at most ``width`` columns, which ends in the key of all commands where there is one. ``without``: ids of actions that do nothing now. ``labels``, ``keys``:
-    other words and keys than the actions', by id."""
+    """One row of at most ``width`` columns, which ends in the key of all commands where there is one; that key says so where
+    others are left out. ``without``: ids of actions that do nothing now. ``labels``, ``keys``: other words and keys than the
+    actions', by id."""
     parts = {
         each: (keys.get(each, screen[each].footer_keys), labels.get(each, screen[each].label))
         for each in (*screen.footer, *(each for each in screen.off_footer if each == "palette"))
@@ -47,6 +50,8 @@ def footer(
         if dropped is None:
             break
         del parts[dropped]
+        if "palette" in parts:
+            parts["palette"] = (parts["palette"][0], MORE)
     return key_row(*parts.values())
 
 

@@ -12,7 +12,10 @@ from kit.school.lessons.catalogue import LessonEntry
 from kit.tui.rows.lesson_rows import KINDS
 from kit.tui.rows.progress_marks import mark, progress_bar, stars
 
-TITLE: Final = 46
+TITLE: Final = 40
+STEP: Final = 12
+"""Columns before a step's title."""
+HEADER: Final = f"{'':9} {'lesson':<{TITLE}}    time  steps, █ done"
 
 
 def lines(shelf: Sequence[LessonEntry], chosen: LessonEntry | None) -> list[tuple[LessonEntry | None, Row]]:
@@ -80,14 +83,16 @@ def details(entry: LessonEntry, levels: Sequence[GameLevel], width: int) -> list
         is_done = progress.is_step_completed(step)
         has_tried = step.exercise is not None and step.exercise.name in progress.best_shares
         earned = f"  {stars(progress, step.exercise.name)}" if step.exercise and has_tried else ""
+        first, *rest = wrap(step.title, room - STEP - len(earned))
         made.append(
             row(
                 ("[x] " if is_done else "[ ] ", "good" if is_done else "dim"),
                 (f"{KINDS[step.kind]:<8}", "dim"),
-                step.title[: room - 20],
+                first,
                 (earned, "warn"),
             )
         )
+        made += [row(" " * STEP, each) for each in rest]
     if levels:
         titles = ", ".join(level.title for level in levels)
         made += [row(), *(row((each, "dim")) for each in wrap(f"Opens in the game: {titles}", room))]

@@ -21,8 +21,10 @@ from kit.tui.rows.ruled_title import ruled_title
 COLUMN: Final = 54
 """Columns of the stars where the sectors stand beside them."""
 GAP: Final = 2
-BY_WORTH: Final = (0, 3, 1, 4, 2)
-"""Parts of a card, the one that is left out last before the others: story, ladder, task, stars, skill."""
+PARTS: Final = ("story", "task", "skill", "ladder", "stars")
+"""Parts of a card, from top to bottom."""
+BY_WORTH: Final = ("story", "ladder", "task", "stars", "skill")
+"""The part that is left out last before the others."""
 LEAST_WIDTH: Final = 16
 """Columns of a card."""
 
@@ -34,26 +36,27 @@ def level_card(
     kept: Collection[ExtraRule],
     width: int,
     room: int,
-) -> list[Row]:
-    """What a level is about: story, task, the rungs of its ladder, and the rules that earn stars. Parts for which there is no
-    room are left out whole. ``kept``: the rules that a drive has kept already."""
+) -> dict[str, list[Row]]:
+    """What a level is about, by part: story, task, the rungs of its ladder, and the rules that earn stars. Parts for which
+    there is no room are left out whole. ``kept``: the rules that a drive has kept already."""
     if width < LEAST_WIDTH:  # the screen has no size yet
-        return []
+        return {}
     skill = f"skill: {level.skill}" if level.skill else ""
     ladder = [] if reference is None else _ladder_rows(driver, reference, width)
     stars = [] if reference is None else star_rows(level, kept, width)
-    parts = [
+    rows = (
         [ruled_title("level", width), *(row(line) for line in wrap(level.story, width))],
         [row((line, "bold")) for line in wrap(level.hint, width)],
         [row((line, "dim")) for line in wrap(skill, width)],
         ladder,
         stars,
-    ]
-    shown: set[int] = set()
-    for number in BY_WORTH:
-        if sum(len(parts[each]) for each in (*shown, number)) <= room:
-            shown.add(number)
-    return [each for number, part in enumerate(parts) if number in shown for each in part]
+    )
+    parts = dict(zip(PARTS, rows, strict=True))
+    shown: set[str] = set()
+    for name in BY_WORTH:
+        if sum(len(parts[each]) for each in (*shown, name)) <= room:
+            shown.add(name)
+    return {name: part for name, part in parts.items() if name in shown}
 
 
 def _ladder_rows(driver: DriverKind, reference: float, width: int) -> list[Row]:

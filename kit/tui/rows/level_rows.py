@@ -62,7 +62,7 @@ def still_in_reach(driver: DriverKind, reference: float, seconds: float, collisi
     """The medal that is still in reach while one drives, and until when."""
     medal = rung_in_reach(driver, reference, seconds, collisions)
     if medal is None:
-        return "no medal any more"
+        return "no medal any more: r restarts"
     return f"{medal.title} until {medal_time(medal, reference, driver):.2f} s"
 
 
@@ -151,13 +151,24 @@ def opens_after(level: GameLevel) -> str:
     return f"opens after {' or '.join(titles[each] for each in level.opened_by)}{lesson}"
 
 
-def before_the_start(level: GameLevel, ghosts: Sequence[str], width: int) -> list[Row]:
-    """What stands below the picture until somebody drives. ``ghosts``: the name and time of each; those are shown for which
-    there is room."""
-    start, shown = " The clock starts with your first key.", ""
-    for each in ghosts:
-        longer = f"{shown}, {each}" if shown else f"  Ghosts: {each}"
-        if len(start) + len(longer) > width:
+def before_the_start(
+    level: GameLevel, ghosts: Sequence[str], width: int, *, task_in_sight: bool
+) -> list[Row]:
+    """What stands below the picture until somebody drives: the task, unless it is in sight beside the picture, and who is
+    raced. ``ghosts``: letter, driver and time of each; those are shown for which there is room."""
+    start = " The clock starts with your first key."
+    if task_in_sight:
+        return [row((start, "bold")), row((_listed(ghosts, " You race: ", width), "dim"))]
+    raced = _listed(ghosts, "  You race: ", width - len(start))
+    return [row((start, "bold"), (raced, "dim")), row(f" {level.hint}")]
+
+
+def _listed(items: Sequence[str], lead: str, width: int) -> str:
+    """As many items after the lead as there is room for; nothing without any."""
+    shown = ""
+    for each in items:
+        longer = f"{shown}, {each}" if shown else lead + each
+        if len(longer) > width:
             break
         shown = longer
-    return [row((start, "bold"), (shown, "dim")), row(f" {level.hint}")]
+    return shown

@@ -15,13 +15,14 @@ from textual.binding import BindingType
 from kit.dialogue.actions import ScreenActions
 from kit.document.rows import Row, row
 from kit.host.file_watcher import FileWatcher
+from kit.learning.training.run_folders import list_runs
 from kit.school.game.challenge import AnswerSubmission, Challenge, ChallengeError
 from kit.school.game.challenges import answers_folder, challenge_medals, prepare_answer, record_judgement
 from kit.school.game.judgement import Judgement
 from kit.school.game.medal import Medal
 from kit.school.game.shared_answers import share_answer
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
-from kit.tui.rows.challenge_rows import answers_needed_rows, challenge_page, judged
+from kit.tui.rows.challenge_rows import answers_needed_rows, beside_others, challenge_page, judged
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.lesson_rows import checking
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
@@ -158,12 +159,17 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         self._show()
         try:
             judgement, previous = await to_thread(self._judge, answer)
-            self._result = [*judged(judgement, previous, self._following, self.size.width), *self._needed]
+            beside = self._beside_others(judgement)
+            self._result = [*judged(judgement, previous, self._following, beside), *self._needed]
         except (ChallengeError, WorldError, ProgressError, OSError) as error:
             self._result = [row((" No medal", "bold")), *wrapped(f" {error}")]
         finally:
             self._started_at = None
         self._renew()
+
+    def _beside_others(self, judgement: Judgement) -> list[Row]:
+        """What is said of a judged answer, unless the page says it."""
+        return beside_others(judgement, self.size.width)
 
     def _prepare_check(self) -> None:
         """What is to be done before an answer is checked."""
@@ -189,7 +195,6 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         self._doing = progress
 
     async def _choose_run(self) -> str | None:
-        from kit.learning.training.run_folders import list_runs
 
         runs = [run.name for run in await to_thread(list_runs, self._workspace.runs)]
         if not runs:

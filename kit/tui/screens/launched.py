@@ -11,12 +11,14 @@ from textual.message import Message
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction
 from kit.dialogue.shared_actions import VIEW_IDS
+from kit.host.failure import StudentCodeError
 from kit.inspection.sockets import sockets_folder, world_name
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
 from kit.workspace import Workspace
+from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
     from kit.launch.launch_file_process import LaunchTarget
@@ -93,12 +95,10 @@ class LaunchScreen(WatchScreen):
     # In the helper's thread
 
     def _open(self) -> Session:
-        from kit.host.failure import StudentCodeError
         from kit.launch.launch_run import Launch
         from kit.launch.plain_launch import LaunchSession
         from kit.launch.processes import ProcessStartError
         from kit.ros.graph.graph import Graph
-        from kit.world.problems import WorldError
 
         self._launch = launch = Launch(
             self._target,

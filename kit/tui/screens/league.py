@@ -20,6 +20,7 @@ from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, at_both_edges, row, side_by_side
 from kit.document.tables import list_rows
 from kit.host.job_folder import JobExecutor
+from kit.learning.training.run_folders import list_runs
 from kit.render.scene import Scene
 from kit.run.recording import Recording
 from kit.run.scenario import Scenario
@@ -146,7 +147,8 @@ class LeagueScreen(RowsScreen[None]):
         self._rows("body").show(body)
         self._rows("note").show([row((f"  {self._note}", "dim"))])
         labels = {"open": "matches" if self._match is None else "replay"}
-        self._rows("keys").show([footer(self.screen_actions, width, labels=labels)])
+        idle = () if self._entrants else ("choose", "open", "run_matches")
+        self._rows("keys").show([footer(self.screen_actions, width, labels=labels, without=idle)])
 
     def _body(self, standings: Standings, width: int, height: int) -> list[Row]:
         is_wide = width >= WIDE
@@ -192,14 +194,14 @@ class LeagueScreen(RowsScreen[None]):
             self._match = 0 if self._matches else None
             self._show()
             return
-        self._tell("Running the drives again ...")
+        self._show_note("Running the drives again ...")
         try:
             match = self._matches[self._match]
             recordings = await to_thread(match_recordings, self._league, match)
         except LeagueError as error:
-            self._tell(str(error))
+            self._show_note(str(error))
             return
-        self._tell("")
+        self._show_note("")
         self.app.push_screen(match_replay(self._theme, match, recordings))
 
     def action_back(self) -> None:
@@ -243,7 +245,7 @@ class LeagueScreen(RowsScreen[None]):
         if self._is_running or self._standings is None:
             return
         if not self._league.is_mine:
-            self._tell("Who owns the league's folder runs the matches: only the owner's results count.")
+            self._show_note("Who owns the league's folder runs the matches: only the owner's results count.")
             return
         self._is_running = True
         try:
@@ -253,10 +255,10 @@ class LeagueScreen(RowsScreen[None]):
             def count(key: str) -> None:
                 nonlocal done
                 done += 1
-                self.app.call_from_thread(self._tell_running, done, len(keys))
+                self.app.call_from_thread(self._show_count, done, len(keys))
 
             if keys:
-                self._tell_running(0, len(keys))
+                self._show_count(0, len(keys))
                 executor = JobExecutor(jobs=os.cpu_count() or 1)
                 await to_thread(executor.run, self._league, keys, count)
         except (LeagueError, OSError) as error:
@@ -265,10 +267,10 @@ class LeagueScreen(RowsScreen[None]):
             self._is_running = False
         await self._read_now("All matches are driven." if not keys else f"{len(keys)} were driven.")
 
-    def _tell_running(self, done: int, count: int) -> None:
-        self._tell(f"Driving: {done} of {count}.")
+    def _show_count(self, done: int, count: int) -> None:
+        self._show_note(f"Driving: {done} of {count}.")
 
-    def _tell(self, note: str) -> None:
+    def _show_note(self, note: str) -> None:
         self._note = note
         self._show()
 
@@ -323,6 +325,5 @@ class MatchReplayScreen(ReplayScreen):
 
 def _agents(runs: Path) -> list[str]:
     """The names of all trainings."""
-    from kit.learning.training.run_folders import list_runs
 
     return [each.name for each in list_runs(runs)]

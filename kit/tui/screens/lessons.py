@@ -39,9 +39,9 @@ if TYPE_CHECKING:
 
 
 SUMMARY_ROWS: Final = 6
-LIST_WIDTH: Final = 84
+LIST_WIDTH: Final = 76
 """Columns of the list where the chosen lesson is shown beside it."""
-LEAST_DETAILS: Final = 44
+LEAST_DETAILS: Final = 42
 """Columns beside the list from which on the chosen lesson is shown there, not below it."""
 LEAST_PICTURE: Final = 8
 """Rows that a picture of the lesson's world must have at least."""
@@ -122,7 +122,7 @@ class LessonsScreen(RowsScreen[None]):
         heading = at_both_edges(
             row(("Lessons", "bold"), (told, "dim"), news), row((where, "dim")), self.size.width
         )
-        self._rows("heading").show([heading])
+        self._rows("heading").show([heading, row((lesson_list_rows.HEADER, "dim"))])
         self._rows("list").show_all([line for _, line in lines[top : top + room]])
         if is_wide:
             self._show_beside()

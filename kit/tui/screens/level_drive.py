@@ -45,7 +45,7 @@ from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_card_rows import level_card
 from kit.tui.rows.medal_signs import MEDAL_STYLES
 from kit.tui.screens.dialogs import MessageDialog, wrapped
-from kit.tui.screens.level_pictures import GHOST_LOOKS, ghost_marks, ghost_paths
+from kit.tui.screens.level_pictures import ghost_driver, ghost_look, ghost_marks, ghost_paths
 from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
@@ -143,6 +143,8 @@ class LevelDrive(WatchScreen):
         self._behind: float | None = None
         self._is_over = False
         self._strength = 1.0
+        self._task_in_sight = False
+        """Whether the card beside the picture says the task."""
         self._result_row: Row = ()
         self._finishes: list[RaceFinish] = []
         """The ends of a program's drives from all starts."""
@@ -155,7 +157,7 @@ class LevelDrive(WatchScreen):
         return self._referee is not None
 
     def open_world(self) -> None:
-        self._referee, self._is_over, self.view, self._result_row = None, False, None, ()
+        self._referee, self._is_over, self._result_row = None, False, ()
         self._recorder, self._behind = None, None
         self._comparison = None if self._reference is None else GhostComparison(self._reference)
         scenario = self._level.find_scenario()
@@ -169,6 +171,7 @@ class LevelDrive(WatchScreen):
             self.host.open(
                 lambda: scenario, find_controller(TWO if len(scenario.partners) > 1 else ONE), paused=True
             )
+        self.view = None  # only now: until another world was asked for, there were views of the one before
         self.renew_laser_map(draws=self._level.conditions.fog)
 
     def _open_race(self) -> Session:
@@ -201,7 +204,8 @@ class LevelDrive(WatchScreen):
         card = level_card(
             self._level, self._driver, reference, self._kept, panel.width - 1, panel.height - len(rows)
         )
-        return (*rows, *card)
+        self._task_in_sight = "task" in card and self.query_one("#panel").display
+        return (*rows, *(each for part in card.values() for each in part))
 
     def _view_arrived(self, view: View) -> None:
         """Replaces the targets and bumps of the map's case by the level's, in the world's thread."""
@@ -254,9 +258,13 @@ class LevelDrive(WatchScreen):
             self._behind = self._comparison.add(view.time_s, view.pose.x, view.pose.y)
         self._rows("heading").show([self._heading(view.time_s)])
         if referee is None:
-            names = {name: letter for name, (letter, _) in GHOST_LOOKS.items()}
-            ghosts = [f"{names.get(each.name, each.name)} {each.seconds:.1f} s" for each in self._ghosts]
-            self._rows("messages").show(level_rows.before_the_start(self._level, ghosts, self.size.width))
+            ghosts = [
+                f"{ghost_driver(each)} ({ghost_look(each)[0]}) {each.seconds:.1f} s" for each in self._ghosts
+            ]
+            rows = level_rows.before_the_start(
+                self._level, ghosts, self.size.width, task_in_sight=self._task_in_sight
+            )
+            self._rows("messages").show(rows)
         elif self._is_over:
             self._rows("messages").show([self._result_row])
         elif referee.is_over or (self._race_program is not None and view.failure is not None):

@@ -41,6 +41,12 @@ def ghost_look(ghost: Ghost) -> tuple[str, Role]:
     return GHOST_LOOKS.get(ghost.name, (ghost.name[:1].lower(), Role.GHOST_OTHER))
 
 
+def ghost_driver(ghost: Ghost) -> str:
+    """Who drove a ghost's drive, in words that go with its letter."""
+    own = {driver.value: f"your best {driver.phrase}" for driver in DriverKind}
+    return {REFERENCE: "the reference", **own}.get(ghost.name, ghost.name)
+
+
 def ghost_marks(ghosts: Sequence[Ghost], time_s: float) -> tuple[SceneMark, ...]:
     """The letters of ghosts, each where it was at this time of its drive [s]."""
     return tuple(

@@ -26,7 +26,7 @@ from kit.school.game.drive_records import DriveRecord, card_rows, save_card, sav
 from kit.school.game.ghosts import Ghost, Split, gains_along
 from kit.school.game.levels import GameLevel
 from kit.school.game.medal import Medal
-from kit.school.game.needed import histogram, seconds_needed
+from kit.school.game.players_histogram import histogram, seconds_needed
 from kit.school.game.race import (
     DriverKind,
     RaceFinish,

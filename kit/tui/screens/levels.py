@@ -80,6 +80,8 @@ DRIVES: Final = ("hand_over", "agent", "replay")
 """Actions that a challenge has not."""
 ROWS_ABOVE_LEVELS: Final = 5
 """Of the list: an empty one, the world's two, another empty one, the columns' names."""
+ROWS_AROUND: Final = 2
+"""Of the screen: the heading and the line of keys."""
 
 
 class LevelsScreen(RowsScreen[None]):
@@ -107,6 +109,7 @@ class LevelsScreen(RowsScreen[None]):
     LevelsScreen.-wide.-challenge #map {{ width: 1fr; }}
     LevelsScreen.-wide.-challenge #preview {{ display: none; }}
     LevelsScreen #about {{ height: {ABOUT_ROWS}; }}
+    LevelsScreen.-challenge.-about-beside #about {{ display: none; }}
     LevelsScreen #keys {{ height: 1; }}
     """
 
@@ -273,15 +276,20 @@ class LevelsScreen(RowsScreen[None]):
         medal, width = medals.get(chosen.id, Medal.NONE), self.size.width  # the list has all of it, soon
         has_picture = width >= challenge_rows.ROOM_FOR_PICTURE
         column = challenge_rows.LIST_COLUMNS if has_picture else width
+        about = challenge_rows.about_challenge(chosen, medal, column - 1)
+        height = self.size.height - ROWS_AROUND - len(heading)
+        is_beside = has_picture and len(self._challenges) + len(about) + 2 <= height
+        self.set_class(is_beside, "-about-beside")
         listed = challenge_rows.challenge_list(
-            self._challenges, medals, chosen.id, self._challenge_room, column - 1
+            self._challenges, medals, chosen.id, height if is_beside else self._challenge_room, column - 1
         )
         if has_picture:
-            height = self._rows("map").size.height - len(heading)
+            height = height if is_beside else self._rows("map").size.height - len(heading)
             picture = challenge_rows.challenge_picture(chosen, width - column - 1, height)
-            listed = side_by_side(listed, picture, column)
+            below = [row(), *about] if is_beside else []
+            listed = side_by_side([*listed, *below], picture, column)
         listed = [*heading, *listed]
-        return listed, challenge_rows.about_challenge(chosen, medal, self.size.width)
+        return listed, challenge_rows.about_challenge(chosen, medal, width)
 
     @property
     def _challenge_room(self) -> int:

@@ -89,6 +89,10 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         self._result = []
         self._renew()
 
+    def _beside_others(self, judgement: Judgement) -> list[Row]:
+        """The page says it at every move."""
+        return []
+
     def _prepare_check(self) -> None:
         self._write()
 

@@ -211,7 +211,7 @@ class TrainingsScreen(RowsScreen[None]):
     def action_evaluate(self) -> None:
         if self._chosen_run is not None:
             run = self._chosen_run.run
-            self._tell(
+            self._show_when_made(
                 f"testing {run.name} ...", f"Test of {run.name}", lambda columns: _test_rows(run, columns)
             )
 
@@ -221,7 +221,7 @@ class TrainingsScreen(RowsScreen[None]):
             self._note = "Mark two runs or more with Space: they are compared on the same episodes."
             self._show()
             return
-        self._tell(
+        self._show_when_made(
             f"testing {counted(len(marked), 'run')} ...",
             "Comparison",
             lambda columns: _comparison_rows(marked, self._theme, columns),
@@ -251,7 +251,7 @@ class TrainingsScreen(RowsScreen[None]):
             items.append(PickerItem(change, change, "the trainings that have no result yet"))
             wish = await self.app.push_screen_wait(Picker(folder.name, items))
         if wish == "table":
-            self._tell(
+            self._show_when_made(
                 f"reading {folder.name} ...",
                 f"Sweep {folder.name}",
                 lambda columns: _sweep_table(folder, columns),
@@ -262,14 +262,14 @@ class TrainingsScreen(RowsScreen[None]):
     def action_robustness(self) -> None:
         if self._chosen_run is not None:
             run = self._chosen_run.run
-            self._tell(
+            self._show_when_made(
                 f"testing {run.name} under every disturbance; this takes a while ...",
                 f"Robustness of {run.name}",
                 lambda columns: _robustness_rows(run, self._theme, columns),
             )
 
     @work(exclusive=True, group="work")
-    async def _tell(self, note: str, title: str, make: Callable[[int], list[str]]) -> None:
+    async def _show_when_made(self, note: str, title: str, make: Callable[[int], list[str]]) -> None:
         """Does long work in another thread, and shows its rows."""
         self._note = note
         self._show()

@@ -310,6 +310,23 @@ def test_names_that_are_no_text_cost_a_class_nothing(tmp_path: Path) -> None:
         assert write(table, None, "Quick", 6.0, decimal_comma=False).encode()
 
 
+@pytest.mark.parametrize("form", [file.name for file in sorted(ROSTERS.glob("*.csv"))])
+def test_nothing_of_a_platforms_export_comes_back_as_a_formula(form: str, tmp_path: Path) -> None:
+    """Students chose the names there, and some fields more."""
+    rows = list(csv.reader(io.StringIO((ROSTERS / form).read_text("utf-8-sig"))))
+    cells = [[f"={cell}" if cell and not cell.startswith(" ") else cell for cell in row] for row in rows[1:]]
+    out = io.StringIO()
+    csv.writer(out).writerows([[*rows[0], "@more"], *([*row, "+cmd()"] for row in cells)])
+    (file := tmp_path / form).write_text(out.getvalue())
+    roster = read_roster(file)
+    table = class_table(graded_queue(tmp_path, {"=1+1": 1.0}), ClassRules(roster=roster)).rows
+    assert any(row.name.startswith("=") for row in table)
+    for write in EXPORTS.values():
+        written = list(csv.reader(io.StringIO(write(table, roster, "=t()", 6.0, decimal_comma=False))))
+        assert any(cell.startswith("'=") for row in written for cell in row)
+        assert not [cell for row in written for cell in row if cell.lstrip().startswith(("=", "+", "-", "@"))]
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="names of any signs")
 def test_no_name_leaves_as_anything_but_text(tmp_path: Path) -> None:
     names = ["a\n\n| b | c |\r\n::error::d", "\u202eevil\u2066", "\x1b[2Jada", "=1+1", '<img src=x>,"q']

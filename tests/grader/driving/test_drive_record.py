@@ -17,7 +17,13 @@ import pytest
 
 from grader.assignment import Assignment, Shift, Trial
 from grader.driving.check_table import CHECKS
-from grader.driving.checks.interfaces import NodeNamesParams, ProfilesParams, TopicsParams
+from grader.driving.checks.interfaces import (
+    NodeNamesParams,
+    PrintedTextParams,
+    ProfilesParams,
+    TopicRateParams,
+    TopicsParams,
+)
 from grader.driving.checks.ways import CircleParams, HeadingParams
 from grader.driving.drive_record import GradedDrive
 from grader.driving.episodes import run_episode
@@ -330,6 +336,13 @@ def test_the_name_of_a_node_is_compared_letter_by_letter(mistaken: GradedDrive) 
     assert measure(mistaken, NodeNamesParams(("/heartbeat",))) == 0.0
     assert measure(mistaken, NodeNamesParams(("/Heartbeat",))) == 1.0
     assert mistaken.explain("named", NodeNamesParams(("/heartbeat",))) == "There is /Heartbeat."
+
+
+def test_how_often_something_came_is_told_beside_how_often_it_should(mistaken: GradedDrive) -> None:
+    told = mistaken.explain("says", PrintedTextParams("never said", 0.5))
+    assert "“never said” 0 times in" in told
+    assert f"; {mistaken.seconds / 0.5:.0f} are asked for." in told
+    assert "0 messages came on /silent in" in mistaken.explain("rate", TopicRateParams("/silent", 10.0))
 
 
 def test_only_the_program_s_own_nodes_count(mistaken: GradedDrive) -> None:

@@ -16,6 +16,7 @@ from grader.driving.checks.interfaces import TopicRateParams, TopicsParams
 from grader.driving.checks.walls import DistanceBandParams
 from grader.driving.drive_record import GradedDrive
 from grader.driving.episodes import run_episode, shifted_start
+from grader.driving.service_calls import NO_ANSWER, ServiceCall
 from grader.evidence.contract import EpisodeSpec
 from kit.controllers import find_controller
 from kit.host.failure import FailureKind
@@ -69,6 +70,23 @@ def test_the_recording_runs_again_to_the_bit(forward: GradedDrive) -> None:
 def test_the_same_seed_is_the_same_drive(tmp_path: Path, forward: GradedDrive) -> None:
     assert drive(tmp_path, FORWARD).fingerprint == forward.fingerprint
     assert drive(tmp_path, FORWARD, seed=2).fingerprint != forward.fingerprint
+
+
+SLEEPS = FORWARD.replace("import rclpy", "import time\n\nimport rclpy", 1).replace(
+    "rclpy.spin(Forward())", "node = Forward()\n    time.sleep(1.6)\n    rclpy.spin(node)"
+)
+"""Goes on after 1.6 s."""
+
+
+@pytest.mark.parametrize("within", [1.0, 0.3])
+def test_an_answer_that_comes_late_is_none(tmp_path: Path, within: float) -> None:
+    """The program's own node is asked, whatever its name."""
+    request = {"names": ["use_sim_time"]}
+    asked = ServiceCall("asked", 1.0, "get_parameters", "rcl_interfaces/srv/GetParameters", request, within)
+    trial = dataclasses.replace(TURN, calls=(asked,))
+    assert '"values"' in drive(tmp_path, FORWARD, trial).answers["asked"]
+    late = drive(tmp_path, SLEEPS, trial).answers["asked"]
+    assert late == NO_ANSWER if within < 0.6 else '"values"' in late
 
 
 def test_a_seed_shifts_the_start_within_its_bounds() -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -165,10 +167,31 @@ def test_a_loop_whose_sum_has_no_value_is_no_loop_that_loses(tmp_path: Path) -> 
     posed = PosedTask(tmp_path / "task.yaml", plan, 1, SubmissionClock())
     posed.__dict__["arriving_reward"] = 1.0
     posed.__dict__["loops"] = tuple(
-        ActionLoop(("forward",), 1, total, is_arriving=False) for total in (0.5, math.nan, math.inf)
+        ActionLoop(("forward",), (1,), total, is_arriving=False) for total in (0.5, math.nan, math.inf)
     )
     assert not math.nan >= 1.0
     assert len(posed.paying_loops) == 2
+
+
+@pytest.mark.parametrize(
+    ("terms", "arriving", "pays"),
+    [
+        ("{forward: 20.0, collided: -1.0}", 9.3, True),
+        ("{progress: 1.0, collided: -1.0, reached: 1.0}", 3.5, False),
+    ],
+)
+def test_driving_up_and_down_is_a_loop_too(
+    tmp_path: Path, terms: str, arriving: float, *, pays: bool
+) -> None:
+    """In a narrow ward any circle ends in a wall. ``arriving``: what a drive to the target earns, about."""
+    ward = shutil.copytree(solutions_folder() / "24-train-your-own" / "ward" / "solution", tmp_path / "ward")
+    file = Path(ward, "task.yaml")
+    file.write_text(re.sub(r"terms: \{[^}]*\}", f"terms: {terms}", file.read_text()))
+    posed = PosedTask(file, PosedTaskPlan("q-learning", 1_000, 1, 10, "", 1, None), 1, SubmissionClock())
+    posed.__dict__["arriving_reward"] = arriving
+    assert [each.actions[0] for each in posed.paying_loops[:1]] == (["forward"] if pays else [])
+    assert bool(posed.paying_loops) == pays
+    assert not pays or "21 steps" in str(posed.paying_loops[0])
 
 
 @pytest.mark.long

@@ -13,6 +13,7 @@ from grader.reports import FORMATS, cleaning
 from grader.reports.formats.annotations import write_annotations
 from grader.reports.formats.classroom import MAX_CLASSROOM_OUTPUT
 from grader.reports.formats.classroom50 import write_classroom50
+from kit.plain_text import without_formula
 from kit.results.grading_result import CriterionResult, CriterionStatus, GradingResult, Visibility
 from tests.cases import every_case
 
@@ -100,9 +101,10 @@ def test_a_block_of_code_cannot_be_left() -> None:
     assert block.count(fence) == 2
 
 
-@every_case("text", ["=1+1", "+1", "-1", "@x", "\t=1", "%x", "|x", "\uff1d1", "\uff20x"])
+@every_case("text", ["=1+1", "+1+1", "-1+1", "@x", "\t=1", "%x", "|x", "\uff1d1", "\uff20x"])
 def test_a_spreadsheet_computes_nothing(text: str) -> None:
-    assert not cleaning.spreadsheet_cell(text).startswith(tuple("=+-@|%\uff1d\uff20"))
+    assert not cleaning.spreadsheet_cell(text).startswith(tuple("=+@|%\uff1d\uff20"))
+    assert without_formula(f"{text}()").startswith("'")
 
 
 @every_case("sign", ["x", ":"])  # a row of colons gets spaces, so that no runner takes it for a command

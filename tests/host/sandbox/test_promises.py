@@ -21,7 +21,7 @@ from kit.host.failure import StudentCodeError
 from kit.host.sandbox import grants
 from kit.host.sandbox.limits import MIB, Limits
 from kit.host.sandbox.probe import can_mount_scratch, is_level_available
-from kit.host.sandbox.promises import PROMISES, Promise, markdown_table, promises_since
+from kit.host.sandbox.promises import PROMISES, Promise, promises_since
 from kit.host.sandbox.reaper import descendants
 from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
@@ -74,6 +74,21 @@ TESTS: Final[Mapping[str, tuple[Callable[..., Any], ...]]] = MappingProxyType(
     }
 )
 """By promise: the tests elsewhere that try to break it."""
+
+
+def markdown_table() -> str:
+    """Returns the promises as a Markdown table with a column for each level."""
+    rows = [["A student's program cannot", *(f"level {level:d}" for level in Level)]]
+    rows.append(["---", *("---" for _ in Level)])
+    rows += [[promise.action, *(_table_cell(promise, level) for level in Level)] for promise in PROMISES]
+    return "".join(f"| {' | '.join(row)} |\n" for row in rows)
+
+
+def _table_cell(promise: Promise, level: Level) -> str:
+    if not promise.holds_at(level):
+        return "**possible**"
+    # At level 0 the program has its user's rights: with intent it can undo all of it.
+    return "not by accident" if level is Level.LIMITED else "prevented"
 
 
 @pytest.fixture(params=list(Level), ids=lambda level: f"L{level}")

@@ -14,7 +14,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import kit.learning
-from kit.learning.environment.batch import BatchEnv
+from kit.learning.environment.batch import BatchEnv, RewardError
 from kit.learning.environment.env import (
     HallwayEnv,
     TaskEnv,
@@ -125,6 +125,14 @@ def test_a_variant_of_a_task() -> None:
     assert env.reset(seed=1)[1]["case"] == "left_door"
     *_, info = env.step(np.int64(1))
     assert list(info["terms"]) == [weight.term for weight in ALGORITHM_3.weights]
+
+
+@pytest.mark.parametrize(("returned", "said"), [(None, "return"), (1.0, r"shape \(1,\)")])
+def test_a_reward_that_is_no_array_is_refused(returned: object, said: str) -> None:
+    env = make("Turn", reward=lambda step: returned)
+    env.reset(seed=1)
+    with pytest.raises(RewardError, match=said):
+        env.step(0)
 
 
 def test_the_terms_add_up_to_the_reward() -> None:

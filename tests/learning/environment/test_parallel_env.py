@@ -49,6 +49,17 @@ def test_an_option_that_is_none_is_warned_of() -> None:
         env.reset(seed=1, options={"cse": "turn_a_to_b"})
 
 
+@pytest.mark.parametrize(
+    ("actions", "said"),
+    [({"left": 0}, "none of right"), ({"left": 0, "right": 0, "rihgt": 0}, 'did you mean "right"')],
+)
+def test_every_agent_and_nobody_else_has_an_action(actions: dict[str, int], said: str) -> None:
+    env = make("wheelchairs")
+    env.reset(seed=1)
+    with pytest.raises(KeyError, match=said):
+        env.step(actions)
+
+
 @pytest.mark.filterwarnings(f"ignore:{NO_OPTION}")
 def test_one_robot_is_an_environment_too() -> None:
     env = make("smooth-turn")

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import kit
 from kit.document.layout import lines_of
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats, EpisodeStatsRecorder
@@ -20,7 +21,7 @@ from kit.learning.policies.policy_node import format_policy_node
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.policies.sweep import PolicySweep, find_kinds, sweep_csv
 from kit.learning.tasks.catalogue import find_task
-from kit.learning.tasks.learning_task import StartVariation
+from kit.learning.tasks.learning_task import StartVariation, UnknownTask
 from kit.learning.tasks.student_reward import (
     RewardFileError,
     StudentReward,
@@ -63,6 +64,18 @@ def test_counts_what_happened_case_by_case() -> None:
     assert math.isnan(back.cases[0].steps)
     assert ahead.mean == 1.0 > back.reward
     assert ahead.cases[0].interval.low == pytest.approx(0.886, abs=0.01)
+
+
+def test_the_task_is_given_by_name_too() -> None:
+    policy = always(TaskSpec("turn"), 0)
+    by_name = kit.evaluate_policy(policy, task="turn", episodes=2)
+    assert by_name.as_dict() == kit.evaluate_policy(policy, episodes=2).as_dict()
+    assert "turn" in repr(by_name)
+    assert len(repr(by_name)) < 100
+    with pytest.raises(UnknownTask, match='did you mean "turn"'):
+        kit.evaluate_policy(policy, task="tern")
+    with pytest.raises(ValueError, match="at least one episode"):
+        kit.evaluate_policy(policy, episodes=0)
 
 
 def test_a_group_is_the_mean_of_its_cases() -> None:

@@ -183,8 +183,14 @@ def test_what_does_not_fit_is_said(tmp_path: Path) -> None:
             kit.load_policy(file, other)
         with pytest.raises(PolicyError, match=other):
             kit.export_policy(model, other)
+    for refused in (lambda: kit.load_policy(file, "hallway"), lambda: kit.export_policy(model, "hallway")):
+        with pytest.raises(PolicyError, match="sees 9 numbers and gives 3; an agent of task hallway sees 17"):
+            refused()
     with pytest.raises(PolicyError, match="export_policy"):
         kit.evaluate_policy(model)
+    (tmp_path / "text.zip").write_text("a text")
+    with pytest.raises(PolicyError, match="stable-baselines3"):
+        kit.load_policy(tmp_path / "text.zip", task)
     elu = sb3.PPO(
         "MlpPolicy", kit.make_vec_env(task, 4), device="cpu", policy_kwargs={"activation_fn": nn.ELU}
     )

@@ -1,11 +1,9 @@
 from __future__ import annotations
 
 import errno
-import fcntl
 import io
 import multiprocessing
 import os
-import threading
 import tracemalloc
 import zipfile
 from collections.abc import Callable, Mapping
@@ -174,15 +172,6 @@ def test_two_cannot_train_one_run(tmp_path: Path) -> None:
         with pytest.raises(RunError, match="already"), run.lock():
             pass
     assert not run.is_active
-
-
-def test_a_learner_waits_for_who_only_looks(tmp_path: Path) -> None:
-    run = TrainingRun(tmp_path)
-    with (tmp_path / "lock").open("ab") as look:
-        fcntl.flock(look, fcntl.LOCK_SH)
-        threading.Timer(0.05, fcntl.flock, (look, fcntl.LOCK_UN)).start()
-        with run.lock():
-            assert run.is_active
 
 
 def test_the_older_checkpoint_stands_in_for_a_damaged_one(tmp_path: Path) -> None:

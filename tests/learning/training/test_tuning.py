@@ -55,7 +55,7 @@ def test_what_an_algorithm_offers_its_library_takes() -> None:
         names = preset.setting_types(algorithm)
         assert "learning_rate" in names or algorithm.family == "table"
         if algorithm.library != "kit":
-            assert set(names) <= set(algorithm.own_defaults())
+            assert set(names) <= set(algorithm.library_defaults())
     a2c = find_algorithm("a2c")
     with pytest.raises(RunError, match="a2c has no setting"):
         find_preset("kit", a2c, "turn").changed({"clip_range": 0.1}, a2c)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
+from xml.sax.saxutils import escape
 
 import pytest
 
@@ -12,6 +13,7 @@ from kit.ros.launch.bounds import MAX_ACTIONS, MAX_DEPTH, MAX_LOGGED, MAX_PROCES
 from kit.ros.launch.context import LaunchError
 from kit.ros.launch.description_sources import LaunchDescriptionSource
 from kit.ros.launch.entity import LaunchDescription
+from kit.ros.launch.expressions import evaluate
 from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.loops import ForLoop
 from kit.ros.launch.processes import Node
@@ -127,3 +129,48 @@ def test_an_expression_fails_with_its_own_words(tmp_path: Path) -> None:
         service.start(description.load(service.context))
     assert caught.value.location is not None
     assert caught.value.location.line == 2
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        "9**9**9**9",
+        "(-9)**9**9",
+        "1 << 10**12",
+        "2**60000 * 2**60000",
+        "'a' * 10**12",
+        "10**12 * (0,)",
+        "factorial(10**9)",
+        "comb(10**9, 10**8)",
+        "perm(10**9)",
+        "sum(range(10**12))",
+        "[[[[0] * 1000] * 1000] * 1000] * 1000",
+        "[n**9**9 for n in (9,)]",
+        "next(n << 10**12 for n in (9,))",
+        "(lambda n: n * 10**12)('a')",
+    ],
+)
+def test_an_expression_whose_result_would_be_very_large_is_not_computed(expression: str) -> None:
+    problem = refused(
+        "/l/a.launch.xml", f'<launch>\n<log message="$(eval &quot;{escape(expression)}&quot;)"/></launch>'
+    )
+    assert problem.location is not None
+    assert (problem.location.file, problem.location.line) == ("/l/a.launch.xml", 2)
+    assert "ExpressionTooLarge" not in str(problem)
+
+
+@pytest.mark.parametrize(
+    ("expression", "value"),
+    [
+        ("2**10 << 3", "8192"),
+        ("1**10**30", "1"),
+        ("0 << 10**9", "0"),
+        ("2.5**2 * 'a'.count('a')", "6.25"),
+        ("3 * [1]", "[1, 1, 1]"),
+        ("factorial(5) + comb(4, 2) + perm(3)", "132"),
+        ("pow(2, 3) + sum(range(10, 0, -3))", "30.0"),
+        ("9 // 2 * -1", "-4"),
+    ],
+)
+def test_an_expression_within_bounds_has_the_value_that_python_gives(expression: str, value: str) -> None:
+    assert evaluate(expression, None) == value

@@ -16,7 +16,7 @@ from kit.school.game.challenge_kinds.layers import LayersTask, format_plan
 from kit.school.game.challenges import all_challenges
 from kit.school.game.leaderboard import publish_drives, remove_own_entry
 from kit.school.game.medal import Medal
-from kit.school.game.needed import LEAST_PLAYERS
+from kit.school.game.players_histogram import LEAST_PLAYERS
 from kit.school.game.shared_answers import MAX_ANSWER_BYTES, figures_needed, publish_answer, share_answer
 from kit.tui.rows.challenge_rows import answers_needed_rows
 from tests.tui.lesson_stage import row_text

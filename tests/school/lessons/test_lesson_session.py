@@ -6,11 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.lessons.checking import ExerciseCheck, check_exercise
+from kit.school.lessons.checking import ExerciseCheck
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import Lesson
 from kit.school.progress import EventKind, ProgressJournal
 from kit.workspace import Workspace
+from tests.exercise_checks import check_exercise
 from tests.school.lessons.check_reports import lost, report_of
 
 

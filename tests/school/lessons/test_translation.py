@@ -12,7 +12,7 @@ import yaml
 
 from grader.reading import read_assignment
 from kit.school.form_reading import read_form
-from kit.school.lessons.checking import check_exercise, is_untouched
+from kit.school.lessons.checking import is_untouched
 from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.reading import find_lesson, lessons_folder, read_lesson
 from kit.school.lessons.translation import chosen_language, missing_translation_text, translation_of
@@ -20,6 +20,7 @@ from kit.school.progress import ProgressJournal
 from kit.school.quiz.items import read_bank
 from kit.workspace import open_workspace
 from kit.world.problems import WorldError
+from tests.exercise_checks import check_exercise
 
 TRANSLATIONS = sorted(lessons_folder().glob("*/lesson.??.yaml"))
 TRANSLATED = sorted({(file.parent, file.suffixes[0][1:]) for file in TRANSLATIONS})

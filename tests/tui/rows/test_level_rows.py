@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 
 import pytest
 
@@ -67,10 +68,16 @@ def test_what_is_said_of_a_level_and_its_world_fits_80_columns() -> None:
         for is_open in (True, False):
             rows = about(replace(each, is_open=is_open), (), 99.0)
             assert [row_text(row) for row in rows if len(row_text(row)) > 80] == []
-        for ghosts in ([], ["R 6.0 s", *(f"a classmate's long name {number} 9.9 s" for number in range(3))]):
-            rows = before_the_start(each.level, ghosts, 80)
-            assert [row_text(row) for row in rows if len(row_text(row)) > 80] == []
-            assert not ghosts or "R 6.0 s" in row_text(rows[0])
+        names = [
+            "the reference (R) 6.0 s",
+            *(f"a classmate's long name {number} (c) 9.9 s" for number in range(3)),
+        ]
+        for ghosts, task_in_sight in product(([], names), (True, False)):
+            rows = before_the_start(each.level, ghosts, 80, task_in_sight=task_in_sight)
+            told = [row_text(row) for row in rows]
+            assert [line for line in told if len(line) > 80] == []
+            assert not ghosts or names[0] in " ".join(told)
+            assert (each.level.hint in " ".join(told)) is not task_in_sight
 
 
 def test_there_is_no_map_where_there_is_no_room() -> None:

@@ -255,7 +255,7 @@ def test_a_check_shows_what_it_does_and_ends_when_the_challenge_is_left(
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("size", [(80, 24), (200, 50)], ids=str)
+@pytest.mark.parametrize("size", [(80, 24), (120, 35), (200, 50)], ids=str)
 def test_every_challenge_fits(journal: ProgressJournal, tmp_path: Path, size: tuple[int, int]) -> None:
     async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
         for each in all_challenges():

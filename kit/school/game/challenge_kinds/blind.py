@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter, deque
+from collections import Counter
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Self, TypeAlias
 
+from kit.breadth_first import reached_from
 from kit.document.rows import Row, row
 from kit.plain_text import counted
 from kit.school.game.board import (
@@ -79,17 +80,13 @@ def _move_belief(task: BlindTask, belief: Belief, move: str) -> Belief:
 
 
 def _shortest_moves(task: BlindTask, belief: Belief, is_goal: Belief | None) -> str:
-    """The fewest moves that lead a belief to ``is_goal``, or to fewer places where that is None: breadth first."""
-    found, waiting = {belief: ""}, deque([belief])
-    while waiting:
-        present = waiting.popleft()
+    """The fewest moves that lead a belief to ``is_goal``, or to fewer places where that is None."""
+    reached = reached_from(
+        belief, lambda present: ((name, _move_belief(task, present, name)) for name in MOVES)
+    )
+    for present, moves in reached:
         if present == is_goal or (is_goal is None and len(present) < len(belief)):
-            return found[present]
-        for name in MOVES:
-            following = _move_belief(task, present, name)
-            if following not in found:
-                found[following] = found[present] + name
-                waiting.append(following)
+            return "".join(moves)
     raise ValueError("No moves bring the robot to one place from everywhere.")
 
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cache
-from itertools import zip_longest
+from functools import cache, partial
+from itertools import product, zip_longest
 from pathlib import Path
 from typing import Final, Self
 
+from kit.breadth_first import reached_from
 from kit.document.rows import Row, row
 from kit.plain_text import quoted
 from kit.school.game.board import MOVES, Board, Cell, find_cell, grid_rows, letters_of, shortest_way, step
@@ -105,24 +106,24 @@ def first_meeting(task: PassByTask, moves: tuple[str, str]) -> int:
 
 @cache
 def fewest_ticks(task: PassByTask) -> tuple[str, str]:
-    """Plans than which none are over earlier: breadth first over the places of both."""
-    found: dict[tuple[Cell, Cell], tuple[str, str]] = {task.starts: ("", "")}
-    waiting = deque([task.starts])
-    while waiting:
-        present = waiting.popleft()
+    """Plans than which none are over earlier."""
+    for present, moves in reached_from(task.starts, partial(_moves_of_both, task)):
         if present == task.goals:
-            return found[present]
-        for first in (*MOVES, WAIT):
-            for second in (*MOVES, WAIT):
-                following = (
-                    present[0] if first == WAIT else step(task.grid, present[0], first),
-                    present[1] if second == WAIT else step(task.grid, present[1], second),
-                )
-                meet = following[0] == following[1] or following == (present[1], present[0])
-                if not meet and following not in found:
-                    found[following] = found[present][0] + first, found[present][1] + second
-                    waiting.append(following)
+            return "".join(first for first, _ in moves), "".join(second for _, second in moves)
     raise ValueError("The robots cannot pass each other.")
+
+
+def _moves_of_both(
+    task: PassByTask, present: tuple[Cell, Cell]
+) -> Iterator[tuple[tuple[str, str], tuple[Cell, Cell]]]:
+    """The moves of both robots in which they do not meet, with the cells that they lead to."""
+    for first, second in product((*MOVES, WAIT), repeat=2):
+        following = (
+            present[0] if first == WAIT else step(task.grid, present[0], first),
+            present[1] if second == WAIT else step(task.grid, present[1], second),
+        )
+        if following[0] != following[1] and following != (present[1], present[0]):
+            yield (first, second), following
 
 
 class PassByBoard(Board):

@@ -110,8 +110,10 @@ def test_the_seed_of_the_grade_is_another_one(folder: Path) -> None:
         (("dx, dy, self.np_random", "1 + dx, dy, self.np_random"), {"resets"}, "from its home"),
         (("self.robot.drive(*MOVES[action])", "self.robot.drive(*MOVES[0])"), {"acts", "timeout"}, "should drive"),
         (("self.steps = 0\n        return", "return"), {"crash"}, "without a reason"),
+        (("self.steps += 1", "self.steps += 1; self.action_space = gymnasium.spaces.Discrete(3 + self.steps)"), {"spaces"}, "another one after step"),
+        (("self.steps += 1", "self.steps += 1; self.observation_space.high[0] = self.steps"), {"spaces"}, "another one after step"),
     ],
-    ids=["four actions", "bytes", "no info", "elsewhere", "one move", "never counts anew"],
+    ids=["four actions", "bytes", "no info", "elsewhere", "one move", "never counts anew", "more actions", "wider"],
 )  # fmt: skip
 def test_a_mistake_loses_what_it_is_about(
     folder: Path, change: tuple[str, str], checks: set[str], word: str
@@ -164,6 +166,20 @@ def test_nothing_that_a_hostile_file_returns_breaks_the_grader(folder: Path) -> 
     result = graded(folder, hostile)
     assert {"steps", "sees", "crash", "timeout"} <= lost(result)
     assert all(test.status is not CriterionStatus.GRADER_ERROR for test in result.tests)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("value", ["10**400", "1j", "Odd([1])", "np.float64(1e300) * 1e300"])
+def test_a_reward_that_is_no_number_is_told_in_the_words_of_the_task(folder: Path, value: str) -> None:
+    odd = (
+        "import math",
+        "import math\n\n\nclass Odd(list):\n    def __getitem__(self, at):\n        raise KeyError\n",
+    )
+    change = ("return self.observation(), reward,", f"return self.observation(), {value},")
+    result = graded(folder, odd, change)
+    assert "steps" in lost(result)
+    assert all(test.status is CriterionStatus.FAIL for test in result.tests if test.id == "steps")
+    assert not any("finite_or_none" in test.rationale for test in result.tests)
 
 
 @pytest.mark.parametrize(

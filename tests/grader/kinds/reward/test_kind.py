@@ -302,9 +302,21 @@ ARRIVING = "1000.0 * reached - collided"
         (f"previous_distance - distance + {ARRIVING}", False),
         (f"previous_distance - 0.98 * distance + {ARRIVING}", False),
         (f"previous_distance - distance - 0.05 * (move > 2) + {ARRIVING}", False),
-        (f"max(0.0, previous_distance - distance) - 0.3 + {ARRIVING}", False),
+        (f"max(0.0, previous_distance - distance) - 0.3 + {ARRIVING}", True),
+        (f"max(0.0, previous_distance - distance) - 0.13 + {ARRIVING}", True),
+        (f"previous_distance - distance - 0.3 + {ARRIVING}", False),
+        (f"0.98 * 3.0 / (1.0 + distance) - 3.0 / (1.0 + previous_distance) - 0.1 + {ARRIVING}", False),
     ],
-    ids=["it never scolds", "change", "potential with discount", "turning costs", "every step costs more"],
+    ids=[
+        "it never scolds",
+        "change",
+        "potential with discount",
+        "turning costs",
+        "it never scolds, and every step costs more",
+        "it never scolds, and every step costs half of that",
+        "change, and every step costs more",
+        "another potential",
+    ],
 )
 def test_a_loop_that_pays_is_not_hidden_by_what_arriving_pays(tmp_path: Path, paid: str, pays: bool) -> None:
     text = f"def reward(distance, previous_distance, reached, collided, move):\n    return {paid}\n"

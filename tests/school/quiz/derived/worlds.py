@@ -14,11 +14,11 @@ from kit.school.quiz.items import QuizItem
 from kit.sim.simulation import Simulation, load_world
 from kit.world.catalogue import find_map
 from kit.world.collision_rules import CollisionRules, ContactKind
-from kit.world.layer_reader import walls_from_image
 from kit.world.problems import WorldError
 from kit.world.records import ALL_LAYERS, World
 from tests.school.quiz.derived.finding import Derivation, Finding
 from tests.sim.workshop import Workshop
+from tests.world.picture_walls import walls_from_image
 
 
 def image_named_in(item: QuizItem, folder: Path) -> Finding:

@@ -16,7 +16,7 @@ BINS: Final = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Bin:
+class HistogramBin:
     """How many players needed between ``low`` and ``high``."""
 
     low: float
@@ -26,7 +26,7 @@ class Bin:
     """Whether one's own figure is here."""
 
 
-def histogram(figures: Sequence[float], own: float) -> tuple[Bin, ...]:
+def histogram(figures: Sequence[float], own: float) -> tuple[HistogramBin, ...]:
     """Five bins of equal width over the figures of all players; none where there are too few of them.
 
     >>> [each.count for each in histogram([8.0, 9.0, 9.0, 10.0, 18.0], 9.5)]
@@ -46,7 +46,7 @@ def histogram(figures: Sequence[float], own: float) -> tuple[Bin, ...]:
     for figure in figures:
         counts[number(figure)] += 1
     return tuple(
-        Bin(low + at * width, low + (at + 1) * width, count, number(own) == at)
+        HistogramBin(low + at * width, low + (at + 1) * width, count, number(own) == at)
         for at, count in enumerate(counts)
     )
 

@@ -9,7 +9,7 @@ import pytest
 
 from kit.school.game import leaderboard
 from kit.school.game.leaderboard import publish_drives
-from kit.school.game.needed import BINS, LEAST_PLAYERS, histogram, seconds_needed
+from kit.school.game.players_histogram import BINS, LEAST_PLAYERS, histogram, seconds_needed
 from kit.school.game.race import DriverKind
 from kit.tui.rows.drive_end_rows import needed_rows
 from tests.kit_content import kit_levels
