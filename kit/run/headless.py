@@ -124,9 +124,9 @@ def run_headless(
                 until_reached=until_reached,
                 output_interval=OUTPUT_INTERVAL if streams is None else INPUT_INTERVAL,
             )
-            session.interrupt()
             session.read_output()
             connection_watch.tell_all()
+            session.interrupt()
         except KeyboardInterrupt:  # before the controller drives
             interrupted = True
         finally:  # also where a terminal is gone, or Ctrl-C comes twice

@@ -1,7 +1,7 @@
 """Ends ten recorders in every way, and prints what was kept: ``python -m tests.endings``.
 
 ``--only "run --bag,quiz"`` and ``--endings SIGTERM,SIGKILL`` choose. Exit code 1 if anything was lost or ended in a
-traceback. "full disk" needs the right to mount.
+traceback, or if a program that could write nothing said nothing. "full disk" and "read only" need the right to mount.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import click
 
-from tests.endings.endings import ENDINGS, Ending, can_mount, try_ending
+from tests.endings.endings import ENDINGS, NEED_MOUNT, Ending, can_mount, try_ending
 from tests.endings.recorders import RECORDERS
 
 
@@ -20,7 +20,7 @@ from tests.endings.recorders import RECORDERS
 @click.option("--endings", default=",".join(ENDINGS), help="Endings, separated by commas.")
 @click.option("-v", "--verbose", is_flag=True, help="Print exit codes and last lines.")
 def main(*, only: str, endings: str, verbose: bool) -> None:
-    names = [name for name in endings.split(",") if name != "full disk" or can_mount()]
+    names = [name for name in endings.split(",") if name not in NEED_MOUNT or can_mount()]
     click.echo(f"{'':<18}" + "".join(f"{name:>11}" for name in names))
     lost: list[str] = []
     with tempfile.TemporaryDirectory(prefix="kit-endings-") as folder:

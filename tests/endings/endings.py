@@ -20,8 +20,14 @@ from tests.waiting import wait_until
 
 END_S: Final = 180.0
 """How long a program may take to end [s]."""
+READ_ONLY_S: Final = 4.0
+"""After how much processor time a program that cannot write is asked to end [s]."""
+READ_ONLY_WAIT_S: Final = 60.0
+"""After how long at the latest [s]."""
 SOMETHING_S: Final = 180.0
 """How long a program may take until there is something to keep [s]."""
+NEED_MOUNT: Final = ("full disk", "read only")
+"""The endings that need a file system of their own."""
 DISK_KIB: Final = 4000
 """Size of the file system that becomes full [KiB]."""
 
@@ -122,6 +128,39 @@ def _by_full_disk(recorder: Recorder, folder: Path) -> Ending:
     return _end(recorder, started)
 
 
+def _by_read_only_folder(recorder: Recorder, folder: Path) -> Ending:
+    """The folder in which it writes may only be read, from its start; where there is none, another's quota."""
+    subprocess.run(["mount", "-o", "remount,ro", str(recorder.place.workspace)], check=True)
+    started = Started(recorder)
+    with suppress(AssertionError):  # one that waits for what is typed computes nothing
+        wait_until(
+            lambda: started.has_ended or started.computed_s >= READ_ONLY_S, "it", limit_s=READ_ONLY_WAIT_S
+        )
+    started.process.send_signal(signal.SIGTERM)
+    started.process.wait(END_S)
+    subprocess.run(["mount", "-o", "remount,rw", str(recorder.place.workspace)], check=True)
+    ending = _end(recorder, started)
+    return replace(ending, had_something=ending.kept > 0 or not ending.text)
+
+
+def _by_closed_pipe(recorder: Recorder, folder: Path) -> Ending:
+    """Who reads its output goes away (``kit run | head``), and then the program is asked to end. Who needs a terminal writes
+    there."""
+    if recorder.needs_terminal:
+        return _by_hang_up(recorder, folder)
+    pipe = recorder.place.folder / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        started = Started(recorder, output=pipe)
+        wait_until(lambda: recorder.has_something() or started.has_ended, "something", limit_s=SOMETHING_S)
+    finally:
+        os.close(reader)
+    has_ended = started.has_ended and not recorder.has_something()
+    started.process.send_signal(signal.SIGTERM)
+    return replace(_end(recorder, started), had_something=not has_ended)
+
+
 def _by_full_output(recorder: Recorder, folder: Path) -> Ending:
     """Standard output is a full device, and then the program is asked to end."""
     started = Started(recorder, output=Path("/dev/full"))
@@ -144,6 +183,8 @@ ENDINGS: Final[Mapping[str, Callable[[Recorder, Path], Ending]]] = MappingProxyT
         "second": _by_second_writer,
         "full disk": _by_full_disk,
         "full out": _by_full_output,
+        "read only": _by_read_only_folder,
+        "closed pipe": _by_closed_pipe,
     }
 )
 
@@ -152,7 +193,7 @@ def try_ending(recorder_name: str, ending_name: str, folder: Path) -> Ending:
     """Runs a recorder in a new folder and ends it so."""
     place = Place(folder / f"{recorder_name}-{ending_name}".replace(" ", "_").replace("-", "_"))
     place.make()
-    is_mounted = ending_name == "full disk" and _mount(place.workspace)
+    is_mounted = ending_name in NEED_MOUNT and _mount(place.workspace)
     recorder = RECORDERS[recorder_name](place)
     try:
         recorder.prepare()

@@ -200,7 +200,9 @@ class Training(Recorder):
         return len(self._run.events()) > 3 and self._run.newest_policy.exists()
 
     def kept(self) -> int:
-        """Events; none where a policy is damaged."""
+        """Events; none where a policy is damaged, or not there."""
+        if not self._run.newest_policy.exists():
+            return 0
         self._run.policy(newest=True)
         return len(self._run.events())
 

@@ -48,6 +48,11 @@ def run_worker(run: TrainingRun) -> int:
     except KeyboardInterrupt:
         _write_error(f"{run.name}: stopped here. `kit train --resume {run.name}` continues it.")
         return 0
+    except OSError as error:  # before there was anything to lose: later ones end the run as failed
+        _write_error(
+            f"{error.filename or run.folder}: {error.strerror or error}. {run.name} cannot be trained there."
+        )
+        return 1
     except (RunError, LearnExtraMissing) as error:
         _write_error(error)
         return 1
