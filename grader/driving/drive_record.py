@@ -225,13 +225,15 @@ class GradedDrive:
         return ""
 
     def _topic_mistakes(self, topics: Iterable[str]) -> Iterator[str]:
-        """Yields what is wrong with topics that are published, but not as asked; see ``TopicsParams``."""
+        """Yields what is wrong with topics that are not published as asked; see ``TopicsParams``."""
         for topic in topics:
             name, kind, node, *_ = [*topic.split(), "", ""]
             traffic = self.traffic.get(name)
-            if traffic is not None and kind not in ("", traffic.kind):
+            if traffic is None:
+                yield f"Nothing came on {name}."
+            elif kind not in ("", traffic.kind):
                 yield f"{name} carries {traffic.kind}, not {kind}."
-            elif traffic is not None and node and traffic.nodes != (node,):
+            elif node and traffic.nodes != (node,):
                 yield f"{name} is published by {join_names(traffic.nodes)}, not by {node}."
 
     def picture(self, check: str = "") -> str:

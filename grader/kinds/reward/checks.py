@@ -68,8 +68,8 @@ def loops(evidence: RewardEvidence, params: NoParams) -> float:
 
 @check(none=0.5, full=0.999, unit="%")
 def planned(evidence: RewardEvidence, params: NoParams) -> float:
-    """A robot that does exactly what this reward asks for reaches the target in {actual} of all cases. The picture
-    shows what it does instead: that is what your reward pays best."""
+    """A robot that does exactly what this reward asks for reaches the target in {actual} of all cases; {full} earns all
+    points. The picture shows what it does instead: that is what your reward pays best."""
     return evidence.plan_outcome.success
 
 

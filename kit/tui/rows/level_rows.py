@@ -62,7 +62,7 @@ def still_in_reach(driver: DriverKind, reference: float, seconds: float, collisi
     """The medal that is still in reach while one drives, and until when."""
     medal = rung_in_reach(driver, reference, seconds, collisions)
     if medal is None:
-        return "no medal any more: r restarts"
+        return "no medal any more"
     return f"{medal.title} until {medal_time(medal, reference, driver):.2f} s"
 
 

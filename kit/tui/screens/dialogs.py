@@ -34,12 +34,14 @@ MOUSE_NOTE: Final = (
 
 
 def wrapped(text: str) -> list[Row]:
-    """The lines of a text as rows of a dialog; long lines are wrapped."""
-    return [
-        row(part)
-        for line in text.splitlines()
-        for part in wrap(line, WIDTH - 4, " " * (len(line) - len(line.lstrip())), "    ")
-    ]
+    """The lines of a text as rows of a dialog; long ones go on in the next row, indented where there are several."""
+    lines = text.splitlines()
+    hanging = "    " if len(lines) > 1 else ""
+    rows = []
+    for line in lines:
+        indent = " " * (len(line) - len(line.lstrip()))
+        rows += [row(part) for part in wrap(line, WIDTH - 4, indent, indent + hanging)]
+    return rows
 
 
 class MessageDialog(Dialog[None]):

@@ -323,7 +323,8 @@ class LessonScreen(DialogueScreen, DriveScreen):
         if curves is not None:
             rows = ROOMY_CURVE_ROWS if is_roomy else CURVE_ROWS
             return curves.picture(width, self.theme.encoder, *work.training_drive(), rows)
-        drawn = [] if work.seconds is not None else [line[:width] for line in work.picture_lines]
+        lines = [] if work.seconds is not None else work.picture_lines
+        drawn = [line if len(line) <= width else f"{line[: width - 3]}..." for line in lines]
         return drawn if len(drawn) <= MOST_DRAWN else []
 
     @property

@@ -370,6 +370,7 @@ def test_a_callback_that_was_called_instead_of_given_is_named(mistaken: GradedDr
 def test_a_topic_that_another_node_publishes_is_named(mistaken: GradedDrive) -> None:
     params = TopicsParams(("/wall_ahead std_msgs/msg/Bool /watcher",))
     assert "/wall_ahead is published by /Heartbeat, not by /watcher." in mistaken.explain("topics", params)
+    assert "Nothing came on /silent." in mistaken.explain("topics", TopicsParams(("/silent",)))
 
 
 def test_the_heading_at_the_end_is_compared_the_short_way_round(circle: GradedDrive) -> None:
