@@ -289,8 +289,9 @@ def _open_setup(scenario: Scenario, derived: bool) -> ControllerSetup:
 
     if scenario.case is None:
         raise LookupError(
-            f"{scenario.name} has no target, so it has no field: put a model named beacon where the target is, or choose "
-            "one of the kit's maps; `kit maps` lists them."
+            f"{scenario.name} has no target, so it has no field. Put a model named beacon there, or write about.yaml beside it:\n"
+            "    robot: serp\n    cases:\n      - {name: one, start: [1, 1, 0], target: [3, 2]}\n"
+            "Or choose one of the kit's maps; `kit maps` lists them."
         )
     return ControllerSetup.load(
         scenario.world.file,

@@ -180,9 +180,9 @@ def _read_card(folder: Path) -> MapCard:
     with open_document(folder / CARD_FILE) as section:
         return MapCard(
             name=folder.name,
-            title=section.name("title"),
-            summary=section.name("summary"),
-            source=section.text("source"),
+            title=section.name("title", folder.name),
+            summary=section.text("summary", ""),
+            source=section.text("source", ""),
             folder=folder,
             world_file=folder / WORLD_FILE,
             robot=section.name("robot", "serp"),

@@ -202,7 +202,7 @@ class Section:
         for i, item in enumerate(items):
             integer = parse_integer(item.text) if isinstance(item, ScalarNode) else None
             if integer is None or not minimum <= integer <= maximum:
-                what = f"{quoted(key)} must contain whole numbers from {minimum} to {maximum}, but [{i}] is not one"
+                what = f"{quoted(key)}[{i}] must be a whole number from {minimum} to {maximum}"
                 self._report_mismatch(item, what)
                 return instead
             integers.append(integer)

@@ -120,3 +120,8 @@ def test_a_bare_world_with_robot_and_beacon_has_a_field(tmp_path: Path) -> None:
     (tmp_path / "world.yaml").write_text("\n".join(BARE.splitlines()[:-1]) + "\n")
     found = CliRunner().invoke(main, ["fields", "show", str(tmp_path / "world.yaml"), "--plain"])
     assert "a model named beacon" in " ".join(found.output.split())
+    card = found.output[found.output.index("    robot:") : found.output.index("Or choose")]
+    card = card.replace("[1, 1, 0]", "[0, 0, 1.57]").replace("[3, 2]", "[1.6, 1.6]").replace("serp", "left")
+    (tmp_path / "about.yaml").write_text(card)  # as it is told, with places of this world
+    found = CliRunner().invoke(main, ["fields", "show", str(tmp_path / "world.yaml"), "--plain"])
+    assert found.exit_code == 0, found.output

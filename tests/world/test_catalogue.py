@@ -74,10 +74,15 @@ def test_a_card_with_every_key(tmp_path: Path) -> None:
     assert (case.is_heading_random, case.group, case.partner_start) == (True, "turns", Pose(1, 1, 0))
 
 
+def test_a_card_needs_only_its_cases(tmp_path: Path) -> None:
+    card(tmp_path, "hall", CARD[CARD.index("cases") :])
+    found = find_map("hall", tmp_path)
+    assert (found.title, found.summary, found.source, len(found.cases)) == ("hall", "", "", 1)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("title: A hall\n", "", ["title"]),
         ("title", "titel", ["title", "titel"]),
         ("  - {name", "  - {nmae", ["name"]),
         ("[1, 2]", "[1, 2, 3]", ["target", "2"]),

@@ -14,6 +14,8 @@ from kit.learning.tasks.case_reader import START_KEYS, TARGET_KEYS, PlacedCase
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.student_reward import reward_parameters
 from kit.learning.tasks.task_reader import ReadTask
+from kit.plain_text import quoted, suggestion
+from kit.sim.simulation import load_world
 
 
 def check_task(read: ReadTask) -> None:
@@ -24,15 +26,44 @@ def check_task(read: ReadTask) -> None:
     if task.reward_file is not None:
         reward_parameters(task.reward_file)
     cards = task.map_cards
+    _check_robots(read)
+    read.problems.raise_if_any()  # without its robots a map is no ground to check starts on
+    maps = [load_batch_map(card, task.robots_on(card)) for card in cards]
+    for batch_map in maps:
+        if task.goal.needs_obstacles and not batch_map.obstacles:
+            read.section.error(
+                f"the goal {task.goal.kind} needs models that move, and {batch_map.name} has none but robots: give its world "
+                "a model with a Tween, as the map crossing has",
+                "goal",
+            )
     for placed in read.cases:
-        card = cards[placed.map_number]
-        _check_case(task, placed, load_batch_map(card, task.robots_on(card)))
+        _check_case(task, placed, maps[placed.map_number])
     read.problems.raise_if_any()
     CaseArrays(task)
 
 
+def _check_robots(read: ReadTask) -> None:
+    """Notes the robots that a map does not have."""
+    if not read.section.has("robots"):
+        return
+    for card in read.task.map_cards:
+        names = [model.name for model in load_world(card.world_file, root=card.root).models]
+        for robot in read.task.robots_on(card):
+            if robot not in names:
+                read.section.error(
+                    f"{card.name} has no model named {quoted(robot)}: {suggestion(robot, names)}", "robots"
+                )
+
+
 def _check_case(task: LearningTask, placed: PlacedCase, batch_map: BatchMap) -> None:
     case, is_free = placed.case, True
+    movable = [obstacle.name for obstacle in batch_map.obstacles]
+    if case.targets.model is not None and case.targets.model not in movable:
+        placed.error(
+            f"nothing that moves on {batch_map.name} is named {quoted(case.targets.model)}: "
+            f"{suggestion(case.targets.model, movable)}",
+            TARGET_KEYS,
+        )
     for number in range(max(len(places.poses) for places in case.starts)):
         poses = [places.poses[number] for places in case.starts if places.poses]
         touches = np.flatnonzero(touching(batch_map, poses))

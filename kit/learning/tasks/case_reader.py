@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from kit.geometry import Pose
 from kit.learning.tasks.goals.goal import Goal
 from kit.learning.tasks.task_case import EpisodePlaces, TaskCase
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import counted, quoted, suggestion
 from kit.world.catalogue import MapCard
 from kit.world.yaml_section import Section
 
@@ -100,6 +100,12 @@ class CaseReader:
         others = self._robots - 1
         if not others:
             return ()
+        if not section.has("other_starts"):
+            section.error(
+                f'with {self._robots} robots it needs "other_starts": for each start, {counted(others, "pose")} of the other '
+                f"{'robot' if others == 1 else 'robots'}"
+            )
+            return (EpisodePlaces((Pose(),) * count),) * others
         poses = section.poses("other_starts", at_least=others * count, at_most=others * count)
         poses = poses if len(poses) == others * count else (Pose(),) * (others * count)
         return tuple(EpisodePlaces(poses[robot::others]) for robot in range(others))

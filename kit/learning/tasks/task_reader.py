@@ -56,8 +56,10 @@ class ReadTask:
     task: LearningTask
     text: str
     cases: tuple[PlacedCase, ...]
+    section: Section
+    """The whole file; takes what is found to be wrong later."""
     problems: ProblemCollector
-    """Takes what is found to be wrong later."""
+    """What has been found to be wrong so far."""
 
 
 def read_task(file: Path, text: str | None = None) -> ReadTask:
@@ -73,7 +75,7 @@ def read_task(file: Path, text: str | None = None) -> ReadTask:
     with documents.open(file, content) as section:
         reader = _TaskReader(section, file, content, documents.allowed_root, is_kept=text is not None)
         task, cases = reader.read()
-    return ReadTask(task, content, cases, documents.problems)
+    return ReadTask(task, content, cases, section, documents.problems)
 
 
 def task_name(file: Path) -> str:

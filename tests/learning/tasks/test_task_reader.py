@@ -198,6 +198,31 @@ def test_a_start_in_a_wall_and_a_target_out_of_reach(case: str, tmp_path: Path) 
     assert (problem.location.file.name, problem.location.line) == ("mine.yaml", 6)
 
 
+MISSING = {
+    "robots: [surp]": 'did you mean "serp"',
+    "goal: {kind: avoid}": "needs models that move",
+    "goal: {kind: follow}": 'nothing that moves on turn is named "serp"',
+}
+
+
+@every_case("line", MISSING)
+def test_what_the_world_lacks_is_said_where_the_task_asks_for_it(line: str, tmp_path: Path) -> None:
+    target = "target_model: serp" if "follow" in line else "target: [1.6, 1.6]"
+    sound = [SOUND["actions"], SOUND["observation"], SOUND["reward"], "maps: [turn]"]
+    text = "\n".join([*sound, line, f"cases: [{{start: [0, 0, 0], {target}}}]"])
+    with pytest.raises(WorldError) as caught:
+        check_task(read_task(written(tmp_path, text)))
+    (problem,) = caught.value.problems
+    assert MISSING[line] in problem.message
+    assert (problem.location.file.name, problem.location.line) == ("mine.yaml", 6 if "follow" in line else 5)
+
+
+def test_starts_of_other_robots_are_asked_for(tmp_path: Path) -> None:
+    lines = ["robots: [serp, other]", *SOUND.values()]
+    with pytest.raises(WorldError, match=r'with 2 robots it needs "other_starts": for each start, 1 pose'):
+        read_task(written(tmp_path, "\n".join(lines)))
+
+
 @pytest.mark.sampled(5)
 @pytest.mark.parametrize("task", all_tasks(), ids=lambda task: task.name)
 def test_the_kits_own_tasks_are_sound_files(task: LearningTask) -> None:

@@ -24,6 +24,7 @@ class AvoidGoal(Goal):
     """Total time [s]."""
 
     kind: ClassVar[str] = "avoid"
+    needs_obstacles: ClassVar[bool] = True
 
     @classmethod
     def read(cls, section: Section) -> Self:

@@ -92,6 +92,8 @@ class Goal(ABC):
     """Whether agents that see ``achieved`` are told it one step later: where the newest scan is what is counted."""
     least_robots: ClassVar[int] = 1
     """How many robots it needs."""
+    needs_obstacles: ClassVar[bool] = False
+    """Whether there must be models that neither drive nor are walls."""
     reads_lidar: ClassVar[bool] = False
     """Whether what is counted is measured by the robots' lidars."""
     is_lost_at_start: ClassVar[bool] = False
