@@ -275,5 +275,5 @@ def test_standing_still_pays_more_than_arriving_on_the_turns() -> None:
     )
     (told,) = (text for text in table.settings if "standing still" in text)
     assert f"{sum(map(bool, standing))} of {len(agents)} seeds" in told
-    assert f"earn {round(earned, -1):,.0f} an episode" in told
+    assert f"{round(earned, -1):,.0f} an episode" in told
     assert f"more than {math.ceil(most / 50) * 50:,} " in told
