@@ -48,7 +48,7 @@ MISTAKES = {
     "trials: [{name: a, place: trun}]": ("trun", "did you mean"),
     "trials: [{name: a, place: turn, case: x}]": ("turn", "no case x"),
     "trials: [{name: a, place: turn, seeds: [1, 1]}]": ("seeds", "twice"),
-    "trials: [{name: a, place: turn, seeds: [1.5]}]": ("seeds", "whole numbers"),
+    "trials: [{name: a, place: turn, seeds: [1.5]}]": ("seeds", "whole number"),
     "trials: [{name: a, place: turn, services: [move_modle]}]": ("move_modle", "did you mean"),
     "trials: [{name: a, place: turn}, {name: a, place: turn}]": ("a", "already exists"),
 }

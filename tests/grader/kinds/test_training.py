@@ -179,7 +179,7 @@ def test_what_cannot_be_trained_is_told_with_its_place(folder: Path, text: str, 
     [
         ("task: turn", "task: trun", "turn"),
         ("reward: progress", "reward: progres", "progress"),
-        ("seeds: [1, 2]", "seeds: [1.5]", "whole numbers"),
+        ("seeds: [1, 2]", "seeds: [1.5]", "whole number"),
         ("steps: 20000", "steps: 20000, algorithms: [q]", "no algorithm"),
         ("steps: 20000", "steps: 20000, algorithms: [ppo, sac]", "smooth-turn"),
     ],

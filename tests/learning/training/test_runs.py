@@ -44,8 +44,7 @@ EVENTS = (
 @every_case("event", EVENTS, ids=lambda event: type(event).__name__)
 def test_events_come_back_from_their_lines(event: object) -> None:
     line = encode_event(event)  # type: ignore[arg-type]  # one of the kinds
-    assert line.endswith(b"\n")
-    assert line.count(b"\n") == 1
+    assert b"\n" not in line
     assert decode_event(line) == event
     for wrong in (line[:-5], b"[]", b"null", b'{"event": "later"}', b'{"event": "noted"}', b"\xff"):
         assert decode_event(wrong) is None
@@ -55,7 +54,7 @@ def test_a_reader_gets_each_event_once_and_no_half_lines(tmp_path: Path) -> None
     file = tmp_path / "events.jsonl"
     reader = EventReader(file)
     assert list(reader.read_new()) == []
-    lines = b"".join(map(encode_event, EVENTS))
+    lines = b"".join(encode_event(event) + b"\n" for event in EVENTS)
     found = []
     for end in range(0, len(lines) + 1, 7):
         file.write_bytes(lines[:end])
@@ -68,7 +67,7 @@ def test_a_reader_gets_each_event_once_and_no_half_lines(tmp_path: Path) -> None
 
 def test_a_writer_cuts_off_what_a_killed_one_left(tmp_path: Path) -> None:
     file = tmp_path / "events.jsonl"
-    file.write_bytes(encode_event(EVENTS[0]) + encode_event(EVENTS[1])[:-9])
+    file.write_bytes(encode_event(EVENTS[0]) + b"\n" + encode_event(EVENTS[1])[:-8])
     with EventWriter(file) as writer:
         writer.write(EVENTS[2])
     assert tuple(EventReader(file).read_new()) == (EVENTS[0], EVENTS[2])
