@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import Final
@@ -18,7 +19,7 @@ from kit.learning.training.learn_extra import require_learn_extra
 from kit.learning.training.run_config import RunError
 from kit.plain_text import counted
 from kit.study import study_document
-from kit.study.printed_tables import study_chapters
+from kit.study.printed_tables import FIGURE, study_chapters
 from kit.study.recorded_results import RecordedResultError
 from kit.study.study_check import check_document
 from kit.study.study_document import DOCUMENT
@@ -143,8 +144,8 @@ def _wanted_variants(wanted: str, variant: StudyVariant) -> tuple[StudyVariant, 
 
 
 def _read_number(words: tuple[str, ...]) -> tuple[str, str]:
-    """``table``, ``figure`` or nothing, and the number."""
-    kind, *rest = words or ("",)
+    """``table``, ``figure`` or nothing, and the number; also from one word: ``"figure 3.5"``, ``figure-3.5``."""
+    kind, *rest = re.sub(r"(?i)^(table|figure)-", r"\1 ", " ".join(words)).split() or [""]
     if kind.lower() in ("table", "figure"):
         if len(rest) != 1:
             messages.fail(f"{kind} needs one number, such as `kit study {kind.lower()} 3.5`.")
@@ -182,7 +183,9 @@ def _run_again(
     run = able.get(number)
     if run is None:
         words = VARIANT_OPTIONS[variant]
-        messages.fail(f"--again{words} cannot reproduce that; it can reproduce {', '.join(able)}.")
+        messages.fail(
+            f"--again{words} cannot reproduce that; it can reproduce {', '.join(able).replace(FIGURE, 'figure ')}."
+        )
     if run.groups:
         require_learn_extra()
     try:

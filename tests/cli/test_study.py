@@ -99,6 +99,11 @@ def test_each_fits_eighty_columns(tmp_path: Path, words: tuple[str, ...]) -> Non
     assert max(map(len, result.stdout.splitlines())) <= 79
 
 
+@pytest.mark.parametrize("word", ["Figure-4.10", "figure 4.10"])
+def test_a_figure_may_be_one_word(tmp_path: Path, word: str) -> None:
+    assert study(tmp_path, word).stdout == study(tmp_path, "figure", "4.10").stdout
+
+
 def test_json_for_machines(tmp_path: Path) -> None:
     content = json.loads(study(tmp_path, "4.6", "--json", "-").stdout)
     table = next(each for each in content["chapters"][0]["blocks"] if "table" in each)
