@@ -335,35 +335,42 @@ class StudentProcess:
         return self._check_answer(frame)
 
     def request(self, kind: str, *content: Json, wall_s: float | None = None) -> Frame:
-        """Sends one command and waits for its answer, for ``wall_s`` by the wall clock, by default the limit [s]. Raises
-        StudentCodeError."""
+        """Sends one command and waits for its answer: for ``wall_s`` by the wall clock, whether it computes or not, by default
+        as long as the limits allow [s]. Raises StudentCodeError."""
         limits = self._limits
         self._send_command(kind, *content)
         if limits.total_s is not None and self._waited_s >= limits.total_s:
             self._fail_timeout("total", limits.total_s)
         began = time.monotonic()
         try:
-            wall_s = limits.reply_wall_s if wall_s is None else wall_s
-            return self._check_answer(self._receive_within(limits.reply_s, wall_s, "reply"))
+            if wall_s is None:
+                return self._check_answer(self._receive_within(limits.reply_s, limits.reply_wall_s, "reply"))
+            return self._check_answer(self._receive_within(limits.reply_s, wall_s, "reply", math.inf))
         finally:
             self._waited_s += time.monotonic() - began
 
     def finish_request(self, wall_s: float) -> Frame | None:
-        """Waits for the answer to a command whose ``request`` was interrupted; None if there is none. Raises
-        StudentCodeError."""
+        """Waits for the answer to a command whose ``request`` was interrupted, for ``wall_s`` by the wall clock [s]; None if
+        there is none. Raises StudentCodeError."""
         if self._state is ProcessState.IDLE:
             return None
-        return self._check_answer(self._receive_within(self._limits.reply_s, wall_s, "reply"))
+        return self._check_answer(self._receive_within(self._limits.reply_s, wall_s, "reply", math.inf))
 
-    def _receive_within(self, processor_s: float, wall_s: float, budget: Literal["start", "reply"]) -> Frame:
+    def _receive_within(
+        self,
+        processor_s: float,
+        wall_s: float,
+        budget: Literal["start", "reply"],
+        computing_share: float = COMPUTING_SHARE,
+    ) -> Frame:
         """Returns the answer to a command. Ends a child that uses more processor time before it answers, or more of the wall
-        clock without computing. Raises StudentCodeError."""
+        clock while it computes for less than ``computing_share`` of it. Raises StudentCodeError."""
         began, used_before_s = time.monotonic(), self._processor_s()
         total_s = self._limits.total_s
         left_s = math.inf if total_s is None or budget == "start" else total_s - self._waited_s
         used_s, pause_s = 0.0, processor_s
         while True:
-            end = began + min(wall_s + used_s / COMPUTING_SHARE, left_s)
+            end = began + min(wall_s + used_s / computing_share, left_s)
             frame = self._receive(min(end, time.monotonic() + pause_s))
             if frame is not None:
                 return frame
@@ -374,7 +381,7 @@ class StudentProcess:
             if used_s >= processor_s:
                 self._fail_timeout(budget, processor_s)
             waited_s = time.monotonic() - began
-            if waited_s >= min(wall_s + used_s / COMPUTING_SHARE, left_s):
+            if waited_s >= min(wall_s + used_s / computing_share, left_s):
                 if total_s is not None and waited_s >= left_s:
                     self._fail_timeout("total", total_s)
                 self._fail_timeout("start wall" if budget == "start" else "reply wall", wall_s)

@@ -127,7 +127,7 @@ def test_the_screen_at_eighty_columns() -> None:
             "angle_min: 0.0",
             "angle_max: 0.0",
         ]
-        keys = "arrows choose Enter message / filter a all t tidy ? help Esc back ^P find"
+        keys = "arrows choose Enter message / filter a all t tidy ? help Esc back ^P more"
         assert rows(screen)[-1] == keys
 
     play(scene)

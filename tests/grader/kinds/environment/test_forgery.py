@@ -71,8 +71,9 @@ for name, value in list(vars(examiner).items()):
 """Row 9 of the catalogue: the functions of the program that calls the environment are replaced."""
 
 FORGED_SPACES = """
+import itertools
 examiner.describe_space = lambda value: next(spaces)
-spaces = iter((
+spaces = itertools.cycle((
     {"kind": "Discrete", "n": 3, "start": 0},
     {"kind": "Box", "shape": [9], "dtype": "float32", "low": 0.0, "high": 2.0, "lows": [0.0] * 9, "highs": [2.0] * 9},
 ))
@@ -143,8 +144,7 @@ def test_forged_spaces_earn_what_spaces_of_an_empty_environment_earn() -> None:
     honest = graded(declared)
     assert points(result) == points(honest) == {}
     assert "action_space is right, and counts" in {test.id: test.rationale for test in honest.tests}["spaces"]
-    words = {test.id: test.rationale for test in result.tests}
-    assert "before time had passed in the world" in words["steps"]
+    assert any("before time had passed in the world" in test.rationale for test in result.tests)
 
 
 @pytest.mark.long
