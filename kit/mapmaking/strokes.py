@@ -39,6 +39,9 @@ NOISE_BLOCK: Final = 50
 LEAST_DEPTH: Final = 0.07
 """And by this share of the paper's light."""
 
+MOST_INK: Final = 0.17
+"""More of a sheet than this is not walls alone: of drawings they take up to 0.11, printed squares as dark as the pen 0.22."""
+
 
 class NoStrokes(ValueError):
     """The sheet holds no drawing; the message says what was found, and what helps."""
@@ -81,7 +84,7 @@ def _check_share(plan: BoolArray) -> None:
         raise NoStrokes(
             "The sheet looks empty: it has no lines clearly darker than the paper. Draw with a darker pen."
         )
-    if share > 0.3:
+    if share > MOST_INK:
         raise NoStrokes(
             f"{100 * share:.0f} % of the sheet is dark, far more than walls drawn as lines: a picture with grey areas, or paper "
             "whose printed squares are nearly as dark as the pen. Draw the lines with a thick dark pen on plain paper."
