@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from contextlib import chdir
 from functools import cache
 from itertools import product
 from pathlib import Path
@@ -53,7 +54,10 @@ def order_of_a_build(words: str, step: LessonStep, folder: Path) -> str:
 def told_of_the_photo(*options: str) -> str:
     """What ``kit maps from-photo`` says of the lesson's photograph; also where it makes no map."""
     photo = PHOTO_LESSON / "sheet" / "starter" / "plan.jpg"
-    with TemporaryDirectory() as folder:
+    with (
+        TemporaryDirectory() as folder,
+        chdir(folder),
+    ):  # the picture that a refusal writes lies in the working folder
         result = CliRunner().invoke(
             main, ["maps", "from-photo", str(photo), "plan", "--workspace", folder, *options]
         )
