@@ -26,7 +26,8 @@ def test_a_talker_is_heard_and_numbers_are_added(stage: Stage) -> None:
     ):
         assert listener.stderr is not None
         heard = re.compile(r"\[listener\]: I heard: \[Hello World: \d+\]")
-        assert any(map(heard.search, listener.stderr))  # on a busy machine it may first be told that nobody talks yet
+        # On a busy machine it may first be told that nobody talks yet.
+        assert any(map(heard.search, listener.stderr))
         _, said = client.communicate(timeout=60)
         assert "Result of add_two_ints: 5\n" in said
         assert client.returncode == 0
