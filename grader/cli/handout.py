@@ -163,7 +163,6 @@ def _write_handout(files: Mapping[str, bytes], target: Path) -> None:
 
 def _check_readable(folder: Path) -> None:
     """Says what the student's version lacks, where it cannot be read any more without what stays."""
-
     try:
         read_assignment(folder)
     except WorldError as error:

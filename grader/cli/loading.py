@@ -38,7 +38,6 @@ def warn_of_unused_secrets(assignment: Assignment, *, secret: bool) -> None:
 
 def warn_of_short_seeds(assignment: Assignment) -> None:
     """Prints a warning on standard error where secret seeds can be guessed."""
-
     warning = short_seeds_warning(assignment.secret_seeds)
     if warning:
         click.echo(warning, err=True)

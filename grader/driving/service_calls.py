@@ -92,7 +92,6 @@ class ServiceCaller:
             self._make(self._calls.pop(0))
 
     def _make(self, call: ServiceCall) -> None:
-
         assert self._node is not None
         service_type, service = find_service(call.type), self._full_name(call.service)
         if service not in self._clients:
@@ -118,7 +117,6 @@ class ServiceCaller:
 
 
 def _answer_text(future: Future[Any] | None) -> str:
-
     if future is None:
         return NO_SERVICE
     answer = future.result() if future.done() else None

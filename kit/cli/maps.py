@@ -203,7 +203,6 @@ def new(
 
     Without S or T, the kit chooses two places far apart. The robot must be able to drive from S to T.
     """
-
     try:
         folder = check_name(name, open_workspace(workspace).worlds)
         if drawing is None:
@@ -230,7 +229,6 @@ def _draw(
     folder: Path, cell: float, size: str, glyphs: str | None, color: str | None, *, is_pair: bool
 ) -> None:
     """Opens the sheet, and tells what was made of it. The drawing is kept beside the map, to be changed later."""
-
     terminal = terminal_options.full_screen(
         "Drawing on the screen",
         f"`kit maps new {folder.name} --from FILE` reads a drawing in characters: # wall, S start, T target.",
@@ -341,7 +339,6 @@ def from_photo(
     kit maps from-photo plan.jpg hall --walls-width 4  outer walls 4 m apart
     kit maps from-photo plan.jpg --width 5 --click     click the corners
     """
-
     try:
         scale = PhotoScale(width, walls_width)
     except PhotoError as error:
@@ -456,7 +453,6 @@ def _point(text: str | None, option: str) -> tuple[float, float] | None:
 
 
 def _corners(text: str | None, photo: Image) -> Corners | None:
-
     if text is None:
         return None
     if text == "whole":

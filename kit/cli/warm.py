@@ -79,7 +79,6 @@ def _drive(place: str, controller: str) -> None:
 
 
 def _step(task: LearningTask) -> None:
-
     from kit.learning.environment.batch import BatchEnv
 
     batch = BatchEnv(task, WORLDS)

@@ -107,7 +107,6 @@ class SessionHost:
     def _put_opening(self, job: Callable[[], None]) -> None:
         """Queues the opening of a world; until it ends, nobody sees the present one any more, or does something to it that was
         meant for the other."""
-
         with self._view_lock:
             self._asked += 1
             number = self._asked

@@ -231,7 +231,6 @@ class PosedTask:
     @cached_property
     def policy_test(self) -> EvaluationResult | str:
         """The test of the policy that was handed in with the task; what is wrong with it where it cannot be tested."""
-
         file = self._folder / self.plan.policy
         if not is_file_there(file):
             return f"There is no {self.plan.policy} beside the task: train it, and copy the run's best.npz there."

@@ -347,8 +347,8 @@ def evaluate_policy(
 ) -> EvaluationResult:
     """Tests a policy on at least ``episodes`` episodes of each case and returns its success rate by case.
 
-    ``policy``: a policy or its file. ``task``: one, its name or its file; default: the one that it was trained on. ``greedy``: whether it takes
-    its best action, or draws actions as it did in training. The same arguments give the same result.
+    ``policy``: a policy or its file. ``task``: one, its name or its file; default: the one that it was trained on. ``greedy``:
+    whether it takes its best action, or draws actions as it did in training. The same arguments give the same result.
 
     Raises PolicyError if the file is damaged or the policy does not fit the task, UnknownTask, and ValueError for fewer than one
     episode.

@@ -76,7 +76,6 @@ def _check_commands(lesson: Lesson, verbs: Collection[str]) -> Iterator[Contract
 
 
 def _check_scenes(lesson: Lesson) -> Iterator[ContractFinding]:
-
     for step in lesson.steps:
         if step.scene is None:
             continue

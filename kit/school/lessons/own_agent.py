@@ -103,7 +103,6 @@ def _drive(world: GridWorld, path: tuple[GridCell, ...], folder: Path) -> tuple[
 
 def _floor_map(world: GridWorld, folder: Path) -> Path:
     """Writes the floor as a map, once; returns its folder. Raises OSError and ValueError."""
-
     from kit.mapmaking.map_drawing import read_drawing
     from kit.mapmaking.new_map import write_map
 

@@ -325,5 +325,4 @@ class MatchReplayScreen(ReplayScreen):
 
 def _agents(runs: Path) -> list[str]:
     """The names of all trainings."""
-
     return [each.name for each in list_runs(runs)]
