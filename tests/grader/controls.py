@@ -70,13 +70,6 @@ CONTROLS: Final = (
         "grader/kinds/test_task.py::test_driving_up_and_down_is_a_loop_too",
     ),
     Control(
-        "one-sided progress behind a cost of every step",
-        "grader/kinds/reward/behaviours.py",
-        "self.round_pay > 0.0 or self.kept_progress > 0.0 or",
-        "self.round_pay > 0.0 or",
-        "grader/kinds/reward/test_kind.py::test_a_loop_that_pays_is_not_hidden_by_what_arriving_pays",
-    ),
-    Control(
         "a space that changes in mid-episode",
         "grader/kinds/environment/examination.py",
         "self.record.changed_spaces.setdefault(name, what)",

@@ -60,13 +60,10 @@ class LoopComparison:
     arrival_return: float
     round_pay: float = 0.0
     """What it earns by itself, each time round; 0 if it takes back what it pays."""
-    kept_progress: float = 0.0
-    """What its steps nearer are paid and its steps away do not take back, each time round, beside the same steps if nothing had
-    changed: a cost of every step hides that, and does not mend it."""
 
     @property
     def is_profitable(self) -> bool:
-        return self.round_pay > 0.0 or self.kept_progress > 0.0 or self._pays_as_well
+        return self.round_pay > 0.0 or self._pays_as_well
 
     @property
     def _pays_as_well(self) -> bool:
@@ -78,12 +75,7 @@ class LoopComparison:
         name = self.name.capitalize()
         if self._pays_as_well:
             return f"{name} forever earns {self.loop_return:.3g}, driving to the target only {self.arrival_return:.3g}."
-        if self.round_pay > 0.0:
-            return f"{name} earns {self.round_pay:.3g} each time round, and can go on for ever."
-        return (
-            f"{name} is paid {self.kept_progress:.3g} each time round for steps that come nearer, beside steps that change "
-            "nothing, and its steps away do not take it back."
-        )
+        return f"{name} earns {self.round_pay:.3g} each time round, and can go on for ever."
 
 
 def compare_behaviours(
@@ -94,12 +86,9 @@ def compare_behaviours(
 
 
 def compare_loops(
-    model: GridModel, rewards: FloatArray, changes: FloatArray, check_time: TimeCheck = without_limit
+    model: GridModel, rewards: FloatArray, check_time: TimeCheck = without_limit
 ) -> tuple[LoopComparison, ...]:
-    """Compares every loop that fits into the map with driving to the target, from several starts.
-
-    ``changes``: (states, moves) what of each reward is paid for what the step has changed.
-    """
+    """Compares every loop that fits into the map with driving to the target, from several starts."""
     drives = []
     for start, good in _sample_drives(model, check_time):
         arrival_return = discounted_return(model, rewards, start, good)
@@ -109,8 +98,7 @@ def compare_loops(
                 repeated = loop * (model.task.max_steps // len(loop))
                 loop_return = discounted_return(model, rewards, start, repeated)
                 pay = _round_pay(model, rewards, start, loop)
-                progress = _kept(model, changes, start, loop)
-                drives.append(LoopComparison(name, loop_return, arrival_return, pay, progress))
+                drives.append(LoopComparison(name, loop_return, arrival_return, pay))
     return tuple(drives)
 
 
@@ -245,16 +233,6 @@ def _round_pay(model: GridModel, rewards: FloatArray, start: int, loop: Moves) -
         state = int(model.next[state, move])
     slack = 1e-9 * float(np.abs(rewards).max())
     return total if total > slack and most > slack and earned > KEPT * most else 0.0
-
-
-def _kept(model: GridModel, changes: FloatArray, start: int, loop: Moves) -> float:
-    """Returns what of the changes of one round is kept at its end, if that is most of what was earned on the way; else 0."""
-    earned, most, state = 0.0, 0.0, start
-    for move in loop:
-        earned += float(changes[state, move])
-        most = max(most, earned)
-        state = int(model.next[state, move])
-    return earned if most > 1e-9 * float(np.abs(changes).max()) and earned > KEPT * most else 0.0
 
 
 def _sample_drives(model: GridModel, check_time: TimeCheck) -> list[tuple[int, tuple[int, ...]]]:

@@ -142,19 +142,7 @@ class RewardEvidence:
 
     @cached_property
     def loops(self) -> tuple[LoopComparison, ...]:
-        return compare_loops(self.model, self.rewards, self._changes, self._clock.check)
-
-    @cached_property
-    def _changes(self) -> FloatArray:
-        """(states, moves) what of each reward is paid for what the step has changed; 0 if the reward fails when it is asked."""
-        everything = to_transition(TransitionBatch.all(self.model), is_change_left_out=True)
-        try:
-            with self._open() as functions:
-                unchanged = self._rewards_of(functions, everything)
-        except StudentCodeError as error:
-            self._interruptions["loops"] = self._clock.explain(error.failure)
-            return np.zeros_like(self.rewards)
-        return self.rewards - unchanged.reshape(self.rewards.shape)
+        return compare_loops(self.model, self.rewards, self._clock.check)
 
     def success_after_training(self, budget: RewardTrainingParams) -> float:
         """Returns the success of robots trained with this reward; 0 if the reward fails during training."""

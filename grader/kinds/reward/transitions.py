@@ -80,11 +80,8 @@ class TransitionBatch:
         return self.model.reached[self.states, self.moves]
 
 
-def to_transition(steps: TransitionBatch, *, is_change_left_out: bool = False) -> Transition:
-    """Returns the kit's record of these transitions, for one robot.
-
-    ``is_change_left_out``: as if the robot had been before where it is after them, so that no step has changed anything.
-    """
+def to_transition(steps: TransitionBatch) -> Transition:
+    """Returns the kit's record of these transitions, for one robot."""
     model, count = steps.model, len(steps)
     front = np.minimum(
         model.ahead[model.cell_of(steps.next_states), model.heading_of(steps.next_states)], AGENT_SIGHT
@@ -119,6 +116,4 @@ def to_transition(steps: TransitionBatch, *, is_change_left_out: bool = False) -
         count=1.0 * steps.reached,
         achieved=1.0 * steps.reached,
     )
-    if is_change_left_out:
-        standing = replace(standing, pose=moved.pose, to_go=moved.to_go)
     return Transition(standing, moved, model.task.max_steps)
