@@ -261,7 +261,7 @@ CONTROLS: Final = (
     Control(
         "a loop that pays, beside a great reward for arriving",
         "grader/kinds/reward/behaviours.py",
-        "return self.round_pay > 0.0 or self.kept_progress > 0.0 or self._pays_as_well",
+        "return self.round_pay > 0.0 or self._pays_as_well",
         "return self._pays_as_well",
         "grader/kinds/reward/test_kind.py::test_a_loop_that_pays_is_not_hidden_by_what_arriving_pays",
     ),
