@@ -120,18 +120,17 @@ class TrainingsScreen(RowsScreen[None]):
 
     @work(exclusive=True, group="reading")
     async def _read(self) -> None:
-        if self.is_active:
-            await self._read_now()
-
-    async def _read_now(self) -> None:
-        name = self._wanted or self._chosen_name
+        if not self.is_active:
+            return
+        overviews = self._overviews
         try:
             overviews = await to_thread(_read_runs, self._runs)
             if not overviews and not self._tasks:
                 self._tasks = await to_thread(_read_tasks)
-            self._overviews = overviews
         except OSError as error:  # a network drive that is away comes back
             self._note = str(error)
+        name = self._wanted or self._chosen_name  # asked now: keys were pressed while the folder was read
+        self._overviews = overviews
         names = [each.run.name for each in self._overviews or ()]
         if self._wanted in names:
             self._wanted = None
@@ -292,7 +291,7 @@ class TrainingsScreen(RowsScreen[None]):
         if name is not None and name != run.name:
             from kit.learning.training.run_upkeep import rename_run
 
-            await self._do(lambda: rename_run(run, name))
+            await self._do(lambda: rename_run(run, name), wanted=name)
 
     @work(exclusive=True, group="screens")
     async def action_delete(self) -> None:
@@ -308,14 +307,17 @@ class TrainingsScreen(RowsScreen[None]):
         if await self.app.push_screen_wait(Picker(f"Delete {run.name}?", choices)) == "delete":
             await self._do(lambda: delete_run(run))
 
-    async def _do(self, change: Callable[[], object]) -> None:
+    async def _do(self, change: Callable[[], object], wanted: str | None = None) -> None:
+        """Changes something in another thread, and chooses the run named `wanted` once it is in the list."""
         from kit.learning.training.run_config import RunError
 
+        self._wanted = wanted
         try:
             await to_thread(change)
         except (RunError, OSError) as error:
+            self._wanted = None
             self.app.push_screen(MessageDialog("That did not work", wrapped(str(error))))
-        await self._read_now()
+        self._read()
 
     def action_help(self) -> None:
         self.app.push_screen(HelpDialog("Trainings", self.screen_actions))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,8 +19,10 @@ from kit.learning.tasks.catalogue import find_task
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.run_config import RunConfig
 from kit.learning.training.run_folders import create_run, find_run, list_runs
+from kit.learning.training.run_upkeep import RunOverview
 from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training_sweep import TrainingSweep
+from kit.tui.screens import trainings
 from kit.tui.screens.new_training import NewTrainingScreen, TrainingChoices
 from kit.tui.screens.trainings import TrainingsScreen
 from tests.tui.lesson_stage import ROBOT, rows, seen, stage, text, until
@@ -80,6 +83,33 @@ def test_runs_are_tested_compared_renamed_and_deleted(folder: Path) -> None:
 
     stage(lambda theme: TrainingsScreen(theme, folder), scene)
     assert {run.name for run in list_runs(folder)} == {"one", "two"}
+
+
+def test_a_renamed_run_stays_chosen_though_the_list_was_read_while_it_had_no_name(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read_all = trainings._read_runs
+    renamed: list[str] = []
+
+    def read_in_between(runs: Path) -> Sequence[RunOverview]:
+        overviews = read_all(runs)
+        if not renamed and any(each.run.name == "empty2" for each in overviews):
+            renamed.append("empty2")
+            return [each for each in overviews if each.run.name != "empty2"]
+        return overviews
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, ">  two")
+        await pilot.press("down", "down")
+        await seen(pilot, ">  empty")
+        await pilot.press("a")
+        await seen(pilot, "Rename empty")
+        await pilot.press("2", "enter")
+        await seen(pilot, ">  empty2")
+
+    monkeypatch.setattr(trainings, "_read_runs", read_in_between)
+    stage(lambda theme: TrainingsScreen(theme, folder), scene)
+    assert renamed
 
 
 @pytest.mark.long
