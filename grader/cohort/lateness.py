@@ -117,7 +117,7 @@ class LatePolicy:
         known = {look(each): extension for each, extension in self.extensions.items()}
         return next((known[key] for each in names if (key := look(each)) in known), None)
 
-    def kept(self, submitted: datetime) -> float:
+    def kept_share(self, submitted: datetime) -> float:
         """Returns the share of its points that a submission keeps, of a student without an extension."""
         return self.lateness(submitted).kept
 

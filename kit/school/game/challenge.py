@@ -27,7 +27,7 @@ GOLD_GAIN, SILVER_GAIN = 0.98, 0.75
 """Shares of what the best answer gains on the naive one that earn gold and silver, where more is better."""
 
 
-class ChallengeError(ValueError):
+class AnswerError(ValueError):
     """An answer cannot be judged; the message says why."""
 
 
@@ -109,7 +109,7 @@ class ChallengeTask(ABC):
         try:
             lines = file.read_text().splitlines()
         except (OSError, UnicodeDecodeError) as error:
-            raise ChallengeError(f"{file} cannot be read: {error}") from None
+            raise AnswerError(f"{file} cannot be read: {error}") from None
         return " ".join(line for line in lines if not line.lstrip().startswith(COMMENT))
 
     def parse_answer(self, argument: str) -> str:
@@ -120,7 +120,7 @@ class ChallengeTask(ABC):
                 return self.read_answer(file)
         ending = Path(self.answer_file).suffix
         if ending and argument.endswith(ending):
-            raise ChallengeError(f"There is no file {argument}.")
+            raise AnswerError(f"There is no file {argument}.")
         return argument
 
 

@@ -76,7 +76,7 @@ NOTES: Final = (
 )
 
 
-DRIVES: Final = ("hand_over", "agent", "replay")
+DRIVE_ACTIONS: Final = ("hand_over", "agent", "replay")
 """Actions that a challenge has not."""
 ROWS_ABOVE_LEVELS: Final = 5
 """Of the list: an empty one, the world's two, another empty one, the columns' names."""
@@ -219,7 +219,7 @@ class LevelsScreen(RowsScreen[None]):
         listed, about = self._level_rows() if challenge is None else self._challenge_rows(challenge)
         self._rows("map").show(listed)
         self._rows("about").show([*about[: ABOUT_ROWS - 1], self._doing_row()] if self._doing else about)
-        without = () if challenge is None else DRIVES
+        without = () if challenge is None else DRIVE_ACTIONS
         labels = {"open": "drive"} if challenge is None else {}
         self._rows("keys").show(
             [footer(self.screen_actions, self.size.width, without=without, labels=labels)]
