@@ -123,7 +123,7 @@ class LatePolicy:
 
 
 def _day_end(begun: datetime, days: float) -> datetime:
-    """When so many days are over [UTC]: by the calendar or by hours, whichever is later."""
+    """The end of this many days [UTC]: by the calendar or by hours, whichever is later."""
     by_calendar = (begun + timedelta(days=days)).astimezone(UTC)
     return max(by_calendar, begun.astimezone(UTC) + timedelta(days=days))
 

@@ -29,7 +29,7 @@ MAX_WAITING: Final = 10
 MAX_UNANSWERED: Final = 100
 """Requests of the robot's that one service of the world's may be at."""
 DRY_PERIOD_S: Final = 1.0
-"""A dry run shows one message of a topic in so many seconds."""
+"""A dry run shows one message of a topic in this many seconds."""
 
 Report = Callable[[str], None]
 

@@ -212,7 +212,7 @@ def _print_lessons(journal: ProgressJournal) -> None:
 
 
 def _request_handlers(workspace: Workspace) -> dict[type, Way]:
-    """How a lesson is shown what it asks for, line by line."""
+    """For each request of a lesson, the function that carries it out line by line."""
     return {
         Drive: lambda request, lines: _drive_scene(request, workspace, lines),
         Replay: lambda request, lines: _print_run(request.file),

@@ -32,7 +32,7 @@ EDGE_MARGIN: Final = 0.006
 """Share of the sheet's width along each edge: anything darker there is the edge itself."""
 
 NOISE_FACTOR: Final = 5.0
-"""A stroke is darker than the paper by so many standard deviations of the paper's noise."""
+"""A stroke is darker than the paper by this many standard deviations of the paper's noise."""
 
 NOISE_BLOCK: Final = 50
 """Side of the squares of flat sheet in which the noise is measured [pixels]."""

@@ -374,7 +374,7 @@ def bearing_of_target(pose: Array, target: Array) -> Array:
 
 
 def average_speeds(before: Array, after: Array, seconds: float) -> Array:
-    """(..., 2) forward [m/s] and turn [rad/s] that led from one pose (..., 3) to the other in so many seconds."""
+    """(..., 2) forward [m/s] and turn [rad/s] that led from one pose (..., 3) to the other in this many seconds."""
     (dx, dy, turn), middle = np.moveaxis(after - before, -1, 0), 0.5 * (before[..., 2] + after[..., 2])
     forward = dx * np.cos(middle) + dy * np.sin(middle)
     return np.stack([forward, turn], axis=-1) / seconds

@@ -377,7 +377,7 @@ class LessonDialogue(Dialogue):
 
     @property
     def checked_elsewhere(self) -> list[LessonStep]:
-        """The steps, besides this one, whose exercise is being checked."""
+        """The other steps whose exercise is being checked."""
         return [
             step
             for step in self.session.lesson.steps

@@ -37,7 +37,7 @@ BESIDE: Final = 42
 WIDEST_BESIDE: Final = 76
 """Columns of the panels beside it, at least and at most."""
 LEAST_BESIDE: Final = 76
-"""A question keeps so many columns; where there are fewer nothing stands beside it."""
+"""A question keeps this many columns; where there are fewer nothing stands beside it."""
 LEAST_PANEL: Final = 5
 """Rows of a panel that is cut, at least."""
 LEAST_ROWS_IN_MIDDLE: Final = 24

@@ -470,7 +470,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         return min(WIDEST_EDITOR, self.room.width // 2) if self._is_editing and self.has_class("-wide") else 0
 
     def _editor_rows(self, room: int) -> int:
-        """Rows of the editor below the task, of so many; 0 where it is beside it or not shown."""
+        """Rows of the editor below the task, of ``rows``; 0 where it is beside it or not shown."""
         return room // 2 if self._is_editing and not self.has_class("-wide") else 0
 
     def _edit_here(self, file: Path, line: int) -> str:

@@ -77,7 +77,7 @@ NOTES: Final = (
 
 
 DRIVE_ACTIONS: Final = ("hand_over", "agent", "replay")
-"""Actions that a challenge has not."""
+"""Actions that a challenge does not have."""
 ROWS_ABOVE_LEVELS: Final = 5
 """Of the list: an empty one, the world's two, another empty one, the columns' names."""
 ROWS_AROUND: Final = 2
@@ -396,7 +396,7 @@ class LevelsScreen(RowsScreen[None]):
     # Keys
 
     def action_choose(self, columns: int, rows: int) -> None:
-        """The level so many rows below, or the first one so many worlds to the right."""
+        """The level this many rows below, or the first one this many worlds to the right."""
         if columns:
             world = self._worlds[(self._worlds.index(self._world) + columns) % len(self._worlds)]
             levels = self._in_world(world.id)

@@ -83,7 +83,7 @@ def read_two(answer: str) -> tuple[str, str]:
 
 
 def places(task: PassByTask, moves: tuple[str, str], tick: int) -> tuple[Cell, Cell]:
-    """Where both robots are after so many ticks; one whose moves have ended stays."""
+    """Where both robots are after this many ticks; one whose moves have ended stays."""
     found = []
     for start, own in zip(task.starts, moves, strict=True):
         cell = start
