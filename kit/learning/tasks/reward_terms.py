@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from kit.fields.adjacency import wrap_angles
+from kit.geometry import wrap_angle
 from kit.learning.tasks.actions import Move
 from kit.learning.tasks.transition import Array, Transition
 
@@ -221,7 +221,7 @@ def misaligned_reward(t: Transition, within: float = 0.5) -> Array:
 
 def heading_progress_reward(t: Transition, within: float = 0.5) -> Array:
     """Progress in heading near the target: half turns that each robot came nearer to the target's heading, within ``within`` metres."""
-    before = np.abs(wrap_angles(t.previous_pose[..., 2] - t.target_heading[..., None]))
+    before = np.abs(wrap_angle(t.previous_pose[..., 2] - t.target_heading[..., None]))
     return _sum_over_robots((t.distance < within) * (before - t.misalignment)) / np.pi
 
 

@@ -66,7 +66,7 @@ class ChallengeTask(ABC):
 
     @abstractmethod
     def judge(self, submission: AnswerSubmission) -> Judgement:
-        """Judges an answer. Raises ChallengeError and WorldError."""
+        """Judges an answer. Raises AnswerError and WorldError."""
 
     def lines(self) -> list[str]:
         """What is shown beside the text: a drawing, prices, a list."""
@@ -105,7 +105,7 @@ class ChallengeTask(ABC):
         return file
 
     def read_answer(self, file: Path) -> str:
-        """Reads what ``judge`` takes from an answer's file. Raises ChallengeError."""
+        """Reads what ``judge`` takes from an answer's file. Raises AnswerError."""
         try:
             lines = file.read_text().splitlines()
         except (OSError, UnicodeDecodeError) as error:
@@ -113,7 +113,7 @@ class ChallengeTask(ABC):
         return " ".join(line for line in lines if not line.lstrip().startswith(COMMENT))
 
     def parse_answer(self, argument: str) -> str:
-        """What ``judge`` takes of a command's argument: the name of an answer's file, or the answer itself. Raises ChallengeError."""
+        """What ``judge`` takes of a command's argument: the name of an answer's file, or the answer itself. Raises AnswerError."""
         file = Path(argument)
         with suppress(OSError):  # moves may be longer than a file's name
             if file.is_file():

@@ -12,7 +12,7 @@ from kit.school.game.judgement import Judgement
 
 
 def read_moves(answer: str, most: int) -> str:
-    """The moves of an answer, ``l``, ``r``, ``u`` and ``d``. Raises ChallengeError."""
+    """The moves of an answer, ``l``, ``r``, ``u`` and ``d``. Raises AnswerError."""
     moves = "".join(answer.split()).lower()
     if strange := sorted(set(moves) - set(MOVES)):
         raise AnswerError(f"{quoted(strange[0])} is not a move: write l, r, u and d.")

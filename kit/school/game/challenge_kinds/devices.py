@@ -184,7 +184,7 @@ def fewest_lasers(task: DevicesTask) -> tuple[Cell, ...]:
 
 
 def read_lasers(task: DevicesTask, answer: str) -> tuple[Cell, ...]:
-    """Reads ``ROW,COLUMN ROW,COLUMN``. Raises ChallengeError."""
+    """Reads ``ROW,COLUMN ROW,COLUMN``. Raises AnswerError."""
     words = answer.split()
     if not 0 < len(words) <= MAX_DEVICES:
         raise AnswerError(f"Write the places of 1 to {MAX_DEVICES} lasers, such as 1,4 6,2.")

@@ -171,7 +171,7 @@ def format_plan(plan: LayerAssignment) -> str:
 
 
 def read_plan(file: Path) -> LayerAssignment:
-    """Reads the plan of an answer's file. Raises ChallengeError and WorldError."""
+    """Reads the plan of an answer's file. Raises AnswerError and WorldError."""
     if not is_file_there(file):
         raise AnswerError(f"{file}: there is no such file.")
     with open_document(file.absolute(), is_partial=True) as section:

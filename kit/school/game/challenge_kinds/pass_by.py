@@ -71,7 +71,7 @@ class PassByTask(ChallengeTask):
 
 
 def read_two(answer: str) -> tuple[str, str]:
-    """The moves of both robots, a word each: l, r, u, d and ``.`` to wait. Raises ChallengeError."""
+    """The moves of both robots, a word each: l, r, u, d and ``.`` to wait. Raises AnswerError."""
     words = answer.lower().split()
     if len(words) != 2:
         raise AnswerError("Write two words: the moves of robot A, and those of robot B.")

@@ -143,7 +143,7 @@ def format_policy(task: PolicyTask, policy: Policy) -> str:
 
 
 def read_policy(task: PolicyTask, answer: str) -> Policy:
-    """Reads the drawing with l, r, u or d in each cell. Raises ChallengeError."""
+    """Reads the drawing with l, r, u or d in each cell. Raises AnswerError."""
     lines = [line for line in answer.splitlines() if line.strip()]
     if [len(line) for line in lines] != [len(line) for line in task.grid]:
         raise AnswerError("Write the drawing as it is, with l, r, u or d in each free cell.")

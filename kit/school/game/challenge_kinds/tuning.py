@@ -90,7 +90,7 @@ def format_numbers(numbers: dict[str, float]) -> str:
 
 
 def read_numbers(answer: str) -> dict[str, float]:
-    """Reads ``name=value`` for each number. Raises ChallengeError."""
+    """Reads ``name=value`` for each number. Raises AnswerError."""
     numbers: dict[str, float] = {}
     for word in answer.split():
         name, _, value = word.partition("=")
