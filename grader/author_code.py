@@ -75,7 +75,7 @@ def _read_answer(answer: bytes) -> Json:
     try:
         told = json.loads(answer)
     except (ValueError, RecursionError):  # nothing, a part, or what only looks like an answer
-        raise AuthorCodeError("The assignment's own code ended before it had said all.") from None
+        raise AuthorCodeError("The assignment's own code ended before its last answer.") from None
     if not isinstance(told, dict) or "value" not in told:
         raise AuthorCodeError(str(told.get("error", "")) if isinstance(told, dict) else UNINTELLIGIBLE)
     return told["value"]

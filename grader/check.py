@@ -38,9 +38,9 @@ class Check:
     words: tuple[str, str] | None
     """For a measure that is 0 or 1: the words for both."""
     faults: Faults | None = None
-    """None where the feedback says all."""
+    """None where the feedback says everything."""
     is_explained: bool = False
-    """Whether what the evidence explains says all: a student then reads no measure beside it."""
+    """Whether what the evidence explains is enough: a student then reads no measure beside it."""
 
     def format(self, measure: float, *, beside: float = 1.0) -> str:
         """Formats a measure in words, or as a number with its unit. A share reads unlike ``beside``, that it is compared with,

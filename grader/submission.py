@@ -233,7 +233,7 @@ def _is_virtual_environment(folder: int) -> bool:
 
 
 def _is_anothers_file(file: BinaryIO, folder: Path | int) -> bool:
-    """True for a hard link that somebody else than the file's owner can have made: from a folder that others may write in, or
+    """True for a hard link that anybody but the file's owner may have made: from a folder that others may write in, or
     of another owner. Where a system lets anybody make one, it would have this process read whatever it may read."""
     status = os.fstat(file.fileno())
     if status.st_nlink < 2:

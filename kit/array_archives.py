@@ -42,7 +42,7 @@ def read_arrays(file: Path) -> dict[str, NDArray[Any]]:
 def unpack_arrays(data: bytes, max_bytes: int) -> dict[str, NDArray[Any]]:
     """All arrays of an archive of at most ``max_bytes`` unpacked, by name. Raises ``READ_ERRORS`` for any other."""
     if not zipfile.is_zipfile(io.BytesIO(data)):  # of another file numpy says that pickle might read it
-        raise ValueError("no .npz file, or a part of one")
+        raise ValueError("not an .npz file, or an incomplete one")
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         check_arrays(archive, max_bytes)
     with np.load(io.BytesIO(data), allow_pickle=False) as stored:

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
+
+if TYPE_CHECKING:
+    from kit.arrays import FloatArray
 
 Point = tuple[float, float]
+AngleT = TypeVar("AngleT", float, "FloatArray")
 
 
-def wrap_angle(angle: float) -> float:
-    """``angle`` [rad] wrapped to [-pi, pi)."""
+def wrap_angle(angle: AngleT) -> AngleT:
+    """``angle`` [rad], a number or an array, wrapped to [-pi, pi)."""
     return (angle + math.pi) % math.tau - math.pi
 
 

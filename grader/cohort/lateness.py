@@ -117,13 +117,13 @@ class LatePolicy:
         known = {look(each): extension for each, extension in self.extensions.items()}
         return next((known[key] for each in names if (key := look(each)) in known), None)
 
-    def kept(self, submitted: datetime) -> float:
+    def kept_share(self, submitted: datetime) -> float:
         """Returns the share of its points that a submission keeps, of a student without an extension."""
         return self.lateness(submitted).kept
 
 
 def _day_end(begun: datetime, days: float) -> datetime:
-    """When so many days are over [UTC]: by the calendar or by hours, whichever is later."""
+    """The end of this many days [UTC]: by the calendar or by hours, whichever is later."""
     by_calendar = (begun + timedelta(days=days)).astimezone(UTC)
     return max(by_calendar, begun.astimezone(UTC) + timedelta(days=days))
 

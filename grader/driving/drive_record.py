@@ -88,7 +88,7 @@ class GradedDrive:
     flags: Mapping[str, FloatArray] = field(default_factory=dict)
     """By the topic of a ``std_msgs/msg/Bool``, (k, 2): the time of each tick in which the program published one [s], and the
     last one's value, 0 or 1."""
-    remaining: Mapping[str, FloatArray] = field(default_factory=dict)
+    feedback_remaining: Mapping[str, FloatArray] = field(default_factory=dict)
     """By the topic of an action's feedback with a number ``remaining``, (k, 2): the time of each tick in which the program
     published one [s], and the last one's number."""
 

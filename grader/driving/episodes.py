@@ -174,7 +174,7 @@ class _EpisodeWorld:
             printed_at=printed.seconds,
             ahead=self._traffic_recorder.ahead(),
             flags=self._traffic_recorder.flags(),
-            remaining=self._traffic_recorder.remaining(),
+            feedback_remaining=self._traffic_recorder.feedback_remaining(),
             fingerprint=self._fingerprint.text,
             level=int(program.level),
             answers=self._service_caller.answers(),

@@ -33,7 +33,7 @@ class TrafficRecorder:
         self._nodes: dict[tuple[str, str], set[str]] = {}
         self._ahead: dict[str, list[tuple[float, float, float]]] = {}
         self._flags: dict[str, dict[int, bool]] = {}
-        self._remaining: dict[str, dict[int, float]] = {}
+        self._feedback_remaining: dict[str, dict[int, float]] = {}
         self.stop = graph.add_message_listener(self._on_message)
 
     def _on_message(self, time_ns: int, node: NodeLike, name: str, message: Message) -> None:
@@ -45,7 +45,7 @@ class TrafficRecorder:
             self._flags.setdefault(name, {})[time_ns] = bool(message.data)
         remaining = getattr(getattr(message, "feedback", None), "remaining", None)
         if isinstance(remaining, float):
-            self._remaining.setdefault(name, {})[time_ns] = remaining
+            self._feedback_remaining.setdefault(name, {})[time_ns] = remaining
         key = name, type_name(type(message))
         self._counts.setdefault(key, Counter())[time_ns // 10**9] += 1
         self._nodes.setdefault(key, set()).add(node.handle.full_name)
@@ -64,9 +64,9 @@ class TrafficRecorder:
         """Returns (k, 2) for each topic of booleans; see ``GradedDrive``."""
         return _time_series(self._flags)
 
-    def remaining(self) -> Mapping[str, FloatArray]:
+    def feedback_remaining(self) -> Mapping[str, FloatArray]:
         """Returns (k, 2) for each topic of an action's feedback; see ``GradedDrive``."""
-        return _time_series(self._remaining)
+        return _time_series(self._feedback_remaining)
 
 
 def _time_series(values: Mapping[str, Mapping[int, float]]) -> Mapping[str, FloatArray]:

@@ -91,7 +91,7 @@ class EvidenceCollector(Protocol):
         """The part of it that no secret decides; runs what of that has not run yet."""
 
     def collected(self) -> Sequence[Evidence]:
-        """All evidence collected so far, besides counterparts."""
+        """All evidence collected so far, except counterparts."""
 
     def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
         """Yields a few more pieces of public evidence, each run when it is asked for.

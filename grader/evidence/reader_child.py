@@ -1,4 +1,4 @@
-"""What a process does first that reads what was handed in: it limits and confines itself."""
+"""How a process that reads a submission begins: it limits and confines itself."""
 
 from __future__ import annotations
 

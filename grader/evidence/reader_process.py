@@ -97,7 +97,7 @@ class ReaderProcess:
     def _await_answer(
         self, seconds: float, slow: Failure, show_progress: Callable[[str], None] = lambda text: None
     ) -> Mapping[str, Any]:
-        """Returns the next answer. ``slow``: the failure after so many seconds of wall clock."""
+        """Returns the next answer. ``slow``: the failure after this many seconds of wall clock."""
         end = time.monotonic() + seconds
         while True:
             answer: Mapping[str, Any] = json.loads(self._await_line(end, slow))

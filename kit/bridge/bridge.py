@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Final, Self
 
 from kit.bridge.channels import (
+    CHANNEL_OF_DIRECTION,
     SERVICE_CHANNELS,
-    TOPIC_CHANNELS,
     Channel,
     ChannelContext,
     Report,
@@ -211,7 +211,7 @@ class Bridge:
         interface = self._context.codec.topic_interface(cls)
         self._check_hashes(route, interface, there)
         guard, qos = self._make_guard(cls), _route_qos(route, state, there)
-        channel = TOPIC_CHANNELS[route.direction](route, interface, self._context, cls, qos, guard)
+        channel = CHANNEL_OF_DIRECTION[route.direction](route, interface, self._context, cls, qos, guard)
         limits = self._settings.limit
         about = (
             f"at most {limits.linear:g} m/s and {limits.angular:g} rad/s, stopped after {self._settings.watchdog_s:g} s "

@@ -29,7 +29,7 @@ MAX_WAITING: Final = 10
 MAX_UNANSWERED: Final = 100
 """Requests of the robot's that one service of the world's may be at."""
 DRY_PERIOD_S: Final = 1.0
-"""A dry run shows one message of a topic in so many seconds."""
+"""A dry run shows one message of a topic in this many seconds."""
 
 Report = Callable[[str], None]
 
@@ -165,7 +165,9 @@ class SentTopic(Channel):
         self._stop_bytes = b"" if guard is None else codec.serialize(guard.stop_message())
         self._shown_s = float("-inf")
         self._send = context.wire.open_publisher(route.wire_name, interface, qos)
-        context.node.create_subscription(cls, route.name, self._pass, qos, callback_group=context.group)
+        context.node.create_subscription(
+            cls, route.name, self._send_if_admitted, qos, callback_group=context.group
+        )
 
     def deliver(self) -> None:
         """Does nothing: on this channel nothing arrives from the wire."""
@@ -173,7 +175,7 @@ class SentTopic(Channel):
     def send_stop(self) -> None:
         self._send(self._stop_bytes)
 
-    def _pass(self, message: Message) -> None:
+    def _send_if_admitted(self, message: Message) -> None:
         passed = message if self.guard is None else self.guard.admit(message, time.monotonic())
         if passed is None:
             self.traffic.dropped += 1
@@ -332,7 +334,7 @@ class CalledService(Channel):
                 self._drop(f"an answer cannot be read: {problem}")
 
 
-TOPIC_CHANNELS: Final[Mapping[Direction, Callable[..., Channel]]] = {
+CHANNEL_OF_DIRECTION: Final[Mapping[Direction, Callable[..., Channel]]] = {
     Direction.SEND: SentTopic,
     Direction.RECEIVE: ReceivedTopic,
 }

@@ -12,7 +12,7 @@ from typing import Any, Final
 from kit.msg.message import Message
 
 STOP_REPEATS: Final = 3
-"""A stop is sent so many times, for one may be lost."""
+"""A stop is sent this many times, for one may be lost."""
 
 MOTION_FIELDS: Final[dict[str, Callable[[Any], Any]]] = {
     "geometry_msgs/msg/Twist": lambda message: message,

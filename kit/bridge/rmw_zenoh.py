@@ -40,7 +40,7 @@ class EntityKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class WireEndpoint:
-    """A publisher, subscription, service or client, as its token tells it."""
+    """A publisher, subscription, service or client, as its liveliness token describes it."""
 
     kind: EntityKind
     node: str

@@ -26,7 +26,7 @@ POLL_S: Final = 0.2
 NOT_TYPED: Final = ("Esc", "Enter")
 """Keys that are no sign in a line; another key of the same action is named there, if it has one."""
 
-AGAIN: Final = ("t", "text")
+REPEAT_KEYS: Final = ("t", "text")
 """What says everything of a place again, in every dialogue; a screen shows it all the time."""
 
 Way = Callable[[Any, InputBuffer], Any]
@@ -108,7 +108,7 @@ class _Conversation:
         lines = [lines_of([block]) for block in blocks]
         heard: Sequence[Block] = ()
         if dialogue.place != self._place:
-            self._place, heard = dialogue.place, dialogue.heard()
+            self._place, heard = dialogue.place, dialogue.arrival_blocks()
             self._said = []  # two questions may have the same words
             click.echo("")
             if dialogue.position:
@@ -142,7 +142,7 @@ class _Conversation:
             for each in self._turn.possible()
             if each.is_for_lines
         ]
-        _print_blocks([labelled_table([*rows, (*AGAIN, "say everything here again")])])
+        _print_blocks([labelled_table([*rows, (*REPEAT_KEYS, "say everything here again")])])
         click.echo("Type a key or its word, and Enter.")
 
     # What is done
@@ -164,7 +164,7 @@ class _Conversation:
             click.echo("> ", nl=False)
 
     def _take(self, line: str) -> None:
-        if line.strip().lower() in AGAIN and self._turn.find(AGAIN[0]) is None:
+        if line.strip().lower() in REPEAT_KEYS and self._turn.find(REPEAT_KEYS[0]) is None:
             self._place, self._said, self._note, self._keys_said = self, [], None, []
             self._show()
             return

@@ -92,7 +92,7 @@ def show(
             opened_workspace = prepare_workspace(workspace)
         except WorkspaceError as error:
             messages.fail(str(error))
-        scenario = replace(_place(place, case), charges=charges)
+        scenario = replace(_find_place(place, case), charges=charges)
         setup = _open_setup(scenario, derived)
         terminal = terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
         find_controller(controller, opened_workspace.controllers)
@@ -157,7 +157,7 @@ def test(
         drivers = [find_controller(each) for each in controllers]
         # Without a case there is no target: then loading says so.
         for name in [case] if case is not None else case_names(place) or [None]:
-            scenario = replace(_place(place, name), charges=charges)
+            scenario = replace(_find_place(place, name), charges=charges)
             for driver in drivers:
                 found.append(run_repeatedly(scenario, driver, runs=runs, seed=seed))
                 if not as_json:
@@ -303,7 +303,7 @@ def _open_setup(scenario: Scenario, derived: bool) -> ControllerSetup:
     )
 
 
-def _place(name: str, case: str | None) -> Scenario:
+def _find_place(name: str, case: str | None) -> Scenario:
     return find_scenario(name, case)
 
 

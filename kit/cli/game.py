@@ -206,7 +206,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
     Without NAME, list them; with NAME, show one. ANSWER depends on the challenge: its file, what the file would hold
     (moves, numbers), or the name of a training run. A better answer earns a better medal.
     """
-    from kit.school.game.challenge import AnswerSubmission, ChallengeError
+    from kit.school.game.challenge import AnswerError, AnswerSubmission
     from kit.school.game.challenges import (
         all_challenges,
         answers_folder,
@@ -247,7 +247,7 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
                 return
             answer = chosen.task.parse_answer(answer)
             judgement = chosen.task.judge(AnswerSubmission(answer, opened_workspace.runs, seconds))
-        except (LookupError, ChallengeError, OSError) as error:
+        except (LookupError, AnswerError, OSError) as error:
             messages.fail(messages.describe_error(error))
         record_judgement(journal, chosen, judgement)
         share_answer(chosen, answer, judgement)

@@ -290,7 +290,7 @@ def list_packages(opened_workspace: Workspace, folders: Sequence[Path]) -> None:
     from kit.launch.launch_file_process import SHARE_FOLDER
     from kit.launch.program_lookup import BUILTIN_PROGRAMS
 
-    found = _found(opened_workspace, folders)
+    found = _find_packages(opened_workspace, folders)
     brought = {
         *find_packages((SHARE_FOLDER,)),
         *PACKAGES,
@@ -312,14 +312,14 @@ def executables(
     folders: Sequence[Path] = (),
 ) -> None:
     """List the programs of all packages, or of one."""
-    found = _found(opened_workspace, folders)
+    found = _find_packages(opened_workspace, folders)
     names = [name] if name else sorted(found)
     from kit.launch.program_lookup import BUILTIN_PROGRAMS
 
     for each in names:
         lines = {program: f"{each} {program}" for of, program in BUILTIN_PROGRAMS if of == each and program}
         is_found = name is None or each in found or not lines
-        package = _package(found, each) if is_found else _brought(each)
+        package = _package(found, each) if is_found else _find_bundled_package(each)
         for program in () if package is None else package.executables:
             lines[program.name] = f"{each} {program.name}"
             if package and full_path:
@@ -338,7 +338,7 @@ def executables(
 @click.pass_obj
 def prefix(opened_workspace: Workspace, name: str, share: bool, folders: Sequence[Path]) -> None:
     """Print the folder of a package."""
-    click.echo(_package(_found(opened_workspace, folders), name).folder)
+    click.echo(_package(_find_packages(opened_workspace, folders), name).folder)
 
 
 @package_command.command()
@@ -348,7 +348,7 @@ def prefix(opened_workspace: Workspace, name: str, share: bool, folders: Sequenc
 @click.pass_obj
 def xml(opened_workspace: Workspace, name: str, tag: str | None, folders: Sequence[Path]) -> None:
     """Print a package's package.xml."""
-    folder = _package(_found(opened_workspace, folders), name).folder
+    folder = _package(_find_packages(opened_workspace, folders), name).folder
     if tag is None:
         click.echo((folder / "package.xml").read_text(encoding="utf-8"), nl=False)
         return
@@ -359,7 +359,7 @@ def xml(opened_workspace: Workspace, name: str, tag: str | None, folders: Sequen
         click.echo(each)
 
 
-def _brought(name: str) -> Package | None:
+def _find_bundled_package(name: str) -> Package | None:
     """A package with Python programs that the kit brings, if it is one of these."""
     from kit.launch.launch_file_process import SHARE_FOLDER
 
@@ -367,7 +367,7 @@ def _brought(name: str) -> Package | None:
     return None if folder is None else read_package(folder)
 
 
-def _found(opened_workspace: Workspace, folders: Sequence[Path]) -> dict[str, Path]:
+def _find_packages(opened_workspace: Workspace, folders: Sequence[Path]) -> dict[str, Path]:
     searched = tuple(folders) or (Path.cwd(), Path.cwd() / "src", opened_workspace.packages)
     for reason in broken_packages(searched):
         click.echo(reason, err=True)
@@ -376,11 +376,8 @@ def _found(opened_workspace: Workspace, folders: Sequence[Path]) -> dict[str, Pa
 
 def _package(found: dict[str, Path], name: str) -> Package:
     """One of the packages found, or of those that the kit brings; exits if there is none of this name."""
-    from kit.launch.launch_file_process import SHARE_FOLDER
-
-    brought = find_packages((SHARE_FOLDER,))
-    if name not in found and name in brought:
-        return read_package(brought[name])
+    if name not in found and (bundled := _find_bundled_package(name)) is not None:
+        return bundled
     if name not in found:
         messages.fail(f"Package '{name}' not found; available: {', '.join(sorted(found)) or 'none'}.")
     try:

@@ -51,7 +51,7 @@ from kit.world.records import MAX_LAYERS
 REQUIREMENTS_NOT_MET: Final = 1
 """Exit code: the requirements are not met, or cannot be within sixteen layers."""
 
-MORE_THAN_NEEDED: Final = 3
+MORE_LAYERS_THAN_NEEDED: Final = 3
 """Exit code of ``check``: a world that could do with fewer layers."""
 
 _JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
@@ -261,7 +261,7 @@ def check(
         code = (
             REQUIREMENTS_NOT_MET
             if result.current_breaches
-            else MORE_THAN_NEEDED
+            else MORE_LAYERS_THAN_NEEDED
             if more and not lenient
             else 0
         )

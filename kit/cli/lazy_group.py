@@ -84,9 +84,9 @@ class LazyGroup(click.Group):
         has_others: bool = False,
         **options: Any,
     ) -> None:
-        """``verbs``: by name ``module`` or ``module:command``, and its line in ``--help``; none for a verb that is not for
-        people. ``absent``: verbs that somebody may look for and why they are not there. ``has_others``: whether verbs and
-        dialogues of other packages are verbs of it."""
+        """``verbs``: for each name its ``module`` or ``module:command``, and its line in ``--help``; without a line, a verb
+        is not listed. ``absent``: verbs that users may try, and why the kit does not have them. ``has_others``: whether
+        verbs and dialogues of other packages belong to the group."""
         super().__init__(*arguments, **options)
         self._verbs = verbs
         self._has_others = has_others

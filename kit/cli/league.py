@@ -267,7 +267,7 @@ def verify(context: click.Context) -> None:
         for job in found.differing:
             names = " against ".join(each.name for each in job.entrants)
             click.echo(
-                f"{job.level.title}, {names}: the programs drive something else than the result shows."
+                f"{job.level.title}, {names}: the programs drive something other than the result shows."
             )
         click.echo(f"{found.compared} compared, {len(found.differing)} different.")
         if found.differing:

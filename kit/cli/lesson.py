@@ -128,7 +128,7 @@ def command(
             click.echo(f"Line by line. {terminal.plain.reason}")
             dialogue = LessonDialogue(session)
             dialogue.begin(LineStage())
-            run_dialogue(dialogue, _ways(opened_workspace))
+            run_dialogue(dialogue, _request_handlers(opened_workspace))
     except (
         UnknownLesson,
         WorkspaceError,
@@ -211,8 +211,8 @@ def _print_lessons(journal: ProgressJournal) -> None:
     click.echo("\n".join(lines_of([*blocks, Text("`kit lesson NUMBER` opens one.")])))
 
 
-def _ways(workspace: Workspace) -> dict[type, Way]:
-    """How a lesson is shown what it asks for, line by line."""
+def _request_handlers(workspace: Workspace) -> dict[type, Way]:
+    """For each request of a lesson, the function that carries it out line by line."""
     return {
         Drive: lambda request, lines: _drive_scene(request, workspace, lines),
         Replay: lambda request, lines: _print_run(request.file),
@@ -267,16 +267,16 @@ class LineStage:
 
     def learn(self, scene: LearningScene) -> None:
         self._scene = scene
-        self.again()
+        self.replay()
 
     def go(self) -> None:
-        self.again()
+        self.replay()
 
-    def again(self) -> None:
+    def replay(self) -> None:
         if self._scene is not None:
             _print_watched(self._scene)
 
-    def hold(self, held: bool) -> None: ...
+    def set_paused(self, paused: bool) -> None: ...
 
     def step_once(self) -> None: ...
 

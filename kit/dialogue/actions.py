@@ -29,7 +29,7 @@ class ScreenActions:
     own: tuple[ScreenAction, ...] = ()
     """Actions that no other screen has."""
     drives: bool = False
-    """Whether letters drive a robot here, so that letters may mean something else than on other screens."""
+    """Whether letters drive a robot here, so that letters may mean something other than on other screens."""
 
     def __getitem__(self, action_id: str) -> ScreenAction:
         return next((each for each in self.own if each.id == action_id), None) or ACTIONS[action_id]

@@ -119,17 +119,17 @@ class Dialogue:
         """The map of which a large screen shows a picture below what is asked; empty: none."""
         return ""
 
-    def heard(self) -> Sequence[Block]:
+    def arrival_blocks(self) -> Sequence[Block]:
         """What is said line by line when one comes to a place, and stands elsewhere on a screen."""
         return ()
 
     @property
     def place(self) -> object:
-        """Is another at another question or step: line by line the position and ``heard`` are said there."""
+        """Is another at another question or step: line by line the position and ``arrival_blocks`` are said there."""
         return None
 
     @property
-    def look(self) -> Block | None:
+    def block_in_view(self) -> Block | None:
         """The block that was just said, which a screen brings into sight; None: it shows the beginning."""
         return None
 
@@ -158,10 +158,10 @@ class Dialogue:
         """The text that is typed, as it is so far; None: none is typed now."""
         return None
 
-    def draft(self, text: str) -> None:
+    def take_draft(self, text: str) -> None:
         """Takes the text as it is typed."""
 
-    def typed(self, line: str) -> Effect:
+    def take_line(self, line: str) -> Effect:
         """Does what a line means that is no action's. Raises Refused."""
         raise Refused(f"{line!r} does nothing here; ? lists what does.")
 
@@ -277,7 +277,7 @@ class Turn:
         found = self._find_line(words)
         if found is None:
             self._asked = None
-            return self.attempt(self.dialogue.typed, line.strip()), ""
+            return self.attempt(self.dialogue.take_line, line.strip()), ""
         action, args = found
         return self.do(action.id, *args), action.then if self.allowed_then(action) else ""
 
@@ -310,10 +310,10 @@ class Turn:
         self.remark = self._asked = None
         if allowed is not True:
             sentence = allowed or f"{action.keys.keys.split()[0]} does nothing here; ? lists what does."
-            return self.say(Remark(str(sentence), Tone.WARN))
+            return self.set_remark(Remark(str(sentence), Tone.WARN))
         if action.confirm and asked != (action_id, args):
             self._asked = action_id, args
-            return self.say(Remark(action.confirm, Tone.WARN))
+            return self.set_remark(Remark(action.confirm, Tone.WARN))
         return self.attempt(action.run, self.dialogue, *args)
 
     def attempt(self, run: Callable[..., Effect], *args: object) -> Effect:
@@ -326,9 +326,9 @@ class Turn:
         except tuple(self.dialogue.failures) as error:
             words = next(text for kind, text in self.dialogue.failures.items() if isinstance(error, kind))
             effect = Remark(words.format(error), Tone.BAD)
-        return self.say(effect) if isinstance(effect, Remark) else effect
+        return self.set_remark(effect) if isinstance(effect, Remark) else effect
 
-    def say(self, remark: Remark) -> Remark:
+    def set_remark(self, remark: Remark) -> Remark:
         """Lets a remark stand."""
         self.remark = remark
         return remark

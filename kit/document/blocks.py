@@ -155,7 +155,7 @@ class Column:
     title: str
     style: CellStyle = CellStyle.NUMBER
     decimals: int = 2
-    is_spare: bool = False
+    is_optional: bool = False
     """Whether it is left out where the table is wider than its room; the last of these first."""
 
 

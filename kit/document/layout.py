@@ -117,7 +117,7 @@ def block_rows(block: Block, page: Page) -> list[Row]:
 
 
 def _block_rows(block: Block, page: Page) -> list[Row]:
-    """The rows of a block that the margin is put before."""
+    """The rows of a block, without the margin on their left."""
     match block:
         case Text():
             return [

@@ -119,7 +119,7 @@ def lines_shown(first: int, count: int, total: int) -> str:
 
 
 def window(rows: Sequence[Row], top: int, room: int) -> tuple[list[Row], int]:
-    """As many rows as there is room for, from ``top`` on as far as there are so many, and that top; the last one
+    """The rows from ``top`` on that there is room for, with ``top`` lowered where they would end early, and that top; the last one
     says if there are more."""
     top = max(0, min(top, len(rows) - room))
     shown = list(rows[top : top + room])

@@ -28,8 +28,8 @@ class TableRows(NamedTuple):
 
 
 def table_rows(table: Table, width: int) -> TableRows:
-    """Places a table in rows of at most ``width`` columns, as far as its numbers allow; spare columns are left out first."""
-    table = without_spare_columns(table, width)
+    """Places a table in rows of at most ``width`` columns, as far as its numbers allow; optional columns are left out first."""
+    table = drop_optional_columns(table, width)
     cells = [
         [_cell_text(cell, column) for cell, column in zip(each, table.columns, strict=True)]
         for each in table.rows
@@ -78,18 +78,18 @@ def list_rows(table: Table, width: int, height: int, chosen: int, marked: Collec
     return [*heads, *made[first_row : first_row + room]]
 
 
-def without_spare_columns(table: Table, width: int) -> Table:
-    """The table without as many spare columns as are too many for ``width``, the last of them first."""
+def drop_optional_columns(table: Table, width: int) -> Table:
+    """Leaves out optional columns, the last one first, until the table fits ``width`` or none is left."""
     while True:
         texts = [
             [_cell_text(cell, column) for cell, column in zip(each, table.columns, strict=True)]
             for each in table.rows
         ]
         widths = _natural_widths([[column.title for column in table.columns], *texts])
-        spare = [number for number, column in enumerate(table.columns) if column.is_spare]
-        if not spare or sum(widths) + len(COLUMN_GAP) * (len(widths) - 1) <= width:
+        optional = [number for number, column in enumerate(table.columns) if column.is_optional]
+        if not optional or sum(widths) + len(COLUMN_GAP) * (len(widths) - 1) <= width:
             return table
-        kept = [number for number in range(len(table.columns)) if number != spare[-1]]
+        kept = [number for number in range(len(table.columns)) if number != optional[-1]]
         table = replace(
             table,
             columns=tuple(table.columns[number] for number in kept),

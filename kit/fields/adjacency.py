@@ -13,6 +13,8 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kit.geometry import wrap_angle
+
 Array: TypeAlias = Any
 """A numpy array, or numpy's number where nothing is left of the shape."""
 
@@ -42,8 +44,8 @@ def is_adjacent_by_poses(
     """
     one, other = np.asarray(left, dtype=float), np.asarray(right, dtype=float)
     dx, dy = other[..., 0] - one[..., 0], other[..., 1] - one[..., 1]
-    apart = np.abs(wrap_angles(one[..., 2] - other[..., 2]))
-    abeam = np.abs(wrap_angles(np.arctan2(dy, dx) - (one[..., 2] - np.pi / 2)))
+    apart = np.abs(wrap_angle(one[..., 2] - other[..., 2]))
+    abeam = np.abs(wrap_angle(np.arctan2(dy, dx) - (one[..., 2] - np.pi / 2)))
     return (np.hypot(dx, dy) < thresholds.distance) & (apart < thresholds.angle) & (abeam < thresholds.angle)
 
 
@@ -66,10 +68,5 @@ def adjacency_score(left: ArrayLike, right: ArrayLike) -> Array:
     one, other = np.asarray(left, dtype=float), np.asarray(right, dtype=float)
     dx, dy = other[..., 0] - one[..., 0], other[..., 1] - one[..., 1]
     ahead = [np.abs(np.cos(each[..., 2]) * dx + np.sin(each[..., 2]) * dy) for each in (one, other)]
-    apart = wrap_angles(one[..., 2] - other[..., 2])
+    apart = wrap_angle(one[..., 2] - other[..., 2])
     return np.exp(-(((ahead[0] + ahead[1]) / (2 * 0.08)) ** 2) - (apart / 0.4) ** 2)
-
-
-def wrap_angles(angle: Array) -> Array:
-    """Angles [rad] wrapped to [-pi, pi)."""
-    return (angle + np.pi) % (2 * np.pi) - np.pi

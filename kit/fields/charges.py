@@ -25,7 +25,7 @@ from kit.arrays import FloatArray, IntArray
 from kit.kernels import grids
 
 FIRST_LINE_RANK: Final = 1e12
-"""Lines that go before nearer ones are preferred by so many square metres."""
+"""Lines that go before nearer ones are preferred by this many square metres."""
 
 BLOCK_SIZE: Final = 512
 """Number of points computed at once: their arrays stay in the processor's nearest cache."""

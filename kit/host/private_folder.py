@@ -64,7 +64,7 @@ def abandoned(entries: Iterable[os.DirEntry[str]]) -> list[str]:
     found = [(entry, named) for entry in entries if (named := _NAME.match(entry.name)) is not None]
     owned = [(entry.path, named["owner"]) for entry, named in found if _is_own(entry, named["machine"])]
     living = _living_owners() if owned else frozenset()
-    return [path for path, owner in owned if not (_lives(owner) if owner[0] == "p" else owner in living)]
+    return [path for path, owner in owned if not (_is_alive(owner) if owner[0] == "p" else owner in living)]
 
 
 def _is_own(entry: os.DirEntry[str], machine: str) -> bool:
@@ -75,7 +75,7 @@ def _is_own(entry: os.DirEntry[str], machine: str) -> bool:
     return machine == _MACHINE and not is_link and user == os.geteuid()
 
 
-def _lives(owner: str) -> bool:
+def _is_alive(owner: str) -> bool:
     """Whether the process of an owner's word that is its number lives: where there is no /proc."""
     return _start_of_process(int(owner[1:])) is not None
 

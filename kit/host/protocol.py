@@ -179,7 +179,7 @@ def _reply(seq: Json, wake_ns: Json, events: Json) -> Reply:
     return Reply(integer(seq), None if wake_ns is None else integer(wake_ns, 0, 2**63 - 1), _events(events))
 
 
-def _held(seq: Json, events: Json) -> Reply:
+def _hold_reply(seq: Json, events: Json) -> Reply:
     return Reply(integer(seq), HOLD_NS, _events(events))
 
 
@@ -232,7 +232,7 @@ _FRAMES: Final[Mapping[str, tuple[int, Callable[..., Frame]]]] = MappingProxyTyp
         "confined": (1, _confined),
         "refused": (1, _refused),
         "reply": (3, _reply),
-        "held": (2, _held),
+        "held": (2, _hold_reply),
         "functions": (2, _function_names),
         "values": (2, _batch_result),
         "told": (2, _json_result),

@@ -78,7 +78,7 @@ class StudentFunctions(HostedFile):
         packed = {key: _encode_argument(value) for key, value in record.items()}
         answer = self._process.request("tell", name, packed)
         if not isinstance(answer, JsonResult):
-            raise self._process.fail(protocol_violation("something else than what the function returned"))
+            raise self._process.fail(protocol_violation("something other than what the function returned"))
         return answer.value
 
     def _call_columns(
@@ -89,7 +89,7 @@ class StudentFunctions(HostedFile):
         packed = {key: _encode_column(column) for key, column in columns.items()}
         answer = self._process.request("call", name, count, packed)
         if not isinstance(answer, BatchResult) or len(answer.values) != count:
-            raise self._process.fail(protocol_violation(f"something else than {count} numbers"))
+            raise self._process.fail(protocol_violation(f"something other than {count} numbers"))
         return answer.values
 
     def _missing_function(self, name: str) -> Failure:

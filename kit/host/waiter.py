@@ -25,7 +25,7 @@ CALLBACK_WAIT_S: Final = 0.5
 MAX_COMPUTING_FACTOR: Final = 10.0
 """How many times as long to wait for them at most while something computes: it may be another thread."""
 PAUSE_S: Final = 0.01
-"""The waits above are so many pauses of this length in which nothing changed."""
+"""The waits above are this many pauses of this length in which nothing changed."""
 COMPUTED_S: Final = 0.001
 """The processor time of a pause from which something other than the pause itself has computed [s]."""
 MAX_PAUSE_S: Final = 0.1

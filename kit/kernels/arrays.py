@@ -7,7 +7,7 @@ from typing import NamedTuple
 from kit.arrays import BoolArray, Float32Array, FloatArray, IntArray
 
 LANES = 8
-"""The lines of a lidar are looked at in whole vectors of so many."""
+"""The lines of a lidar are looked at in whole vectors of this many."""
 
 
 class WallBlocks(NamedTuple):

@@ -404,7 +404,7 @@ def most_corners(starts: IntArray) -> int:
 
 @jit
 def allocate_scan_buffers(lines: Float32Array, corners: int) -> ScanBuffers:
-    """Allocates the arrays for scans along the lines (2, lines), of polygons of at most so many corners."""
+    """Allocates the arrays for scans along the lines (2, lines), of polygons of at most this many corners."""
     local_segments, rim = np.empty((5, SEGMENT_CHUNK), dtype=np.float32), np.empty((corners, 4))
     return ScanBuffers(np.empty_like(lines), np.empty_like(lines), np.empty_like(lines), local_segments, rim)
 

@@ -460,7 +460,7 @@ def carry_lidars(lidar: FloatArray, poses: FloatArray, carried: FloatArray) -> N
 
 
 SHARED_DRAWS = 5
-"""A start takes so many random numbers for all robots together, and three more for each of them; after these come
+"""A start takes this many random numbers for all robots together, and three more for each of them; after these come
 those that choose among places."""
 
 

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from kit.arrays import BoolArray, FloatArray
-from kit.mapmaking.pixels import grown
+from kit.mapmaking.pixels import grown, nearest_odd
 from kit.world.connected_parts import connected_parts
 
 PALE: Final = 0.5
@@ -121,12 +121,12 @@ def judge_strokes(everything: BoolArray, deep: BoolArray) -> JudgedStrokes:
         return JudgedStrokes(walls, tuple(Doubt(kind, mask) for kind, mask in found.items()))
     main = max(boxes, key=lambda number: boxes[number].diagonal)
     pen = _pen_width(parts == main)
-    for number, kind in _doubtful_parts(parts, boxes, main, pen, _outside(walls)):
+    for number, kind in _doubtful_parts(parts, boxes, main, pen, _reached_from_edge(walls)):
         found[kind] = found.get(kind, np.zeros_like(walls)) | (parts == number)
     kept = walls & ~union(walls.shape, (mask for kind, mask in found.items() if kind != "pale"))
-    beyond = _beyond(kept, pen)
+    beyond = _outer_spurs(kept, pen)
     if _extent(beyond) >= LEAST * walls.shape[1]:
-        trimmed = _without(kept, beyond)
+        trimmed = _remove_parts(kept, beyond)
         found["outside"] = found.get("outside", np.zeros_like(walls)) | (kept & ~trimmed)
         kept = trimmed
     notes = []
@@ -232,18 +232,18 @@ def _pen_width(mask: BoolArray) -> float:
     return float(np.median(np.concatenate(runs)))
 
 
-def _outside(walls: BoolArray) -> BoolArray:
+def _reached_from_edge(walls: BoolArray) -> BoolArray:
     """What can be reached from the sheet's edge without crossing a wall."""
     free = connected_parts(np.pad(~walls, 1, constant_values=True))
     return np.asarray((free == free[0, 0])[1:-1, 1:-1])
 
 
-def _beyond(walls: BoolArray, pen: float) -> BoolArray:
+def _outer_spurs(walls: BoolArray, pen: float) -> BoolArray:
     """Parts of walls that only touch the outside: no outer wall, which has an inside."""
-    inside = ~walls & ~_outside(walls)
+    inside = ~walls & ~_reached_from_edge(walls)
     if not inside.any():
         return np.zeros_like(walls)
-    return walls & ~grown(inside, _odd(3.0 * pen) + 2)
+    return walls & ~grown(inside, nearest_odd(3.0 * pen) + 2)
 
 
 def _thin_bits(walls: BoolArray, pen: float) -> BoolArray:
@@ -255,7 +255,7 @@ def _thin_bits(walls: BoolArray, pen: float) -> BoolArray:
     return walls & ~grown(opened, size + 4)
 
 
-def _without(walls: BoolArray, bits: BoolArray) -> BoolArray:
+def _remove_parts(walls: BoolArray, bits: BoolArray) -> BoolArray:
     """The walls without these bits and what is left of them alone."""
     kept = walls & ~bits
     parts = connected_parts(kept, across_corners=True)
@@ -280,7 +280,3 @@ def _extent(mask: BoolArray) -> float:
     """The longest diagonal of a part's box [pixels]."""
     boxes = _boxes(connected_parts(mask, across_corners=True))
     return max((box.diagonal for box in boxes.values()), default=0.0)
-
-
-def _odd(length: float) -> int:
-    return 2 * round(length / 2) + 1

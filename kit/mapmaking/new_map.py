@@ -168,7 +168,7 @@ def write_map(
         picture.save(made / PICTURE_FILE)
         (made / MAP_FILE).write_text(MAP_TEXT.format(resolution=plan.resolution))
         (made / ROBOT_FILE).write_text(own_robot_text())
-        start, target, route, grid = _place(made, plan, title, middle_of_floor(plan))
+        start, target, route, grid = _choose_places(made, plan, title, middle_of_floor(plan))
         partner = None
         if is_pair:
             start, partner = _side_by_side(start, grid)
@@ -291,7 +291,9 @@ def draw_overlay(
     return picture
 
 
-def _place(made: Path, plan: WallPlan, title: str, middle: Point) -> tuple[Pose, Point, Route, OccupancyGrid]:
+def _choose_places(
+    made: Path, plan: WallPlan, title: str, middle: Point
+) -> tuple[Pose, Point, Route, OccupancyGrid]:
     """Start and target, asked for or chosen, the way between them, and the floor."""
     seed = plan.start or middle
     _write_world(made, title, Pose(*seed, 0.0))

@@ -55,6 +55,11 @@ def brightest_around(levels: Uint8Array, size: int) -> Uint8Array:
     return levels
 
 
+def nearest_odd(length: float) -> int:
+    """The odd number of pixels nearest to a length: the size of a square about a pixel."""
+    return 2 * round(length / 2) + 1
+
+
 def grown(mask: BoolArray, size: int) -> BoolArray:
     """The mask with all pixels in a square of ``size`` (odd) around its own."""
     return np.asarray(brightest_around((mask * 255).astype(np.uint8), size | 1) > 0)

@@ -14,6 +14,7 @@ from kit.mapmaking.pixels import (
     blurred,
     bridged,
     brightest_around,
+    nearest_odd,
     without_thin_dark,
 )
 from kit.world.connected_parts import connected_parts
@@ -31,7 +32,7 @@ EDGE_MARGIN: Final = 0.006
 """Share of the sheet's width along each edge: anything darker there is the edge itself."""
 
 NOISE_FACTOR: Final = 5.0
-"""A stroke is darker than the paper by so many standard deviations of the paper's noise."""
+"""A stroke is darker than the paper by this many standard deviations of the paper's noise."""
 
 NOISE_BLOCK: Final = 50
 """Side of the squares of flat sheet in which the noise is measured [pixels]."""
@@ -73,7 +74,9 @@ def _plan_of(mask: BoolArray, sheet: Image.Image, options: StrokeOptions) -> Boo
     plan = np.asarray(Image.fromarray((mask * 255).astype(np.uint8)).resize(size, Image.Resampling.BOX)) > 127
     plan = _without_specks(plan, 0.3 * options.least_length)
     # A line across a corner is no stroke: a stroke goes on for more than twice its width.
-    plan = bridged(plan, _odd(options.widest_gap * PLAN_PIXELS), _odd(max(12.0, 2.5 * stroke_width(plan))))
+    plan = bridged(
+        plan, nearest_odd(options.widest_gap * PLAN_PIXELS), nearest_odd(max(12.0, 2.5 * stroke_width(plan)))
+    )
     return _without_specks(plan, options.least_length)
 
 
@@ -107,7 +110,7 @@ def stroke_depth(sheet: Image.Image) -> FloatArray:
         .filter(ImageFilter.GaussianBlur(1.5))
         .resize((sheet.width // 4, sheet.height // 4), Image.Resampling.BOX)
     )
-    paper = without_thin_dark(np.asarray(small), _odd(THICKEST_STROKE * sheet.width / 4))
+    paper = without_thin_dark(np.asarray(small), nearest_odd(THICKEST_STROKE * sheet.width / 4))
     even = Image.fromarray(blurred(paper.astype(float), 1.0).astype(np.float32)).resize(
         sheet.size, Image.Resampling.BICUBIC
     )
@@ -121,7 +124,7 @@ def _stroke_pixels(depth: FloatArray) -> BoolArray:
     offset = float(np.median(depth))
     least = np.maximum(LEAST_DEPTH, NOISE_FACTOR * _noise(depth))
     lifted = np.clip(depth - offset, 0.0, 1.0)
-    around = brightest_around((255 * lifted).astype(np.uint8), _odd(0.012 * width)) / 255.0
+    around = brightest_around((255 * lifted).astype(np.uint8), nearest_odd(0.012 * width)) / 255.0
     mask = lifted > np.maximum(0.6 * least, 0.5 * around)
     strokes = connected_parts(mask, across_corners=True)
     chosen = np.zeros(strokes.max() + 1, dtype=np.bool_)
@@ -156,7 +159,3 @@ def _without_specks(mask: BoolArray, least: float) -> BoolArray:
     is_kept[0] = False
     kept: BoolArray = is_kept[parts]
     return kept
-
-
-def _odd(length: float) -> int:
-    return 2 * round(length / 2) + 1

@@ -44,7 +44,7 @@ ROWS_PER_TICK = 4
 """Rows of a plot for each value between the ends of its scale."""
 
 MIN_COLUMNS_WITH_MARGIN = 20
-"""From so many columns on there is room for a scale on the left."""
+"""From this many columns on, there is room for a scale on the left."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -176,7 +176,7 @@ def _number_places(curve: Curve, number: int, right: float, columns: int) -> Ite
 
 
 def _ticks_between(low: float, high: float, most: int) -> list[float]:
-    """Round values between the ends of a scale, at most so many."""
+    """Round values between the ends of a scale, at most this many."""
     if most < 1:
         return []
     step = nice_ceiling((high - low) / (most + 1))

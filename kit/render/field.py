@@ -22,7 +22,7 @@ from kit.render.scene import Scene, SceneMark, ScenePath
 ARROW_SPACING: Final = 2
 """Characters from one arrow to the next in a row: as far apart as two rows."""
 STRENGTH_SCALE: Final = 2.0
-"""A force so many times the median is half as strong as can be shown."""
+"""A force this many times the median is half as strong as can be shown."""
 CHARGE_MARK, TRAP_MARK = "-", "!"
 """Labels of wall charges and traps."""
 FORCE_LENGTH: Final = 0.25

@@ -34,7 +34,7 @@ IMAGE_THEMES: Mapping[str, Mapping[Role, Color]] = MappingProxyType(
 eyes tell it apart."""
 
 SUPERSAMPLING = 2
-"""Pixels are averaged over so many by so many."""
+"""Pixels are averaged over squares with sides of this many."""
 
 
 def image_camera(bounds: SceneBounds, width: int, height: int) -> Camera:

@@ -19,7 +19,7 @@ from kit.render.shading import FloorMap, lit_cells, seen_surfaces, shade_roles
 from kit.render.sprites import SpriteLayer
 
 FINE_DOTS = 1.5
-"""From so many dots on, walls may be half a character thick without closing a way that is open."""
+"""From this many dots on, walls may be half a character thick without closing a way that is open."""
 
 
 class Painter:

@@ -93,7 +93,7 @@ def filled_dots(corners: FloatArray, width: int, height: int) -> Dots:
 
 
 def close_gaps(grid: Grid, across: int, down: int, role: int) -> None:
-    """Fills up to so many empty dots between two drawn ones of a column, and then of a row: in this order the
+    """Fills up to this many empty dots between two drawn ones of a column, and then of a row: in this order the
     corner between two walls is filled with them."""
     grid.T[_short_gaps(grid.T > 0, down)] = role
     grid[_short_gaps(grid > 0, across)] = role

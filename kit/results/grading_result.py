@@ -133,7 +133,7 @@ class CriterionResult:
         return self.status is CriterionStatus.PASS
 
     def without_secrets(self) -> CriterionResult:
-        """A copy without what secret evidence showed, besides the points: they are paid in whole steps."""
+        """A copy without what secret evidence showed, except the points: they are paid in whole steps."""
         if not self.uses_secrets:
             return self
         return replace(
@@ -250,7 +250,7 @@ class GradingResult:
         )
 
     def without_secrets(self) -> GradingResult:
-        """A copy without what secret evidence showed, besides the points: no measure, step count or duration."""
+        """A copy without what secret evidence showed, except the points: no measure, step count or duration."""
         if self.seeds == PUBLIC_SEEDS:
             return replace(self, assignment_version=self.public_version or self.assignment_version)
         return replace(

@@ -23,7 +23,7 @@ from kit.msg.message import Field, Message, Service, make_message_class, short_t
 Distro = Literal["humble", "jazzy"]
 
 _CHAR: Final = (Nodetype.BASE, ("char", 0))
-_UINT8: Final = (Nodetype.BASE, ("uint8", 0))
+_UINT8_TYPE: Final = (Nodetype.BASE, ("uint8", 0))
 _STORES: Final = {"humble": Stores.ROS2_HUMBLE, "jazzy": Stores.ROS2_JAZZY}
 
 M = TypeVar("M", bound=Message)
@@ -184,10 +184,10 @@ def _with_type_name(description: Any, kind: FieldKind) -> Any:
 def _without_char(description: Any) -> Any:
     """A field with uint8 for char: ROS 2 makes a uint8 of it before it computes a hash, which rosbags does not."""
     if description == _CHAR:
-        return _UINT8
+        return _UINT8_TYPE
     label, content = description
     if isinstance(content, tuple) and content[0] == _CHAR:
-        return label, (_UINT8, content[1])
+        return label, (_UINT8_TYPE, content[1])
     return description
 
 

@@ -108,7 +108,7 @@ class FormDialogue(Dialogue):
         left = counted(self.session.open_count, "question")
         return (Text(f"Saved. {left} left; `kit form {self.session.phase.value}` continues here."),)
 
-    def heard(self) -> Sequence[Block]:
+    def arrival_blocks(self) -> Sequence[Block]:
         question = self.session.question
         if question is None or self.session.value is None:
             return ()
@@ -177,7 +177,7 @@ class FormDialogue(Dialogue):
         return [Choices(tuple(entries))]
 
     @property
-    def look(self) -> Block | None:
+    def block_in_view(self) -> Block | None:
         return self.blocks()[-1]  # the answers stand at the end
 
     # Typed text
@@ -186,13 +186,13 @@ class FormDialogue(Dialogue):
     def entry(self) -> str | None:
         return self._text if self.is_text else None
 
-    def draft(self, text: str) -> None:
+    def take_draft(self, text: str) -> None:
         self._text = text
 
-    def typed(self, line: str) -> Effect:
+    def take_line(self, line: str) -> Effect:
         question = self.session.question
         if question is None:
-            return super().typed(line)
+            return super().take_line(line)
         self.session.answer(parse_answer(question, line))
         self._come_to_question()
         return None

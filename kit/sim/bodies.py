@@ -439,7 +439,7 @@ def friction_factor(friction: float) -> float:
 
 
 def _farthest_distance(shape: pymunk.Shape, center: tuple[float, float]) -> float:
-    """Its farthest point from ``center`` [m]."""
+    """How far its farthest point lies from ``center`` [m]."""
     if isinstance(shape, pymunk.Circle):
         return math.dist(shape.offset, center) + shape.radius
     assert isinstance(shape, pymunk.Poly)

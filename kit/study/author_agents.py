@@ -91,7 +91,7 @@ def author_agents_table() -> Table:
 
 AUTHOR_NOTE: Final = (
     "Recorded outside the kit, from his published networks. adj: share of steps side by side by rays, printed, then here. "
-    "jitter: each wheelchair's command was late by 0 to so many seconds after each scan, by itself, as ROS's were; with 0 both "
+    "jitter: each wheelchair's command was late by 0 to this many seconds after each scan, by itself, as ROS's were; with 0 both "
     "wheelchairs' steps are equally long. The printed adjacency largely measures this: 0.96 without it is 0.24 with it for "
     "an agent that only ever drives both ahead."
 )

@@ -130,7 +130,7 @@ class RecordedTest:
         known = [session.value_max for session in self.sessions if session.value_max is not None]
         return max(known, default=None)
 
-    def beside(self, case: str, measure: str) -> SideShare | None:
+    def side_share(self, case: str, measure: str) -> SideShare | None:
         """How long two robots were side by side in the episodes of a case that reached the target, by a measure of adjacency.
         None if none did, or if it was recorded of all episodes together and some of them did not."""
         reached = self.reached.get(case, 0)
@@ -264,7 +264,7 @@ def pooled_cell(
         return RecordedCell(fmean(each.steps for each in tests), None, measure) if tests else None
     pairs = [(each, case) for each in tests for case in (each.own_cases if cases is None else cases)]
     if measure in (ADJACENCY, ADJACENCY_BY_POSES):
-        return _adjacency_cell([test.beside(case, measure) for test, case in pairs], measure)
+        return _adjacency_cell([test.side_share(case, measure) for test, case in pairs], measure)
     tested = [(test, case) for test, case in pairs if case in test.reached]
     episodes = sum(test.episodes for test, _ in tested)
     if not episodes:

@@ -151,7 +151,7 @@ class StudyRun:
     def log(self) -> Path:
         return recorded_result_file(self.workspace, self.table.id, self.variant)
 
-    def recorded(self) -> RecordedResult | None:
+    def read_recorded(self) -> RecordedResult | None:
         """Reads the results that there are so far. Raises RecordedResultError; RunError if it was made by other settings."""
         found = read_recorded_result(self.log)
         if found is not None and _comparable_settings(found.settings) != _comparable_settings(self.settings):
@@ -185,7 +185,7 @@ class StudyRun:
 
     def missing_seeds(self, seeds: int) -> tuple[int, ...]:
         """The seeds, counted from 0, whose agent has not been tested yet."""
-        found = self.recorded()
+        found = self.read_recorded()
         return tuple(
             seed
             for seed in range(seeds)
@@ -209,7 +209,7 @@ class StudyRun:
     @property
     def missing_fields_cases(self) -> tuple[tuple[str, str], ...]:
         """The cases that are not in the log."""
-        found = self.recorded()
+        found = self.read_recorded()
         done = (
             {case for each in found.tests_of(POTENTIAL_FIELDS) for case in each.reached} if found else set()
         )
@@ -221,7 +221,7 @@ class StudyRun:
         return FIELDS_RUNS * len(self.missing_fields_cases)
 
     def _begin_log(self) -> RecordedResult | None:
-        found = self.recorded()
+        found = self.read_recorded()
         if found is None:
             append_event(self.log, self.settings)
         return found
@@ -289,7 +289,7 @@ class StudyRun:
 
     def missing_paths(self) -> tuple[PrintedFigure, ...]:
         """The pictures of ways whose agent or controller has been tested and whose ways are not in the log."""
-        found = self.recorded()
+        found = self.read_recorded()
         figures = path_figures(self.table.id) if self.variant == "seed" and found is not None else ()
         return tuple(
             figure
@@ -342,7 +342,7 @@ class StudyRun:
             return fields, fields
         most = sum(resolve_preset(config).steps for config in self.configs(0))
         steps = most if self.variant == "kit" else _printed_steps(self.table)
-        found = self.recorded()
+        found = self.read_recorded()
         rate = (found.rate if found else None) or MEASURED_RATES.get((self.algorithm, self.preset), 500.0)
         at_once = rate * min(jobs, groups)
         missing = len(self.missing_seeds(seeds))

@@ -91,7 +91,7 @@ class StudentStore:
         return StudentOverview(
             shelf,
             next_lesson(shelf),
-            self._due(),
+            self._count_due(),
             streak(events, day),
             any(event.subject == f"{DAILY_PREFIX}{day.isoformat()}" for event in events),
             next_medal,
@@ -148,7 +148,7 @@ class StudentStore:
 
         return tuple(each.name for each in list_runs(self.workspace.runs) if each.is_active)
 
-    def _due(self) -> int | None:
+    def _count_due(self) -> int | None:
         from kit.school.quiz.items import read_bank
         from kit.school.quiz.quiz_session import local_now
         from kit.school.quiz.schedule import build_schedule

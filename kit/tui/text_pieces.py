@@ -91,13 +91,13 @@ def _by_style(piece: TextPiece) -> tuple[object, ...]:
 def shortest_text(pieces: Sequence[TextPiece], screen_width: int) -> str:
     """The pieces from the top down, or style by style where that is shorter, since to name a style in true colours costs
     more bytes than to move the cursor."""
-    in_order = _written(pieces, screen_width)
+    in_order = _escape_codes(pieces, screen_width)
     if len({piece.codes for piece in pieces}) == len(pieces):
         return in_order
-    return min(in_order, _written(sorted(pieces, key=_by_style), screen_width), key=len)
+    return min(in_order, _escape_codes(sorted(pieces, key=_by_style), screen_width), key=len)
 
 
-def _written(pieces: Iterable[TextPiece], screen_width: int) -> str:
+def _escape_codes(pieces: Iterable[TextPiece], screen_width: int) -> str:
     """The pieces in this order, each at its place. Of a style only what differs from the one before is sent."""
     sequences: list[str] = []
     held = _DEFAULT_CODES

@@ -21,7 +21,7 @@ WORLD_FOLDERS = ("worlds", "world")
 ROBOT_FOLDERS = ("models", "robots")
 """Names of folders in a package of ROS without its ``package.xml``."""
 MAX_PACKAGE_DEPTH = 5
-"""A package is looked for in so many folders above a world file."""
+"""A package is looked for in this many folders above a world file."""
 
 
 class UnknownMap(LookupError):

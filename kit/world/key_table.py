@@ -57,7 +57,7 @@ class _Run:
 
     def note(self, key: str, type_: str, default: object) -> None:
         """Notes a question; where one getter asks another, the first one knows more."""
-        written = "none" if key in self.guarded else _written(default)
+        written = "none" if key in self.guarded else _yaml_text(default)
         self.keys.setdefault(key, FormatKey(key, type_, written))
 
     def option(self, choice: str) -> str:
@@ -110,10 +110,10 @@ def _merged(runs: Sequence[_Run]) -> Iterator[FormatKey]:
     for key in order:
         known = [run for run in runs if key in run.keys]
         found = known[0].keys[key]
-        yield FormatKey(found.key, found.type, found.default, _condition(key, known, runs))
+        yield FormatKey(found.key, found.type, found.default, _deciding_choice(key, known, runs))
 
 
-def _condition(key: str, known: Sequence[_Run], runs: Sequence[_Run]) -> str:
+def _deciding_choice(key: str, known: Sequence[_Run], runs: Sequence[_Run]) -> str:
     """The choice that tells the runs which know the key from those that do not."""
     unknown = [run for run in runs if key not in run.keys and run.absent != key]
     for name in dict.fromkeys(name for run in known for name in run.choices):
@@ -228,23 +228,23 @@ class _NotingSection(Section):
         at_least: int | None = None,
         at_most: int | None = None,
     ) -> tuple[float, ...]:
-        self._note(key, f"list of {_counted(length, at_least, at_most)}numbers", default)
+        self._note(key, f"list of {_length_words(length, at_least, at_most)}numbers", default)
         return super().numbers(key, default, length=length, at_least=at_least, at_most=at_most)
 
     def points(
         self, key: str, *, at_least: int | None = None, at_most: int | None = None
     ) -> tuple[tuple[float, float], ...]:
-        self._note(key, f"list of {_counted(None, at_least, at_most)}points [x, y]")
+        self._note(key, f"list of {_length_words(None, at_least, at_most)}points [x, y]")
         return super().points(key, at_least=at_least, at_most=at_most)
 
     def poses(self, key: str, *, at_least: int | None = None, at_most: int | None = None) -> tuple[Pose, ...]:
-        self._note(key, f"list of {_counted(None, at_least, at_most)}poses [x, y, theta]")
+        self._note(key, f"list of {_length_words(None, at_least, at_most)}poses [x, y, theta]")
         return super().poses(key, at_least=at_least, at_most=at_most)
 
     def texts(
         self, key: str, default: Sequence[str] | Required = REQUIRED, *, at_least: int | None = None
     ) -> tuple[str, ...]:
-        self._note(key, f"list of {_counted(None, at_least, None)}names", default)
+        self._note(key, f"list of {_length_words(None, at_least, None)}names", default)
         return super().texts(key, default, at_least=at_least)
 
     def names(self, key: str) -> tuple[str, ...]:
@@ -281,7 +281,7 @@ class _NotingSection(Section):
         length: int | None = None,
         at_least: int | None = None,
     ) -> tuple[Section, ...]:
-        self._note(key, f"list of {_counted(length, at_least, None)}mappings", default)
+        self._note(key, f"list of {_length_words(length, at_least, None)}mappings", default)
         entry = _NotingSection(self._run, f"{self._prefix}{key}[].", self._alternatives)
         return (entry,) * (length or 1)
 
@@ -295,7 +295,7 @@ def _bounds(minimum: float | None, above: float | None, maximum: float | None) -
     return "".join(f", {each}" for each in said if each)
 
 
-def _counted(length: int | None, at_least: int | None, at_most: int | None) -> str:
+def _length_words(length: int | None, at_least: int | None, at_most: int | None) -> str:
     if length is not None:
         return f"{length} "
     if at_least is not None and at_most is not None:
@@ -311,7 +311,7 @@ def _one_of(options: Collection[str]) -> str:
     return f"one of {', '.join(options)}"
 
 
-def _written(default: object) -> str | None:
+def _yaml_text(default: object) -> str | None:
     """A default as YAML has it."""
     match default:
         case Required():
@@ -325,7 +325,9 @@ def _written(default: object) -> str | None:
         case dict():
             return "{}"
         case _:
-            items = [_written(item) for item in default] if isinstance(default, Sequence) else [str(default)]
+            items = (
+                [_yaml_text(item) for item in default] if isinstance(default, Sequence) else [str(default)]
+            )
             if len(items) > SHOWN_ITEMS and len(set(items)) == 1:
                 return f"{len(items)} times {items[0]}"
             return f"[{', '.join(str(item) for item in items)}]"

@@ -286,7 +286,7 @@ class LayerReader:
                 grey, alpha = read_image(source)
                 dark = dark_pixels(grey, keys.occupied_thresh)
                 local = trace_edges(dark, resolution)
-                readings.add(_reading(section, dark, grey, alpha, keys))
+                readings.add(_reading_remark(section, dark, grey, alpha, keys))
         except UnusableFile as error:
             section.error(f"cannot read {quoted(str(source), 200)}: {error}", key)
             return None
@@ -312,7 +312,7 @@ class LayerReader:
         )
 
 
-def _reading(
+def _reading_remark(
     section: Section, dark: BoolArray, grey: Uint8Array, alpha: Uint8Array | None, keys: MapServerKeys
 ) -> ReadingRemark | None:
     """How the picture was read, if ROS's map_server reads it otherwise."""

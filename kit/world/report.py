@@ -21,7 +21,7 @@ ReportRow = tuple[str, str, str, str]
 
 
 def world_report(world: World) -> str:
-    """The world in plain text, 80 columns wide. What behaves alike shares its lines, so many models stay few."""
+    """The world in plain text, 80 columns wide. What behaves alike shares its lines, so a world of many models stays short."""
     rules = CollisionRules(world)
     # Those that move first: "robot collides with walls" reads better than the other way round.
     ordered = sorted(rules.bodies, key=lambda body: (not body.is_dynamic, body.model is None))

@@ -135,7 +135,7 @@ class NodeBudget:
         self.spent = 0
 
     def has_room_for(self, nodes: int) -> bool:
-        """Whether so many values more may be read."""
+        """Whether this many more values may be read."""
         return self.spent + nodes <= MAX_NODES
 
     def count(self, nodes: int, location: SourceLocation) -> None:

@@ -94,7 +94,7 @@ class LessonCase(QuizCase):
 
     def shown(self, dialogue: Dialogue) -> list[str]:
         assert isinstance(dialogue, LessonDialogue)
-        return [dialogue.position, *lines_of(dialogue.asked())]
+        return [dialogue.position, *lines_of(dialogue.prediction_blocks())]
 
     def is_settled(self, dialogue: Dialogue) -> bool:
         assert isinstance(dialogue, LessonDialogue)

@@ -13,7 +13,7 @@ NAMES = tuple(f"run-{number}/{'long-name/' * (number % 4)}end" for number in ran
 
 
 def table(names: tuple[str, ...] = NAMES) -> Table:
-    columns = (Column("run", CellStyle.TEXT), Column("steps"), Column("time", is_spare=True))
+    columns = (Column("run", CellStyle.TEXT), Column("steps"), Column("time", is_optional=True))
     return Table(
         "runs", "", columns, tuple((name, 1000 + place, "12.3 s") for place, name in enumerate(names))
     )
@@ -34,7 +34,7 @@ def test_the_chosen_entry_is_in_sight(chosen: int, width: int, height: int) -> N
     assert [row_text(each).split()[0] for each in rows if row_text(each).startswith(">")] == [">"]
 
 
-def test_marked_entries_have_a_mark_and_spare_columns_give_way() -> None:
+def test_marked_entries_have_a_mark_and_optional_columns_are_left_out() -> None:
     wide = [row_text(each) for each in list_rows(table(), 80, 40, 1, marked=(0, 1))]
     assert [each[:2] for each in wide[1:4]] == [" *", ">*", "  "]
     assert wide[0].split() == ["run", "steps", "time"]

@@ -65,9 +65,9 @@ CONTROLS: Final = (
     Control(
         "a task that pays for driving up and down",
         "grader/kinds/task/posed_task.py",
-        "return (*driven, *self._drive_loops([*self._up_and_down(driven[: len(alone)])]))",
+        "return (*driven, *self._drive_loops([*self._back_and_forth_plans(driven[: len(alone)])]))",
         "return driven",
-        "grader/kinds/test_task.py::test_driving_up_and_down_is_a_loop_too",
+        "grader/kinds/test_task.py::test_driving_back_and_forth_is_a_loop_too",
     ),
     Control(
         "a space that changes in mid-episode",

@@ -109,7 +109,7 @@ def test_the_adjacency_of_potential_fields_is_by_poses(tmp_path: Path) -> None:
     assert {place: cell.value for place, cell in cells.items() if place[1] == "APF adj"} == {
         ("straight", "APF adj"): 0.9
     }
-    assert test.beside("pair_straight", ADJACENCY_BY_POSES) == SideShare(
+    assert test.side_share("pair_straight", ADJACENCY_BY_POSES) == SideShare(
         0.9, pytest.approx(math.nan, nan_ok=True), 20
     )
 
@@ -218,13 +218,13 @@ def test_agents_are_trained_and_tested_once_and_a_stopped_run_goes_on(tmp_path: 
     assert [each.group for each in told] == ["turn_a_to_b", "all"]
     assert run.missing_seeds(2) == (1,)
     assert 0 < run.expected_seconds(2, 2)[0] != before[0]
-    found = run.recorded()
+    found = run.read_recorded()
     assert found is not None
     assert found.tests == tuple(told)
     assert all(each.steps >= 1000 and set(each.reached) == {"turn_a_to_b", "turn_b_to_a"} for each in told)
     assert recorded_result_file(run.workspace, "3.5").stat().st_size < 3000
     with pytest.raises(RunError, match="other settings"):
-        small_run(tmp_path, episodes=5).recorded()
+        small_run(tmp_path, episodes=5).read_recorded()
 
 
 def test_it_takes_as_long_as_the_printed_steps_at_the_measured_rate(tmp_path: Path) -> None:
@@ -259,7 +259,7 @@ def test_potential_fields_are_run_case_by_case_and_go_on(
     run.record_fields(runs=2)
     assert not run.misses_fields
     assert starts.count(("pair_turn_a_to_b", 0)) == 1
-    found = run.recorded()
+    found = run.read_recorded()
     assert found is not None
     cells = found.cells(run.table)
     assert {place: cell.value for place, cell in cells.items()} == {

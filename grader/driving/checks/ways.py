@@ -152,7 +152,7 @@ def faces(drive: GradedDrive, params: HeadingParams) -> float:
 def remaining_turn(drive: GradedDrive, params: RemainingTurnParams) -> float:
     """How far the robot still has to turn is told rightly by {actual} of the action's feedback ({where}); {full} earns all
     points. It is the angle from its heading to the wanted one, the short way round."""
-    told = drive.remaining.get(params.topic)
+    told = drive.feedback_remaining.get(params.topic)
     if told is None or len(told) < params.least or not len(drive.track):
         return 0.0
     ticks = np.clip(np.round(told[:, 0] / drive.recording.step_size).astype(int), 0, len(drive.track) - 1)

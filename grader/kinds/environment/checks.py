@@ -15,7 +15,7 @@ from grader.kinds.environment.examination import (
     StepRecord,
     sector_minima,
 )
-from kit.geometry import Pose
+from kit.geometry import Pose, wrap_angle
 
 SECTORS: Final = 9
 MAX_START_OFFSET: Final = (0.15, 0.35)
@@ -116,7 +116,7 @@ def resets(record: EnvironmentRecord) -> Iterator[str]:
     for episode in record.episodes.values():
         returned = episode.returned
         parts = returned.get("parts", [])
-        turned = abs((episode.pose.theta - home.theta + math.pi) % (2 * math.pi) - math.pi)
+        turned = abs(wrap_angle(episode.pose.theta - home.theta))
         away = math.hypot(episode.pose.x - home.x, episode.pose.y - home.y)
         if returned.get("kind") != "tuple" or returned.get("count") != 2:
             yield f"reset() returns two values, observation and info, not a {returned.get('kind')}."
@@ -224,7 +224,7 @@ def _move_complaint(step: StepRecord, record: EnvironmentRecord) -> str:
     """Returns how a step's move differs from what its action says; empty if it does not."""
     speed, turn = record.task.moves[step.action]
     gone = math.hypot(step.pose_after.x - step.pose_before.x, step.pose_after.y - step.pose_before.y)
-    turned = (step.pose_after.theta - step.pose_before.theta + math.pi) % (2 * math.pi) - math.pi
+    turned = wrap_angle(step.pose_after.theta - step.pose_before.theta)
     expected = speed * record.task.step_s, turn * record.task.step_s
     tolerance = MOVE_TOLERANCE * max(abs(expected[0]), abs(expected[1]), 0.01)
     if abs(gone - expected[0]) <= tolerance and abs(turned - expected[1]) <= tolerance:

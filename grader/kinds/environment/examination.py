@@ -22,7 +22,7 @@ from grader.driving.episodes import STEP, with_laser_settings
 from grader.driving.restricted_runner import RestrictedRunner
 from grader.driving.traffic import MAX_PRINTED_LINES
 from grader.evidence.submission_clock import SubmissionClock
-from kit.geometry import Pose
+from kit.geometry import Pose, wrap_angle
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
 from kit.host.private_folder import private_folder
@@ -306,8 +306,8 @@ class _EnvironmentExaminer:
                 len(waypoints) > 1 and math.hypot(waypoints[0][0] - pose.x, waypoints[0][1] - pose.y) < 0.15
             ):
                 waypoints.pop(0)
-            off = math.atan2(waypoints[0][1] - pose.y, waypoints[0][0] - pose.x) - pose.theta
-            off = (off + math.pi) % (2 * math.pi) - math.pi
+            heading = math.atan2(waypoints[0][1] - pose.y, waypoints[0][0] - pose.x)
+            off = wrap_angle(heading - pose.theta)
             return max(
                 range(len(self._task.moves)),
                 key=lambda k: self._task.moves[k][0] if abs(off) < 0.12 else off * self._task.moves[k][1],

@@ -86,7 +86,7 @@ class FunctionsTask:
 
 @dataclass(frozen=True, slots=True)
 class CaseDifference:
-    """A case in which the student's function returns something else than the reference."""
+    """A case in which the student's function returns something other than the reference."""
 
     arguments: Mapping[str, Json]
     expected: Json

@@ -56,7 +56,7 @@ LoopPlan = tuple[tuple[int, int], ...]
 """The actions of a loop, each with the number of steps for which it is kept up."""
 TEACHERS: Final = 4
 """Most robots that are trained, one after the other, until one arrives."""
-DRIVES: Final = 32
+DRIVE_COUNT: Final = 32
 """Drives whose mean return is that of arriving."""
 TABLE_EDGES: Final = (0.2,)
 """Between the bins of the tables that learn a task."""
@@ -121,18 +121,18 @@ class PosedTask:
         return math.nan
 
     def _mean_of_arriving(self, teacher: Policy) -> float:
-        batch = BatchEnv(self.task, DRIVES, derive_seed(self._seed, "drives"), autoreset=False)
-        player = teacher.make_player(DRIVES)
-        earned, running = np.zeros(DRIVES), np.ones(DRIVES, dtype=np.bool_)
-        reached = np.zeros(DRIVES, dtype=np.bool_)
-        observations, fresh = batch.reset(), np.ones(DRIVES, dtype=np.bool_)
+        batch = BatchEnv(self.task, DRIVE_COUNT, derive_seed(self._seed, "drives"), autoreset=False)
+        player = teacher.make_player(DRIVE_COUNT)
+        earned, running = np.zeros(DRIVE_COUNT), np.ones(DRIVE_COUNT, dtype=np.bool_)
+        reached = np.zeros(DRIVE_COUNT, dtype=np.bool_)
+        observations, fresh = batch.reset(), np.ones(DRIVE_COUNT, dtype=np.bool_)
         while running.any():
             self._clock.check()
             step = batch.step(player.act(observations, fresh))
             earned += np.where(running, step.rewards, 0.0)
             reached |= running & step.ended & step.transition.reached
             running &= ~step.ended
-            observations, fresh = step.observations, np.zeros(DRIVES, dtype=np.bool_)
+            observations, fresh = step.observations, np.zeros(DRIVE_COUNT, dtype=np.bool_)
         return float(earned[reached].mean()) if reached.any() else math.nan
 
     @cached_property
@@ -147,9 +147,9 @@ class PosedTask:
             for pair in permutations(actions, 2)
         ]
         driven = self._drive_loops([*alone, *pairs])
-        return (*driven, *self._drive_loops([*self._up_and_down(driven[: len(alone)])]))
+        return (*driven, *self._drive_loops([*self._back_and_forth_plans(driven[: len(alone)])]))
 
-    def _up_and_down(self, alone: Sequence[ActionLoop]) -> Iterator[LoopPlan]:
+    def _back_and_forth_plans(self, alone: Sequence[ActionLoop]) -> Iterator[LoopPlan]:
         """Yields plans that drive straight ahead or back, turn round, and so on. ``alone``: how each action went by itself."""
         assert isinstance(self.task.actions, DiscreteActions)  # as above
         twists = self.task.actions.twist_table

@@ -69,7 +69,7 @@ class SightParams:
 
 @world_check(SightParams)
 def sights(world: WorldFacts, params: SightParams) -> Iterator[str]:
-    """A laser sees something else than the task asks:"""
+    """A laser sees something other than the task asks:"""
     for each in params.sees:
         name, expected = _split_laser(each)
         views: dict[str, tuple[bool, str]] = {}

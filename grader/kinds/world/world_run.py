@@ -188,7 +188,7 @@ def run_world(world: World, spec: WorldRunSpec) -> RunFacts:
 
 
 def _undriven_way(world: World, spec: WorldRunSpec, model: Model, ticks: int) -> float:
-    """Returns how far the robot moves in so many ticks without the driver [m]: what moves it then is no drive of its own."""
+    """Returns how far the robot moves in this many ticks without the driver [m]: what moves it then is no drive of its own."""
     simulation = Simulation(world, seed=spec.seed, step_size=STEP)
     runner = Runner(simulation, Graph(log_sink=lambda record: None))
     path = PathObserver(model, world)

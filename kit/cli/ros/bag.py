@@ -167,7 +167,7 @@ def record(
                 known.add(name)
             return recorder.failure is not None
 
-        with _told(recorder, log, folder):
+        with _closing_recorder(recorder, log, folder):
             has_stopped()
             for name in recorder.missing:
                 log(f"No node publishes '{name}' yet; waiting for it")
@@ -289,7 +289,7 @@ def play(
 
 
 @contextmanager
-def _told(recorder: BagRecorder, log: Callable[[str], object], folder: Path) -> Iterator[None]:
+def _closing_recorder(recorder: BagRecorder, log: Callable[[str], object], folder: Path) -> Iterator[None]:
     """Closes a recorder at the end, and says how many messages are kept."""
     try:
         with recorder:

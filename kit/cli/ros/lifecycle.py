@@ -85,7 +85,7 @@ def set_state(client: InspectionClient, node: str, transition: str, hidden: bool
 
 
 def _lifecycle_nodes(client: InspectionClient, *, hidden: bool) -> list[str]:
-    """Full names of the nodes that answer for their state, sorted."""
+    """The full names of the nodes that offer the service ``get_state``, sorted."""
     served = dict(client.graph.directory.service_names_and_types())
     return [
         name

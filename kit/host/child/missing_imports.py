@@ -71,7 +71,7 @@ def _of_module(name: str, file: str) -> str:
     parent = sys.modules.get(name.rpartition(".")[0])
     if parent is not None:
         last = name.rpartition(".")[2]
-        return nearest(last, _importable_names(parent)) or _lack(parent, last)
+        return nearest(last, _importable_names(parent)) or _missing_name_text(parent, last)
     what = describe_unavailable(top)
     if what is not None:
         return f". {top} is not in the kit: {what}."
@@ -94,7 +94,7 @@ def _of_module(name: str, file: str) -> str:
 
 
 def _of_name(name: str, module: ModuleType) -> str:
-    return nearest(name, _importable_names(module)) or _lack(module, name)
+    return nearest(name, _importable_names(module)) or _missing_name_text(module, name)
 
 
 def _importable_names(module: ModuleType) -> set[str]:
@@ -112,7 +112,7 @@ def _importable_names(module: ModuleType) -> set[str]:
     return names
 
 
-def _lack(module: ModuleType, name: str) -> str:
+def _missing_name_text(module: ModuleType, name: str) -> str:
     """Says that a module of ROS 2 as the kit has it lacks a name; of other modules Python has said so."""
     from kit.msg.interfaces import known_packages  # here: only a mistake needs it
 

@@ -63,13 +63,13 @@ class ControlGroup:
 
     def begin(self) -> None:
         """Notes how often the kernel has ended something here, before a run."""
-        self._kills_before = self._kills()
+        self._kills_before = self._count_kills()
 
     def has_run_out_of_memory(self) -> bool:
         """Returns whether the kernel has ended something here since ``begin`` because the memory was used up."""
-        return self._kills() > self._kills_before
+        return self._count_kills() > self._kills_before
 
-    def _kills(self) -> int:
+    def _count_kills(self) -> int:
         for folder, hierarchy in self.folders.items():
             if "memory" in hierarchy.counts:
                 file = "memory.events" if hierarchy.is_unified else "memory.oom_control"

@@ -413,7 +413,7 @@ def _file_patch(path: Path, changes: Sequence[YamlChange]) -> FilePatch:
     mark = "\ufeff" if text.startswith("\ufeff") else ""
     after = mark + apply_changes(text.removeprefix(mark), changes)
     if not os.access(path, os.W_OK):
-        raise UnsafeEdit("it may not be written")
+        raise UnsafeEdit("you have no permission to write it")
     return FilePatch(path, before, after.encode("utf-8"))
 
 

@@ -51,7 +51,7 @@ step: {{time: 0.2, collision_checks: 2, limit: 400}}
 start: {{noise: 0.05, max_rotation: 0.3}}
 endings: {{collision: terminated, time: truncated}}
 preset: hallway               # the kit's settings for learning
-success: 0.95                 # training ends when so many episodes of every case surely succeed
+success: 0.95                 # training ends when this many episodes of every case surely succeed
 """
 
 

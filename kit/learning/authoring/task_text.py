@@ -30,7 +30,7 @@ from kit.render.scene import Disc, Scene, SceneMark
 from kit.world.catalogue import MapCard
 
 SAMPLED_WORLDS, SAMPLED_STEPS = 60, 60
-"""From so many worlds and steps of each the average step is known."""
+"""The average step is measured over this many worlds and steps of each."""
 DRAWN_PLACES = 40
 """Number of evenly spread places drawn for an area."""
 

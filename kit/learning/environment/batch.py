@@ -48,7 +48,7 @@ JITTER_DRAWS = START_DRAWS + (1 << 25)
 
 
 class RewardError(Exception):
-    """A reward function gave something else than one finite number for each world."""
+    """A reward function gave something other than one finite number for each world."""
 
 
 class BatchEnv:
@@ -313,7 +313,7 @@ class BatchEnv:
     # Things that move, and targets
 
     def _obstacle_poses(self, which: IntArray | slice, steps: Array) -> FloatArray:
-        """(m, k, 3) where the obstacles of the worlds ``which`` are after so many steps (m)."""
+        """(m, k, 3) where the obstacles of the worlds ``which`` are after this many steps (m)."""
         if not self._has_obstacles:
             return NO_BODIES
         state, motions = self._state, self._case_arrays.motions

@@ -231,7 +231,7 @@ def _case_places(case: TaskCase, task: LearningTask, batch_map: BatchMap) -> _Ca
         starts[:, :, :2] = cells[:, None]
     else:
         starts = np.array(_start_poses(case, task))
-    targets, jitter = _targets(case, batch_map)
+    targets, jitter = _target_places(case, batch_map)
     return _CasePlaces(starts, area.is_area, area.headings, targets, jitter)
 
 
@@ -244,7 +244,7 @@ def _reached_from(case: TaskCase, batch_map: BatchMap) -> tuple[float, float]:
     return batch_map.starts[0].x, batch_map.starts[0].y
 
 
-def _targets(case: TaskCase, batch_map: BatchMap) -> tuple[FloatArray, float]:
+def _target_places(case: TaskCase, batch_map: BatchMap) -> tuple[FloatArray, float]:
     """(t, 3) the places that targets may be, and how far they may lie from these along x and y [m]."""
     if not case.targets.is_area:
         return np.array(case.targets.poses or [(0.0, 0.0, 0.0)]).reshape(-1, 3), 0.0

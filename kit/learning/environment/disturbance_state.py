@@ -103,7 +103,7 @@ class DisturbanceState:
         )
 
     def moves(self, checks: int) -> StepMoves:
-        """The commands in force during a step with so many checks for collisions, one after each equal part of it."""
+        """The commands in force during a step with this many checks for collisions, one after each equal part of it."""
         length = self.task.step_time / checks
         twists, lasts, after = [], [], []
         for check in range(checks):

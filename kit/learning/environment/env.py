@@ -295,7 +295,7 @@ class WheelchairsEnv(TaskEnv):
 # Pictures
 
 ROUND_CORNERS = 16
-"""A circle is drawn as a polygon of so many corners."""
+"""A circle is drawn as a polygon of this many corners."""
 
 
 def build_batch_scene(batch: BatchEnv, world: int, trails: tuple[FloatArray, ...] = ()) -> Scene:

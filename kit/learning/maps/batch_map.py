@@ -34,7 +34,7 @@ FEW_WALLS = 64
 
 MAX_ROBOTS = 4
 CIRCLE_CORNERS = 24
-"""A round footprint becomes a polygon around it with so many corners, at most 1 % further out."""
+"""A round footprint becomes a polygon around it with this many corners, at most 1 % further out."""
 RAY_TOLERANCE = math.radians(2.0)
 """Largest angle between an observed direction and the lidar's nearest ray: half the angle between two directions."""
 ONLY_PUBLISH = (LaserParams, BumperParams, ImuParams, JointStatesParams)

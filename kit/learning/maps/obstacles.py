@@ -17,7 +17,7 @@ from kit.world.records import Circle, Polygon
 TOUCHED, SEEN = 1, 2
 """Bits of a part: robots touch it; their lidars see it."""
 MOTION_SAMPLES = 4096
-"""A motion is tabulated at so many times of its period, and interpolated between them."""
+"""A motion is tabulated at this many times of its period, and interpolated between them."""
 
 
 @dataclass(frozen=True, slots=True)

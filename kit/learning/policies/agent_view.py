@@ -316,7 +316,7 @@ class AgentObserver(Observer):
             twist: list[float] = self._last_twists[robot].tolist()
             return twist
         if part in ("achieved", "arrived"):
-            return self._progress.told(part, robot)
+            return self._progress.part_numbers(part, robot)
         state = next(each for each in simulation.state().bodies if each.model == self._models[robot])
         pose, scale = state.pose, self._task.observation.scale
         if part == "speeds":

@@ -27,7 +27,7 @@ from kit.learning.tasks.student_reward import StudentReward, metric_parameters
 from kit.learning.tasks.task_case import TaskCase
 
 PARALLEL_WORLDS = 1024
-"""About so many worlds side by side: more is not faster."""
+"""About this many worlds side by side: more is not faster."""
 
 
 class EpisodeShare(NamedTuple):

@@ -37,7 +37,7 @@ BETWEEN: Mapping[type[nn.Module], Activation] = {nn.Tanh: "tanh", nn.ReLU: "relu
 TRIED = 256
 """Observations on which an exported policy is compared with what it was made of."""
 SAME_SHARE = 0.99
-"""Of them so many must lead to the same action: two actions may be as good as each other to the last digit."""
+"""This many of them must lead to the same action: two actions may be as good as each other to the last digit."""
 TOLERANCE = 1e-3
 
 
@@ -142,7 +142,7 @@ def _called_by(module: nn.Module, seen: Float32Array) -> tuple[list[nn.Module], 
 
 
 def _outputs_of(module: nn.Module, seen: Float32Array) -> Any:
-    """What the module gives for (n, numbers). TypeError where it does not take so many numbers."""
+    """What the module gives for (n, numbers). TypeError where it does not take this many numbers."""
     was_training = module.training
     module.eval()
     try:

@@ -251,7 +251,7 @@ class PolicyNode(Node):
         """The time of the node's clock."""
         return self.get_clock().now().nanoseconds * 1e-9
 
-    def hear(self, source: str, stamp: Time) -> float:
+    def note_message_time(self, source: str, stamp: Time) -> float:
         """The time of a message [s]. Where time goes back, the world has begun again: so does the node."""
         now: float = stamp.sec + stamp.nanosec * 1e-9
         if now < self.stamps.get(source, -math.inf):
@@ -272,7 +272,7 @@ class PolicyNode(Node):
         if self.silent[robot]:
             self.silent[robot] = False
             self.get_logger().info(f"scans come on {self.lidars[robot].topic_name}")
-        now = self.hear(f"scan {robot}", scan.header.stamp)
+        now = self.note_message_time(f"scan {robot}", scan.header.stamp)
         self.last_stamp = now
         if now < self.next_step - EARLY * STEP_TIME:
             return
@@ -288,7 +288,7 @@ class PolicyNode(Node):
             self.step_when_known()
 
     def on_odometry(self, robot: int, odom: Odometry) -> None:
-        self.pose_stamps[robot] = self.hear(f"odometry {robot}", odom.header.stamp)
+        self.pose_stamps[robot] = self.note_message_time(f"odometry {robot}", odom.header.stamp)
         self.motion["speeds"][robot] = [odom.twist.twist.linear.x, odom.twist.twist.angular.z]
         place = odom.pose.pose.position
         self.poses[robot] = place.x, place.y, heading_of(odom.pose.pose.orientation)
@@ -302,7 +302,7 @@ class PolicyNode(Node):
         for each in message.transforms:
             if each.child_frame_id.lstrip("/") == self.leader_frame:
                 self.progress.target = [each.transform.translation.x, each.transform.translation.y]
-                self.leader_stamp = self.hear("leader", each.header.stamp)
+                self.leader_stamp = self.note_message_time("leader", each.header.stamp)
                 self.step_when_known()
 
     def step_when_known(self) -> None:
@@ -358,12 +358,12 @@ class PolicyNode(Node):
             self.get_logger().warning(f"the robot stands: {missing}", once=True)
         return False
 
-    def told(self, part: str, robot: int) -> list[float]:
+    def part_numbers(self, part: str, robot: int) -> list[float]:
         """The numbers of one part of what a robot is told beside its scan."""
         if part in self.motion:
             return self.motion[part][robot]
         if part in ("achieved", "arrived"):
-            return self.progress.told(part, robot)
+            return self.progress.part_numbers(part, robot)
         x, y, heading = self.poses[robot]
         if part == "own_pose":
             place = (min(max(each, -PLACE_CLIP), PLACE_CLIP) * SCALE for each in (x, y))
@@ -378,7 +378,7 @@ class PolicyNode(Node):
         """What the policy sees: of every robot its scan and its motion; of as many steps as it was trained with."""
         parts: list[np.ndarray] = []
         for robot in range(len(TOPICS)):
-            parts += [self.scans[robot], *(np.array(self.told(name, robot)) for name in PARTS)]
+            parts += [self.scans[robot], *(np.array(self.part_numbers(name, robot)) for name in PARTS)]
         frame = np.concatenate(parts).astype(np.float32)
         self.frames = [*(self.frames or [frame] * FRAMES)[1 - FRAMES :], frame][-FRAMES:]
         return np.concatenate(self.frames)

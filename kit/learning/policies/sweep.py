@@ -102,11 +102,13 @@ def find_kinds(names: Sequence[str]) -> tuple[DisturbanceKind, ...]:
     return tuple(kind for name, kind in known.items() if not wanted or name in wanted)
 
 
-def _whole(value: object) -> object:
+def _with_all_fields(value: object) -> object:
     """The value with every record in it as the name of its class and all its fields, which its own text may leave out."""
     if is_dataclass(value):
-        return type(value).__name__, tuple(_whole(getattr(value, each.name)) for each in fields(value))
-    return tuple(map(_whole, value)) if isinstance(value, tuple) else value
+        return type(value).__name__, tuple(
+            _with_all_fields(getattr(value, each.name)) for each in fields(value)
+        )
+    return tuple(map(_with_all_fields, value)) if isinstance(value, tuple) else value
 
 
 class PolicySweep:
@@ -152,7 +154,7 @@ class PolicySweep:
     def _make_key(self) -> str:
         """What tells this sweep's results from those of others in the journal."""
         plain = replace(self._task, disturbances=Disturbances())
-        told = repr((_whole(plain), self._episodes, self._seed, self._greedy)).encode()
+        told = repr((_with_all_fields(plain), self._episodes, self._seed, self._greedy)).encode()
         return hashlib.sha256(policy_bytes(self._policy) + told).hexdigest()[:32]
 
     def _read_journal(self) -> dict[str, dict[str, Any]]:

@@ -153,7 +153,7 @@ def _do(operation: str, value: Any, stack: list[Any], memo: dict[int, Any]) -> N
         stack.append(_storage(_pop(stack)))
     elif operation == "REDUCE":
         given = _pop(stack)
-        stack.append(_made(_pop(stack), given))
+        stack.append(_construct(_pop(stack), given))
     elif operation == "SETITEM":
         last = _pop(stack)
         _set_items(stack, [_pop(stack), last])
@@ -188,7 +188,7 @@ def _set_items(stack: list[Any], items: list[Any]) -> None:
     target.update(zip(names, items[1::2], strict=True))
 
 
-def _made(function: Any, given: Any) -> Any:
+def _construct(function: Any, given: Any) -> Any:
     """What the pickle says that a function returned: a dictionary, or a tensor."""
     name = function.name if isinstance(function, _Name) else "something unnamed"
     if name == "collections OrderedDict" and given == ():

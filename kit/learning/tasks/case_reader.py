@@ -32,7 +32,7 @@ class PlacedCase:
 
 
 class CaseReader:
-    """Reads the ``cases`` of a task on these maps for so many robots."""
+    """Reads the ``cases`` of a task on these maps for this many robots."""
 
     def __init__(self, cards: tuple[MapCard, ...], robots: int, goal: Goal) -> None:
         self._cards = cards

@@ -14,7 +14,7 @@ TASK_KEYS: Final = (
     re.compile(r"^(world|maps):", re.MULTILINE),
     re.compile(r"^(summary|goal|reward|cases):", re.MULTILINE),
 )
-"""What a task file has at the beginning of a line, and a world or a map's card has not."""
+"""What a task file has at the beginning of a line, unlike a world or a map's card."""
 MAX_BYTES: Final = 256 * 1024
 PATTERNS: Final = ("*", "*/*", "*/*/*")
 """A folder itself and two floors below it: deep enough for ``worlds/NAME/``, and quick."""

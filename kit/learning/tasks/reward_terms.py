@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from kit.fields.adjacency import wrap_angles
+from kit.geometry import wrap_angle
 from kit.learning.tasks.actions import Move
 from kit.learning.tasks.transition import Array, Transition
 
@@ -219,9 +219,9 @@ def misaligned_reward(t: Transition, within: float = 0.5) -> Array:
     return _sum_over_robots((t.distance < within) * t.misalignment) / np.pi
 
 
-def aligned_progress_reward(t: Transition, within: float = 0.5) -> Array:
+def heading_progress_reward(t: Transition, within: float = 0.5) -> Array:
     """Progress in heading near the target: half turns that each robot came nearer to the target's heading, within ``within`` metres."""
-    before = np.abs(wrap_angles(t.previous_pose[..., 2] - t.target_heading[..., None]))
+    before = np.abs(wrap_angle(t.previous_pose[..., 2] - t.target_heading[..., None]))
     return _sum_over_robots((t.distance < within) * (before - t.misalignment)) / np.pi
 
 
@@ -258,7 +258,7 @@ TERMS: Mapping[str, RewardTerm] = MappingProxyType(
         "beside_wall": beside_wall_reward,
         "off_leader": off_leader_reward,
         "misaligned": misaligned_reward,
-        "aligned_progress": aligned_progress_reward,
+        "heading_progress": heading_progress_reward,
     }
 )
 """Terms by the name that weights, events and ``info["terms"]`` use."""

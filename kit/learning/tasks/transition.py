@@ -9,7 +9,8 @@ from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 
-from kit.fields.adjacency import SIDE_RAYS, adjacency_score, is_adjacent_by_rays, wrap_angles
+from kit.fields.adjacency import SIDE_RAYS, adjacency_score, is_adjacent_by_rays
+from kit.geometry import wrap_angle
 from kit.learning.maps.ray_directions import AHEAD_RAY, LEFT_RAYS, RIGHT_RAYS
 
 Array: TypeAlias = Any
@@ -323,7 +324,7 @@ class Transition:
     @cached_property
     def misalignment(self) -> Array:
         """(..., R) between the robot's heading and the target's, 0 to pi."""
-        return np.abs(wrap_angles(self.pose[..., 2] - self.target_heading[..., None]))
+        return np.abs(wrap_angle(self.pose[..., 2] - self.target_heading[..., None]))
 
     @cached_property
     def adjacent(self) -> Array:
@@ -370,11 +371,11 @@ def distance_to_target(pose: Array, target: Array) -> Array:
 def bearing_of_target(pose: Array, target: Array) -> Array:
     """(..., R) of targets (..., 2), from ahead of poses (..., R, 3), in [-pi, pi)."""
     dx, dy = target[..., None, 0] - pose[..., 0], target[..., None, 1] - pose[..., 1]
-    return wrap_angles(np.arctan2(dy, dx) - pose[..., 2])
+    return wrap_angle(np.arctan2(dy, dx) - pose[..., 2])
 
 
 def average_speeds(before: Array, after: Array, seconds: float) -> Array:
-    """(..., 2) forward [m/s] and turn [rad/s] that led from one pose (..., 3) to the other in so many seconds."""
+    """(..., 2) forward [m/s] and turn [rad/s] that led from one pose (..., 3) to the other in this many seconds."""
     (dx, dy, turn), middle = np.moveaxis(after - before, -1, 0), 0.5 * (before[..., 2] + after[..., 2])
     forward = dx * np.cos(middle) + dy * np.sin(middle)
     return np.stack([forward, turn], axis=-1) / seconds

@@ -112,11 +112,11 @@ class QNetwork:
         self.parameters: Float32Array = np.zeros(sum(math.prod(shape) for shape in self._shapes), np.float32)
         self.mean, self.square = np.zeros_like(self.parameters), np.zeros_like(self.parameters)
         self.updates = 0
-        for weights in self.cut(self.parameters)[::2]:
+        for weights in self.layer_views(self.parameters)[::2]:
             limit = math.sqrt(6.0 / sum(weights.shape))  # Glorot, as Keras begins
             weights[:] = rng.uniform(-limit, limit, weights.shape)
 
-    def cut(self, parameters: Float32Array) -> list[Float32Array]:
+    def layer_views(self, parameters: Float32Array) -> list[Float32Array]:
         """Views of weights and biases, layer by layer."""
         views, first = [], 0
         for shape in self._shapes:
@@ -126,7 +126,7 @@ class QNetwork:
 
     def outputs(self, seen: Float32Array, parameters: Float32Array | None = None) -> list[Float32Array]:
         """What each layer gives for (n, inputs), the values (n, actions) last; by other parameters if they are given."""
-        views = self.cut(self.parameters if parameters is None else parameters)
+        views = self.layer_views(self.parameters if parameters is None else parameters)
         found, x = [], seen
         for weights, bias in zip(views[:-2:2], views[1:-2:2], strict=True):
             x = x @ weights
@@ -143,7 +143,7 @@ class QNetwork:
         slope = np.zeros_like(layers[-1])
         slope[rows, batch.actions] = (layers[-1][rows, batch.actions] - targets) / count
         gradient = np.empty_like(self.parameters)
-        parts, views = self.cut(gradient), self.cut(self.parameters)
+        parts, views = self.layer_views(gradient), self.layer_views(self.parameters)
         for number in reversed(range(len(layers) - 1)):
             inputs = layers[number]
             np.matmul(inputs.T, slope, out=parts[2 * number])
@@ -250,7 +250,7 @@ class BoltzmannLearner:
         return self._steps
 
     def policy(self) -> Policy:
-        views = self._network.cut(self._network.parameters.copy())
+        views = self._network.layer_views(self._network.parameters.copy())
         layers = tuple(LinearLayer(*pair) for pair in zip(views[::2], views[1::2], strict=True))
         return Policy(
             PolicyNetwork(layers, self._activation),

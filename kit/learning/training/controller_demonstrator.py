@@ -128,7 +128,7 @@ def _take_over(observer: PoseObserver, policy: Policy, seen: Float32Array, seed:
         if step.ended[0]:
             break
         poses.append(observer.state.pose[0].copy())
-    return observer.put(poses[int(np.random.default_rng(seed).integers(len(poses)))])
+    return observer.observe_at(poses[int(np.random.default_rng(seed).integers(len(poses)))])
 
 
 def _scenario(task: LearningTask, card: MapCard, names: tuple[str, ...], observer: PoseObserver) -> Scenario:

@@ -87,9 +87,9 @@ class PoseObserver(BatchEnv):
         if poses is None:
             return first
         self._state.target[0] = self.cases[case].target
-        return self.put(poses)
+        return self.observe_at(poses)
 
-    def put(self, poses: FloatArray) -> Float32Array:
+    def observe_at(self, poses: FloatArray) -> Float32Array:
         """(1, size) what robots see that begin at the poses (robots, 3), with the present target."""
         state = self._state = self._state.copy()
         state.pose[0] = poses

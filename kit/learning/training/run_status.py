@@ -28,7 +28,7 @@ from kit.learning.training.training import resolve_preset
 from kit.learning.training.training_summary import TrainingCommand, TrainingSummary, summarise_events
 
 RECENT_REPORTS = 10
-"""Batches of training, about five seconds: over so many the present figures are taken."""
+"""Batches of training, about five seconds: the present figures are taken over this many."""
 
 ADJACENCY = "side by side"
 """The metric of two robots: share of steps in which they are next to each other."""

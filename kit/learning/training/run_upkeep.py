@@ -129,12 +129,12 @@ def runs_table(runs: Sequence[RunOverview]) -> Table:
     columns = (
         Column("run", CellStyle.TEXT),
         Column("state", CellStyle.TEXT),
-        Column("disk", is_spare=True),
+        Column("disk", is_optional=True),
         Column("steps"),
         Column("best", decimals=3),
-        Column("worst", decimals=3, is_spare=True),
+        Column("worst", decimals=3, is_optional=True),
         Column("value"),
-        Column("time", is_spare=True),
+        Column("time", is_optional=True),
         Column("left", CellStyle.TEXT),
         Column("reward", CellStyle.TEXT),
     )

@@ -94,7 +94,7 @@ class StoppingRule(Protocol):
         """Whether policies are tested by their best actions; else as they explore."""
 
     def evaluate(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
-        """Evaluates the present policy after so many steps."""
+        """Evaluates the present policy after this many steps."""
 
 
 def _worst_lower_bound(counts: CaseCounts) -> float:

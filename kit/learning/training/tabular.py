@@ -186,7 +186,7 @@ class Sarsa(TableLearner):
 
 
 def table_rows(inputs: int, bins: int) -> int:
-    """Returns how many rows a table has for so many numbers seen, each sorted into so many bins.
+    """Returns how many rows a table has for this many observed numbers, each sorted into this many bins.
 
     >>> table_rows(9, 3)
     19683

@@ -23,7 +23,7 @@ from kit.learning.training.training_sweep import TrainingSweep
 TRIALS_AT_ONCE: Final = 4
 """Trials that are proposed before the costs of the last ones are known, so that they can be trained side by side."""
 LOGARITHMIC_FROM: Final = 10.0
-"""A range whose upper end is so many times the lower one is searched by orders of magnitude."""
+"""A range whose upper end is this many times the lower one is searched by orders of magnitude."""
 
 Settings = tuple[tuple[str, float], ...]
 
@@ -65,7 +65,7 @@ def tune(
     goal: float | None = None,
     run: Callable[[TrainingSweep], object],
 ) -> TrainingSweep:
-    """Searches ``ranges`` with so many trials, each trained from all ``seeds``; returns the sweep of all of them.
+    """Searches ``ranges`` with this many trials, each trained from all ``seeds``; returns the sweep of all of them.
 
     ``goal``: as for ``sweep_rows``. ``run`` trains what a sweep waits for; the search ends early where it leaves something
     untried. Raises RunError and OSError.

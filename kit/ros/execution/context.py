@@ -33,7 +33,7 @@ class Context:
         self._initialised = False
         self._ok = False
         self.ended_from_outside = False
-        """Whether something else than the program itself shut it down."""
+        """Whether something other than the program itself shut it down."""
         self.global_executor: Any = None
         """The executor of ``rclpy.spin`` calls that name none; untyped, since executors are built on contexts."""
         self._may_shut_down_late = False

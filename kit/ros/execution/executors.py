@@ -147,7 +147,7 @@ class Executor:
     def spin(self) -> None:
         """Runs callbacks until the executor or the context is shut down. Raises what a callback raises.
 
-        Raises ExternalShutdownException if something else than the program shuts the context down.
+        Raises ExternalShutdownException if something other than the program shuts the context down.
         """
         if type(self).spin_once is not Executor.spin_once:  # an executor of the program's own
             while self._context.ok() and not self._is_shutdown:

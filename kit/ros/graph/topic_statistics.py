@@ -22,7 +22,7 @@ RATE_WINDOW: Final = 50
 """Number of messages over which a rate is averaged."""
 
 SILENT_AFTER: Final = 3.0
-"""A flow is silent after this many of its own periods, or after so many seconds if that is longer."""
+"""A flow is silent after this many of its own periods, or after this many seconds if that is longer."""
 
 
 class MessageFlow(NamedTuple):

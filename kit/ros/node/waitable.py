@@ -155,7 +155,7 @@ class Waitable(Generic[T]):
         """Begins a use of its entities; nothing to do here."""
 
     def __exit__(self, *_: object) -> None:
-        """Ends it."""
+        """Ends that use; nothing to do here."""
 
     def add_future(self, future: Future[Any]) -> None:
         self._futures.append(future)

@@ -54,7 +54,7 @@ class Board(ABC):
 
     @abstractmethod
     def judgement(self) -> Judgement:
-        """What the answer is worth now. Raises ChallengeError."""
+        """What the answer is worth now. Raises AnswerError."""
 
     @abstractmethod
     def move(self, columns: int, rows: int) -> None:

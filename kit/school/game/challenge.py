@@ -27,7 +27,7 @@ GOLD_GAIN, SILVER_GAIN = 0.98, 0.75
 """Shares of what the best answer gains on the naive one that earn gold and silver, where more is better."""
 
 
-class ChallengeError(ValueError):
+class AnswerError(ValueError):
     """An answer cannot be judged; the message says why."""
 
 
@@ -66,7 +66,7 @@ class ChallengeTask(ABC):
 
     @abstractmethod
     def judge(self, submission: AnswerSubmission) -> Judgement:
-        """Judges an answer. Raises ChallengeError and WorldError."""
+        """Judges an answer. Raises AnswerError and WorldError."""
 
     def lines(self) -> list[str]:
         """What is shown beside the text: a drawing, prices, a list."""
@@ -105,22 +105,22 @@ class ChallengeTask(ABC):
         return file
 
     def read_answer(self, file: Path) -> str:
-        """Reads what ``judge`` takes from an answer's file. Raises ChallengeError."""
+        """Reads what ``judge`` takes from an answer's file. Raises AnswerError."""
         try:
             lines = file.read_text().splitlines()
         except (OSError, UnicodeDecodeError) as error:
-            raise ChallengeError(f"{file} cannot be read: {error}") from None
+            raise AnswerError(f"{file} cannot be read: {error}") from None
         return " ".join(line for line in lines if not line.lstrip().startswith(COMMENT))
 
     def parse_answer(self, argument: str) -> str:
-        """What ``judge`` takes of a command's argument: the name of an answer's file, or the answer itself. Raises ChallengeError."""
+        """What ``judge`` takes of a command's argument: the name of an answer's file, or the answer itself. Raises AnswerError."""
         file = Path(argument)
         with suppress(OSError):  # moves may be longer than a file's name
             if file.is_file():
                 return self.read_answer(file)
         ending = Path(self.answer_file).suffix
         if ending and argument.endswith(ending):
-            raise ChallengeError(f"There is no file {argument}.")
+            raise AnswerError(f"There is no file {argument}.")
         return argument
 
 

@@ -136,7 +136,7 @@ def _ghost_of(name: str, recording: Recording, scenario: Scenario) -> Ghost:
 
 
 SECTORS: Final = 3
-"""Into so many parts of equal length a drive is divided."""
+"""A drive is divided into this many parts of equal length."""
 NEAR: Final = 0.8
 """A place counts as passed within this distance of it [m]."""
 LEEWAY: Final = 0.1

@@ -49,7 +49,7 @@ MAX_NAME_BYTES: Final = 4096
 SAME_WAY: Final = 0.005
 """Two drives that are nowhere farther apart than this are one [m]."""
 MAX_USER_DIGITS: Final = 12
-FORMER_FILE: Final = re.compile(r"\.[0-9a-f]{16}\.npz$")
+DIGEST_ENDING: Final = re.compile(r"\.[0-9a-f]{16}\.npz$")
 """The end of the name of a file that tells since when a drive was on the board."""
 LEFT: Final = "a player who has left"
 MAX_FORMER: Final = 50
@@ -170,7 +170,7 @@ def remove_own_entry(folder: Path) -> None:
         _name_file(folder, os.getuid()).unlink(missing_ok=True)
         for pattern in ("npz", "txt"):
             for file in folder.glob(f"{os.getuid()}.*.{pattern}"):
-                if not FORMER_FILE.search(file.name):
+                if not DIGEST_ENDING.search(file.name):
                     file.unlink(missing_ok=True)
     except OSError as error:
         raise LeaderboardError(f"{folder}: {error.strerror}.") from None
@@ -234,7 +234,7 @@ def _drivers(folder: Path) -> set[int]:
     """The numbers of the users of whom a drive was ever on the board, also of those who have left it."""
     with suppress(OSError):
         found = (
-            each.name.partition(".")[0] for each in folder.glob("*.npz") if FORMER_FILE.search(each.name)
+            each.name.partition(".")[0] for each in folder.glob("*.npz") if DIGEST_ENDING.search(each.name)
         )
         return {int(user) for user in found if user.isdecimal() and len(user) < MAX_USER_DIGITS}
     return set()

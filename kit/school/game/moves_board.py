@@ -7,17 +7,17 @@ from pathlib import Path
 
 from kit.plain_text import quoted
 from kit.school.game.board import MOVES, Board, letters_of
-from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
+from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement
 
 
 def read_moves(answer: str, most: int) -> str:
-    """The moves of an answer, ``l``, ``r``, ``u`` and ``d``. Raises ChallengeError."""
+    """The moves of an answer, ``l``, ``r``, ``u`` and ``d``. Raises AnswerError."""
     moves = "".join(answer.split()).lower()
     if strange := sorted(set(moves) - set(MOVES)):
-        raise ChallengeError(f"{quoted(strange[0])} is not a move: write l, r, u and d.")
+        raise AnswerError(f"{quoted(strange[0])} is not a move: write l, r, u and d.")
     if len(moves) > most:
-        raise ChallengeError(f"{len(moves)} moves are too many; there are at most {most}.")
+        raise AnswerError(f"{len(moves)} moves are too many; there are at most {most}.")
     return moves
 
 
@@ -29,7 +29,7 @@ class MovesBoard(Board):
     def __init__(self, task: ChallengeTask, answer: str, most: int) -> None:
         self._task, self._most = task, most
         self.moves = ""
-        with suppress(ChallengeError):
+        with suppress(AnswerError):
             moves = read_moves(answer, most)
             self.moves = moves if moves != task.naive_answer().strip() else ""
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Final
 
 from kit.school.game import leaderboard
-from kit.school.game.challenge import Challenge, ChallengeError
+from kit.school.game.challenge import AnswerError, Challenge
 from kit.school.game.challenges import answers_folder, find_challenge
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
@@ -50,7 +50,7 @@ def publish_answers(folder: Path, workspace: Workspace, challenges: tuple[Challe
     for challenge in challenges:
         file = answers_folder(workspace) / challenge.id / challenge.task.answer_file
         if challenge.task.answer_file and file.is_file():
-            with suppress(ChallengeError):
+            with suppress(AnswerError):
                 publish_answer(folder, challenge, challenge.task.read_answer(file))
 
 
@@ -85,7 +85,7 @@ def _judge_once(name: str, text: str) -> AnswerComparison | None:
     task = find_challenge(name).task
     if len(text.encode()) > MAX_ANSWER_BYTES or task.board("") is None:
         return None
-    with suppress(ChallengeError, WorldError):
+    with suppress(AnswerError, WorldError):
         judgement = task.judge_shared(text)
         return judgement.comparison if judgement.medal > Medal.NONE else None
     return None

@@ -33,7 +33,7 @@ from kit.world.records import World
 
 FORMAT: Final = 1
 TRACK_STRIDE: Final = 10
-"""Of so many poses of a track one is kept."""
+"""One of this many poses of a track is kept."""
 MAX_FILE_BYTES: Final = 1 << 20
 MAX_INPUTS_BYTES: Final = 16 << 20
 """Bytes of a file's inputs, unpacked."""
@@ -171,7 +171,7 @@ def _read_drives_archive(data: bytes) -> dict[str, Any]:
             not all(isinstance(each, dict) for each in content["drives"])
             or type(content["remarks"]) is not list
         ):
-            raise DriveRefused("it holds something else than drives")
+            raise DriveRefused("it holds something other than drives")
     except DriveRefused:
         raise
     except (*READ_ERRORS, RecursionError, UnicodeDecodeError) as error:
@@ -207,7 +207,7 @@ def check_inputs(
     for each in recording.inputs:
         if each.kind == ACCEPT:
             if not each.content or each.content[0] not in topics:
-                raise DriveRefused("it moves something else than its robots")
+                raise DriveRefused("it moves something other than its robots")
         elif each.kind not in services:
             raise DriveRefused(f"the world was changed during the race ({each.kind})")
 

@@ -164,7 +164,7 @@ class SharedGameServer:
                     with suppress(OSError):
                         self._wake_out.recv(4096)
                 else:
-                    self._attend(key.data, events)
+                    self._serve_guest(key.data, events)
             self._hand_out()
             now = self._clock()
             for guest in list(self._guests):
@@ -195,14 +195,14 @@ class SharedGameServer:
             self._selector.register(connection, selectors.EVENT_READ, guest)
 
     def _refuse(self, connection: socket.socket, reason: str) -> None:
-        self._note(reason)
+        self._note_refusal(reason)
         connection.close()
 
-    def _note(self, reason: str) -> None:
+    def _note_refusal(self, reason: str) -> None:
         if reason:
             self.refused = [*self.refused, reason][-100:]
 
-    def _attend(self, guest: _Guest, events: int) -> None:
+    def _serve_guest(self, guest: _Guest, events: int) -> None:
         if guest not in self._guests:
             return  # dropped in this very round
         try:
@@ -294,7 +294,7 @@ class SharedGameServer:
         self._selector.modify(guest.connection, wanted, guest)
 
     def _drop(self, guest: _Guest, reason: str) -> None:
-        self._note(reason)
+        self._note_refusal(reason)
         self._guests.remove(guest)
         with suppress(KeyError, ValueError):
             self._selector.unregister(guest.connection)

@@ -127,7 +127,7 @@ def run_and_copy(
 
 
 def row_count(printed: bytes, columns: int) -> int:
-    """Rows that a text takes on a terminal of so many columns."""
+    """Rows that a text takes on a terminal of this many columns."""
     return sum(max(1, -(-len(line) // columns)) for line in plain_lines(printed.decode(errors="replace")))
 
 

@@ -98,7 +98,7 @@ class DefenceDialogue(Dialogue):
         return None
 
     def show_again(self) -> Effect:
-        self.stage.again()
+        self.stage.replay()
         return None
 
     def is_asked(self) -> bool:

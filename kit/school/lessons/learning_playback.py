@@ -208,7 +208,7 @@ def _new_learners(scene: LearningScene) -> tuple[GridLearner, ...]:
 
 
 def _updates_of(learner: GridLearner, episodes: int) -> int:
-    """Updates until so many episodes have ended."""
+    """Updates until this many episodes have ended."""
     while learner.episodes < episodes:
         learner.step()
     return learner.updates

@@ -130,7 +130,7 @@ class LessonDialogue(Dialogue):
         """Why the exercise's files could not be laid out."""
         self._opening_step = self.step
         """Where it is said that the lesson is in another language than the one asked for."""
-        self._following: LessonSession | None = None
+        self._next_lesson: LessonSession | None = None
         """The next lesson, once this one has ended."""
         self._allowed_lines: set[str] = set()
         """Commands of somebody else's lesson that the student has seen and let run."""
@@ -243,8 +243,8 @@ class LessonDialogue(Dialogue):
         return self.session.lesson.name, 0 if self.has_ended else self.step.number
 
     @property
-    def look(self) -> Block | None:
-        said = self.said()
+    def block_in_view(self) -> Block | None:
+        said = self.reply_blocks()
         match self._looks_at:
             case "hint" if (newest := self._newest_hint) is not None:
                 lead = f"Hint {newest.number} of "
@@ -293,7 +293,7 @@ class LessonDialogue(Dialogue):
     def farewell(self) -> Sequence[Block]:
         return (Text("Your progress is saved."),)
 
-    def heard(self) -> Sequence[Block]:
+    def arrival_blocks(self) -> Sequence[Block]:
         if self.has_ended:
             return ()
         blocks: list[Block] = [Text(f"Goal: {self.step.goal}", is_tight=True)]
@@ -304,13 +304,13 @@ class LessonDialogue(Dialogue):
         return blocks
 
     def blocks(self) -> Sequence[Block]:
-        return [*self.told(), *self.asked(), *self.said()]
+        return [*self.step_blocks(), *self.prediction_blocks(), *self.reply_blocks()]
 
-    def told(self) -> list[Block]:
+    def step_blocks(self) -> list[Block]:
         """The words of the step and its commands; after the last step those of the end."""
         if self.has_ended:
-            following = self._following.lesson if self._following is not None else None
-            return ending_blocks(self.session.lesson_progress, following, self.session.opened_levels())
+            next_lesson = self._next_lesson.lesson if self._next_lesson is not None else None
+            return ending_blocks(self.session.lesson_progress, next_lesson, self.session.opened_levels())
         missing = self.session.lesson.missing_language if self.step is self._opening_step else ""
         blocks: list[Block] = [Text(missing_translation_text(missing))] if missing else []
         text = self.with_paths(self.step.text)
@@ -324,13 +324,13 @@ class LessonDialogue(Dialogue):
             blocks.append(Picture((f"Your file: {shell_path(self.work.edited_file)}{others}",), indent=0))
         return blocks
 
-    def asked(self) -> list[Block]:
+    def prediction_blocks(self) -> list[Block]:
         """The question of a prediction."""
         if self.has_ended or not self.step.options:
             return []
         return question_blocks(self.step, self.chosen, is_told=self.is_answer_shown)
 
-    def said(self) -> list[Block]:
+    def reply_blocks(self) -> list[Block]:
         """What is said to what the student did."""
         if self.has_ended:
             return []
@@ -377,7 +377,7 @@ class LessonDialogue(Dialogue):
 
     @property
     def checked_elsewhere(self) -> list[LessonStep]:
-        """The steps, besides this one, whose exercise is being checked."""
+        """The other steps whose exercise is being checked."""
         return [
             step
             for step in self.session.lesson.steps
@@ -439,7 +439,7 @@ class LessonDialogue(Dialogue):
         self._close_works()
         self.stage.close()
 
-    def rested(self) -> bool:
+    def on_scene_end(self) -> bool:
         """The scene has come to its end: what there is to say of a prediction may be said. Returns whether it is now."""
         if self._film is not None and self._drive_follows:
             self._drive_follows = False
@@ -466,13 +466,13 @@ class LessonDialogue(Dialogue):
                 self._reveal()
         else:
             if self.step.moves:
-                self.stage.again()
+                self.stage.replay()
             self._reveal()
         return None
 
     def go_on(self) -> Effect:
         if self.has_ended:
-            return self._begin_following()
+            return self._begin_next_lesson()
         if not self.is_answer_shown:
             self._reveal()
             return None
@@ -484,14 +484,14 @@ class LessonDialogue(Dialogue):
             return Remark("Not passed yet: b goes back to the exercise.", Tone.DIM) if is_open else None
         self.stage.close()
         self.work, self.has_ended, self._looks_at = None, True, ""
-        self._following = self.session.following()
+        self._next_lesson = self.session.find_next()
         return None
 
-    def _begin_following(self) -> Effect:
-        if self._following is not None:
+    def _begin_next_lesson(self) -> Effect:
+        if self._next_lesson is not None:
             is_told = bool(self.session.lesson.missing_language)
             self._close_works()
-            self.session, self._following = self._following, None
+            self.session, self._next_lesson = self._next_lesson, None
             self._opening_step = self._opening_step if is_told else self.session.first_step
             self.enter(self.session.first_step)
         return None
@@ -519,11 +519,11 @@ class LessonDialogue(Dialogue):
         return None
 
     def restart(self) -> Effect:
-        self.stage.again()
+        self.stage.replay()
         return None
 
     def pause(self) -> Effect:
-        self.stage.hold(not self.stage.is_paused)
+        self.stage.set_paused(not self.stage.is_paused)
         return None
 
     def step_once(self) -> Effect:
@@ -702,7 +702,7 @@ class LessonDialogue(Dialogue):
 
     def can_go_on(self) -> bool | str:
         if self.has_ended:
-            return self._following is not None
+            return self._next_lesson is not None
         if self.is_waiting:
             return f"Predict first, 1 to {len(self.step.options)}: a wrong guess costs nothing."
         return True

@@ -71,10 +71,10 @@ class LessonSession:
         """The step to begin or to continue with."""
         return self._lesson_progress.next_step
 
-    def following(self) -> LessonSession | None:
+    def find_next(self) -> LessonSession | None:
         """The same student's work on the next lesson of the folder; None after the last one, or if it cannot be read."""
         if self.lesson.is_foreign:
-            return self._following_foreign()
+            return self._find_next_in_folder()
         names = lesson_names(self.lesson.folder.parent)
         after = names[names.index(self.lesson.name) + 1 :]
         if not after:
@@ -85,7 +85,7 @@ class LessonSession:
             return None
         return LessonSession(lesson, self.journal, self.workspace, as_class=self._as_class)
 
-    def _following_foreign(self) -> LessonSession | None:
+    def _find_next_in_folder(self) -> LessonSession | None:
         """Returns the next lesson of a folder that is not the kit's own; None after the last."""
         folder = self.lesson.folder
         after = sorted(each.parent for each in folder.parent.glob(f"*/{LESSON_FILE}") if each.parent > folder)

@@ -59,7 +59,7 @@ def make_film(scene: LearningScene, files: list[Path], level: Level) -> OwnAgent
             learner = make_own_learner(scene.world, scene.learners[0], lines)
             while learner.updates < scene.updates:
                 learner.step()
-            kept = lines.kept()
+            kept = lines.kept_lines()
     except StudentCodeError as error:
         raise OwnAgentError(f"Your lines stopped: {error.failure}") from None
     except OwnLinesError as error:

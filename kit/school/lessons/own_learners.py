@@ -94,16 +94,16 @@ class StudentLines:
         self._processes.close()
 
     def call(self, name: str, **arguments: Any) -> Any:
-        return self._kept(name, self._of(name).call_json(name, arguments))
+        return self._keep_answer(name, self._functions_with(name).call_json(name, arguments))
 
     def call_all(self, name: str, columns: Mapping[str, Any]) -> list[float]:
-        return list(self._kept(name, list(self._of(name).call_columns(name, columns))))
+        return list(self._keep_answer(name, list(self._functions_with(name).call_columns(name, columns))))
 
-    def kept(self) -> KeptLines:
+    def kept_lines(self) -> KeptLines:
         """All answers so far."""
         return KeptLines(tuple(self._answers))
 
-    def _of(self, name: str) -> StudentFunctions:
+    def _functions_with(self, name: str) -> StudentFunctions:
         if time.monotonic() > self._ends_at:
             raise OwnLinesError(
                 f"Your lines need more than {LIMIT_S:g} s to learn the floor. Which of them is slow?"
@@ -112,7 +112,7 @@ class StudentLines:
             raise OwnLinesError(f"There is no function {quoted(name)} any more in your files.")
         return self._functions[name]
 
-    def _kept(self, name: str, answer: Any) -> Any:
+    def _keep_answer(self, name: str, answer: Any) -> Any:
         if answer == self._newest.get(name):  # most copies of a network's weights are the one before
             answer = self._newest[name]
         self._newest[name] = answer

@@ -19,12 +19,12 @@ class RunStage(Protocol):
     def go(self) -> None:
         """Lets it run."""
 
-    def again(self) -> None:
+    def replay(self) -> None:
         """Runs it from its first instant."""
 
 
 class Stage(RunStage, Protocol):
-    """Shows the scene of a step, or a recorded run. Its owner calls the dialogue's ``rested`` each time the scene has come to
+    """Shows the scene of a step, or a recorded run. Its owner calls the dialogue's ``on_scene_end`` each time the scene has come to
     its end."""
 
     @property
@@ -53,7 +53,7 @@ class Stage(RunStage, Protocol):
     def learn(self, scene: LearningScene) -> None:
         """Plays tables that learn, in place of the step's scene."""
 
-    def hold(self, held: bool) -> None:
+    def set_paused(self, paused: bool) -> None:
         """Has the scene stand still, or go on."""
 
     def step_once(self) -> None:
@@ -78,9 +78,9 @@ class NoStage:
 
     def go(self) -> None: ...
 
-    def again(self) -> None: ...
+    def replay(self) -> None: ...
 
-    def hold(self, held: bool) -> None: ...
+    def set_paused(self, paused: bool) -> None: ...
 
     def step_once(self) -> None: ...
 

@@ -292,7 +292,7 @@ def _read_options(section: Section) -> tuple[AnswerOption, ...]:
     if options and sum(option.is_right for option in options) != 1:
         section.error("exactly one option must say right: true", "options")
     if len({option.text.casefold() for option in options}) < len(options):
-        section.error("two options say the same", "options")
+        section.error("two options say the same thing", "options")
     return tuple(options)
 
 

@@ -115,7 +115,7 @@ class QuizDialogue(Dialogue):
         return self.stage is QuizStage.OVER
 
     @property
-    def look(self) -> Block | None:
+    def block_in_view(self) -> Block | None:
         is_told = self.stage is QuizStage.TOLD and self.item is not None and self.choice is not None
         return self._feedback(self.item, self.choice)[0] if is_told and self.item and self.choice else None
 

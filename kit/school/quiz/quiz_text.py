@@ -122,7 +122,7 @@ def topic_table(scores: Mapping[QuizTopic, OutcomeCounts]) -> Table:
         Column("wrong"),
         Column("not sure"),
         Column("blank"),
-        Column("not asked", is_spare=True),
+        Column("not asked", is_optional=True),
     )
     rows = tuple(
         (topic.label, t.total, t.right, t.wrong, t.not_sure, t.blank, t.not_asked)

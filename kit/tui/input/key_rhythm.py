@@ -46,7 +46,7 @@ class Rhythm:
         """Begins with a key other than the one before."""
         self._last, self._repeats, self._pause = now, 0, None
 
-    def heard(self, now: float) -> None:
+    def note_repeat(self, now: float) -> None:
         """Notes that the same key came again. A gap is understood when the next one is known: only repeats follow quickly."""
         gap, self._last = now - self._last, now
         repeating = self._repeats >= 2
@@ -55,9 +55,9 @@ class Rhythm:
         elif gap > (3 * self.period if repeating else SHORTEST_DELAY):
             self._repeats, self._pause = 0, (gap, repeating)
         else:
-            self._note_repeat(gap, now)
+            self._update_from_gap(gap, now)
 
-    def _note_repeat(self, gap: float, now: float) -> None:
+    def _update_from_gap(self, gap: float, now: float) -> None:
         self._repeats += 1
         if self._pause is not None:
             pause, was_repeating = self._pause

@@ -148,7 +148,7 @@ class RepeatMode:
             for hold in self._holds.values():
                 hold.carried = hold.strength(now) == 1.0
         if base_key(key) == self._last_key:
-            self.rhythm.heard(now)
+            self.rhythm.note_repeat(now)
         else:
             self.rhythm.start(now)
             self._last_key = base_key(key)

@@ -1,4 +1,4 @@
-"""What an agent that drives perceives, rates and expects, as rows of text. Pure."""
+"""What an agent that drives perceives, rates and expects, as rows of text."""
 
 from __future__ import annotations
 

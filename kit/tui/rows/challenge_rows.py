@@ -1,4 +1,4 @@
-"""Challenges as rows of text: their list, what one asks for, what an answer is worth beside the naive and the best one. Pure."""
+"""Challenges as rows of text: their list, what one asks for, what an answer is worth beside the naive and the best one."""
 
 from __future__ import annotations
 

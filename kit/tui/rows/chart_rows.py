@@ -1,4 +1,4 @@
-"""Charts of blocks, as rows of text: of a laser's distances, of values over time. Pure."""
+"""Charts of blocks, as rows of text: of a laser's distances, of values over time."""
 
 from __future__ import annotations
 

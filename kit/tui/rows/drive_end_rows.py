@@ -1,4 +1,4 @@
-"""What a drive of a level earned, as rows of text: time, medal, sectors, what was won besides. Pure."""
+"""What a drive of a level earned, as rows of text: time, medal, sectors, what was won besides."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The instruments of a large terminal beside a driven world: charts of lasers and speeds, the program. Pure."""
+"""The instruments of a large terminal beside a driven world: charts of lasers and speeds, the program."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LARGE_SIZE: Final = (120, 36)
 """Columns and rows from which on a screen has room for instruments."""
 LARGE_PANEL_WIDTH: Final = 46
 WIDE_PANEL: Final = (160, 60)
-"""From so many columns on the panel is so wide."""
+"""From this many columns on, the panel is this wide."""
 HISTORY_S: Final = 60.0
 SAMPLE_S: Final = 0.2
 """Seconds of the simulation that the charts of the past cover, and between two of their points."""

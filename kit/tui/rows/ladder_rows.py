@@ -1,4 +1,4 @@
-"""The ladder of times and medals of a level, as rows of text. Pure."""
+"""The ladder of times and medals of a level, as rows of text."""
 
 from __future__ import annotations
 

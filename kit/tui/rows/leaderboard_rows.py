@@ -1,4 +1,4 @@
-"""Leaderboards as rows of text: standings of players, times on a level. Pure."""
+"""Leaderboards as rows of text: standings of players, times on a level."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The list of lessons as rows of text, and what is known of each. Pure."""
+"""The list of lessons as rows of text, and what is known of each."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def line(entry: LessonEntry, chosen: bool) -> Row:
 
 
 def summary(entry: LessonEntry, rows: int) -> list[Row]:
-    """What the chosen lesson is about, and what one can do after it; at most so many rows."""
+    """What the chosen lesson is about, and what one can do after it; at most this many rows."""
     lesson = entry.lesson
     if lesson is None:
         lines = [each for part in entry.problem.splitlines() for each in wrap(part, TEXT_WIDTH)]

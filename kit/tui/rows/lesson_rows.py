@@ -1,4 +1,4 @@
-"""The rows around a lesson's step: its heading, its title, its file, the check. Pure."""
+"""The rows around a lesson's step: its heading, its title, its file, the check."""
 
 from __future__ import annotations
 

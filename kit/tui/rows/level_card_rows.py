@@ -1,5 +1,4 @@
-"""A level's card as rows of text: its story and task, the rungs of its ladder, its stars, and the sectors of one's best drive.
-Pure."""
+"""A level's card as rows of text: its story and task, the rungs of its ladder, its stars, and the sectors of one's best drive."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Worlds of levels as maps in characters: where each level stands and what opens what. Pure."""
+"""Worlds of levels as maps in characters: where each level stands and what opens what."""
 
 from __future__ import annotations
 

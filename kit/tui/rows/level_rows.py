@@ -1,4 +1,4 @@
-"""The game's levels as rows of text: medals, what is known of a level, its starts. Pure."""
+"""The game's levels as rows of text: medals, what is known of a level, its starts."""
 
 from __future__ import annotations
 

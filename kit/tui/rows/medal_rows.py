@@ -1,4 +1,4 @@
-"""A medal as a row of text, and as a drawing. Pure."""
+"""A medal as a row of text, and as a drawing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The menu of the start screen as rows of text: its lines, and below them what there is to do today. Pure."""
+"""The menu of the start screen as rows of text: its lines, and below them what there is to do today."""
 
 from __future__ import annotations
 

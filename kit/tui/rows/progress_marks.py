@@ -1,4 +1,4 @@
-"""How far a lesson, an exercise or a work is, as marks that are also read where there is no colour. Pure."""
+"""How far a lesson, an exercise or a work is, as marks that are also read where there is no colour."""
 
 from __future__ import annotations
 

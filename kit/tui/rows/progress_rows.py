@@ -1,4 +1,4 @@
-"""A student's progress as rows of text. Pure."""
+"""A student's progress as rows of text."""
 
 from __future__ import annotations
 

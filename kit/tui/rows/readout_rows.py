@@ -1,4 +1,4 @@
-"""The figures beside the world (heading, side panel, messages) as rows of text. Pure."""
+"""The figures beside the world (heading, side panel, messages) as rows of text."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def failure_or_messages(view: View, rows: int, width: int) -> tuple[Row, ...]:
 
 
 def message_rows(record: LogRecord, width: int, most: int = 1) -> list[Row]:
-    """A message in at most so many rows: its time, who says it, its first line as far as it fits."""
+    """A message in at most this many rows: its time, who says it, its first line as far as it fits."""
     clock = f"{format_clock(record.time_ns / 1e9):>7} "
     head = f"{clock}{record.name}: "
     text = record.text.partition("\n")[0]

@@ -1,4 +1,4 @@
-"""A title on a rule across a column. Pure."""
+"""A title on a rule across a column."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Settings of a new training as rows of text: name, value, meaning. Pure."""
+"""Settings of a new training as rows of text: name, value, meaning."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A shared game as rows of text: who plays, what the score is, how it ended. Pure."""
+"""A shared game as rows of text: who plays, what the score is, how it ended."""
 
 from __future__ import annotations
 

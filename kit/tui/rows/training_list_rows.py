@@ -1,4 +1,4 @@
-"""The list of all trainings as rows of text, and what is shown where there are none. Pure."""
+"""The list of all trainings as rows of text, and what is shown where there are none."""
 
 from __future__ import annotations
 

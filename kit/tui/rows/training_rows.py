@@ -1,4 +1,4 @@
-"""A training that runs as rows of text: its figures, curves, cases and keys. Pure."""
+"""A training that runs as rows of text: its figures, curves, cases and keys."""
 
 from __future__ import annotations
 

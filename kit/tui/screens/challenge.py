@@ -16,7 +16,7 @@ from kit.dialogue.actions import ScreenActions
 from kit.document.rows import Row, row
 from kit.host.file_watcher import FileWatcher
 from kit.learning.training.run_folders import list_runs
-from kit.school.game.challenge import AnswerSubmission, Challenge, ChallengeError
+from kit.school.game.challenge import AnswerError, AnswerSubmission, Challenge
 from kit.school.game.challenges import answers_folder, challenge_medals, prepare_answer, record_judgement
 from kit.school.game.judgement import Judgement
 from kit.school.game.medal import Medal
@@ -120,7 +120,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             return [checking(time.monotonic() - self._started_at, self._doing, self.size.width)]
         return self._result
 
-    def _without(self) -> list[str]:
+    def _unavailable_actions(self) -> list[str]:
         """Actions that do nothing here."""
         return [
             *(["edit_file"] if self._file is None else []),
@@ -128,7 +128,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         ]
 
     def _keys(self) -> Row:
-        return footer(self.screen_actions, self.size.width, without=self._without())
+        return footer(self.screen_actions, self.size.width, without=self._unavailable_actions())
 
     # The check
 
@@ -161,7 +161,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             judgement, previous = await to_thread(self._judge, answer)
             beside = self._beside_others(judgement)
             self._result = [*judged(judgement, previous, self._following, beside), *self._needed]
-        except (ChallengeError, WorldError, ProgressError, OSError) as error:
+        except (AnswerError, WorldError, ProgressError, OSError) as error:
             self._result = [row((" No medal", "bold")), *wrapped(f" {error}")]
         finally:
             self._started_at = None
@@ -191,7 +191,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
 
     def _note_progress(self, progress: str) -> None:
         if self._is_left.is_set():  # nobody waits for it any more: the check ends
-            raise ChallengeError("The challenge was left during its check.")
+            raise AnswerError("The challenge was left during its check.")
         self._doing = progress
 
     async def _choose_run(self) -> str | None:
@@ -218,4 +218,6 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             self.dismiss()
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("A challenge", self.screen_actions, without=self._without()))
+        self.app.push_screen(
+            HelpDialog("A challenge", self.screen_actions, without=self._unavailable_actions())
+        )

@@ -37,7 +37,7 @@ BESIDE: Final = 42
 WIDEST_BESIDE: Final = 76
 """Columns of the panels beside it, at least and at most."""
 LEAST_BESIDE: Final = 76
-"""A question keeps so many columns; where there are fewer nothing stands beside it."""
+"""A question keeps this many columns; where there are fewer nothing stands beside it."""
 LEAST_PANEL: Final = 5
 """Rows of a panel that is cut, at least."""
 LEAST_ROWS_IN_MIDDLE: Final = 24
@@ -129,7 +129,7 @@ class DialogueScreen(RowsScreen[None]):
         if type(self.dialogue).poll is not Dialogue.poll:
             self.set_interval(POLL_S, self._poll)
         self._show_field()  # before the first frame, which would else be painted twice
-        self.look()
+        self.show_all()
 
     def on_unmount(self) -> None:
         self.dialogue.close()
@@ -139,7 +139,7 @@ class DialogueScreen(RowsScreen[None]):
 
     def look_again(self) -> None:
         """Shows everything in another size of the screen."""
-        self.look()
+        self.show_all()
 
     # What is shown
 
@@ -292,9 +292,9 @@ class DialogueScreen(RowsScreen[None]):
         }
         return footer(self.screen_actions, self.room.width, without=without, labels=labels, keys=keys)
 
-    def look(self) -> None:
+    def show_all(self) -> None:
         """Shows everything, and brings what was just said into sight."""
-        look, self._top = self.dialogue.look, 0
+        look, self._top = self.dialogue.block_in_view, 0
         if look is not None:
             blocks = list(self.dialogue.blocks())
             placed = place(blocks, self._text_page)
@@ -342,7 +342,7 @@ class DialogueScreen(RowsScreen[None]):
         """Carries out what an action has led to."""
         match effect:
             case None | Remark():
-                self.look()
+                self.show_all()
             case Leave():
                 self.action_back()
             case Help():
@@ -374,7 +374,7 @@ class DialogueScreen(RowsScreen[None]):
     @work
     async def _carry_out(self, effect: Effect) -> None:
         """What takes a while, or another screen; then what follows from it."""
-        follows: Callable[[], Effect] = _nothing
+        follows: Callable[[], Effect] = _no_effect
         match effect:
             case Tell(title, blocks):
                 page = Page(text_width(self.room.width), MARGIN)
@@ -388,7 +388,7 @@ class DialogueScreen(RowsScreen[None]):
                 follows = then
             case Work(note, job, then):
                 if note:
-                    self.turn.say(Remark(note, Tone.DIM))
+                    self.turn.set_remark(Remark(note, Tone.DIM))
                     self.show()
                 result: list[Any] = []
                 failed = await to_thread(self.turn.attempt, lambda: result.append(job()))
@@ -420,11 +420,11 @@ class DialogueScreen(RowsScreen[None]):
 
     def on_text_area_changed(self) -> None:
         if self._field is not None and self._typed_place == self.dialogue.place:
-            self.dialogue.draft(self._field.answer)
+            self.dialogue.take_draft(self._field.answer)
             self.show()
 
 
-def _nothing() -> Effect:
+def _no_effect() -> Effect:
     return None
 
 

@@ -156,7 +156,7 @@ class CaseEditor(RowsScreen[LayerCase]):
             self._ask(None)
 
     def _ask(self, kind: RowKind | None) -> None:
-        """The field for a name in place of the keys, or the keys. At once: the next letters may be here already."""
+        """Shows the field for a name in place of the keys, or the keys. It awaits nothing: the next letters may have arrived."""
         field = self.query_one(Input)
         field.display, self._rows("keys").display = kind is not None, kind is None
         field.value = ""

@@ -122,11 +122,11 @@ class ScenePair:
     def go(self) -> None:
         self.scene.go()
 
-    def again(self) -> None:
-        self.scene.again()
+    def replay(self) -> None:
+        self.scene.replay()
 
-    def hold(self, held: bool) -> None:
-        self.scene.hold(held)
+    def set_paused(self, paused: bool) -> None:
+        self.scene.set_paused(paused)
 
     def step_once(self) -> None:
         self.playback.step()
@@ -191,7 +191,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
 
     def _hold_scene(self, held: bool) -> None:
         """Has the scene stand still while something else is looked at, or go on if it was going."""
-        self.stage.hold(held or self.dialogue.is_still)
+        self.stage.set_paused(held or self.dialogue.is_still)
 
     # What is shown
 
@@ -218,7 +218,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         is_roomy = layout is PageLayout.ROOMY
         hides_work = dialogue.has_ended or self.stage.is_recorded
         drawn = [] if hides_work else self._work_picture(self._width - 2, is_roomy=is_roomy)
-        asked = dialogue.asked()
+        asked = dialogue.prediction_blocks()
         has_work = work is not None and not work.by_hand and (is_roomy or not self._is_editing)
         lines = work.edited_lines() if work is not None and has_work else ()
         content = LessonContent(
@@ -252,11 +252,11 @@ class LessonScreen(DialogueScreen, DriveScreen):
 
     def _word_rows(self) -> list[Row]:
         """The words of the step, and below them what is said to what the student did."""
-        told, said = self.dialogue.told(), self.dialogue.said()
+        told, said = self.dialogue.step_blocks(), self.dialogue.reply_blocks()
         placed = place([*told, *said], self._page_of_words)
         starts = [start + 1 for start in placed.starts]
         self._said_row = starts[len(told)] - 1 if said else len(placed.rows) + 1
-        look = self.dialogue.look
+        look = self.dialogue.block_in_view
         self._look_row = starts[len(told) + said.index(look)] if look is not None else 0
         return [row(), *placed.rows]
 
@@ -347,7 +347,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
             return PageLayout.STACKED
         return PageLayout.of(self.room.width, self.room.height, is_wide=self.has_class("-wide"))
 
-    def look(self) -> None:
+    def show_all(self) -> None:
         """Shows everything, and brings what was just said into sight."""
         self.show()
         if not self._look_row:
@@ -367,14 +367,14 @@ class LessonScreen(DialogueScreen, DriveScreen):
     def on_lesson_scene_view_moved(self) -> None:
         if not self.is_active:
             return
-        if self.stage.is_resting and self.dialogue.rested():
-            self.look()
+        if self.stage.is_resting and self.dialogue.on_scene_end():
+            self.show_all()
         self._show_title()
 
     def on_error_event(self, event: ErrorEvent) -> None:
         self.app.push_screen(MessageDialog("The scene cannot be shown", wrapped(event.text)))
-        if self.dialogue.rested():
-            self.look()
+        if self.dialogue.on_scene_end():
+            self.show_all()
 
     def _poll(self) -> None:
         work, is_checking = self.dialogue.work, bool(self.dialogue.busy)
@@ -470,7 +470,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         return min(WIDEST_EDITOR, self.room.width // 2) if self._is_editing and self.has_class("-wide") else 0
 
     def _editor_rows(self, room: int) -> int:
-        """Rows of the editor below the task, of so many; 0 where it is beside it or not shown."""
+        """Rows of the editor below the task, of ``rows``; 0 where it is beside it or not shown."""
         return room // 2 if self._is_editing and not self.has_class("-wide") else 0
 
     def _edit_here(self, file: Path, line: int) -> str:
@@ -517,7 +517,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
 
     def _close_editor(self) -> None:
         if self._editor is not None and (problem := self._editor.keep_draft()):
-            self.turn.say(Remark(f"What you typed is {problem}", Tone.BAD))
+            self.turn.set_remark(Remark(f"What you typed is {problem}", Tone.BAD))
         self.remove_class(EDITING)
         self.set_focus(None)
 

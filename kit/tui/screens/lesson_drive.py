@@ -130,9 +130,9 @@ class RecordedDriveScreen(WatchScreen):
     def open_world(self) -> None:
         self._started = self._reached = self._is_open = False
         self.host.set_paused(True)
-        self.host.open(self._place, self._teleop, paused=True)
+        self.host.open(self._find_place, self._teleop, paused=True)
 
-    def _place(self) -> Scenario:
+    def _find_place(self) -> Scenario:
         """Finds the scenario; runs in the helper thread."""
         return find_scenario(self._scene.map_name, self._scene.case)
 
@@ -161,11 +161,11 @@ class RecordedDriveScreen(WatchScreen):
             self.stop_driving()
             self.host.set_paused(True)
             self.host.post(self._save_between_ticks)
-        if (remark := self._remark()) and self.is_active:
+        if (remark := self._remark_row()) and self.is_active:
             told = [] if self._started else [row((f" {each}", "warn")) for each in self._notices]
             self._rows("messages").show([*told, remark])
 
-    def _remark(self) -> Row:
+    def _remark_row(self) -> Row:
         if self._reached:
             return row(
                 (" The target is reached, and the drive is saved.", "good"),

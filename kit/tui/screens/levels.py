@@ -76,8 +76,8 @@ NOTES: Final = (
 )
 
 
-DRIVES: Final = ("hand_over", "agent", "replay")
-"""Actions that a challenge has not."""
+DRIVE_ACTIONS: Final = ("hand_over", "agent", "replay")
+"""Actions that a challenge does not have."""
 ROWS_ABOVE_LEVELS: Final = 5
 """Of the list: an empty one, the world's two, another empty one, the columns' names."""
 ROWS_AROUND: Final = 2
@@ -219,7 +219,7 @@ class LevelsScreen(RowsScreen[None]):
         listed, about = self._level_rows() if challenge is None else self._challenge_rows(challenge)
         self._rows("map").show(listed)
         self._rows("about").show([*about[: ABOUT_ROWS - 1], self._doing_row()] if self._doing else about)
-        without = () if challenge is None else DRIVES
+        without = () if challenge is None else DRIVE_ACTIONS
         labels = {"open": "drive"} if challenge is None else {}
         self._rows("keys").show(
             [footer(self.screen_actions, self.size.width, without=without, labels=labels)]
@@ -396,7 +396,7 @@ class LevelsScreen(RowsScreen[None]):
     # Keys
 
     def action_choose(self, columns: int, rows: int) -> None:
-        """The level so many rows below, or the first one so many worlds to the right."""
+        """The level this many rows below, or the first one this many worlds to the right."""
         if columns:
             world = self._worlds[(self._worlds.index(self._world) + columns) % len(self._worlds)]
             levels = self._in_world(world.id)

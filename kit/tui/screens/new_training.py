@@ -310,12 +310,13 @@ def _task_items(folders: tuple[Path, ...]) -> list[PickerItem]:
     from kit.learning.tasks.own_files import own_task_files
 
     own = [
-        PickerItem(str(file), _short(file), f"your own, in {file.parent}") for file in own_task_files(folders)
+        PickerItem(str(file), _short_name(file), f"your own, in {file.parent}")
+        for file in own_task_files(folders)
     ]
     return [*own, *(PickerItem(task.name, task.name, task.summary) for task in all_tasks())]
 
 
-def _short(file: Path) -> str:
+def _short_name(file: Path) -> str:
     """A task's file by the name that a user gave it."""
     return file.parent.name if file.stem == "task" else file.stem
 

@@ -10,7 +10,7 @@ from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
 from kit.document.rows import Row
 from kit.school.game.board import Board
-from kit.school.game.challenge import Challenge, ChallengeError, as_comments
+from kit.school.game.challenge import AnswerError, Challenge, as_comments
 from kit.school.game.judgement import Judgement
 from kit.school.progress import ProgressJournal
 from kit.tui.rows.challenge_rows import puzzle_beside, puzzle_page
@@ -58,7 +58,7 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         assert self._file is not None  # a board's answer is a file
         try:
             answer = self._challenge.task.read_answer(self._file)
-        except ChallengeError:
+        except AnswerError:
             answer = ""
         board = self._challenge.task.board(answer)
         assert board is not None  # only challenges that have one come here
@@ -68,19 +68,17 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         judgement: Judgement | str
         try:
             judgement = self._board.judgement()
-        except (
-            ChallengeError
-        ) as error:  # which says how an answer is written: nobody writes who has not begun
+        except AnswerError as error:  # which says how an answer is written: nobody writes who has not begun
             judgement = str(error) if self._board.answer.strip() else ""
         height = self.size.height - 2 - len(self._result_rows())
         if width >= WIDE:
             return puzzle_beside(self._challenge, self._board, judgement, width, height)
         return puzzle_page(self._challenge, self._board, judgement, width, height)
 
-    def _without(self) -> list[str]:
+    def _unavailable_actions(self) -> list[str]:
         board = self._board
         return [
-            *super()._without(),
+            *super()._unavailable_actions(),
             *([] if board.marks() else ["mark_cell"]),
             *([] if board.switches() else ["switch_robot"]),
         ]
@@ -140,4 +138,4 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         super().on_unmount()
 
     def action_help(self) -> None:
-        self.app.push_screen(HelpDialog("A puzzle", self.screen_actions, without=self._without()))
+        self.app.push_screen(HelpDialog("A puzzle", self.screen_actions, without=self._unavailable_actions()))

@@ -49,7 +49,7 @@ class PageLayout(Enum):
 
     @classmethod
     def of(cls, width: int, height: int, *, is_wide: bool) -> PageLayout:
-        """Computes the layout for a screen of so many columns and rows."""
+        """Computes the layout for a screen of this many columns and rows."""
         if width >= ROOMY_SIZE[0] and height >= ROOMY_SIZE[1]:
             return cls.ROOMY
         return cls.BESIDE if is_wide else cls.STACKED
@@ -71,7 +71,7 @@ class LessonContent:
     first_words: int = 0
     """Rows of words that the picture leaves room for, as far as it can."""
     most_words: int = 0
-    """Rows of words there may be in this step: so many are kept free above what is asked, so that it never moves."""
+    """Rows of words there may be in this step: that many are kept free above what is asked, so that it never moves."""
     scrolls_with: str = "down"
     """The key that shows more words."""
     file: Sequence[Row] = ()

@@ -175,12 +175,12 @@ class LessonSceneView(WorldView):
         """Lets it run."""
         self._host.set_paused(False)
 
-    def hold(self, held: bool) -> None:
+    def set_paused(self, paused: bool) -> None:
         """Stands still while something else is looked at."""
         if self.view is not None and not self.is_resting:
-            self._host.set_paused(held)
+            self._host.set_paused(paused)
 
-    def again(self) -> None:
+    def replay(self) -> None:
         """The same from its first instant on, running."""
         if self._recording is not None:
             self.play(*self._recording)

@@ -81,16 +81,16 @@ class PlaybackSceneView(FrameView):
 
         self.scene = scene
         self.playback = GraphPlayback(scene) if isinstance(scene, GraphScene) else LearningPlayback(scene)
-        self.hold(still)
+        self.set_paused(still)
         self.draw()
 
     def go(self) -> None:
         """Lets it play."""
-        self.hold(False)
+        self.set_paused(False)
 
-    def hold(self, held: bool) -> None:
+    def set_paused(self, paused: bool) -> None:
         """Stands still, or goes on."""
-        if held or self.playback is None or self.is_resting:
+        if paused or self.playback is None or self.is_resting:
             self._stop_timer()
         elif self._reduces_motion:
             self.playback.advance_to(self.playback.scene.seconds)
@@ -103,12 +103,12 @@ class PlaybackSceneView(FrameView):
     def step(self) -> None:
         """Stands still, and makes one update of each table, or moves the messages by one place."""
         if self.playback is not None:
-            self.hold(True)
+            self.set_paused(True)
             self.playback.step()
             self.draw()
             self.post_message(self.Updated())
 
-    def again(self) -> None:
+    def replay(self) -> None:
         """The same from its first instant on, running."""
         if self.scene is not None:
             self._stop_timer()

@@ -2,7 +2,7 @@
 
 import math
 
-Z = 1.645  # so many standard deviations: right in 95 of 100 cases
+Z = 1.645  # this many standard deviations: right in 95 of 100 cases
 
 
 def at_least(reached, episodes):

@@ -16,5 +16,5 @@ def targets(batch, next_values, gamma):
 
 
 def synced(target, online, updates, interval):
-    """The target network's weights after so many updates. `online` are the newest weights."""
+    """The target network's weights after this many updates. `online` are the newest weights."""
     return online  # write this

@@ -29,7 +29,7 @@ def asked(rows, teacher):
 
 
 def dagger(known, row, winds, teacher, rounds):
-    """The examples after so many rounds: those known before, and all answers in their order."""
+    """The examples after this many rounds: those known before, and all answers in their order."""
     return []  # write this
 
 

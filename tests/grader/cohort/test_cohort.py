@@ -202,7 +202,7 @@ def test_a_spreadsheet_gets_no_formula() -> None:
 )
 def test_lateness(late: float, kept: float) -> None:
     policy = LatePolicy(DUE, grace_s=900, per_day=0.1, least=0.5, latest_days=10)
-    assert policy.kept(DUE + timedelta(hours=late)) == pytest.approx(kept)
+    assert policy.kept_share(DUE + timedelta(hours=late)) == pytest.approx(kept)
 
 
 @pytest.mark.long
@@ -643,7 +643,7 @@ def test_the_end_of_the_day_is_meant_and_said(tmp_path: Path, rules: str, kept: 
     )
     policy = read_policy(file)
     submitted = read_submission_times(times, policy.zone)
-    assert [policy.kept(each.at) for each in submitted.values()] == pytest.approx(kept)
+    assert [policy.kept_share(each.at) for each in submitted.values()] == pytest.approx(kept)
     assert policy.due_text.startswith("due 2026-03-28 23:")
 
 
@@ -659,7 +659,7 @@ def test_a_due_date_in_no_zone_is_refused(tmp_path: Path, rules: str) -> None:
 
 def test_clocks_that_change_take_no_hour_from_a_student(tmp_path: Path) -> None:
     policy = LatePolicy(parse_time("2026-03-28 23:00", BERLIN), per_day=0.1)
-    assert policy.kept(parse_time("2026-03-29 23:30", BERLIN)) == pytest.approx(0.9)  # 23.5 h later
+    assert policy.kept_share(parse_time("2026-03-29 23:30", BERLIN)) == pytest.approx(0.9)  # 23.5 h later
 
 
 SAME_TO_THE_EYE: Final = str.maketrans(

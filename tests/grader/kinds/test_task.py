@@ -180,7 +180,7 @@ def test_a_loop_whose_sum_has_no_value_is_no_loop_that_loses(tmp_path: Path) -> 
         ("{progress: 1.0, collided: -1.0, reached: 1.0}", 3.5, False),
     ],
 )
-def test_driving_up_and_down_is_a_loop_too(
+def test_driving_back_and_forth_is_a_loop_too(
     tmp_path: Path, terms: str, arriving: float, *, pays: bool
 ) -> None:
     """In a narrow ward any circle ends in a wall. ``arriving``: what a drive to the target earns, about."""

@@ -73,7 +73,7 @@ for (x, y, heading), target in zip(*json.loads(sys.argv[1])):
     odom.pose.pose.position.x, odom.pose.pose.position.y = x, y
     odom.pose.pose.orientation.z, odom.pose.pose.orientation.w = math.sin(heading / 2), math.cos(heading / 2)
     policy.on_odometry(0, odom)
-    told.append([*policy.told("own_pose", 0), *policy.told("target", 0)])
+    told.append([*policy.part_numbers("own_pose", 0), *policy.part_numbers("target", 0)])
 knew.append(policy.knows_places())
 print(json.dumps([told, [*knew[:2], knew[-1]]]))
 """

@@ -1,4 +1,4 @@
-"""Goals and curricula: read with their errors, counted, practised stage by stage, shown, and kept over a checkpoint."""
+"""Curricula: read with their errors, practised stage by stage, shown, and kept over a checkpoint; what agents see and meet."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ import pytest
 from kit.document.layout import lines_of
 from kit.learning.authoring.task_text import task_blocks
 from kit.learning.environment.batch import BatchEnv
-from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.maps.batch_map import UnsupportedWorld
 from kit.learning.tasks.catalogue import find_task
@@ -26,7 +25,7 @@ from kit.learning.training.run_config import RunConfig
 from kit.learning.training.run_folders import create_run
 from kit.learning.training.training import make_learner, train
 from kit.world.problems import WorldError
-from tests.learning.tasks.tasks_for_tests import one_world, task_of
+from tests.learning.tasks.tasks_for_tests import CROSSING, HALL, STILL, drive, one_world, task_of
 
 TASK = """
 maps: [hall_straight, hall_left_door, hall_center_door]
@@ -115,121 +114,6 @@ def test_training_goes_from_stage_to_stage_and_remembers_where_it_is(tmp_path: P
     assert [stage.split()[1] for stage in stages] == sorted(stage.split()[1] for stage in stages)
 
 
-AHEAD, STILL, LEFT = [1.0, 0.0], [0.0, 0.0], [0.0, 1.0]
-HALL = "maps: [hall_straight]\ncases:\n  - {start: [0.625, 0.5, 1.5708], "
-
-
-def drive(batch: BatchEnv, action: list[float], most: int = 200) -> list[BatchStep]:
-    """Steps of one action, to the end of the episode."""
-    found = []
-    for _ in range(most):
-        found.append(batch.step(np.array([action])))
-        if found[-1].ended[0]:
-            break
-    return found
-
-
-def achieved(step: BatchStep) -> float:
-    return float(step.transition.achieved[0])
-
-
-def test_a_patrol_reaches_its_targets_in_their_order() -> None:
-    batch = one_world(
-        HALL + "targets: [[0.625, 1.0], [0.625, 1.6], [0.625, 2.2]]}\n"
-        "goal: {kind: patrol}\ntarget: {radius: 0.1, measured_to: axle}"
-    )
-    steps = drive(batch, AHEAD)
-    shares = [achieved(step) for step in steps]
-    assert sorted(set(shares)) == pytest.approx([0.0, 1 / 3, 2 / 3, 1.0])
-    assert [step.transition.reached[0] for step in steps] == [False] * (len(steps) - 1) + [True]
-    assert EpisodeOutcome.of(steps[-1].transition, 0) is EpisodeOutcome.REACHED
-    aims = [tuple(step.transition.target[0].tolist()) for step in steps]
-    assert list(dict.fromkeys(aims)) == [(0.625, 1.0), (0.625, 1.6), (0.625, 2.2)]
-    progress = sum(float((step.transition.previous_to_go - step.transition.to_go)[0, 0]) for step in steps)
-    assert progress == pytest.approx(2.2 - 0.5 - 0.1, abs=0.12)  # nothing is lost where the target changes
-    assert sum(float(step.terms["achieving"][0]) for step in steps) == pytest.approx(1.0)
-
-
-def test_a_patrol_of_two_rounds_comes_back_to_its_first_target() -> None:
-    batch = one_world(
-        HALL
-        + "targets: [[0.625, 0.8], [0.625, 1.4]]}\ngoal: {kind: patrol, rounds: 2}\ntarget: {radius: 0.2}"
-    )
-    there = drive(batch, AHEAD, 16)
-    back = drive(batch, [-1.0, 0.0], 16)
-    again = drive(batch, AHEAD, 30)
-    assert [achieved(steps[-1]) for steps in (there, back, again)] == pytest.approx([0.5, 0.75, 1.0])
-
-
-def test_floor_is_covered_once() -> None:
-    batch = one_world(
-        HALL + "start_shift: [0, 0]}\ngoal: {kind: cover, share: 0.4, radius: 0.2}\nstep: {limit: 60}"
-    )
-    steps = drive(batch, AHEAD, 20)
-    shares = np.array([achieved(step) for step in steps])
-    gains = np.diff(shares)
-    assert (gains[1:] > 0).all()
-    metres = 20 * 0.4 * 0.2
-    floor = (1.05 - 0.165) * (2.8 - 0.165)  # where the robot's middle may be
-    assert shares[-1] * 0.4 == pytest.approx((metres * 0.4 + math.pi * 0.04) / floor, rel=0.1)
-    back = drive(batch, [-1.0, 0.0], 15)
-    assert achieved(back[-1]) == shares[-1]
-    assert not np.array([step.terms["achieving"][0] for step in back]).any()
-
-
-@pytest.mark.parametrize(
-    ("x", "side", "counts"), [(0.85, "right", True), (0.85, "left", False), (0.4, "left", True)]
-)
-def test_metres_along_a_wall(x: float, side: str, counts: bool) -> None:
-    batch = one_world(
-        f"maps: [hall_straight]\ncases: [{{start: [{x}, 0.5, 1.5708]}}]\n"
-        f"goal: {{kind: wall, side: {side}, distance: 0.3, tolerance: 0.05, length: 1.0}}"
-    )
-    steps = drive(batch, AHEAD, 10)
-    assert achieved(steps[-1]) == pytest.approx(0.8 * counts)
-    if counts:
-        assert drive(batch, AHEAD, 3)[-1].transition.reached[0]
-    else:
-        assert not drive(batch, STILL, 3)[-1].ended[0]
-
-
-CROSSING = "maps: [crossing]\nmoving_models: as in their files\ncases:\n  - {start: [1.6, 1.2, 1.5708], "
-
-
-@pytest.mark.long
-def test_a_leader_is_a_target_that_moves() -> None:
-    batch = one_world(
-        CROSSING + "target_model: slow_cart}\ngoal: {kind: follow, nearest: 0.3, farthest: 1.0, time: 2}\n"
-        "step: {limit: 100}"
-    )
-    aims, steps = [batch.state.target[0].tolist()], drive(batch, STILL)
-    aims += [step.transition.target[0].tolist() for step in steps]
-    assert aims[0] == [1.6, 0.5]
-    assert all(x == 1.6 for x, _ in aims)
-    heights = np.array([y for _, y in aims])
-    duration, time = 8.0, np.arange(len(aims)) * 0.2
-    share = time / duration
-    assert heights == pytest.approx(
-        0.5 + 3.0 * np.where(share < 0.5, 2 * share**2, 1 - (2 - 2 * share) ** 2 / 2), abs=1e-3
-    )
-    distances = [float(step.transition.distance[0, 0]) for step in steps]
-    near = [0.3 <= distance <= 1.0 for distance in distances]
-    met = [bool(step.transition.hit[0, 0]) for step in steps]
-    counted = np.cumsum([0.2 * (one and not other) for one, other in zip(near, met, strict=True)])
-    assert [achieved(step) * 2.0 for step in steps] == pytest.approx(counted.tolist())
-    assert met[-1]  # it stands in the cart's way
-
-
-def test_a_cart_is_kept_away_from() -> None:
-    batch = one_world(
-        CROSSING + "target: [5.5, 2]}\ngoal: {kind: avoid, distance: 0.5, time: 3}\nstep: {limit: 100}"
-    )
-    steps = drive(batch, STILL)
-    nearest = [float(step.transition.obstacle_distance[0, 0]) for step in steps]
-    assert min(nearest) < 0.4
-    assert achieved(steps[-1]) * 3.0 == pytest.approx(0.2 * sum(each > 0.5 for each in nearest))
-
-
 def test_a_cart_is_seen_and_met_wherever_its_way_begins() -> None:
     text = CROSSING.replace("moving_models: as in their files\n", "") + "target: [5.5, 2]}"
     batch = BatchEnv(task_of(text), 200, seed=1, autoreset=False)
@@ -241,18 +125,6 @@ def test_a_cart_is_seen_and_met_wherever_its_way_begins() -> None:
     in_sight = (near > 0.2) & (near < 0.5)
     assert in_sight.any()
     assert seen[in_sight] == pytest.approx(near[in_sight] - 0.15, abs=0.02)
-
-
-@pytest.mark.parametrize(("heading", "reached"), [(1.5708, True), (0.0, False)])
-def test_parking_takes_the_targets_heading(heading: float, reached: bool) -> None:
-    batch = one_world(
-        HALL
-        + f"target: [0.625, 0.7], target_heading: {heading}}}\ngoal: {{kind: target, heading_tolerance: 0.2}}\n"
-        "target: {radius: 0.3}"
-    )
-    step = batch.step(np.array([STILL]))
-    assert (bool(step.transition.reached[0]), bool(step.transition.in_target[0, 0])) == (reached, reached)
-    assert float(step.transition.misalignment[0, 0]) == pytest.approx(abs(heading - 1.5708), abs=1e-4)
 
 
 @pytest.mark.parametrize("ending", ["terminated", "truncated", "continues"])

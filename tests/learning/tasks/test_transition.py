@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from kit.fields.adjacency import wrap_angles
+from kit.geometry import wrap_angle
 from kit.learning.tasks.actions import Move
 from kit.learning.tasks.transition import (
     TRANSITION_FIELDS,
@@ -98,6 +98,6 @@ def test_directions_and_distances() -> None:
     assert bearing_of_target(poses, target)[:, 0] == pytest.approx(
         [math.pi / 4, math.pi / 2, math.tau - 3 - math.pi / 2]
     )
-    assert wrap_angles(np.array([math.pi, -math.pi, 7.0])) == pytest.approx(
+    assert wrap_angle(np.array([math.pi, -math.pi, 7.0])) == pytest.approx(
         [-math.pi, -math.pi, 7.0 - math.tau]
     )

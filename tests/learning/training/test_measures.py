@@ -158,7 +158,7 @@ def test_beyond_the_limit_all_actions_are_alike() -> None:
     for limit in (500.0, math.inf):
         changed = preset.changed({"value_limit": limit})
         learner = dqn.BoltzmannLearner(algorithm, changed, choice, make_vec_env(choice.resolve(), 1, 0), 0)
-        *_, weights, bias = learner._network.cut(learner._network.parameters)
+        *_, weights, bias = learner._network.layer_views(learner._network.parameters)
         weights[:], bias[:] = 0.0, [600.0, 700.0, 800.0]
         drawn = learner._sample_actions(np.zeros((3000, 9), np.float32))
         counts[limit] = np.bincount(drawn, minlength=3)

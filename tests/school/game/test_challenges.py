@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from kit.cli.game import command
-from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
+from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.challenge_kinds import challenge_kinds
 from kit.school.game.challenge_kinds.exploit import best_moves
 from kit.school.game.challenges import all_challenges, find_challenge, prepare_answer
@@ -83,7 +83,7 @@ def test_an_answers_file_begins_with_the_naive_answer_and_is_kept(challenge, tmp
         assert prepare_answer(journal, challenge, tmp_path / "challenges")[0] == file
         assert file.read_text() == "mine\n"
         file.unlink()
-        with pytest.raises(ChallengeError, match=file.name):
+        with pytest.raises(AnswerError, match=file.name):
             task.judge(AnswerSubmission(task.read_answer(file), tmp_path))
 
 

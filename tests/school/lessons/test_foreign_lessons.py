@@ -121,7 +121,7 @@ def test_its_commands_are_shown_before_they_run(lesson: Path, tmp_path: Path) ->
         screen = pilot.app.screen
         assert isinstance(screen, LessonScreen)
         screen.dialogue.enter(screen.dialogue.session.find_step(2))
-        screen.look()
+        screen.show_all()
         await seen(pilot, "A list of maps")
         await pilot.press("o")
         await seen(pilot, "kit keys")

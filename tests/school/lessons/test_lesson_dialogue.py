@@ -95,9 +95,9 @@ def test_the_newest_hint_is_what_is_looked_at_and_no_key_is_named_for_one_more(
     while dialogue.can_hint() is True:
         assert "h" in str(dialogue.note and dialogue.note.text).split()
         assert turn.press("h") is None
-        look = dialogue.look
+        look = dialogue.block_in_view
         assert look is not None
-        seen.append(dialogue.said().index(look))
+        seen.append(dialogue.reply_blocks().index(look))
     assert seen == sorted(set(seen)), "each is another block, and stands below those before it"
     assert len(seen) == 3
     assert "h" not in str(dialogue.note and dialogue.note.text).split()

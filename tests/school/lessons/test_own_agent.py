@@ -114,7 +114,7 @@ def test_the_same_answers_make_the_same_table(tmp_path: Path) -> None:
         first = make_own_learner(scene.world, scene.learners[0], lines)
         for _ in range(60):
             first.step()
-        kept = lines.kept()
+        kept = lines.kept_lines()
     again = make_own_learner(scene.world, scene.learners[0], kept.opened())
     for _ in range(60):
         again.step()

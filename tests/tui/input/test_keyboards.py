@@ -130,6 +130,6 @@ def test_taps_teach_nothing_wrong() -> None:
     rhythm.start(now)
     for _ in range(50):
         now += 0.2
-        rhythm.heard(now)
+        rhythm.note_repeat(now)
     assert rhythm.delay == 0.5
     assert not rhythm.uneven

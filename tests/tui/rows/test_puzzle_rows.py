@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from kit.document.rows import row_text
-from kit.school.game.challenge import Challenge, ChallengeError
+from kit.school.game.challenge import AnswerError, Challenge
 from kit.school.game.challenges import all_challenges
 from kit.school.game.judgement import Judgement
 from kit.tui.rows.challenge_rows import GAP, LEAST_TEXT, largest_drawing, puzzle_beside
@@ -20,7 +20,7 @@ def test_it_fits_and_is_as_large_as_there_is_room_for(challenge: Challenge) -> N
     judgement: Judgement | str
     try:
         judgement = board.judgement()
-    except ChallengeError as error:
+    except AnswerError as error:
         judgement = str(error)
     scales = []
     for width, height in ((118, 33), (130, 40), (200, 48), (260, 70)):

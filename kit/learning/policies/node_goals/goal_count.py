@@ -110,6 +110,6 @@ class GoalProgress:
         """Notes which robots are in the target."""
         self.inside = [self.is_inside(robot, pose, self.target) for robot, pose in enumerate(poses)]
 
-    def told(self, part: str, robot: int) -> list[float]:
+    def part_numbers(self, part: str, robot: int) -> list[float]:
         """The numbers of a part of what agents are told: the share that is ``achieved``, or whether a robot has ``arrived``."""
         return [min(self.told_share, 1.0) if part == "achieved" else float(self.inside[robot])]

@@ -10,7 +10,7 @@ from typing import ClassVar, Final, Self
 import numpy as np
 
 from kit.arrays import FloatArray
-from kit.fields.adjacency import wrap_angles
+from kit.geometry import wrap_angle
 from kit.learning.tasks.goals.goal import CaseTargets, Goal, GoalCase, GoalCount
 from kit.learning.tasks.transition import Array, Transition
 from kit.world.yaml_section import Section
@@ -47,7 +47,7 @@ class TargetGoal(Goal):
     def is_arrived(self, inside: Array, poses: Array, headings: Array) -> Array:
         if self.heading_tolerance is None:
             return inside
-        return inside & (np.abs(wrap_angles(poses[:, :, 2] - headings[:, None])) <= self.heading_tolerance)
+        return inside & (np.abs(wrap_angle(poses[:, :, 2] - headings[:, None])) <= self.heading_tolerance)
 
 
 class _TargetCount(GoalCount):

@@ -57,7 +57,7 @@ class BlindTask(ChallengeTask):
 
     def judge(self, submission: AnswerSubmission) -> Judgement:
         moves = read_moves(submission.answer, MAX_MOVES)
-        belief = believed(self, moves)
+        belief = possible_cells(self, moves)
         goal = find_cell(self.grid, "G")
         if belief != {goal}:
             where = "1 place" if len(belief) == 1 else f"{len(belief)} places"
@@ -67,7 +67,7 @@ class BlindTask(ChallengeTask):
         return judge_count("moves", text, count, fewest, naive)
 
 
-def believed(task: BlindTask, moves: str) -> Belief:
+def possible_cells(task: BlindTask, moves: str) -> Belief:
     """Where a robot may be after moves that may have begun anywhere."""
     belief: Belief = frozenset(free_cells(task.grid))
     for name in moves:
@@ -119,7 +119,7 @@ class BlindBoard(MovesBoard):
 
     def rows(self, scale: int = 1) -> list[Row]:
         task = self._blind
-        belief = believed(task, self.moves)
+        belief = possible_cells(task, self.moves)
         counts = Counter(belief)
         signs = {cell: (("o", "warn") if counts[cell] else ("·", "dim")) for cell in free_cells(task.grid)}
         goal = find_cell(task.grid, "G")

@@ -12,7 +12,7 @@ from kit.document.rows import Row, row
 from kit.layers.cover import minimum_cover
 from kit.plain_text import counted
 from kit.school.game.board import WALL, Board, Cell, History, free_cells, grid_rows
-from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
+from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
@@ -93,7 +93,7 @@ class DevicesBoard(Board):
         self._lasers: tuple[Cell, ...] = ()
         self._cursor = task.floor[0]
         self._history: History[tuple[Cell, ...]] = History()
-        with suppress(ChallengeError):
+        with suppress(AnswerError):
             lasers = read_lasers(task, answer)
             self._lasers = lasers if lasers != naive_lasers(task) else ()
 
@@ -184,20 +184,20 @@ def fewest_lasers(task: DevicesTask) -> tuple[Cell, ...]:
 
 
 def read_lasers(task: DevicesTask, answer: str) -> tuple[Cell, ...]:
-    """Reads ``ROW,COLUMN ROW,COLUMN``. Raises ChallengeError."""
+    """Reads ``ROW,COLUMN ROW,COLUMN``. Raises AnswerError."""
     words = answer.split()
     if not 0 < len(words) <= MAX_DEVICES:
-        raise ChallengeError(f"Write the places of 1 to {MAX_DEVICES} lasers, such as 1,4 6,2.")
+        raise AnswerError(f"Write the places of 1 to {MAX_DEVICES} lasers, such as 1,4 6,2.")
     found = []
     for word in words:
         parts = word.split(",")
         if len(parts) != 2 or not all(part.isascii() and part.isdigit() and len(part) < 5 for part in parts):
-            raise ChallengeError(
+            raise AnswerError(
                 f"{word[:20]!r} is not a place: write its row, a comma and its column, counting from 0."
             )
         square = int(parts[0]), int(parts[1])
         if square not in task.floor:
-            raise ChallengeError(f"{word}: there is a wall, or nothing.")
+            raise AnswerError(f"{word}: there is a wall, or nothing.")
         found.append(square)
     return tuple(found)
 

@@ -20,7 +20,7 @@ from kit.layers.requirements_file import read_requirements
 from kit.plain_files import is_file_there
 from kit.plain_text import counted
 from kit.school.game.board import Board, History
-from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
+from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.world.documents import open_document
@@ -82,7 +82,7 @@ class LayersBoard(Board):
         """Of each layer the entities in it, and the lasers that watch it."""
         self._row = self._column = 0
         self._history: History[tuple[frozenset[str], ...]] = History()
-        with suppress(ChallengeError, WorldError):
+        with suppress(AnswerError, WorldError):
             plan = read_plan(Path(answer))
             if not find_breaches(self._case, plan) and len(plan.layers) < len(naive_plan(self._case).layers):
                 self._layers = tuple(
@@ -171,9 +171,9 @@ def format_plan(plan: LayerAssignment) -> str:
 
 
 def read_plan(file: Path) -> LayerAssignment:
-    """Reads the plan of an answer's file. Raises ChallengeError and WorldError."""
+    """Reads the plan of an answer's file. Raises AnswerError and WorldError."""
     if not is_file_there(file):
-        raise ChallengeError(f"{file}: there is no such file.")
+        raise AnswerError(f"{file}: there is no such file.")
     with open_document(file.absolute(), is_partial=True) as section:
         layers = section.section("layers")
         lasers = None if section.is_blank("lasers") else section.section("lasers")

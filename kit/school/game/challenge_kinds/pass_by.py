@@ -14,7 +14,7 @@ from kit.breadth_first import reached_from
 from kit.document.rows import Row, row
 from kit.plain_text import quoted
 from kit.school.game.board import MOVES, Board, Cell, find_cell, grid_rows, letters_of, shortest_way, step
-from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
+from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
@@ -71,19 +71,19 @@ class PassByTask(ChallengeTask):
 
 
 def read_two(answer: str) -> tuple[str, str]:
-    """The moves of both robots, a word each: l, r, u, d and ``.`` to wait. Raises ChallengeError."""
+    """The moves of both robots, a word each: l, r, u, d and ``.`` to wait. Raises AnswerError."""
     words = answer.lower().split()
     if len(words) != 2:
-        raise ChallengeError("Write two words: the moves of robot A, and those of robot B.")
+        raise AnswerError("Write two words: the moves of robot A, and those of robot B.")
     if strange := sorted(set("".join(words)) - {*MOVES, WAIT}):
-        raise ChallengeError(f"{quoted(strange[0])} is not a move: write l, r, u, d, and . to wait.")
+        raise AnswerError(f"{quoted(strange[0])} is not a move: write l, r, u, d, and . to wait.")
     if max(map(len, words)) > MAX_TICKS:
-        raise ChallengeError(f"More than {MAX_TICKS} ticks are too many.")
+        raise AnswerError(f"More than {MAX_TICKS} ticks are too many.")
     return words[0], words[1]
 
 
 def places(task: PassByTask, moves: tuple[str, str], tick: int) -> tuple[Cell, Cell]:
-    """Where both robots are after so many ticks; one whose moves have ended stays."""
+    """Where both robots are after this many ticks; one whose moves have ended stays."""
     found = []
     for start, own in zip(task.starts, moves, strict=True):
         cell = start
@@ -135,7 +135,7 @@ class PassByBoard(Board):
         self._task = task
         self._moves = ["", ""]
         self._active = 0
-        with suppress(ChallengeError):
+        with suppress(AnswerError):
             if answer.split() != task.naive_answer().split():
                 self._moves = list(read_two(answer))
 

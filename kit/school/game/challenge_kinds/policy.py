@@ -29,7 +29,7 @@ from kit.school.game.board import (
     grid_rows,
     step,
 )
-from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask, judge_share
+from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask, judge_share
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.world.yaml_section import Section
 
@@ -86,7 +86,7 @@ class PolicyTask(ChallengeTask):
         try:
             lines = file.read_text().splitlines()
         except (OSError, UnicodeDecodeError) as error:
-            raise ChallengeError(f"{file} cannot be read: {error}") from None
+            raise AnswerError(f"{file} cannot be read: {error}") from None
         return "\n".join(line for line in lines if not line.startswith("# "))
 
     def board(self, answer: str) -> Board:
@@ -99,7 +99,7 @@ class PolicyTask(ChallengeTask):
             "return", value, (("naive answer", naive), ("best answer", best)), more_is_better=True
         )
         if math.isinf(value):
-            raise ChallengeError(
+            raise AnswerError(
                 "From S an episode may never end, and each of its steps costs: lead every cell to G."
             )
         text = f"From S it is worth {value:.3f}; the shortest way is worth {naive:.3f}, and {best:.3f} is possible."
@@ -143,18 +143,18 @@ def format_policy(task: PolicyTask, policy: Policy) -> str:
 
 
 def read_policy(task: PolicyTask, answer: str) -> Policy:
-    """Reads the drawing with l, r, u or d in each cell. Raises ChallengeError."""
+    """Reads the drawing with l, r, u or d in each cell. Raises AnswerError."""
     lines = [line for line in answer.splitlines() if line.strip()]
     if [len(line) for line in lines] != [len(line) for line in task.grid]:
-        raise ChallengeError("Write the drawing as it is, with l, r, u or d in each free cell.")
+        raise AnswerError("Write the drawing as it is, with l, r, u or d in each free cell.")
     policy: Policy = {}
     of_look: dict[object, str] = {}
     for cell in task.cells:
         sign = lines[cell[0]][cell[1]].lower()
         if sign not in MOVES:
-            raise ChallengeError(f"Row {cell[0]}, column {cell[1]} (from 0): {sign!r} is none of l, r, u, d.")
+            raise AnswerError(f"Row {cell[0]}, column {cell[1]} (from 0): {sign!r} is none of l, r, u, d.")
         if of_look.setdefault(task.look(cell), sign) != sign:
-            raise ChallengeError(
+            raise AnswerError(
                 f"Row {cell[0]}, column {cell[1]} (from 0) looks like a cell with another arrow."
             )
         policy[cell] = sign
@@ -270,7 +270,7 @@ class PolicyBoard(Board):
         self._policy = naive_policy(task)
         self._cursor = find_cell(task.grid, START)
         self._history: History[Policy] = History()
-        with suppress(ChallengeError):
+        with suppress(AnswerError):
             self._policy = read_policy(task, answer)
 
     @property

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Self
 
-from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
+from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.school.lessons.checking import ExerciseCheck
@@ -52,14 +52,14 @@ class RepairTask(ChallengeTask):
     def judge(self, submission: AnswerSubmission) -> Judgement:
         file = Path(submission.answer)
         if not file.is_file() or file.name != self.file:
-            raise ChallengeError(f"Hand in the repaired {self.file}; {file} is not it.")
+            raise AnswerError(f"Hand in the repaired {self.file}; {file} is not it.")
         exercise = Exercise(self.folder.name, self.folder, self.file, seconds=60.0)
         with ExerciseCheck(exercise, file) as check:
             while (report := check.poll()) is None:
                 submission.show_progress(check.progress)
                 time.sleep(POLL_S)
         if report.result is None:
-            raise ChallengeError(report.problem)
+            raise AnswerError(report.problem)
         if report.lost_criteria:
             lost = report.lost_criteria[0]
             return Judgement(Medal.NONE, f"Not repaired yet: {lost.rationale or lost.title}")

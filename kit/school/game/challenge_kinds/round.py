@@ -45,7 +45,7 @@ class RoundTask(ChallengeTask):
 
     def judge(self, submission: AnswerSubmission) -> Judgement:
         moves = read_moves(submission.answer, MAX_MOVES)
-        cell, left = walked(self, moves)
+        cell, left = trace_moves(self, moves)
         if left:
             return Judgement(Medal.NONE, f"It does not come to {', '.join(sorted(left))}.")
         if cell != find_cell(self.grid, "S"):
@@ -60,7 +60,7 @@ class RoundTask(ChallengeTask):
         return {sign: find_cell(self.grid, sign) for line in self.grid for sign in line if sign.islower()}
 
 
-def walked(task: RoundTask, moves: str) -> tuple[Cell, set[str]]:
+def trace_moves(task: RoundTask, moves: str) -> tuple[Cell, set[str]]:
     """Where moves lead to, and the places that they do not come to."""
     cell = find_cell(task.grid, "S")
     passed = {cell}
@@ -120,7 +120,7 @@ class RoundBoard(MovesBoard):
 
     def rows(self, scale: int = 1) -> list[Row]:
         task = self._round
-        cell, left = walked(task, self.moves)
+        cell, left = trace_moves(task, self.moves)
         signs = {
             place: (name, "bold") if name in left else (name.upper(), "good")
             for name, place in task.places.items()

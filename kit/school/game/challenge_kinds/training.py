@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Self
 
-from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
+from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
@@ -52,10 +52,10 @@ class TrainingTask(ChallengeTask):
             run = find_run(submission.runs, name)
             config, summary = run.config(), run.summary()
         except (RunError, LookupError) as error:
-            raise ChallengeError(str(error)) from None
+            raise AnswerError(str(error)) from None
         trained = json.dumps(config.choice.as_dict())
         if f'"{self.trains}"' not in trained:
-            raise ChallengeError(f"{name} trains another task than {self.trains}.")
+            raise AnswerError(f"{name} trains another task than {self.trains}.")
         best = summary.best_evaluation
         shares = [] if best is None else list(success_shares(best).values())
         success = sum(shares) / len(shares) if shares else 0.0

@@ -11,7 +11,7 @@ import numpy as np
 
 from kit.document.rows import Row, row
 from kit.school.game.board import MOVES, Board, History, distances_to, find_cell, free_cells, step
-from kit.school.game.challenge import AnswerSubmission, ChallengeError, ChallengeTask
+from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
@@ -90,19 +90,19 @@ def format_numbers(numbers: dict[str, float]) -> str:
 
 
 def read_numbers(answer: str) -> dict[str, float]:
-    """Reads ``name=value`` for each number. Raises ChallengeError."""
+    """Reads ``name=value`` for each number. Raises AnswerError."""
     numbers: dict[str, float] = {}
     for word in answer.split():
         name, _, value = word.partition("=")
         if name not in CHOICES:
-            raise ChallengeError(f"{name[:20]!r} is no number of this puzzle: write {', '.join(CHOICES)}.")
+            raise AnswerError(f"{name[:20]!r} is no number of this puzzle: write {', '.join(CHOICES)}.")
         found = next((each for each in CHOICES[name] if f"{each:g}" == value), None)
         if found is None:
             allowed = ", ".join(f"{each:g}" for each in CHOICES[name])
-            raise ChallengeError(f"{name} is one of {allowed}, not {value[:20]!r}.")
+            raise AnswerError(f"{name} is one of {allowed}, not {value[:20]!r}.")
         numbers[name] = found
     if missing := sorted(set(CHOICES) - set(numbers)):
-        raise ChallengeError(f"{missing[0]} is missing.")
+        raise AnswerError(f"{missing[0]} is missing.")
     return {name: numbers[name] for name in CHOICES}
 
 
@@ -171,7 +171,7 @@ class TuningBoard(Board):
         self._task = task
         try:
             self._numbers = read_numbers(answer)
-        except ChallengeError:
+        except AnswerError:
             self._numbers = dict(NAIVE)
         self._chosen = 0
         self._history: History[dict[str, float]] = History()

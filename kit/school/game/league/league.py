@@ -223,7 +223,7 @@ class League(JobFolder):
 
     def judge(self, job: LeagueJob) -> JudgedJob | None:
         """What came of a job; None where it has no result that counts: it was not run, or the file is not the owner's or
-        something else than commands that lead to what it shows. Raises LeagueError."""
+        something other than commands that lead to what it shows. Raises LeagueError."""
         content = self._read_result(job)
         if content is None:
             return None

@@ -71,7 +71,7 @@ def standings_table(standings: Standings) -> Table:
         *((Column("division", TEXT),) if has_divisions else ()),
         Column(""),
         Column("", TEXT),
-        Column("driver", TEXT, is_spare=True),
+        Column("driver", TEXT, is_optional=True),
         Column("rating", decimals=0),
         Column("95 %", decimals=0),
         Column("won"),
@@ -110,8 +110,8 @@ def matches_table(matches: Sequence[Match], name: str | None = None) -> Table:
         Column("first", TEXT),
         Column("", TEXT),
         Column("second", TEXT),
-        Column("first did", TEXT, is_spare=True),
-        Column("second did", TEXT, is_spare=True),
+        Column("first did", TEXT, is_optional=True),
+        Column("second did", TEXT, is_optional=True),
     )
     rows = tuple(
         (

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.game.challenge import AnswerSubmission, ChallengeError
+from kit.school.game.challenge import AnswerError, AnswerSubmission
 from kit.school.game.challenge_kinds.devices import DevicesTask, fewest_lasers, naive_lasers
 from kit.school.game.challenges import all_challenges
 from kit.school.game.medal import Medal
@@ -39,7 +39,7 @@ def test_a_laser_at_every_place_earns_nothing_and_the_fewest_gold(challenge, tmp
         tidy.append(max(task.floor, key=lambda square: len(missed & task.seen_from((square,)))))
     assert worth(tidy) < Medal.GOLD
     for wrong in ("", "1", "1,1,1", "-1,2", "0,0", "a,b", "99999,1", "1,1 " * 101):
-        with pytest.raises(ChallengeError):
+        with pytest.raises(AnswerError):
             challenge.task.judge(AnswerSubmission(wrong, tmp_path))
 
 

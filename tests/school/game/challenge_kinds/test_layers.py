@@ -9,7 +9,7 @@ import pytest
 
 from kit.layers.planning import solve_layers
 from kit.layers.requirements_file import read_requirements
-from kit.school.game.challenge import AnswerSubmission, ChallengeError
+from kit.school.game.challenge import AnswerError, AnswerSubmission
 from kit.school.game.challenge_kinds.layers import LayersTask, judge_assignment, naive_plan
 from kit.school.game.challenges import all_challenges
 from kit.school.game.medal import Medal
@@ -30,7 +30,7 @@ def test_a_plan_with_a_layer_for_every_line_earns_nothing(challenge, tmp_path: P
     watched = [f"  {laser}: [{', '.join(names)}]" for laser, names in best.watches.items()]
     file.write_text("\n".join(["layers:", *rows, "lasers:", *watched, ""]))
     assert challenge.task.judge(AnswerSubmission(str(file), tmp_path)).medal is Medal.GOLD
-    with pytest.raises(ChallengeError, match="no such file"):
+    with pytest.raises(AnswerError, match="no such file"):
         challenge.task.judge(AnswerSubmission(str(tmp_path / "none.yaml"), tmp_path))
 
 

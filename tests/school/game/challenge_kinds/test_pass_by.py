@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.game.challenge import AnswerSubmission, ChallengeError
+from kit.school.game.challenge import AnswerError, AnswerSubmission
 from kit.school.game.challenge_kinds.pass_by import PassByTask, fewest_ticks, first_meeting, read_two
 from kit.school.game.challenges import all_challenges
 from kit.school.game.medal import Medal
@@ -29,7 +29,7 @@ def test_the_earliest_plan_earns_gold_and_own_ways_meet(challenge) -> None:
     assert first_meeting(task, read_two(task.naive_answer())) > 0
     assert worth(".", ".") is Medal.NONE
     for wrong in ("l", "l r u", "x l", "l" * 101 + " r"):
-        with pytest.raises(ChallengeError):
+        with pytest.raises(AnswerError):
             worth(wrong)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from kit.school.game.board import MOVES, find_cell, step
-from kit.school.game.challenge import AnswerSubmission, ChallengeError
+from kit.school.game.challenge import AnswerError, AnswerSubmission
 from kit.school.game.challenge_kinds.policy import (
     GOAL,
     PIT,
@@ -39,7 +39,7 @@ def test_the_best_policy_earns_gold_and_the_shortest_way_nothing(challenge) -> N
     assert worth(naive) is Medal.NONE
     assert read_policy(task, best) == best_policy(task)
     for wrong in ("", best.replace("r", "x"), best.replace("\n", "", 1)):
-        with pytest.raises(ChallengeError):
+        with pytest.raises(AnswerError):
             worth(wrong)
 
 
@@ -107,7 +107,7 @@ def test_cells_that_look_alike_share_an_arrow() -> None:
     (cell, *_) = changed
     at = cell[0] * (len(task.grid[0]) + 1) + cell[1]
     lines[at] = "l" if lines[at] != "l" else "r"
-    with pytest.raises(ChallengeError, match="looks like"):
+    with pytest.raises(AnswerError, match="looks like"):
         task.judge(AnswerSubmission("".join(lines), Path()))
 
 
@@ -115,7 +115,7 @@ def test_an_episode_that_may_never_end_is_refused_where_nothing_is_discounted() 
     task = next(each.task for each in POLICIES if each.task.discount == 1)
     upward = dict.fromkeys(task.cells, "u")
     assert value_of(task, upward) == -np.inf
-    with pytest.raises(ChallengeError, match="never end"):
+    with pytest.raises(AnswerError, match="never end"):
         task.judge(AnswerSubmission(format_policy(task, upward), Path()))
     for arrow in "ldr":  # a slip leads into a pit at last
         assert -10 < value_of(task, dict.fromkeys(task.cells, arrow)) < 0

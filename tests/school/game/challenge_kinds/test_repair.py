@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.game.challenge import AnswerSubmission, ChallengeError
+from kit.school.game.challenge import AnswerError, AnswerSubmission
 from kit.school.game.challenge_kinds.repair import RepairTask
 from kit.school.game.challenges import all_challenges, challenge_medals, prepare_answer
 from kit.school.game.medal import Medal
@@ -42,7 +42,7 @@ def test_a_program_is_repaired_against_the_clock(challenge, tmp_path: Path) -> N
         assert task.judge(AnswerSubmission(str(file), tmp_path, when)).medal is medal
     different = [a for a, b in zip(faulty.splitlines(), solution.splitlines(), strict=False) if a != b]
     assert len(different) >= 5  # more than one fault, so that it takes a while
-    with pytest.raises(ChallengeError, match="Hand in"):
+    with pytest.raises(AnswerError, match="Hand in"):
         challenge.task.judge(AnswerSubmission(str(tmp_path), tmp_path, 1.0))
 
 

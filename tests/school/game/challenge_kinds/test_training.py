@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.game.challenge import AnswerSubmission, Challenge, ChallengeError
+from kit.school.game.challenge import AnswerError, AnswerSubmission, Challenge
 from kit.school.game.challenge_kinds.training import GOLD_STEPS, TrainingTask, judge_training
 from kit.school.game.challenges import all_challenges
 from kit.school.game.medal import Medal
@@ -38,7 +38,7 @@ def test_a_training_counts_steps_and_successes(challenge, tmp_path: Path) -> Non
     assert judge_training(task, 1, task.success - 0.01, has_own_reward=own).medal is Medal.NONE
     if own:
         assert judge_training(task, 1, 1.0, has_own_reward=False).medal is Medal.NONE
-    with pytest.raises(ChallengeError):
+    with pytest.raises(AnswerError):
         challenge.task.judge(AnswerSubmission("no-such-run", tmp_path))
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.school.game.challenge import AnswerSubmission, ChallengeError
+from kit.school.game.challenge import AnswerError, AnswerSubmission
 from kit.school.game.challenge_kinds.tuning import CHOICES, NAIVE, TuningTask, format_numbers, learn
 from kit.school.game.challenges import all_challenges
 from kit.school.game.medal import Medal
@@ -28,7 +28,7 @@ def test_numbers_that_suit_the_grid_earn_gold(challenge) -> None:
     assert worth({**GOOD, "episodes": 160}) < Medal.GOLD, "the budget counts"
     assert worth({**GOOD, "rate": 0.01}) is Medal.NONE
     for wrong in ("", "rate=0.1", format_numbers(GOOD) + "speed=1", format_numbers({**GOOD, "rate": 0.2})):
-        with pytest.raises(ChallengeError):
+        with pytest.raises(AnswerError):
             task.judge(AnswerSubmission(wrong, Path()))
 
 

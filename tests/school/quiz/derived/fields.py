@@ -9,6 +9,7 @@ import numpy as np
 
 from kit.fields import adjacency
 from kit.fields.charges import ChargeField, LineCharge, PointCharge, TensionPoint
+from kit.geometry import wrap_angle
 from kit.school.quiz.items import QuizItem
 from tests.school.quiz.derived.finding import Derivation, Finding, nearest
 
@@ -96,9 +97,7 @@ def arctangent(item: QuizItem, folder: Path) -> Finding:
 
 
 def wrapped_difference(item: QuizItem, folder: Path) -> Finding:
-    return nearest(
-        item, abs(math.degrees(adjacency.wrap_angles(math.radians(179) - math.radians(-179)))), 1e-6
-    )
+    return nearest(item, abs(math.degrees(wrap_angle(math.radians(179) - math.radians(-179)))), 1e-6)
 
 
 def side_by_side(item: QuizItem, folder: Path) -> Finding:

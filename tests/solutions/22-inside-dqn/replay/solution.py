@@ -15,5 +15,5 @@ def targets(batch, next_values, gamma):
 
 
 def synced(target, online, updates, interval):
-    """The target network's weights after so many updates."""
+    """The target network's weights after this many updates."""
     return online if updates % interval == 0 else target
