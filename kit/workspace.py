@@ -122,24 +122,27 @@ def is_special(path: Path) -> bool:
     return path.exists() and not path.is_dir() and (is_open_file or not path.is_file())
 
 
-def write_atomically(path: Path, data: bytes) -> None:
+def write_atomically(path: Path, data: bytes, *, follows_links: bool = True) -> None:
     """Writes ``data`` to ``path`` so that a reader, or a kill at any moment, sees the old file or the new one.
 
     A new file has the mode that the user's umask gives, one that is replaced keeps its own. A link stays one: what it
-    points to is written. So is a device or a pipe, as it is. Raises OSError.
+    points to is written. So is a device or a pipe, as it is. Without ``follows_links`` all three are replaced, or it is an
+    error: so it must be where another user may have put them, to have a file of this user's overwritten. Raises OSError.
     """
     with errors_name_file(path):
-        if is_special(path):
+        if follows_links and is_special(path):
             with path.open("ab") as device:
                 device.write(data)
             return
-        path = path.resolve()
+        if follows_links:
+            path = path.resolve()
         temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
         handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
         try:
             with os.fdopen(handle, "wb") as file:
-                with suppress(FileNotFoundError):
-                    os.fchmod(handle, stat.S_IMODE(path.stat().st_mode) & 0o777)
+                if follows_links:
+                    with suppress(FileNotFoundError):
+                        os.fchmod(handle, stat.S_IMODE(path.stat().st_mode) & 0o777)
                 file.write(data)
                 file.flush()
                 os.fsync(file.fileno())

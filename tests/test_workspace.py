@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import subprocess
 import sys
 from pathlib import Path
@@ -97,6 +98,19 @@ def test_a_link_stays_one_and_its_target_is_written(tmp_path: Path) -> None:
         assert link.is_symlink()
         assert (tmp_path / "there" / "file").read_bytes() == content
     assert [path.name for path in (tmp_path / "there").iterdir()] == ["file"]
+
+
+def test_a_link_and_a_pipe_in_a_folder_of_several_users_are_replaced(tmp_path: Path) -> None:
+    precious = tmp_path / "precious"
+    precious.write_bytes(b"mine")
+    link, pipe = tmp_path / "link", tmp_path / "pipe"
+    link.symlink_to(precious)
+    os.mkfifo(pipe)
+    for file in (link, pipe):
+        write_atomically(file, b"new", follows_links=False)
+        assert stat.S_ISREG(file.lstat().st_mode)
+        assert file.read_bytes() == b"new"
+    assert precious.read_bytes() == b"mine"
 
 
 def test_a_pipe_and_a_device_are_written_to_and_not_replaced(tmp_path: Path) -> None:

@@ -56,6 +56,27 @@ CONTROLS: Final = (
         "school/game/league/test_league.py::test_who_renews_an_entry_keeps_its_name",
     ),
     Control(
+        "a link in the leaderboard's folder to a file of one's own",
+        "kit/school/game/leaderboard.py",
+        "write_atomically(_name_file(folder, os.getuid()), content, follows_links=False)",
+        "write_atomically(_name_file(folder, os.getuid()), content)",
+        "school/game/test_leaderboard.py::test_a_link_that_another_user_has_put_there_leads_to_no_file_of_ones_own",
+    ),
+    Control(
+        "a link in a league's folder to a file of one's own",
+        "kit/workspace.py",
+        "        if follows_links:\n            path = path.resolve()\n",
+        "        path = path.resolve()\n",
+        "school/game/league/test_league.py::test_a_link_that_another_user_has_put_there_leads_to_no_file_of_ones_own",
+    ),
+    Control(
+        "a league whose list is full of files that take no part",
+        "kit/school/game/league/entries.py",
+        ">= MAX_LISTED_OF_ONE_USER:",
+        ">= MAX_BYTES:",
+        "school/game/league/test_league.py::test_who_came_first_with_many_files_keeps_nobody_out",
+    ),
+    Control(
         "a league full of one user's entries",
         "kit/school/game/league/entries.py",
         "            elif user != owner and others >= MAX_OF_ONE_USER:\n",

@@ -150,7 +150,7 @@ def publish_drives(
         if problem := open_common_folder(folder):
             raise LeaderboardError(f"{folder}: {problem}.")
         content = json.dumps({"name": name[:MAX_NAME_LENGTH]}).encode()
-        write_atomically(_name_file(folder, os.getuid()), content)
+        write_atomically(_name_file(folder, os.getuid()), content, follows_links=False)
         for (level, driver), recordings in drives.items():
             file = _drive_file(folder, os.getuid(), level, driver)
             share_drives(recordings, file)

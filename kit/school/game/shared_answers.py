@@ -42,7 +42,7 @@ def _publish_answer(folder: Path, challenge: Challenge, text: str) -> None:
     old = _shared_answer(folder, challenge, os.getuid())
     if old is not None and (new.answer <= old.answer if new.more_is_better else new.answer >= old.answer):
         return
-    write_atomically(_answer_file(folder, challenge, os.getuid()), text.encode())
+    write_atomically(_answer_file(folder, challenge, os.getuid()), text.encode(), follows_links=False)
 
 
 def publish_answers(folder: Path, workspace: Workspace, challenges: tuple[Challenge, ...]) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import os
 import platform
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -20,6 +21,7 @@ import numpy as np
 
 from kit.array_archives import READ_ERRORS, unpack_arrays
 from kit.arrays import FloatArray
+from kit.plain_files import open_plain_file
 from kit.run.recording import ACCEPT, Recording, RecordingError, recording_from_header, recording_header
 from kit.school.game.levels import GameLevel
 from kit.school.game.medal import Medal, medal_of
@@ -78,10 +80,18 @@ def share_drives(recordings: Sequence[Recording], file: Path, remarks: Sequence[
     }
     data = io.BytesIO()
     np.savez_compressed(data, drives=np.frombuffer(json.dumps(content).encode(), dtype=np.uint8))
-    if (
-        not file.is_file() or file.is_symlink() or file.read_bytes() != data.getvalue()
-    ):  # else it stays as old as it is
-        write_atomically(file, data.getvalue())
+    if not _holds(file, data.getvalue()):  # else it stays as old as it is
+        write_atomically(file, data.getvalue(), follows_links=False)
+
+
+def _holds(file: Path, content: bytes) -> bool:
+    """Whether a file of this user's has this content."""
+    try:
+        with open_plain_file(file, follows_links=False) as opened:
+            is_own = os.fstat(opened.fileno()).st_uid == os.geteuid()
+            return is_own and opened.read(len(content) + 1) == content
+    except OSError:
+        return False
 
 
 def judge_shared_drives(data: bytes, level: GameLevel, driver: DriverKind) -> JudgedDrive:

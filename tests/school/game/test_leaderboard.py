@@ -240,6 +240,19 @@ def test_what_was_not_driven_stands_nowhere(
     assert read_entries(board, [FIRST, BEDROOM]) == []
 
 
+def test_a_link_that_another_user_has_put_there_leads_to_no_file_of_ones_own(tmp_path: Path) -> None:
+    board, precious = tmp_path / "board", tmp_path / "precious"
+    board.mkdir(mode=0o1777)
+    precious.write_bytes(b"mine")
+    files = (board / f"{OWN}.json", own_file(board))
+    for file in files:
+        file.symlink_to(precious)
+    join(board, by_hand())
+    assert precious.read_bytes() == b"mine"
+    assert not any(file.is_symlink() for file in files)
+    assert len(read_entries(board, [FIRST])) == 1
+
+
 @pytest.fixture
 def of_many_users(monkeypatch: pytest.MonkeyPatch) -> None:
     """As if each file belonged to the user it is named after."""

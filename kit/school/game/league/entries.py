@@ -29,6 +29,8 @@ MAX_BYTES: Final = 4 << 20
 MAX_ENTRIES: Final = 500
 MAX_OF_ONE_USER: Final = 3
 """Entries of one user in another's league: more could drive against each other for one of them, and take the owner's time."""
+MAX_LISTED_OF_ONE_USER: Final = 2 * MAX_OF_ONE_USER
+"""Files of one user in another's league that are looked at, those that take no part included."""
 MANIFEST: Final = "league.json"
 HOLDERS: Final = "holders.json"
 """Users by the names that they hold, as the league's owner has recorded them."""
@@ -87,6 +89,8 @@ def read_entries(folder: Path) -> tuple[Entry, ...]:
         try:
             with open_plain_file(file, follows_links=False) as opened:
                 user = os.fstat(opened.fileno()).st_uid
+                if user != owner and sum(each.user == user for each in found) >= MAX_LISTED_OF_ONE_USER:
+                    continue
                 content = opened.read(MAX_BYTES + 1)
         except OSError as error:
             problem = f"its file cannot be read ({error.strerror})"
@@ -166,7 +170,7 @@ def submit(folder: Path, name: str, driver: DriverKind, program: bytes) -> Path:
     try:
         if problem := open_common_folder(file.parent):
             raise LeagueError(f"{file.parent}: {problem}.")
-        write_atomically(file, program)
+        write_atomically(file, program, follows_links=False)
         for other in (file.with_name(f"{name}.{each.value}.py") for each in DRIVERS if each is not driver):
             if _owner_of(other) == os.getuid():
                 other.unlink(missing_ok=True)

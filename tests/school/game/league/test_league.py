@@ -339,6 +339,16 @@ def test_many_files_push_nobody_out(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert set(honest) <= set(entries)
 
 
+def test_a_link_that_another_user_has_put_there_leads_to_no_file_of_ones_own(tmp_path: Path) -> None:
+    league, precious = make_league(tmp_path), tmp_path / "precious"
+    precious.write_bytes(b"mine")
+    file = league.folder / "entries" / "ada.controller.py"
+    file.symlink_to(precious)
+    assert submit(league.folder, "ada", CONTROLLER, LASER) == file
+    assert precious.read_bytes() == b"mine"
+    assert not file.is_symlink()
+
+
 ANOTHER, THIRD = 60001, 60002
 
 
@@ -368,6 +378,19 @@ def test_who_renews_an_entry_keeps_its_name(tmp_path: Path, name: str) -> None:
     time.sleep(CLOCK_STEP_S)
     os.utime(league.folder / "entries" / name)
     assert ANOTHER not in {each.user for each in league.entrants()}, "what others record is not"
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="files of other users")
+def test_who_came_first_with_many_files_keeps_nobody_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(entries_module, "MAX_ENTRIES", 12)
+    league = make_league(tmp_path)
+    for number in range(30):
+        enter_as(ANOTHER, league, f"a{number}.controller.py", STANDS + b"#%d" % number)
+    time.sleep(CLOCK_STEP_S)
+    enter_as(THIRD, league, "third.controller.py", LASER)
+    assert Counter(each.user for each in league.entrants()) == {ANOTHER: MAX_OF_ONE_USER, THIRD: 1}
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="files of other users")
