@@ -56,6 +56,11 @@ def document_to_html(report: Document, links: Links = MappingProxyType({})) -> s
     return "\n".join(_page_lines(report, links)) + "\n"
 
 
+def table_to_html(table: Table) -> str:
+    """One table as a part of a page, as a notebook shows it."""
+    return "\n".join(_table_lines(table)) + "\n"
+
+
 def _page_lines(report: Document, links: Links) -> Iterator[str]:
     title = _html_text(report.title)
     yield "<!DOCTYPE html>"

@@ -63,9 +63,6 @@ class BatchEnv:
     it cannot represent.
     """
 
-    render_mode: None = None
-    """A batch draws nothing; ``kit.learning.environment.env`` draws one world."""
-
     def __init__(
         self,
         task: LearningTask,
@@ -166,7 +163,7 @@ class BatchEnv:
         """(n, size) the first observations of new episodes, in every world.
 
         ``seed``: starts everything again, else the worlds go on to their next episodes. ``cases``: (n,) numbers
-        of the cases that these episodes run, instead of those dealt in turn.
+        of the cases that these episodes run, instead of those dealt in turn; -1: the one dealt.
         """
         self._state = self._state.copy()
         if seed is not None:
@@ -187,7 +184,8 @@ class BatchEnv:
         state, case_arrays = self._state, self._case_arrays
         turns = (self._first_world + which + state.episode[which]) % len(self.cases)
         dealt = turns if self._assigned is None else self._assigned[which]
-        case = dealt if cases is None else np.asarray(cases, dtype=np.int64)[which]
+        wanted = dealt if cases is None else np.asarray(cases, dtype=np.int64)[which]
+        case = np.where(wanted < 0, dealt, wanted)
         start = case_arrays.draw_starts(
             case, self._random_keys[which], (state.episode[which] << EPISODE_BITS) + START_DRAWS
         )
@@ -297,7 +295,7 @@ class BatchEnv:
         """Begins the next episodes of the worlds ``which`` (m); (m, size) what agents see of them.
 
         ``seeds``: (m) each begins a world's randomness anew, as that of a single world with this seed; None goes on.
-        ``cases``: (n,) numbers of the cases that all worlds would run, instead of those dealt in turn.
+        ``cases``: (n,) numbers of the cases that all worlds would run, instead of those dealt in turn; -1: the one dealt.
         """
         self._state = self._state.copy()
         self._state.episode[which] += 1

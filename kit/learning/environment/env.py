@@ -16,7 +16,7 @@ from gymnasium import spaces
 from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
-from kit.arrays import Float32Array, FloatArray, IntArray
+from kit.arrays import Float32Array, FloatArray
 from kit.geometry import Pose
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
@@ -34,7 +34,8 @@ from kit.world.records import Circle, Polygon
 
 Observation = NDArray[np.floating[Any] | np.integer[Any]]
 """float32, which gymnasium's Box does not tell apart."""
-Action = np.int64 | IntArray | Float32Array
+Action = int | np.integer[Any] | NDArray[np.integer[Any] | np.floating[Any]]
+"""A number of a table of moves, or one for each robot; or the numbers of continuous actions."""
 
 ObservationArray = Float32Array
 """Observations of many worlds."""

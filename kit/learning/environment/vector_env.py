@@ -35,7 +35,11 @@ from kit.learning.environment.episode_stats import EpisodeOutcome
 from kit.learning.tasks.catalogue import HALLWAY, TURN, WHEELCHAIRS
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.reward import RewardFunction
+from kit.plain_text import quoted, suggestion
 from kit.render.world_text import TerminalPicture
+
+_NOT_ALONE = "the worlds of a batch share their attributes, and"
+_ALONE = '. With vectorization_mode="sync" every world is an environment of its own'
 
 
 class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
@@ -219,6 +223,36 @@ class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
             seen = step.observations[world].copy()
             info = self._add_info(info, {"final_obs": seen, "final_info": final}, world)
         return info
+
+    # Gymnasium's other vector environments have these three; here there are no single environments to ask.
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
+        """What ``render`` returns for each world, or an attribute of each, as ``get_attr`` has it.
+
+        Raises AttributeError for another method."""
+        if name != "render":
+            return self.get_attr(name)
+        return self.render(*args, **kwargs) or (None,) * self.num_envs
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        """(num_envs,) an attribute of a single environment: of all worlds it is the same.
+
+        Raises AttributeError where there is none of this name."""
+        shared = {
+            "task": self.batch.task,
+            "render_mode": self.render_mode,
+            "metadata": self.metadata,
+            "spec": self.spec,
+            "observation_space": self.single_observation_space,
+            "action_space": self.single_action_space,
+        }
+        if name not in shared:
+            raise AttributeError(f"{_NOT_ALONE} have no {quoted(name)}: {suggestion(name, shared)}{_ALONE}")
+        return (shared[name],) * self.num_envs
+
+    def set_attr(self, name: str, values: Any) -> None:
+        """Raises AttributeError: the worlds share their attributes, which stay as they are."""
+        raise AttributeError(f"{_NOT_ALONE} cannot be given {quoted(name)}{_ALONE}")
 
     def render(self) -> tuple[Any, ...] | None:
         """A picture of each world (height, width, 3) uint8 for ``rgb_array``, a text of each for ``ansi``; else None."""

@@ -11,6 +11,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from kit.document.blocks import Cell, CellStyle, Column, Table
+from kit.document.html import table_to_html
 from kit.host.sandbox.probe import highest_level_up_to
 from kit.host.sandbox.sandbox_config import Level
 from kit.learning.environment.batch import BatchEnv
@@ -114,6 +115,10 @@ class EvaluationResult:
         """``EvaluationResult(turn: success 0.985, worst 0.970 in turn_b_to_a)``"""
         worst = self.worst
         return f"{type(self).__name__}({self.task}: success {self.mean:.3f}, worst {worst.share:.3f} in {worst.case})"
+
+    def _repr_html_(self) -> str:
+        """The table, which a notebook shows."""
+        return table_to_html(self.table())
 
     @property
     def mean(self) -> float:

@@ -11,7 +11,7 @@ import pytest
 
 from kit.learning.environment.env import TaskEnv
 from kit.learning.tasks.catalogue import HALLWAY, TASKS, TURN, WHEELCHAIRS
-from kit.learning.tasks.learning_task import LearningTask
+from kit.learning.tasks.learning_task import LearningTask, UnknownTask
 
 pytestmark = pytest.mark.skipif(
     find_spec("stable_baselines3") is None, reason="the extra learn is not installed"
@@ -85,15 +85,62 @@ def test_ppo_takes_it(task: LearningTask) -> None:
 
 
 def test_what_would_set_one_world_apart_is_refused() -> None:
+    from stable_baselines3.common.monitor import Monitor
+
     from kit.learning.environment.sb3_vec_env import make_vec_env
 
     env = make_vec_env(TURN, 2)
     assert env.get_attr("n") == [2, 2]
     assert env.env_is_wrapped(object) == [False, False]
+    assert env.env_is_wrapped(Monitor) == [True, True]
     with pytest.raises(AttributeError, match="only some"):
         env.set_attr("n", 3)
     with pytest.raises(AttributeError, match="only some"):
         env.env_method("reset")
+
+
+def test_options_choose_cases_for_the_next_reset_alone() -> None:
+    from stable_baselines3.common.vec_env import DummyVecEnv
+
+    from kit.learning.environment.sb3_vec_env import make_vec_env
+
+    ours, plain = make_vec_env(TURN, 3), DummyVecEnv([lambda: TaskEnv(TURN)])
+    for env in (ours, plain):
+        env.seed(4)
+        env.set_options({"case": "turn_b_to_a"})
+    assert np.array_equal(ours.reset()[0], plain.reset()[0])  # type: ignore[index]
+    assert [info["case"] for info in ours.reset_infos] == ["turn_b_to_a"] * 3
+    ours.seed(4)
+    ours.set_options([{}, {"case": "turn_a_to_b"}, {"case": "turn_a_to_b"}])
+    ours.reset()
+    assert [info["case"] for info in ours.reset_infos] == ["turn_a_to_b"] * 3
+    ours.reset()
+    assert [info["case"] for info in ours.reset_infos] == ["turn_b_to_a", "turn_a_to_b", "turn_b_to_a"]
+    ours.set_options({"cse": "turn_a_to_b"})
+    with pytest.raises(ValueError, match='"cse"'):
+        ours.reset()
+    ours.set_options({"case": "turn_c"})
+    with pytest.raises(UnknownTask, match="turn_c"):
+        ours.reset()
+
+
+def test_every_world_has_a_picture_where_asked() -> None:
+    from stable_baselines3.common.vec_env import VecFrameStack
+
+    from kit.learning.environment.sb3_vec_env import make_vec_env
+
+    env = make_vec_env(TURN, 3, render_mode="rgb_array")
+    env.reset()
+    pictures = [np.asarray(each) for each in env.get_images()]
+    assert len({each.tobytes() for each in pictures}) == 3
+    height, width, _ = pictures[0].shape
+    tiled = VecFrameStack(env, 2).render()
+    assert tiled is not None
+    assert tiled.shape == (2 * height, 2 * width, 3)
+    assert env.metadata["render_fps"] == TaskEnv(TURN).metadata["render_fps"]
+    assert make_vec_env(TURN, 2).get_images() == [None, None]
+    with pytest.raises(ValueError, match="film"):
+        make_vec_env(TURN, 3, render_mode="film")
 
 
 def test_half_of_every_case_is_seen_in_a_mirror() -> None:

@@ -122,6 +122,35 @@ def test_gymnasiums_own_default_is_the_kits() -> None:
     assert env.unwrapped.spec is not None
 
 
+@pytest.mark.parametrize(
+    "name", ["task", "render_mode", "observation_space", "action_space", "metadata", "render"]
+)
+def test_worlds_are_asked_alike_in_every_form(name: str) -> None:
+    one, other = (make(form, AutoresetMode.NEXT_STEP, render_mode="ansi") for form in FORMS[:2])
+    for env in (one, other):
+        env.reset(seed=4)
+    expected, found = one.call(name), other.call(name)
+    assert len(expected) == len(found) == N
+    if name == "metadata":
+        assert [expected[0][key] == found[0][key] for key in expected[0]] == [True] * len(expected[0])
+    elif name != "render":
+        assert expected == found == other.get_attr(name)
+    else:
+        assert [each.splitlines()[-1] for each in found] == [each.splitlines()[-1] for each in expected]
+
+
+def test_what_worlds_of_a_batch_cannot_do_alone_is_said() -> None:
+    env = BatchVectorEnv(2, QUICK)
+    assert env.call("render") == (None, None)
+    for refused in (
+        lambda: env.set_attr("difficulty", [1, 2]),
+        lambda: env.get_attr("difficulty"),
+        lambda: env.call("reset"),
+    ):
+        with pytest.raises(AttributeError, match="sync"):
+            refused()
+
+
 @pytest.mark.parametrize("mode", ["rgb_array", "ansi"])
 def test_every_world_has_a_picture(mode: str) -> None:
     one, other = (make(form, AutoresetMode.NEXT_STEP, render_mode=mode) for form in FORMS[:2])
