@@ -345,13 +345,14 @@ class Started:
         self._is_open = True
         self.shown = bytearray()
         self.log.touch()
-        with (output or self.log).open("ab") as out:  # both streams at its end: neither over the other
+        with (output or self.log).open("ab") as out, self.log.open("ab") as log:
+            # both streams at the end of the file: neither over the other
             streams = theirs if recorder.needs_terminal and output is None else out
             self.process = subprocess.Popen(
                 [sys.executable, "-P", *recorder.words],
                 stdin=theirs,
                 stdout=streams,
-                stderr=theirs if streams == theirs else self.log.open("ab"),
+                stderr=theirs if streams == theirs else log,
                 env=environment,
                 cwd=recorder.place.folder,
                 start_new_session=True,

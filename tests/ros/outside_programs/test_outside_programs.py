@@ -6,7 +6,7 @@ from typing import Final
 
 import pytest
 
-from tests.ros.outside_programs.judge import OutsideProgram, programs_of, run_program
+from tests.ros.outside_programs.judge import SETS, OutsideProgram, programs_of, run_program
 
 MISTAKEN: Final = {
     "12_turn_pid": "after its last zero command it handles one more odometry and commands again, and ends: the base turns on",
@@ -17,7 +17,6 @@ MISTAKEN: Final = {
 UNAVAILABLE: Final = {"15_launch_test": "a test for launch_testing, which the kit does not run"}
 """Programs that need what the kit does not have, and what it says of that."""
 
-SETS: Final = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 PROGRAMS: Final = [each for name in SETS for each in programs_of(name)]
 
 
