@@ -32,6 +32,16 @@ MISTAKES = {
     "a module misspelt": (b"import numppy\n", 1, "Did you mean 'numpy'?"),
     "a module that is missing": (b"\nimport quite_unknown_xyz\n", 2, "install"),
     "Latin-1 in a comment": (b"x = 1\n# caf\xe9\n", 2, "UTF-8"),
+    "what append returns": (b"kept = [].append(1)\nkept[0]\n", 2, "as append does"),
+    "a list times a number": (b"rate = 0.5\nrate * [1, 2]\n", 2, "one by one"),
+    "a value for a place": (b"values = [0.5]\nvalues[max(values)]\n", 2, "index(value)"),
+    "an index for two": (b"table = [[1]]\ntable[0, 0]\n", 2, "table[row][column]"),
+    "a function not called": (b"len[[1]]\n", 1, "round brackets"),
+    "a number for a list": (b"max(3.0)\n", 1, "a single number"),
+    "no whole number": (b"range(3 / 1)\n", 1, "//"),
+    "one place too far": (b"[1, 2][2]\n", 1, "n - 1"),
+    "a value not set yet": (b"def f():\n    return x\n    x = 1\nf()\n", 2, "further down"),
+    "no self": (b"class A:\n    def f():\n        pass\nA().f()\n", 4, "self"),
     "UTF-16": ("x = 1\n".encode("utf-16"), 1, "UTF-8"),
     "a null byte": (b"x = 1\ny = 2\0\n", 2, "UTF-8"),
 }
@@ -44,6 +54,13 @@ def test_a_mistake_names_its_line_and_the_way_out(case: str, tmp_path: Path) -> 
     assert failure is not None
     assert (failure.file, failure.line) == ("mine.py", line)
     assert way_out in failure.message
+
+
+def test_an_exception_without_a_text_of_its_own_is_told_all_the_same(tmp_path: Path) -> None:
+    source = b"class Odd(TypeError):\n    def __str__(self):\n        raise ValueError\nraise Odd\n"
+    failure = failure_of(source, tmp_path)
+    assert failure is not None
+    assert (failure.line, "Odd" in failure.message) == (4, True)
 
 
 def test_a_name_like_no_other_gets_no_guess(tmp_path: Path) -> None:

@@ -31,6 +31,8 @@ from kit.world.yaml_section import Section
 
 MAX_ANSWER: Final = 200
 """Characters of one answer."""
+MIN_DECIMALS: Final = 2
+"""Decimals from which on a number may be another one, rounded."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +46,15 @@ class AnswerKey:
     is_list: bool
     feedback: Mapping[str, str]
     """Feedback by wrong answer."""
+
+    def feedback_on(self, given: Sequence[str]) -> str:
+        """Returns the feedback on a wrong answer, or, for a number, on the nearest wrong one that rounds to it."""
+        exact = self.feedback.get(_normalize_word(", ".join(given)), "")
+        if exact or len(given) != 1:
+            return exact
+        rounded = [wrong for wrong in self.feedback if _rounds_to(wrong, given[0])]
+        nearest = min(rounded, key=lambda wrong: abs(float(wrong) - float(given[0])), default="")
+        return self.feedback.get(nearest, "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +106,7 @@ class SubmittedAnswers:
             given = self.given.get(question.name, ())
             if not given:
                 return f"{quoted(question.name)} is not answered yet: {question.ask}"
-            hint = self.task.keys[question.name].feedback.get(_normalize_word(", ".join(given)), "")
-            hint = hint or self._form_mistake(question, given)
+            hint = self.task.keys[question.name].feedback_on(given) or self._form_mistake(question, given)
             return f"{quoted(question.name)}: {', '.join(given)} is not right. {hint}".strip()
         return ""
 
@@ -106,9 +116,14 @@ class SubmittedAnswers:
         for each in given:
             if choices and _normalize_word(each) not in choices:
                 return f"There is no choice {quoted(each)}: {suggestion(each, question.choices)}"
-        is_number = all(map(_is_number, self.task.keys[question.name].right))
-        if is_number and not all(map(_is_number, given)):
-            return "A number is asked for: write it in digits, without a unit."
+        right = self.task.keys[question.name].right
+        if not all(map(_is_number, right)):
+            return ""
+        for each in given:
+            if not _is_number(each):
+                return _number_mistake(each)
+            if any(_rounds_to(value, each) for value in right):
+                return "It is rounded too far: write more digits."
         return ""
 
 
@@ -192,7 +207,7 @@ def _given(section: Section, questions: Sequence[AnswerQuestion]) -> Mapping[str
             continue
         values = value if isinstance(value, tuple) else () if value is None else (value,)
         words = [_as_written(each) for each in values]
-        given[name] = tuple(each for each in words if each)
+        given[name] = tuple(_as_choice(each, known[name].choices) for each in words if each)
         if any(len(each) > MAX_ANSWER for each in words):
             section.error(f"the answer is longer than {MAX_ANSWER} characters", name)
     return given
@@ -201,6 +216,12 @@ def _given(section: Section, questions: Sequence[AnswerQuestion]) -> Mapping[str
 def _as_written(value: object) -> str:
     """Returns a scalar as it is written in YAML."""
     return str(value).lower() if isinstance(value, bool) else "" if value is None else str(value).strip()
+
+
+def _as_choice(word: str, choices: Sequence[str]) -> str:
+    """Returns the choice that a word is but for blanks and case: "ROS 2" for "ros2". Otherwise the word."""
+    bare = "".join(word.split()).casefold()
+    return next((each for each in choices if "".join(each.split()).casefold() == bare), word)
 
 
 def _is_same(given: str, right: str, within: float) -> bool:
@@ -216,6 +237,25 @@ def _is_number(word: str) -> bool:
         return math.isfinite(float(word))
     except ValueError:
         return False
+
+
+def _rounds_to(value: str, given: str) -> bool:
+    """True if a number, rounded to the decimals with which ``given`` is written, is ``given``. Fewer than two decimals
+    are no rounding that could be recognized: 1 is not 0.95."""
+    decimals = len(given.partition(".")[2])
+    if decimals < MIN_DECIMALS or not (_is_number(value) and _is_number(given)):
+        return False
+    return math.isclose(float(value), float(given), rel_tol=0.0, abs_tol=0.500001 * 10.0**-decimals)
+
+
+def _number_mistake(given: str) -> str:
+    """Says how to write what was given for a number."""
+    with_point = given.replace(",", ".")
+    if _is_number(with_point):
+        return f"Write a point in place of the comma: {with_point}"
+    if any(sign in given for sign in "/*^="):
+        return "Work it out, and write the number that it comes to: 0.25, say."
+    return "A number is asked for: write it in digits, without a unit."
 
 
 def _normalize_word(word: str) -> str:

@@ -93,7 +93,9 @@ class CaseDifference:
     actual: Json
 
     def __str__(self) -> str:
-        return f"should be {format_value(self.expected)}, and is {format_value(self.actual)}{_first_difference(self.expected, self.actual)}."
+        difference = _first_difference(self.expected, self.actual)
+        end = "" if difference.endswith("?") else "."
+        return f"should be {format_value(self.expected)}, and is {format_value(self.actual)}{difference}{end}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +105,8 @@ class FunctionComparison:
     name: str
     cases: int
     differences: tuple[CaseDifference, ...]
+    prints: bool = False
+    """Whether it printed anything."""
 
     def explain_first(self) -> str:
         """Returns feedback on the first case that differs; empty if none does."""
@@ -111,7 +115,12 @@ class FunctionComparison:
         difference = self.differences[0]
         arguments = ", ".join(f"{name}={format_value(value)}" for name, value in difference.arguments.items())
         if difference.actual is None and difference.expected is not None:
-            return f"{self.name}({arguments}) returns nothing: does every path through it end with a return?"
+            why = (
+                "It prints: print only shows a value, return gives it to the caller."
+                if self.prints
+                else "Does every path through it end with a return?"
+            )
+            return f"{self.name}({arguments}) returns nothing. {why}"
         return f"{self.name}({arguments}) {difference}"
 
 
@@ -336,7 +345,7 @@ class FunctionCollector(CachingCollector):
         except StudentCodeError as error:
             self._close()
             return failed_record(blank, clock.explain(error.failure), case)
-        found = FunctionComparison(spec.name, len(cases), tuple(differences))
+        found = FunctionComparison(spec.name, len(cases), tuple(differences), bool(printed))
         explanation = found.explain_first()
         return EvidenceRecord(
             found,
@@ -398,7 +407,9 @@ def _first_difference(expected: Json, actual: Json) -> str:
     if not isinstance(expected, list) or not isinstance(actual, list):
         return ""
     if len(expected) != len(actual):
-        return f": {counted(len(actual), 'entry')} instead of {len(expected)}"
+        ended = len(actual) == 1 and is_close(expected[:1], actual, 1e-6)
+        why = ". Does the return stand inside the loop, so that the first entry ends it?" if ended else ""
+        return f": {counted(len(actual), 'entry')} instead of {len(expected)}{why}"
     for index, (one, other) in enumerate(zip(expected, actual, strict=True)):
         if not is_close(one, other, 1e-6):
             return f": item [{index}] should be {format_value(one)}, and is {format_value(other)}"

@@ -11,6 +11,7 @@ from contextlib import suppress
 from itertools import islice
 from types import ModuleType, TracebackType
 
+from kit.host.child.common_mistakes import meaning
 from kit.host.child.missing_imports import import_way_out, nearest
 from kit.host.failure import Failure, FailureKind, StudentCodeError
 from kit.host.sandbox import seccomp
@@ -152,7 +153,10 @@ def explain(problem: BaseException, program: StudentProgram) -> Failure:
     message = f"{type(problem).__name__}: {text}" if text else type(problem).__name__
     if frames and frames[-1][2] != "<module>":
         message += f" (in {frames[-1][2]})"
-    return _make_failure(kind, message + _way_out(problem, program), frames)
+    way_out = _way_out(problem, program)
+    with suppress(BaseException):  # an exception of the student's own may have a broken __str__
+        way_out = way_out or meaning(problem)
+    return _make_failure(kind, message + way_out, frames)
 
 
 def exit_status(problem: SystemExit) -> int:

@@ -88,6 +88,45 @@ def test_an_answer_of_the_wrong_form_costs_its_own_question_alone(
 
 
 @pytest.mark.parametrize(
+    ("rate", "named"),
+    [
+        ("'10,4'", "10.4"),
+        ("20 / 2", "Work it out"),
+        ("10 Hz", "without a unit"),
+        ("9.26", "One step too few"),
+        ("9.255", "One step too few"),
+        ("9", ""),
+        ("9.3", ""),
+        ("8.25", "rounded too far"),
+        ("8.2", ""),
+    ],
+)
+def test_a_number_that_is_rounded_or_written_otherwise_is_answered(
+    folder: Path, rate: str, named: str
+) -> None:
+    keys = KEYS.replace(
+        "[10], within: 0.5", "[8.2514], within: 0.001, feedback: {'9.255': One step too few.}"
+    )
+    (folder / "secret.yaml").write_text(keys)
+    right = "topic: cmd_vel\nnodes: [/one, /two]\n"
+    told = grade(read_assignment(folder), handed_in(f"{right}rate: {rate}\n"), DESK).tests[1].rationale
+    assert "is not right" in told
+    assert named in told if named else told.endswith("is not right.")
+
+
+@pytest.mark.parametrize("written", ["ROS 2", "ros 2", "ROS2", "ros2"])
+def test_a_choice_may_be_written_without_its_blanks(folder: Path, written: str) -> None:
+    sheet = ASSIGNMENT_TEXT.replace("choices: [cmd_vel, odom, scan]", "choices: [ROS 2, Flatland]")
+    (folder / "assignment.yaml").write_text(sheet)
+    (folder / "secret.yaml").write_text(
+        KEYS.replace(
+            "{right: [cmd_vel], feedback: {odom: That one comes from the robot.}}", "{right: [ROS 2]}"
+        )
+    )
+    assert grade(read_assignment(folder), handed_in(f"topic: {written}\n"), DESK).tests[0].points == 1.0
+
+
+@pytest.mark.parametrize(
     "text",
     [
         "topic: [",

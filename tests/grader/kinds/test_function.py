@@ -19,6 +19,7 @@ from grader.grading import GradingOptions, grade
 from grader.kinds.function.kind import (
     CALL_LIMITS,
     MAX_CASES,
+    CaseDifference,
     FunctionsTask,
     _as_json,
     cases_of,
@@ -142,6 +143,7 @@ def test_of_secret_cases_nothing_is_told(folder: Path) -> None:
     ("body", "status", "word"),
     [
         ("return None", CriterionStatus.FAIL, "returns nothing"),
+        ("print(3)", CriterionStatus.FAIL, "return gives it to the caller"),
         ("return [0.5]", CriterionStatus.FAIL, "should be 0.5"),
         ("return str(min(ranges))", CriterionStatus.FAIL, "'0.5'"),
         ("return min(ranges) == 0.5", CriterionStatus.FAIL, "True"),
@@ -392,3 +394,18 @@ def test_the_call_is_a_sentence_of_its_own_after_what_failed() -> None:
         failed = failed_record(EvidenceRecord(), Failure(FailureKind.EXCEPTION, message), {"a": 1})
         assert failed.failure is not None
         assert failed.failure.message.startswith(f"{start}It was called")
+
+
+@pytest.mark.parametrize(
+    ("expected", "actual", "asks"),
+    [
+        ([1.0, 3.6], [1.0], True),
+        ([1.0, 3.6], [2.0], False),
+        ([1.0, 3.6, 2.0], [1.0, 3.6], False),
+        ([1.0], [1.0, 2.0], False),
+    ],
+)
+def test_a_list_with_its_first_entry_alone_is_asked_about_its_loop(
+    expected: Json, actual: Json, asks: bool
+) -> None:
+    assert ("inside the loop" in str(CaseDifference({}, expected, actual))) is asks
