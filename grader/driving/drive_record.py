@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from grader.driving.circle_fit import CircleFit, fit_circle
 from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.host.failure import Failure
@@ -35,6 +36,13 @@ COLUMNS, ROWS = 60, 18
 
 BARE_CHECKS = frozenset({"runs", "obeys", "bumps", "clearance"})
 """Checks that a connection without another end does not explain."""
+MOTION_CHECKS = frozenset(
+    {"moves", "gets_about", "circle", "reached", "in_time", "approach", "comes_by", "comes_back", "faces"}
+)
+"""Checks of where the robot comes, which nothing but a command brings about."""
+COMMAND = "geometry_msgs/msg/Twist"
+NO_COMMAND = "It published no command at all: what is computed must be published, too."
+NO_CIRCLE = "It hardly moves, or drives along a line: a circle is asked for."
 COUNTED_CHECKS = frozenset({"says", "rate"})
 """Checks of how often something comes."""
 
@@ -186,12 +194,24 @@ class GradedDrive:
             )
         if check == "profiles":
             return self._explain_profiles(params.ends)
-        timers = (
-            [TIMER_WITHOUT_CALLBACK] if any(TIMER_WITHOUT_CALLBACK in line for line in self.printed) else []
-        )
+        if check in MOTION_CHECKS and not any(
+            each.kind.startswith(COMMAND) for each in self.traffic.values()
+        ):
+            return " ".join([NO_COMMAND, *self._idle_timers(), *self.connections.mistakes])
+        if check == "circle":
+            fit = self.fit_circle(params.after)
+            return NO_CIRCLE if fit is None else fit.describe(params.radius, params.turning)
         topics = self._topic_mistakes(params.topics) if check == "topics" else ()
         counts = self._counts(check, params) if check in COUNTED_CHECKS and params is not None else ()
-        return " ".join([*counts, *timers, *topics, *self.connections.mistakes])
+        return " ".join([*counts, *self._idle_timers(), *topics, *self.connections.mistakes])
+
+    def _idle_timers(self) -> Iterator[str]:
+        if any(TIMER_WITHOUT_CALLBACK in line for line in self.printed):
+            yield TIMER_WITHOUT_CALLBACK
+
+    def fit_circle(self, after: float) -> CircleFit | None:
+        """Returns the circle nearest to the way after so many seconds; None if it goes nowhere."""
+        return fit_circle(self.track[round(after / self.recording.step_size) :, :2])
 
     def lines_with(self, text: str) -> Counter[int]:
         """How many lines with the text, in whatever letters, were printed in each second of the episode."""

@@ -241,8 +241,8 @@ def nice_ceiling(value: float) -> float:
 
 
 def _format_count(value: float) -> str:
-    """A round number as people write it: 50 000, or 0.2."""
-    return f"{value:,.0f}".replace(",", " ") if value >= 1 else f"{value:.4g}"
+    """A round number as people write it: 50,000, or 0.2."""
+    return f"{value:,.0f}" if value >= 1 else f"{value:.4g}"
 
 
 def draw_value_axis(

@@ -54,7 +54,7 @@ def test_the_scale_moves_seldom_while_a_run_grows() -> None:
         values.append(np.tanh(step / 150) + generator.normal(0, 0.05))
         frame = draw_curves([curve(values)], Axes("steps", low=0, high=1), 40, 8, BrailleEncoder())
         scales.add((frame.text(1)[:4], frame.text(6)[:4], frame.text(7)))
-    assert len(scales) <= 9  # 100, 200, 500, 1 000, 2 000, ... 50 000 steps
+    assert len(scales) <= 9  # 100, 200, 500, 1,000, 2,000, ... 50,000 steps
 
 
 def test_a_goal_is_a_dashed_line_with_its_value() -> None:

@@ -161,26 +161,12 @@ def remaining_turn(drive: GradedDrive, params: RemainingTurnParams) -> float:
     return float(np.mean(off <= np.radians(params.within)))
 
 
-@check(none=0.5, full=0.1, unit="%", params=CircleParams)
+@check(none=0.5, full=0.1, unit="%", params=CircleParams, is_explained=True)
 def circle(drive: GradedDrive, params: CircleParams) -> float:
     """The robot's way should be a circle of the asked radius, to the asked side; its points are off by {actual} of that
     ({where}); {full} is allowed. A circle's radius is the speed divided by the rate of turning; a circle to the other
     side is off by twice its radius, and what is driven back on the same arc counts too."""
-    path = drive.track[round(params.after / drive.recording.step_size) :, :2]
-    if len(path) < 10 or params.radius <= 0.0:
-        return math.inf
-    # Kasa's fit: x2 + y2 = 2 a x + 2 b y + c is linear in the middle (a, b).
-    rows = np.column_stack((2 * path, np.ones(len(path))))
-    (a, b, _), *_ = np.linalg.lstsq(rows, (path**2).sum(axis=1), rcond=None)
-    spokes = path - (a, b)
-    crosses = spokes[:-1, 0] * spokes[1:, 1] - spokes[:-1, 1] * spokes[1:, 0]
     if params.turning not in ("", "left", "right"):
         raise ValueError(f"turning is left or right, not {params.turning}")
-    if not np.any(crosses):
-        return math.inf
-    radii = np.hypot(spokes[:, 0], spokes[:, 1])
-    if params.turning not in ("", "left" if crosses.sum() > 0.0 else "right"):
-        radii = -radii
-    # What it drives back on the same arc is no way round.
-    back = 1.0 - abs(crosses.sum()) / np.abs(crosses).sum()
-    return max(float(np.abs(radii - params.radius).max()) / params.radius, float(back))
+    fit = drive.fit_circle(params.after)
+    return math.inf if fit is None or params.radius <= 0.0 else fit.off(params.radius, params.turning)

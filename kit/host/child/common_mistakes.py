@@ -9,7 +9,7 @@ FUNCTION: Final = "(builtin_function_or_method|function|method)"
 MEANINGS: Final = (
     (
         r"'NoneType' object|'NoneType' and|and 'NoneType'|\bnot NoneType\b|not 'NoneType'",
-        "Something here is None: not set yet, or the result of what returns nothing, as append does.",
+        "Something here is None: given so, not set yet, or from a call that returns nothing, as append does.",
     ),
     (
         r"can't multiply sequence by|unsupported operand type\(s\) for .+: ('list' and|'\w+' and 'list')",

@@ -13,13 +13,14 @@ from grader.check import NoParams
 from grader.driving.checks import interfaces, speeds, walls, ways
 from grader.driving.checks.speeds import FlagByRangeParams, SpeedByFlagParams, SpeedByRangeParams
 from grader.driving.checks.ways import CircleParams
-from grader.driving.drive_record import GradedDrive
+from grader.driving.drive_record import NO_COMMAND, GradedDrive, TopicTraffic
 from grader.grading import GradingOptions, grade
 from grader.kinds.environment.examination import FreePlacementRunner
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.arrays import FloatArray
 from kit.host.sandbox.sandbox_config import Level
+from kit.ros.graph.connections import NodeConnections
 from kit.ros.graph.graph import Graph
 from kit.run.scenario import find_scenario
 from kit.sim.simulation import Simulation, SimulationError
@@ -191,11 +192,42 @@ def test_to_and_fro_leads_nowhere() -> None:
     assert ground(along[:0], along[:0]) == 0.0
 
 
+COMMANDS = {"/cmd_vel": TopicTraffic("geometry_msgs/msg/Twist", 100)}
+
+
+def test_a_program_that_publishes_no_command_is_told_so() -> None:
+    printed = drive_of(
+        secret=False, traffic={}, printed=("Twist(...)",), connections=NodeConnections(mistakes=("A word.",))
+    )
+    assert printed.explain("moves", NoParams()) == f"{NO_COMMAND} A word."
+    assert printed.explain("circle", CircleParams()).startswith(NO_COMMAND)
+    assert NO_COMMAND not in printed.explain("topics", interfaces.TopicsParams(()))
+    driven = drive_of(secret=False, traffic=COMMANDS, printed=(), connections=NodeConnections())
+    assert driven.explain("moves", NoParams()) == ""
+
+
+def round_and_round(angles: FloatArray, radius: float | FloatArray = 0.3) -> GradedDrive:
+    track = np.column_stack([radius * np.cos(angles), radius * np.sin(angles), angles])
+    return drive_of(track=track, recording=SimpleNamespace(step_size=0.01), secret=False, traffic=COMMANDS)
+
+
+def test_what_is_told_of_a_circle_is_its_size_and_its_side() -> None:
+    round_it = np.linspace(0, 15, 1500)
+
+    def told(drive: GradedDrive) -> str:
+        return drive.explain("circle", CircleParams(0.3, 0.0, "left"))
+
+    assert "0.6 m to the left; 0.3 m to the left" in told(round_and_round(round_it, 0.6))
+    assert "0.3 m to the right; 0.3 m to the left" in told(round_and_round(-round_it))
+    assert "nearly straight" in told(round_and_round(round_it / 20, 6.0))
+    assert "driven back" in told(round_and_round(np.abs(round_it % 2.0 - 1.0)))
+    assert "strays" in told(round_and_round(round_it, 0.3 + 0.1 * np.sin(round_it * 3)))
+    assert "hardly moves" in told(round_and_round(0 * round_it))
+
+
 def test_a_circle_is_driven_one_way_round() -> None:
     def off(angles: FloatArray, turning: str = "left") -> float:
-        track = np.column_stack([0.3 * np.cos(angles), 0.3 * np.sin(angles), angles])
-        drive = drive_of(track=track, recording=SimpleNamespace(step_size=0.01))
-        return ways.circle.measure(drive, CircleParams(0.3, 0.0, turning))
+        return ways.circle.measure(round_and_round(angles), CircleParams(0.3, 0.0, turning))
 
     round_it = np.linspace(0, 15, 1500)
     assert off(round_it) < 0.01

@@ -189,7 +189,7 @@ def wages_terms(words: str, step: LessonStep, folder: Path) -> str:
     limit = task.max_steps
     stop, lost, bonus = -weights["idle"] / limit, -weights["timed_out"], weights["adjacent"]
     texts = {
-        "A step": f"A step side by side pays {bonus:g}, a robot that stops costs {stop:g}",
+        "A step": f"A step side by side pays {bonus:g}, and a robot that stops costs {stop:g}",
         "time": f"time that runs out costs {lost:g}",
         "since": f"since {lost:g} are lost at the end",
         "The end": f"The end costs {lost:g} once. What pays, pays {limit} times.",
@@ -197,6 +197,16 @@ def wages_terms(words: str, step: LessonStep, folder: Path) -> str:
         "The two": f"The two stops cost {2 * stop:g} and being side by side pays {bonus:g}",
     }
     return next(text for begin, text in texts.items() if words.startswith(begin))
+
+
+def wages_of_room(words: str, step: LessonStep, folder: Path) -> str:
+    """What is left of the return of two that stand still when all that the text names is taken away."""
+    task = find_task(PAIR)
+    weights = {each.term: each.value for each in task.reward.weights}
+    earned, limit, _ = wages(STOP)
+    each_step = (earned - weights["timed_out"]) / limit
+    room = each_step - weights["adjacent"] - 2 * weights["idle"] / limit
+    return f"pays about {round(room):g} a step where they stand"
 
 
 # The best of many tests: drawn, in place of the exercise's formula
@@ -306,6 +316,7 @@ FAILURE_DERIVATIONS: Final = (
     exploding_values,
     shifted_exponents,
     overflow,
+    wages_of_room,
     wages_of_two,
     wages_terms,
     best_of_sixty,
@@ -315,5 +326,13 @@ FAILURE_DERIVATIONS: Final = (
     continuous_actions,
 )
 FAILURE_DEAR: Final = frozenset(
-    {"exploding-values", "five-seeds", "four-algorithms", "wages-of-two", "limited-wanders", "limited-values"}
+    {
+        "exploding-values",
+        "five-seeds",
+        "four-algorithms",
+        "limited-values",
+        "limited-wanders",
+        "wages-of-room",
+        "wages-of-two",
+    }
 )
