@@ -19,4 +19,5 @@ def nearest_on_segments(points: FloatArray, segments: FloatArray) -> tuple[Float
     length2 = np.maximum((along**2).sum(axis=1), 1e-18)
     share = np.clip(((points[:, None] - start) * along).sum(axis=2) / length2, 0.0, 1.0)
     nearest = start + share[..., None] * along
-    return np.hypot(*np.moveaxis(nearest - points[:, None], 2, 0)), nearest
+    away = nearest - points[:, None]
+    return np.hypot(away[..., 0], away[..., 1]), nearest
