@@ -8,7 +8,7 @@ import click
 
 import kit
 from kit.cli.lazy_group import LazyGroup
-from kit.cli.plain_flag import PLAIN
+from kit.cli.plain_flag import PLAIN, PLAIN_OPTION
 from kit.cli.process import run_as_process
 
 VERBS: Final[dict[str, tuple[str, str]]] = {
@@ -98,6 +98,7 @@ VERSION: Final[str] = getattr(kit, "__version__", "unknown")
     cls=LazyGroup,
     verbs=VERBS,
     has_others=True,
+    everywhere=(PLAIN_OPTION,),
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="`kit COMMAND --help` explains a command, `kit help` lists pages to read. Ctrl-C leaves any screen.",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
 from types import MappingProxyType
 from typing import Any, Final
@@ -60,14 +60,18 @@ class WordType(StringParamType):
 WORD: Final = WordType()
 
 
-def _prepare_help(command: click.Command) -> click.Command:
-    """The command, with its own commands: its help is broken at blanks alone, and a shell completes its words with files."""
+def _prepare(command: click.Command, everywhere: Sequence[click.Option]) -> click.Command:
+    """The command, with its own commands: its help is broken at blanks alone, a shell completes its words with files, and
+    it takes the options ``everywhere`` unless it has one of that name, or passes on what it does not know."""
     command.context_class = CommandContext
     for parameter in command.params:
         if parameter.type is click.STRING:
             parameter.type = WORD
+    if not command.context_settings.get("ignore_unknown_options"):
+        names = {name for parameter in command.params for name in parameter.opts}
+        command.params.extend(option for option in everywhere if names.isdisjoint(option.opts))
     for each in command.commands.values() if isinstance(command, click.Group) else ():
-        _prepare_help(each)
+        _prepare(each, everywhere)
     return command
 
 
@@ -82,15 +86,17 @@ class LazyGroup(click.Group):
         verbs: Verbs,
         absent: Mapping[str, str] = MappingProxyType({}),
         has_others: bool = False,
+        everywhere: Sequence[click.Option] = (),
         **options: Any,
     ) -> None:
         """``verbs``: for each name its ``module`` or ``module:command``, and its line in ``--help``; without a line, a verb
         is not listed. ``absent``: verbs that users may try, and why the kit does not have them. ``has_others``: whether
-        verbs and dialogues of other packages belong to the group."""
+        verbs and dialogues of other packages belong to the group. ``everywhere``: options that every verb takes."""
         super().__init__(*arguments, **options)
         self._verbs = verbs
         self._has_others = has_others
         self._absent = absent
+        self._everywhere = everywhere
 
     def _extension_commands(self) -> dict[str, Extension]:
         """The verbs and dialogues of other packages, by the names that the kit itself does not use."""
@@ -104,9 +110,9 @@ class LazyGroup(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in self._verbs:
             other = self._extension_commands().get(cmd_name)
-            return None if other is None else _prepare_help(_command_of(other))
+            return None if other is None else _prepare(_command_of(other), self._everywhere)
         module, _, name = self._verbs[cmd_name][0].partition(":")
-        return _prepare_help(getattr(import_module(module), name or "command"))
+        return _prepare(getattr(import_module(module), name or "command"), self._everywhere)
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]

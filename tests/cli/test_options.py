@@ -25,6 +25,12 @@ def test_a_damaged_journal_is_told_by_every_verb_that_opens_it(arguments: tuple[
     assert "was damaged" not in result.stdout
 
 
+@pytest.mark.parametrize("command", ["progress", "maps", "study clip", "ros interface package std_msgs"])
+def test_plain_is_taken_by_commands_that_open_no_screen(command: str) -> None:
+    expected, result = kit(*command.split()), kit(*command.split(), "--plain")
+    assert (result.output, result.exit_code) == (expected.output, expected.exit_code)
+
+
 def test_sentences_and_errors_are_broken_between_words(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -8,6 +8,7 @@ from typing import Final
 import click
 
 from kit.cli.lazy_group import LazyGroup, Verbs
+from kit.cli.plain_flag import PLAIN_OPTION
 from kit.cli.ros.documented_options import tell_absent_options
 
 VERBS: Final[Verbs] = {
@@ -55,6 +56,7 @@ class RosGroup(LazyGroup):
 @click.group(
     name="ros",
     cls=RosGroup,
+    everywhere=(PLAIN_OPTION,),
     verbs=VERBS,
     absent=ABSENT,
     epilog="A world runs while `kit play`, `kit launch` or `kit run --serve` runs. If several run, the newest is used, "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -12,7 +13,7 @@ from kit.dialogue.dialogue import DialogueAction, Refused
 from kit.dialogue.effects import Effect, Tell
 from kit.dialogue.shared_actions import ACTIONS
 from kit.document.blocks import Block, Picture, Text, Tone
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import nearest_name, quoted
 from kit.school.lessons.reading import lesson_number, lessons_folder
 from kit.world.documents import open_document
 from kit.world.yaml_section import Section
@@ -67,14 +68,18 @@ def read_glossary(folder: Path | None = None) -> tuple[GlossaryTerm, ...]:
 
 
 def find_terms(terms: Sequence[GlossaryTerm], word: str) -> tuple[GlossaryTerm, ...]:
-    """Finds the terms that are spelt like ``word``; if there are none, those that contain it. Raises UnknownTerm."""
-    found = [each for each in terms if each.matches(word)]
-    found = found or [
-        each for each in terms if any(word.casefold() in spelling.casefold() for spelling in each.spellings)
-    ]
+    """Finds the terms that are spelt like ``word``; if there are none, those with a word that begins like it, in their names
+    or else in their meanings. Raises UnknownTerm."""
+    begins = re.compile(rf"\b{re.escape(word)}", re.IGNORECASE)
+    found = (
+        [each for each in terms if each.matches(word)]
+        or [each for each in terms if any(map(begins.search, each.spellings))]
+        or [each for each in terms if begins.search(each.meaning)]
+    )
     if not found:
-        known = [spelling for each in terms for spelling in each.spellings]
-        raise UnknownTerm(f"The glossary has no {quoted(word)}: {suggestion(word, known)}")
+        near = nearest_name(word, [spelling for each in terms for spelling in each.spellings])
+        hint = f"did you mean {quoted(near)}?" if near else "`kit glossary` lists its terms."
+        raise UnknownTerm(f"The glossary has no {quoted(word)}: {hint}")
     return tuple(found)
 
 

@@ -87,3 +87,10 @@ def test_a_term_that_stands_twice_is_told_with_its_line(tmp_path: Path) -> None:
     (tmp_path / "glossary.yaml").write_text("terms:\n" + row + row.replace("node", "Node"))
     with pytest.raises(WorldError, match=r"glossary\.yaml:3"):
         read_glossary(tmp_path)
+
+
+def test_a_word_that_is_no_term_is_looked_for_where_words_begin() -> None:
+    assert [each.term for each in find_terms(TERMS, "lidar")] == ["Laser"]
+    assert "latency" in [each.term for each in find_terms(TERMS, "scan")], "named in its meaning"
+    with pytest.raises(UnknownTerm, match="kit glossary"):  # in the middle of "simulator"
+        find_terms(TERMS, "imu")
