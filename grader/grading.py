@@ -386,7 +386,11 @@ class Grading:
             if each.visibility is Visibility.VISIBLE and (public := self._score_public(each))
         ]
         passed = sum(all(each.share == 1.0 for each in public) for public in scored)
-        return "all passed" if passed == len(scored) else f"{passed} of {len(scored)} criteria passed"
+        return (
+            "all passed"
+            if passed == len(scored)
+            else f"{passed} of {counted(len(scored), 'criterion', 'criteria')} passed"
+        )
 
     def _score_public(self, criterion: Criterion) -> tuple[_ScoredEvidence, ...]:
         """Scores the public evidence of a criterion alone."""

@@ -22,7 +22,7 @@ ENDING: Final = (signal.SIGTERM, signal.SIGHUP)
 SAME_END_S: Final = 1.0
 """Signals that come so soon after one that ends a program are the same end, as of a shell that sends several [s]."""
 REPEAT_S: Final = 0.01
-"""A signal that was lost is sent again after so long [s]."""
+"""A signal that was lost is sent again after this long [s]."""
 
 
 @contextmanager

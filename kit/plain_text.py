@@ -100,10 +100,11 @@ def format_percent(share: float, *, beside: float = 1.0) -> str:
     return f"{share * 100:.{digits}f} %"
 
 
-def counted(count: int, noun: str) -> str:
-    """A number with its noun, in the plural where it is not one: ``1 bump``, ``2 bumps``, ``0 entries``."""
-    if count == 1:
-        return f"{count} {noun}"
+def counted(count: int, noun: str, plural: str = "") -> str:
+    """A number with its noun, in the plural where it is not one: ``1 bump``, ``2 bumps``, ``0 entries``. ``plural``: of a noun
+    that does not follow these rules."""
+    if count == 1 or plural:
+        return f"{count} {noun if count == 1 else plural}"
     return f"{count} {noun[:-1]}ies" if noun.endswith("y") and noun[-2] not in "aeiou" else f"{count} {noun}s"
 
 

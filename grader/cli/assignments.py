@@ -181,7 +181,7 @@ def self_test(folder: Path, solutions: Path | None, level: str | None, jobs: int
     loading.warn_of_short_seeds(assignment)
     works = works_of(assignment, solutions)
     click.echo(
-        f"{assignment.title}: {len(assignment.tests)} criteria, {counted(len(works), 'work')} to grade"
+        f"{assignment.title}: {counted(len(assignment.tests), 'criterion', 'criteria')}, {counted(len(works), 'work')} to grade"
     )
     failed = False
     try:

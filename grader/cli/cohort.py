@@ -36,6 +36,7 @@ from kit.host.job_executors import ExecutorUnavailable, read_shard
 from kit.host.job_folder import JobExecutor, serve_keys
 from kit.host.sandbox import probe
 from kit.host.sandbox.sandbox_config import Level
+from kit.plain_text import counted
 from kit.school.game.levels import UnknownLevel, find_level
 from kit.workspace import write_atomically
 
@@ -96,7 +97,7 @@ def cohort(
         judged = judge_anew(queue)
         waiting = queue.waiting()
         anew = f", {judged} judged anew by what was found before" if judged else ""
-        click.echo(f"{len(entries)} submissions{anew}, {len(waiting)} to grade", err=True)
+        click.echo(f"{counted(len(entries), 'submission')}{anew}, {len(waiting)} to grade", err=True)
         with counted_progress(len(waiting), "graded") as count_one:
             executor.run(queue, waiting, lambda key: count_one())
     except (QueueError, ExecutorUnavailable, OSError) as error:

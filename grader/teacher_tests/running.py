@@ -163,7 +163,7 @@ def _make_plugin(session: _Session) -> object:
                 if call.when == "call":
                     session.note(item, CriterionStatus.PASS, "")
             elif call.excinfo.errisinstance(TestTimeUsedUp):
-                # The solution of the assignment does not take so long: a self-test would have shown it.
+                # The solution of the assignment does not take that long: a self-test would have shown it.
                 session.note(item, CriterionStatus.TIMEOUT, TIME_USED_UP)
             elif call.excinfo.errisinstance(pytest.skip.Exception):
                 session.note(item, CriterionStatus.SKIPPED, str(call.excinfo.value))

@@ -64,7 +64,7 @@ class BridgeSettings:
     routes: tuple[BridgeRoute, ...]
     limit: SpeedLimit = USUAL_LIMIT
     watchdog_s: float = 0.5
-    """A robot whose commands stay away for so long is told to stand."""
+    """A robot whose commands stay away for this long is told to stop."""
     distro: Distro = "jazzy"
     """The robot's ROS 2: a few types differ, and Humble knows no hashes of types."""
     is_dry: bool = False
@@ -76,7 +76,7 @@ class BridgeSettings:
 
 
 class Bridge:
-    """Joins ``node`` to ``wire``. Use it as a context manager: at the end every robot is told to stand.
+    """Joins ``node`` to ``wire``. Use it as a context manager: at the end every robot is told to stop.
 
     A route opens when its type is known, from either side. Everything that touches the graph happens in the thread that
     spins the node; the watchdog has a thread and a clock of its own, the wall's, so that it works while the world stands
@@ -134,7 +134,7 @@ class Bridge:
             channel.deliver()
 
     def close(self) -> None:
-        """Tells every robot to stand, and takes everything back. May be called twice."""
+        """Tells every robot to stop, and takes everything back. May be called twice."""
         if self._has_ended.is_set():
             return
         self._has_ended.set()
@@ -253,7 +253,7 @@ class Bridge:
     # In any thread
 
     def stop(self) -> tuple[str, ...]:
-        """Tells every robot to stand, at once, and lets no command pass until ``resume``. Returns the topics."""
+        """Tells every robot to stop, at once, and lets no command pass until ``resume``. Returns the topics."""
         with self._lock:
             self._is_stopped = True
             guarded = [
@@ -417,7 +417,7 @@ class StopSocket:
 
 
 def stop_bridges(workspace: Path) -> list[tuple[str, str]]:
-    """Stops every running bridge of a workspace; returns the names, and which topics were told to stand, or why not."""
+    """Stops every running bridge of a workspace; returns the names, and which topics were told to stop, or why not."""
     answers = []
     for found in running_worlds(bridges_folder(workspace)):
         try:

@@ -119,7 +119,7 @@ class Channel(ABC):
         """Passes on to the graph what has arrived from the wire."""
 
     def send_stop(self) -> None:
-        """Tells the robot to stand."""
+        """Tells the robot to stop."""
         raise AssertionError(f"{self.route} does not move a robot")
 
     def _is_too_large(self, data: bytes) -> bool:

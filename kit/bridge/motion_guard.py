@@ -70,7 +70,7 @@ def _limit_vector(vector: Any, most: float) -> bool:
 
 
 def is_standstill(message: Message) -> bool:
-    """Returns whether a command asks the robot to stand."""
+    """Returns whether a command asks the robot to stop."""
     motion = MOTION_FIELDS[type(message).__ros_type__](message)
     if hasattr(motion, "speed"):
         return bool(motion.speed == 0.0)
@@ -104,7 +104,7 @@ class MotionGuard:
         return self._is_stopped
 
     def stop_message(self) -> Message:
-        """A command to stand."""
+        """A command to stop."""
         return self._cls()
 
     def admit(self, message: Message, now_s: float, late_s: float = 0.0) -> Message | None:

@@ -1,4 +1,4 @@
-"""Ends the process of a bridge for certain, after its robots were told to stand, even where something hangs.
+"""Ends the process of a bridge for certain, after its robots were told to stop, even where something hangs.
 
 A package of a wire may wait for a peer that is gone, and may keep threads of its own that the interpreter waits for. So
 a thread that waits for nothing of theirs keeps the time, and the signals reach it directly: the main thread may be in a
@@ -145,7 +145,7 @@ class ShutdownDeadline:
         self._exit_process(code)
 
     def _describe(self) -> str:
-        """Says what hangs, and whether the robots know that they are to stand."""
+        """Says what hangs, and whether the robots know that they are to stop."""
         robots = (
             "The robots were told to stop."
             if self._has_stopped_robots.is_set()
@@ -158,7 +158,7 @@ class ShutdownDeadline:
 
 
 def _attempt(action: Callable[[], object]) -> None:
-    """Waits for an action only so long: a terminal may have stopped its output."""
+    """Waits for an action for a limited time: a terminal may have stopped its output."""
     thread = threading.Thread(target=action, name="bridge-attempt", daemon=True)
     thread.start()
     thread.join(ATTEMPT_S)

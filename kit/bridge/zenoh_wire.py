@@ -45,7 +45,7 @@ ENDPOINT_PATTERN: Final = re.compile(r"tcp/\S+:\d+")
 CONNECT_TIMEOUT_S: Final = 3.0
 CALL_TIMEOUT_S: Final = 5.0
 LEASE_MS: Final = 2000
-"""A connection that has been silent for so long counts as cut, and is opened again."""
+"""A connection that has been silent for this long counts as cut, and is opened again."""
 RETRY_MS: Final = 200
 MAX_RETRY_MS: Final = 1000
 _ROLES: Final = {

@@ -132,7 +132,7 @@ class ComfortLimits:
     acceleration: float = 0.2
     """m/s^2: of the faster robot."""
     smoothing_time: float = 0.8
-    """s: an acceleration comes and goes over so long: jerk stays below 2 * acceleration / easing where the way is
+    """s: an acceleration comes and goes over this long: jerk stays below 2 * acceleration / easing where the way is
     straight, and below twice that where two robots take a bend."""
     turn_rate: float = 0.8
     """rad/s"""

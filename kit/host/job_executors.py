@@ -90,7 +90,7 @@ class JobPool:
     ) -> None:
         """``command`` starts a worker, which calls ``serve_jobs`` on its standard streams. ``on_done``: called with each key
         that is through, by one thread at a time; ``on_lost``: before it, with the key of a job whose worker died every
-        time. ``limit_s``: after so long [s] a worker that is at one job counts as standing still."""
+        time. ``limit_s``: after this long [s] a worker that is at one job counts as standing still."""
         self._command = tuple(command)
         self._waiting = deque(keys)
         self._jobs = min(jobs, len(keys))
@@ -275,7 +275,7 @@ def run_on_dask(
     through, if one failed.
 
     ``run_job_by_key`` gets the folder and a key. ``on_lost``: called with the key of a job that repeatedly kills its
-    worker. ``limit_s``: if no job at all ends for so long [s], the cluster counts as standing still.
+    worker. ``limit_s``: if no job at all ends for this long [s], the cluster counts as standing still.
     """
     try:
         from distributed import Client, KilledWorker, wait

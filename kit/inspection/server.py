@@ -36,7 +36,7 @@ machine, goes on at the present."""
 HOLD_S: Final = 10.0
 """How long the world stands still for a client at most, by the wall clock [s]."""
 LOOK_S: Final = 0.05
-"""After so long it looks whether it has ended meanwhile [s]."""
+"""After this long it looks whether it has ended meanwhile [s]."""
 
 
 class ClientConnection:

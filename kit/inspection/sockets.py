@@ -169,7 +169,7 @@ def connect(path: Path) -> socket.socket:
     """Connects to the world that listens at ``path``. Raises OSError if none does, or it lets nobody in for ``CONNECT_S``."""
     connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     try:
-        # Linux waits so long, and without it for ever, for a listener that accepts nobody and whose queue is full.
+        # Linux waits this long, and without it for ever, for a listener that accepts nobody and whose queue is full.
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, _timeval(CONNECT_S))
         with _short_name(path) as name:
             connection.connect(name)

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from kit.layers.examples import EXAMPLES
 from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
+from kit.layers.flatland.requirement_binding import bind_requirements
 from kit.layers.flatland.world_case import WorldCase, current_case, to_requirements_file
-from kit.layers.flatland.world_patch import bind_requirements
 from kit.layers.flatland.world_planning import WorldPlan, plan_world
 from kit.layers.planning import DEFAULT_TIME_LIMIT, LayerPlan, solve_layers
 from kit.layers.requirements import LayerCase

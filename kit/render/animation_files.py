@@ -97,7 +97,7 @@ def svg_picture(
 ) -> str:
     """The whole file: walls, targets, paths, marks and contacts of one scene; bodies are not drawn.
 
-    ``size``: at most so wide and high [pixels], as the world's shape asks for.
+    ``size``: at most this wide and high [pixels], as the world's shape asks for.
 
     >>> svg_picture(Scene(), title="nothing")[:4]
     '<svg'
@@ -128,7 +128,7 @@ def svg_animation(
 ) -> str:
     """The whole file: walls, targets and robots' ways as lines, and every body moving, again and again.
 
-    ``scenes``: ``interval_s`` seconds apart; walls and targets are those of the first. ``size``: at most so wide
+    ``scenes``: ``interval_s`` seconds apart; walls and targets are those of the first. ``size``: at most this wide
     and high [pixels], as the world's shape asks for. ValueError without a scene.
 
     >>> svg_animation([Scene(), Scene()], 0.1)[:4]

@@ -56,7 +56,7 @@ MAX_PENDING: Final = 64
 MAX_PENDING_BYTES: Final = 1 << 20
 """Messages, and their bytes, that are written at once: to keep signals away takes longer than to write a message."""
 FLUSH_INTERVAL_S: Final = 1.0
-"""After so long all messages are on the disk [s]."""
+"""After this long all messages are on the disk [s]."""
 INFINITE_TIME: Final = QosTime(9223372036, 854775807)
 """How ROS 2 writes an infinite duration."""
 

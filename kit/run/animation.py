@@ -53,7 +53,7 @@ class AnimationSettings:
     """Frames per second."""
     size: tuple[int, int] | None = None
     """Columns and rows of an asciicast, pixels of a picture; None: ``DEFAULT_SIZES``. A picture is as high as the
-    world's shape asks for, at most so high."""
+    world's shape asks for, at most this high."""
     theme: Literal["light", "dark"] = "light"
     """On white or on black. A light asciicast uses the 16 colours of the terminal that plays it."""
 

@@ -30,7 +30,7 @@ from kit.run.recording import (
 from kit.workspace import check_writable, is_special
 
 INTERVAL_S: Final = 0.5
-"""After so long what was recorded is written [s]."""
+"""After this long what was recorded is written [s]."""
 
 
 class RecordingFile:

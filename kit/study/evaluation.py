@@ -24,10 +24,9 @@ from kit.school.quiz.answers import AnswerOutcome
 from kit.school.report.chapters import people, quiz, relations
 from kit.school.report.chapters.context import ReportContext
 from kit.school.report.class_report import build_chapters
-from kit.school.report.inference import shapiro_wilk, summary_statistics
-from kit.school.report.measures import (
-    analyse_item,
-)
+from kit.school.report.inference import summary_statistics
+from kit.school.report.item_analysis import analyse_item
+from kit.school.report.normality import shapiro_wilk
 from kit.school.survey import QuestionPurpose
 from kit.study.evaluation_data import EvaluationData
 from kit.study.evaluation_tables import (

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import time
 import tomllib
+from argparse import ArgumentParser
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -275,19 +276,26 @@ def test_seconds() -> Figure:
     return Figure("seconds of the test command", f"{time.monotonic() - begun:.0f}", "about 600")
 
 
-def main(arguments: list[str]) -> int:
-    """Prints the report; ``--names`` also lists what is counted: circles, seams, functions that forward, class names."""
+def main() -> None:
+    """Prints the report."""
+    parser = ArgumentParser(description=__doc__)
+    parser.add_argument(
+        "--names",
+        action="store_true",
+        help="also list what is counted, with its place: circles, seams, functions that only forward, class names",
+    )
+    parser.add_argument("--tests", action="store_true", help="also time the README's test command")
+    given = parser.parse_args()
     rows, names = figures()
-    if "--tests" in arguments:
+    if given.tests:
         rows.append(test_seconds())
     width = max(len(row.name) for row in rows)
     print(f"{'':{width}}  {'now':>10}  first build")
     for row in rows:
         print(f"{row.name:{width}}  {row.now:>10}  {row.first_build}")
-    if "--names" in arguments:
+    if given.names:
         print(*names, sep="\n")
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main()

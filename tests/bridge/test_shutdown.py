@@ -1,4 +1,4 @@
-"""The end of a bridge's process: certain, whatever hangs, and after the robots were told to stand."""
+"""The end of a bridge's process: certain, whatever hangs, and after the robots were told to stop."""
 
 from __future__ import annotations
 

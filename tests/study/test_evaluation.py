@@ -23,9 +23,10 @@ from kit.school.report.inference import (
     difference_test,
     fit_polynomial,
     rank_correlation,
-    shapiro_wilk,
 )
-from kit.school.report.measures import ClassRatings, analyse_item, kr20
+from kit.school.report.item_analysis import analyse_item, kr20
+from kit.school.report.measures import ClassRatings
+from kit.school.report.normality import shapiro_wilk
 from kit.study.evaluation import evaluation_chapters, evaluation_table
 from kit.study.evaluation_data import DATA_FILE, read_evaluation_data
 from kit.study.evaluation_tables import (

@@ -32,6 +32,7 @@ from kit.launch.plain_launch import LaunchSession
 from kit.launch.processes import ProcessStartError
 from kit.launch.requests import DeclaredArgument
 from kit.msg.rcl_interfaces import GetParameters, ParameterType
+from kit.plain_text import counted
 from kit.render.world_text import scene_rows
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.snapshot import GraphState, snapshot
@@ -109,7 +110,7 @@ class LaunchRecord:
     def outcome(self) -> str:
         if self.failure is not None:
             return f"stopped ({self.failure.kind.value})"
-        return f"{len(self.nodes)} nodes" + (f", {len(self.failures)} failed" if self.failures else "")
+        return counted(len(self.nodes), "node") + (f", {len(self.failures)} failed" if self.failures else "")
 
     @property
     def nodes(self) -> tuple[str, ...]:

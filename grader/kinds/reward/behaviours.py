@@ -10,6 +10,7 @@ import numpy as np
 from grader.kinds.reward.optimal_policy import TimeCheck, rollout, value_iteration, without_limit
 from grader.kinds.reward.task_model import BACK, FORWARD, HEADINGS, LAST_MOVES, LEFT, RIGHT, GridModel
 from kit.arrays import FloatArray
+from kit.plain_text import counted
 
 Moves = Sequence[int]
 DETOUR = (LEFT, RIGHT) * 4
@@ -178,7 +179,7 @@ def _compare_approaches(
             ("driving away", _away_moves(model, state, len(moves))),
         ):
             yield BehaviourComparison(
-                f"coming nearer for {len(moves)} steps",
+                f"coming nearer for {counted(len(moves), 'step')}",
                 f"{name} as long, and neither arrives",
                 near_return,
                 discounted_return(model, rewards, state, other),

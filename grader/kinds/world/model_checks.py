@@ -9,7 +9,7 @@ from typing import Final
 from grader.check import Check
 from grader.kinds.world.facts import BodyFacts, PluginFacts, WorldFacts
 from grader.kinds.world.faults import UNSPECIFIED, NotInWorld, find_model, format_metres, world_check
-from kit.plain_text import quoted, suggestion
+from kit.plain_text import counted, quoted, suggestion
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ def body(world: WorldFacts, params: BodyParams) -> Iterator[str]:
     if params.kind and part.kind != params.kind:
         yield f"{name} is {part.kind}, not {params.kind}"
     if params.footprints and len(part.shapes) != params.footprints:
-        yield f"{name} has {len(part.shapes)} footprints, not {params.footprints}"
+        yield f"{name} has {counted(len(part.shapes), 'footprint')}, not {params.footprints}"
     if params.shape and (other := [each.kind for each in part.shapes if each.kind != params.shape]):
         yield f"{name} has a {other[0]} for a footprint, not a {params.shape}"
     if part.box is None:
@@ -58,8 +58,8 @@ def body(world: WorldFacts, params: BodyParams) -> Iterator[str]:
         return
     left, bottom, right, top = part.box
     for what, actual, expected in (
-        ("is so long", right - left, params.length),
-        ("is so wide", top - bottom, params.width),
+        ("is this long", right - left, params.length),
+        ("is this wide", top - bottom, params.width),
         ("has its front at x", right, params.front),
         ("is at x", part.pose[0], params.x),
         ("is at y", part.pose[1], params.y),

@@ -203,9 +203,11 @@ def info(folder: Path, verbose: bool) -> None:
 @click.option("-l", "--loop", is_flag=True, help="Play in a loop.")
 @click.option("-p", "--start-paused", is_flag=True, help="Start when Enter is pressed.")
 @click.option(
-    "-d", "--delay", type=click.FloatRange(0), default=0.0, help="Wait so long before it starts [s]."
+    "-d", "--delay", type=click.FloatRange(0), default=0.0, help="How long to wait before it starts [s]."
 )
-@click.option("--start-offset", type=click.FloatRange(0), default=0.0, help="Start so far into the bag [s].")
+@click.option(
+    "--start-offset", type=click.FloatRange(0), default=0.0, help="How far into the bag to start [s]."
+)
 @click.option("--playback-duration", type=click.FloatRange(0), help="Play so much of the bag [s].")
 @click.option("--playback-until-sec", type=float, help="Play messages up to this time of the bag [s].")
 @topic_options("Play")

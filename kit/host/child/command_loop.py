@@ -65,7 +65,7 @@ class CommandSession:
         """How long an answer may take, by processor time and by the wall clock [s]."""
 
     def set_deadline(self, processor_s: float, wall_s: float) -> None:
-        """Makes Python dump its stacks after so long without an answer, by either clock; 0 switches that off."""
+        """Makes Python dump its stacks after this long without an answer, by either clock; 0 switches that off."""
         signal.setitimer(signal.ITIMER_PROF, processor_s)
         signal.setitimer(signal.ITIMER_REAL, wall_s)
 

@@ -128,7 +128,7 @@ class _GraphSelector:
         return getattr(self._selector, name)
 
     def select(self, timeout: float | None = None) -> list[Any]:
-        """Waits until a file is ready, or for so long [s, simulated]; returns the files that are ready."""
+        """Waits until a file is ready, or for that long [s, simulated]; returns the files that are ready."""
         found: list[Any] = self._selector.select(0)
         if found or (timeout is not None and timeout <= 0):
             self._graph.count_read()

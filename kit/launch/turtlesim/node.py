@@ -31,7 +31,7 @@ from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
 
 PERIOD_S: Final = 0.016
-"""turtlesim moves its turtles and reports their poses so often [s]."""
+"""turtlesim moves its turtles and reports their poses at this interval [s]."""
 _SHELL: Final = np.array([(0.28, 0.0), (0.12, 0.2), (-0.16, 0.2), (-0.25, 0.0), (-0.16, -0.2), (0.12, -0.2)])
 """A turtle's outline in its own frame [m]."""
 

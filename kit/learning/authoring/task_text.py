@@ -158,7 +158,7 @@ def _observation_blocks(seen: ObservationSpec) -> Iterator[Block]:
         parts.insert(0, f"2 rays towards the other robot, {limit}")
     if seen.rays:
         others = ", others for the second robot on" if seen.other_rays else ""
-        parts.insert(0, f"{len(seen.rays)} rays{others}, {limit}")
+        parts.insert(0, f"{counted(len(seen.rays), 'ray')}{others}, {limit}")
     yield from (Text(part, indent=2, hang=2, is_tight=True) for part in parts)
 
 

@@ -18,11 +18,12 @@ from kit.learning.maps.ray_directions import RAY_COUNT
 from kit.learning.tasks.goals.goal import GoalCase
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.task_case import TaskCase
+from kit.plain_text import counted
 
 MAX_AREA_TARGETS = 64
 """Number of evenly spread targets taken from a target area; the distance to each is computed from everywhere."""
 MAX_TRIES = 30
-"""Starts on free floor are drawn again at most so often where robots would touch or begin in the target."""
+"""Starts on free floor are drawn again at most this many times where robots would touch or begin in the target."""
 DRAWS_PER_TRY = 64
 START_ROOM = 0.02
 """Starts on free floor keep the hull this far from walls [m]."""
@@ -196,7 +197,7 @@ class CaseArrays:
 def _check_robots(task: LearningTask, batch_map: BatchMap) -> None:
     if len(batch_map.starts) != task.robots:
         raise UnsupportedWorld(
-            f"{batch_map.name} has {len(batch_map.starts)} robots, task {task.name} has {task.robots}"
+            f"{batch_map.name} has {counted(len(batch_map.starts), 'robot')}, task {task.name} has {task.robots}"
         )
     rays = batch_map.robot.ray_angles
     if len(rays) != RAY_COUNT:

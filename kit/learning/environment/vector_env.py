@@ -128,7 +128,7 @@ class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
         self._is_begun = True
         has_begun = np.zeros(self.num_envs, dtype=np.bool_)
         has_begun[which] = True
-        self._paint()
+        self._paint_first_world()
         return self._observations.copy(), self._case_info(has_begun)
 
     def _seeds(self, seed: int | Sequence[int | None] | None) -> list[int | None]:
@@ -186,7 +186,7 @@ class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
             observations[which] = self.batch.reset_worlds(which)
         self._over = np.zeros_like(over) if self.autoreset_mode is AutoresetMode.SAME_STEP else over
         self._observations = observations
-        self._paint()
+        self._paint_first_world()
         return observations.copy(), rewards, terminated, truncated, {**info, **self._info(step, ~begun)}
 
     def _case_info(self, known: BoolArray) -> dict[str, Any]:
@@ -261,7 +261,7 @@ class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
         scenes = (build_batch_scene(self.batch, world) for world in range(self.num_envs))
         return tuple(picture_of(scene, self.render_mode) for scene in scenes)
 
-    def _paint(self) -> None:
+    def _paint_first_world(self) -> None:
         """Paints the first world in the terminal."""
         if self.render_mode != "human":
             return

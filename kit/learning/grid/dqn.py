@@ -13,7 +13,7 @@ import numpy as np
 
 from kit.arrays import FloatArray, IntArray
 from kit.learning.grid.grid_learner import GridLearner, GridLearnerSettings
-from kit.learning.grid.grid_world import MOVES, GridCell, GridWorld
+from kit.learning.grid.grid_world import MOVE_NAMES, GridCell, GridWorld
 from kit.learning.grid.q_learning import choose_by_values
 
 HIDDEN: Final = 32
@@ -99,7 +99,7 @@ class DqnLearner(GridLearner):
         places = np.indices(world.shape).reshape(2, -1).T / np.maximum(1, np.array((rows, columns)) - 1)
         self._inputs: FloatArray = places * 2.0 - 1.0
         """(cells, 2) row and column of every cell, each from -1 to 1."""
-        self.network = ValueNetwork(network_rng, 2, len(MOVES))
+        self.network = ValueNetwork(network_rng, 2, len(MOVE_NAMES))
         self.target_parameters = [each.copy() for each in self.network.parameters]
         """The parameters that targets are worked out by."""
         self._replay: list[ReplayedStep] = []

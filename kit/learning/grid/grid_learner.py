@@ -9,7 +9,7 @@ from typing import ClassVar, Final
 import numpy as np
 
 from kit.arrays import FloatArray
-from kit.learning.grid.grid_world import CLIFF, MOVES, TARGET, GridCell, GridWorld
+from kit.learning.grid.grid_world import CLIFF, MOVE_NAMES, TARGET, GridCell, GridWorld
 
 MAX_EPISODE_STEPS: Final = 300
 """An episode that takes longer is truncated."""
@@ -69,7 +69,7 @@ class GridLearner(ABC):
     def __init__(self, world: GridWorld, settings: GridLearnerSettings) -> None:
         self.world = world
         self.settings = settings
-        self.values: FloatArray = np.zeros((*world.shape, len(MOVES)))
+        self.values: FloatArray = np.zeros((*world.shape, len(MOVE_NAMES)))
         """(rows, columns, moves): the expected return of each move in each cell."""
         self.returns: list[float] = []
         """Sum of the rewards of each episode that has ended."""

@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 
 from kit.breadth_first import reached_from
 
-MOVES: Final = ("right", "up", "left", "down")
+MOVE_NAMES: Final = ("right", "up", "left", "down")
 """Moves by number: quarter turns, counter-clockwise from the right."""
 OFFSETS: Final = ((0, 1), (-1, 0), (0, -1), (1, 0))
 """Rows down and columns to the right, by move."""
@@ -107,7 +107,7 @@ class GridWorld:
 
     def _moves_past_ends(self, cell: GridCell) -> Iterator[tuple[int, GridCell]]:
         """The moves from a cell that end at neither a small target nor a cliff, each with the cell that it leads to."""
-        for move in range(len(MOVES)):
+        for move in range(len(MOVE_NAMES)):
             reached = self._neighbor(cell, move)
             if self.sign(reached) not in (SMALL_TARGET, CLIFF):
                 yield move, reached
@@ -125,7 +125,7 @@ class GridWorld:
         return self.sign(cell) in (TARGET, SMALL_TARGET, CLIFF)
 
     def step(self, cell: GridCell, move: int) -> GridStep:
-        """``move``: 0 to 3, as in ``MOVES``."""
+        """``move``: 0 to 3, as in ``MOVE_NAMES``."""
         reached = self._neighbor(cell, move)
         sign = self.sign(reached)
         rewards = self.rewards

@@ -13,7 +13,7 @@ import numpy as np
 from kit.arrays import BoolArray, FloatArray, IntArray
 from kit.learning.grid.chances import draw, softmax
 from kit.learning.grid.grid_learner import MAX_EPISODE_STEPS, GridLearner, GridLearnerSettings
-from kit.learning.grid.grid_world import MOVES, GridCell, GridWorld
+from kit.learning.grid.grid_world import MOVE_NAMES, GridCell, GridWorld
 
 HORIZON: Final = 16
 """Steps of each world between two updates."""
@@ -43,7 +43,7 @@ class PpoLearner(GridLearner):
     algorithm: ClassVar[str] = "ppo"
 
     def __init__(self, world: GridWorld, settings: GridLearnerSettings) -> None:
-        self.logits: FloatArray = np.zeros((world.shape[0] * world.shape[1], len(MOVES)))
+        self.logits: FloatArray = np.zeros((world.shape[0] * world.shape[1], len(MOVE_NAMES)))
         self.critic: FloatArray = np.zeros(len(self.logits))
         self._others = [world.start] * (settings.worlds - 1)
         self._other_steps = [0] * len(self._others)

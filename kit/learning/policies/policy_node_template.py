@@ -4,7 +4,7 @@ It subscribes to the robots' lidars, and to their odometry if it was trained to 
 or how much of its goal is achieved, and publishes their commands; remap the topics to the robot's own. A message on goal_pose
 moves the target; a target that moves is known by its transform on /tf. Parameters:
 
-    max_scan_age    the robot is told to stand when no scan has come for so long [s]
+    max_scan_age    the robot is told to stop when no scan has come for this long [s]
     speed_scale     every command is multiplied by this, 0 to 1
     lidar_yaw       how the lidar is turned on the robot, to the left [rad]
     target          x and y of the target, in odometry's frame [m]
@@ -445,7 +445,7 @@ class PolicyNode(Node):
 
 
 def main(args: list[str] | None = None) -> None:
-    # Without rclpy's own handlers Ctrl-C leaves the node able to publish: the robot is told to stand.
+    # Without rclpy's own handlers Ctrl-C leaves the node able to publish: the robot is told to stop.
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     node = PolicyNode()
     try:

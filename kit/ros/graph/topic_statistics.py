@@ -126,7 +126,7 @@ class TopicStats:
 
     def _count_message(self, time_ns: int, node: NodeLike, name: str, message: Message) -> None:
         """Called for every message with the graph's lock held, so it must be quick."""
-        flow = self._flow(node.handle.full_name, name, type_name(type(message)))
+        flow = self._make_flow(node.handle.full_name, name, type_name(type(message)))
         counter = self._counters.get(flow)
         if counter is None:
             counter = self._counters[flow] = _FlowCounter()
@@ -137,7 +137,7 @@ class TopicStats:
                 self._history.clear()
             self._history.append(FieldSample(time_ns, field_values(message)))
 
-    def _flow(self, sender: str, name: str, kind: str) -> MessageFlow:
+    def _make_flow(self, sender: str, name: str, kind: str) -> MessageFlow:
         if kind.endswith("_Request"):
             self._requesters.setdefault(name, deque(maxlen=RATE_WINDOW)).append(sender)
             return MessageFlow(sender, name, is_service=True)

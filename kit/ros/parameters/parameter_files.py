@@ -69,7 +69,7 @@ def read_parameter_file(path: str) -> list[GivenParameters]:
         raise InvalidRosArguments(f"--params-file '{path}': {reason}") from None
     source = _TextSource(path)
     root = _compose(text, source)
-    return [] if root is None else list(_nodes(root, "", source))
+    return [] if root is None else list(_node_parameters(root, "", source))
 
 
 def parameter_dict_from_yaml_file(
@@ -113,7 +113,7 @@ def _compose(text: str, source: _TextSource) -> YamlNode | None:
         raise source.error(str(problem), None) from None
 
 
-def _nodes(node: YamlNode, path: str, source: _TextSource) -> Iterator[GivenParameters]:
+def _node_parameters(node: YamlNode, path: str, source: _TextSource) -> Iterator[GivenParameters]:
     for key, value in _entries(node, source):
         if key == PARAMETERS_KEY:
             if not path:
@@ -121,7 +121,7 @@ def _nodes(node: YamlNode, path: str, source: _TextSource) -> Iterator[GivenPara
                 raise source.error(message, node.start_mark)
             yield GivenParameters(path, tuple(_parameters(value, "", source)))
         else:
-            yield from _nodes(value, f"{path}/{key.strip('/')}", source)
+            yield from _node_parameters(value, f"{path}/{key.strip('/')}", source)
 
 
 def _parameters(node: YamlNode, prefix: str, source: _TextSource) -> Iterator[Parameter]:

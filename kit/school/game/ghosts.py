@@ -181,7 +181,7 @@ class GhostComparison:
         self._at = 0
         self._passed: list[tuple[float, float]] = []
 
-    def add(self, time_s: float, x: float, y: float) -> float | None:
+    def update(self, time_s: float, x: float, y: float) -> float | None:
         """The time [s] by which the drive is behind the ghost at this place, negative if ahead; None away from its way.
 
         A robot that was put back to its start after a bump begins the ghost's way once more.
@@ -227,7 +227,7 @@ def gains_along(track: FloatArray, step_size: float, ghost: Ghost) -> FloatArray
     before: tuple[float, float, float | None] | None = None
     for tick in range(0, len(track), GAIN_TICKS):
         x, y = float(track[tick, 0]), float(track[tick, 1])
-        behind = comparison.add(tick * step_size, x, y)
+        behind = comparison.update(tick * step_size, x, y)
         if before is not None:
             gain = math.nan if behind is None or before[2] is None else before[2] - behind
             rows.append((before[0], before[1], x, y, gain))
@@ -239,5 +239,5 @@ def compare_tracks(track: FloatArray, step_size: float, ghost: Ghost, finish_s: 
     """The splits of a whole recorded drive, ``track`` (ticks, 3), against a ghost."""
     comparison = GhostComparison(ghost)
     for tick in range(0, len(track), 5):
-        comparison.add(tick * step_size, float(track[tick, 0]), float(track[tick, 1]))
+        comparison.update(tick * step_size, float(track[tick, 0]), float(track[tick, 1]))
     return comparison.splits(finish_s)

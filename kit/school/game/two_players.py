@@ -37,7 +37,7 @@ TAG_DISTANCE: Final = 0.3
 TAG_PAUSE: Final = 2.0
 """After a catch nobody is caught for this time [s]."""
 TAG_SECONDS: Final = 90.0
-"""A game of tag lasts so long [s]."""
+"""A game of tag lasts this long [s]."""
 
 
 class SharedMode(StrEnum):

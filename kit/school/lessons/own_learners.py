@@ -23,7 +23,7 @@ from kit.host.student_functions import StudentFunctions
 from kit.learning.grid.chances import softmax
 from kit.learning.grid.dqn import DqnLearner, ReplayedStep
 from kit.learning.grid.grid_learner import GridLearner, GridLearnerSettings
-from kit.learning.grid.grid_world import MOVES, GridCell, GridWorld
+from kit.learning.grid.grid_world import MOVE_NAMES, GridCell, GridWorld
 from kit.learning.grid.ppo import GAE_LAMBDA, PpoLearner
 from kit.learning.grid.q_learning import QLearner
 from kit.plain_text import quoted
@@ -133,10 +133,12 @@ class OwnQLearner(QLearner):
             values=self.values[cell].tolist(),
             epsilon=self.settings.epsilon,
             drawn=float(self.rng.random()),
-            any_move=int(self.rng.integers(len(MOVES))),
+            any_move=int(self.rng.integers(len(MOVE_NAMES))),
         )
-        if move not in range(len(MOVES)):  # 2.0 is 2, as numbers come over the pipe
-            raise OwnLinesError(f"choose() returned {move!r}; a move is a number from 0 to {len(MOVES) - 1}.")
+        if move not in range(len(MOVE_NAMES)):  # 2.0 is 2, as numbers come over the pipe
+            raise OwnLinesError(
+                f"choose() returned {move!r}; a move is a number from 0 to {len(MOVE_NAMES) - 1}."
+            )
         return int(move)
 
     def learn(
@@ -145,7 +147,7 @@ class OwnQLearner(QLearner):
         before = float(self.values[cell][move])
         table = self._lines.call(
             "update",
-            table=self.values.reshape(-1, len(MOVES)).tolist(),
+            table=self.values.reshape(-1, len(MOVE_NAMES)).tolist(),
             cell=self.world.number_of(cell),
             move=move,
             reward=reward,
@@ -154,9 +156,9 @@ class OwnQLearner(QLearner):
             alpha=self.settings.alpha,
             gamma=self.settings.gamma,
         )
-        self.values = numbers_of(table, "update", (self.values.size // len(MOVES), len(MOVES))).reshape(
-            self.values.shape
-        )
+        self.values = numbers_of(
+            table, "update", (self.values.size // len(MOVE_NAMES), len(MOVE_NAMES))
+        ).reshape(self.values.shape)
         return before + (float(self.values[cell][move]) - before) / self.settings.alpha
 
 
@@ -259,8 +261,8 @@ class OwnPpoLearner(PpoLearner):
 
     def entropy_slope(self, cells: IntArray) -> FloatArray:
         seen, places = np.unique(cells, return_inverse=True)
-        steps = SLOPE_STEP * np.concatenate([np.eye(len(MOVES)), -np.eye(len(MOVES))])
-        tried = softmax((self.logits[seen][:, None, :] + steps).reshape(-1, len(MOVES)))
+        steps = SLOPE_STEP * np.concatenate([np.eye(len(MOVE_NAMES)), -np.eye(len(MOVE_NAMES))])
+        tried = softmax((self.logits[seen][:, None, :] + steps).reshape(-1, len(MOVE_NAMES)))
         found = np.array(self._lines.call_all("entropy", {"chances": tried.tolist()}))
         more, less = np.split(found.reshape(len(seen), -1), 2, axis=1)
         slope: FloatArray = ((more - less) / (2 * SLOPE_STEP))[places.ravel()]

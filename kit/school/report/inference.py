@@ -1,11 +1,9 @@
-"""Statistics for small samples: summary statistics, intervals, permutation tests that are exact for small groups, and Shapiro
-and Wilk's test of normality.
+"""Statistics for small samples: summaries, intervals, and permutation tests that are exact for small groups.
 
 The tests need no distribution: they compare what was seen with what every other division of the same numbers into
 groups of the same size would have shown (R. A. Fisher, The Design of Experiments, 1935; E. J. G. Pitman, Supplement to
 the Journal of the Royal Statistical Society 4, 1937). Student's t for intervals of means is computed here in forty
-lines: nothing else in the kit needs scipy, and the core must install in seconds. Shapiro and Wilk's is that of P. Royston,
-"Remark AS R94", Applied Statistics 44 (1995), for 4 to 5,000 numbers.
+lines: nothing else in the kit needs scipy, and the core must install in seconds.
 """
 
 from __future__ import annotations
@@ -294,58 +292,3 @@ def _complete_pairs(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArra
 def _sampled_result(far: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> PermutationTestResult:
     """Counts the observed value as one of the arrangements, so that no p is zero (Phipson and Smyth, 2010)."""
     return PermutationTestResult(float((far.sum() + 1) / (len(far) + 1)), len(far), is_exact=False)
-
-
-MIN_NUMBERS: Final = 4
-MAX_NUMBERS: Final = 5000
-
-
-def shapiro_wilk(values: FloatArray) -> tuple[float, float]:
-    """The statistic W and its p; NaN for too few or too many numbers, or all the same."""
-    x = np.sort(values[~np.isnan(values)])
-    n = len(x)
-    spread = float(((x - x.mean()) ** 2).sum()) if n else 0.0
-    if not MIN_NUMBERS <= n <= MAX_NUMBERS or spread <= 0:
-        return math.nan, math.nan
-    w = min(1.0, float(_order_statistic_weights(n) @ x) ** 2 / spread)
-    if w >= 1:
-        return 1.0, 1.0
-    if n <= 11:
-        edge = -2.273 + 0.459 * n
-        y = -math.log(edge - math.log1p(-w))
-        mean = _cubic_polynomial(n, 0.5440, -0.39978, 0.025054, -0.0006714)
-        sd = math.exp(_cubic_polynomial(n, 1.3822, -0.77857, 0.062767, -0.0020322))
-    else:
-        y, u = math.log1p(-w), math.log(n)
-        mean = _cubic_polynomial(u, -1.5861, -0.31082, -0.083751, 0.0038915)
-        sd = math.exp(_cubic_polynomial(u, -0.4803, -0.082676, 0.0030302, 0.0))
-    return w, 1 - NormalDist().cdf((y - mean) / sd)
-
-
-def _order_statistic_weights(n: int) -> FloatArray:
-    """(n,) of the order statistics, nearly those of least variance."""
-    normal = NormalDist()
-    m = np.array([normal.inv_cdf((i - 0.375) / (n + 0.25)) for i in range(1, n + 1)])
-    square = float(m @ m)
-    u = 1 / math.sqrt(n)
-    last = m[-1] / math.sqrt(square) + _power_series(u, 0.221157, -0.147981, -2.071190, 4.434685, -2.706056)
-    a = np.empty(n)
-    if n > 5:
-        next_to = m[-2] / math.sqrt(square) + _power_series(
-            u, 0.042981, -0.293762, -1.752461, 5.682633, -3.582633
-        )
-        scale = (square - 2 * m[-1] ** 2 - 2 * m[-2] ** 2) / (1 - 2 * last**2 - 2 * next_to**2)
-        a[2:-2] = m[2:-2] / math.sqrt(scale)
-        a[1], a[-2] = -next_to, next_to
-    else:
-        a[1:-1] = m[1:-1] / math.sqrt((square - 2 * m[-1] ** 2) / (1 - 2 * last**2))
-    a[0], a[-1] = -last, last
-    return a
-
-
-def _power_series(u: float, *factors: float) -> float:
-    return sum(factor * u**power for power, factor in enumerate(factors, 1))
-
-
-def _cubic_polynomial(u: float, *factors: float) -> float:
-    return sum(factor * u**power for power, factor in enumerate(factors))

@@ -255,7 +255,7 @@ class LevelDrive(WatchScreen):
             and self._comparison is not None
             and not self._is_over
         ):
-            self._behind = self._comparison.add(view.time_s, view.pose.x, view.pose.y)
+            self._behind = self._comparison.update(view.time_s, view.pose.x, view.pose.y)
         self._rows("heading").show([self._heading(view.time_s)])
         if referee is None:
             ghosts = [

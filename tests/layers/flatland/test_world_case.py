@@ -105,7 +105,7 @@ def test_putting_lists_together_costs_no_layer(write: WriteFiles, seed: int) -> 
 
 @every_case("seed", range(30))
 def test_written_down_and_laid_over_the_world_again_it_asks_the_same(write: WriteFiles, seed: int) -> None:
-    from kit.layers.flatland.world_patch import bind_requirements
+    from kit.layers.flatland.requirement_binding import bind_requirements
 
     file = write(random_world(random.Random(seed)))
     world_case = current_case(find_layer_lists(read_world_layers(file)))

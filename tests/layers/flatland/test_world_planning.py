@@ -10,8 +10,8 @@ import pytest
 from kit.layers import explain
 from kit.layers.assignment import find_breaches
 from kit.layers.flatland.layer_lists import find_layer_lists, read_world_layers
+from kit.layers.flatland.requirement_binding import bind_requirements
 from kit.layers.flatland.world_case import current_case
-from kit.layers.flatland.world_patch import bind_requirements
 from kit.layers.flatland.world_planning import WorldPlan, plan_world
 from kit.layers.requirements_file import read_requirements
 from kit.world.catalogue import MapCard

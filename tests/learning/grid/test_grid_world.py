@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from kit.learning.grid.grid_world import MOVES, GridCell, GridMapError, GridRewards, GridWorld
+from kit.learning.grid.grid_world import MOVE_NAMES, GridCell, GridMapError, GridRewards, GridWorld
 from tests.cases import every_case
 
-RIGHT, UP, LEFT, DOWN = range(len(MOVES))
+RIGHT, UP, LEFT, DOWN = range(len(MOVE_NAMES))
 REWARDS = GridRewards(step=-1.0, target=5.0, small_target=2.0, cliff=-100.0)
 WORLD = GridWorld(("g#G.", "S.C.", "...."), REWARDS)
 

@@ -20,7 +20,7 @@ GHOST = Ghost("reference", len(THERE_AND_BACK) * STEP, (THERE_AND_BACK,), STEP)
 def test_the_same_drive_is_never_behind_nor_ahead_also_beside_the_ghosts_way_back() -> None:
     comparison = GhostComparison(GHOST)
     along = THERE_AND_BACK[:, 0]
-    behind = [comparison.add(tick * STEP, along[tick], 0.02) for tick in range(0, 800, 5)]
+    behind = [comparison.update(tick * STEP, along[tick], 0.02) for tick in range(0, 800, 5)]
     assert behind == pytest.approx([0.0] * len(behind), abs=0.05)
     assert [each.difference for each in comparison.splits(GHOST.seconds)] == pytest.approx([0.0] * 3, abs=0.1)
 
@@ -28,7 +28,7 @@ def test_the_same_drive_is_never_behind_nor_ahead_also_beside_the_ghosts_way_bac
 def test_a_slow_drive_is_behind_by_more_and_more_and_each_sector_says_its_part() -> None:
     slow = np.repeat(THERE_AND_BACK, 2, axis=0)
     comparison = GhostComparison(GHOST)
-    behind = [comparison.add(tick * STEP, *slow[tick, :2]) for tick in range(0, 1600, 5)]
+    behind = [comparison.update(tick * STEP, *slow[tick, :2]) for tick in range(0, 1600, 5)]
     assert all(later >= earlier - 0.05 for earlier, later in pairwise(behind))  # type: ignore[operator]  # never None here
     assert behind[-1] == pytest.approx(8.0, abs=0.1)
     assert sum(each.difference for each in compare_tracks(slow, STEP, GHOST, 16.0)) == pytest.approx(8.0)
@@ -37,10 +37,10 @@ def test_a_slow_drive_is_behind_by_more_and_more_and_each_sector_says_its_part()
 def test_who_is_put_back_to_the_start_begins_the_way_again() -> None:
     comparison = GhostComparison(GHOST)
     for tick in range(0, 600, 5):
-        comparison.add(tick * STEP, *THERE_AND_BACK[tick, :2])
-    assert comparison.add(6.0, 0.0, 0.0) == pytest.approx(6.0, abs=0.05)
+        comparison.update(tick * STEP, *THERE_AND_BACK[tick, :2])
+    assert comparison.update(6.0, 0.0, 0.0) == pytest.approx(6.0, abs=0.05)
     for tick in range(0, 800, 5):
-        comparison.add(6.05 + tick * STEP, *THERE_AND_BACK[tick, :2])
+        comparison.update(6.05 + tick * STEP, *THERE_AND_BACK[tick, :2])
     first, *others = comparison.splits(14.05)
     assert first.difference == pytest.approx(6.0, abs=0.2)
     assert [each.difference for each in others] == pytest.approx([0.0, 0.0], abs=0.1)
@@ -48,5 +48,5 @@ def test_who_is_put_back_to_the_start_begins_the_way_again() -> None:
 
 def test_away_from_the_ghosts_way_there_is_no_difference() -> None:
     comparison = GhostComparison(GHOST)
-    assert comparison.add(1.0, 0.5, 1.5) is None
+    assert comparison.update(1.0, 0.5, 1.5) is None
     assert comparison.splits(9.0) == ()

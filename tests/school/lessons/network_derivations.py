@@ -12,7 +12,7 @@ import numpy as np
 
 from kit.learning.grid.dqn import BATCH, HIDDEN, DqnLearner, ValueNetwork
 from kit.learning.grid.grid_learner import GridLearnerSettings
-from kit.learning.grid.grid_world import MOVES, GridWorld
+from kit.learning.grid.grid_world import MOVE_NAMES, GridWorld
 from kit.learning.training.algorithm_settings import TabularParams
 from kit.school.lessons.records import LearningScene, LessonStep
 from tests.kit_content import kit_lesson
@@ -62,7 +62,7 @@ def state_count(words: str, step: LessonStep, folder: Path) -> str:
 
 
 def weight_count(words: str, step: LessonStep, folder: Path) -> str:
-    network = ValueNetwork(np.random.default_rng(0), SEEN, len(MOVES))
+    network = ValueNetwork(np.random.default_rng(0), SEEN, len(MOVE_NAMES))
     count = sum(each.size for each in network.parameters)
     return f"A network with two layers of {HIDDEN} neurons that gets { {9: 'nine'}[SEEN] } distances has {count:,} weights"
 

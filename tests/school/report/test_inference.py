@@ -20,7 +20,6 @@ from kit.school.report.inference import (
     mean_ranks,
     paired_test,
     rank_correlation,
-    shapiro_wilk,
     summary_statistics,
     t_cdf,
     t_quantile,
@@ -168,20 +167,3 @@ def test_the_interval_of_r_holds_it_and_narrows() -> None:
     assert few.low < many.low < 0.6 < many.high < few.high < 1
     assert correlation_interval(0.6, 12) == pytest.approx((0.04, 0.87), abs=0.005)
     assert math.isnan(correlation_interval(0.6, 3).low)
-
-
-def test_shapiro_and_wilk_on_their_own_example() -> None:
-    """The weights of eleven men, of the 1965 paper: W = 0.79."""
-    weights = np.array([148, 154, 158, 160, 161, 162, 166, 170, 182, 195, 236], dtype=np.float64)
-    w, p = shapiro_wilk(weights)
-    assert w == pytest.approx(0.7888, abs=5e-4)
-    assert p == pytest.approx(0.0067, abs=5e-4)
-
-
-def test_normal_numbers_pass_and_others_do_not() -> None:
-    generator = rng()
-    passed = np.mean([shapiro_wilk(generator.normal(size=20))[1] > 0.05 for _ in range(300)])
-    assert 0.9 < passed < 0.99
-    assert shapiro_wilk(generator.exponential(size=100))[1] < 0.001
-    assert all(map(math.isnan, shapiro_wilk(np.array([1.0, 2, 3]))))
-    assert all(map(math.isnan, shapiro_wilk(np.ones(9))))

@@ -20,11 +20,11 @@ from kit.school.report.inference import (
     mean_ranks,
     paired_test,
     rank_correlation,
-    shapiro_wilk,
     summary_statistics,
     t_cdf,
     t_quantile,
 )
+from kit.school.report.normality import shapiro_wilk
 
 pytestmark = pytest.mark.long
 SEEDS = range(12)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
-from typing import Self, TypeAlias
+from typing import TypeAlias
 
 from kit.breadth_first import reached_from
 from kit.document.rows import Row, row
@@ -21,11 +20,10 @@ from kit.school.game.board import (
     shortest_way,
     step,
 )
-from kit.school.game.challenge import AnswerSubmission, ChallengeTask
+from kit.school.game.challenge import AnswerSubmission
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
-from kit.school.game.moves_board import MovesBoard, read_moves
-from kit.world.yaml_section import Section
+from kit.school.game.moves_challenge import MovesBoard, MovesTask, read_moves
 
 MAX_MOVES = 200
 Belief: TypeAlias = frozenset[Cell]
@@ -33,21 +31,10 @@ Belief: TypeAlias = frozenset[Cell]
 
 
 @dataclass(frozen=True, slots=True)
-class BlindTask(ChallengeTask):
+class BlindTask(MovesTask):
     """A floor on which the robot may be anywhere; after the moves it has to be at ``G``, wherever it was."""
 
     kind = "blind"
-    answer_file = "moves.txt"
-
-    grid: tuple[str, ...]
-    """``#`` wall, ``G`` target."""
-
-    @classmethod
-    def read(cls, section: Section, folder: Path) -> Self:
-        return cls(section.texts("map", at_least=1))
-
-    def lines(self) -> list[str]:
-        return [*self.grid]
 
     def naive_answer(self) -> str:
         return f"{naive_moves(self)}\n"

@@ -18,7 +18,7 @@ from kit.school.game.medal import Medal
 from kit.world.yaml_section import Section
 
 STEPS_PER_SQUARE: Final = 10
-"""A line of sight is looked at so often on the length of a square."""
+"""A line of sight is checked at this many points on the length of a square."""
 MAX_DEVICES: Final = 100
 
 

@@ -8,36 +8,26 @@ from dataclasses import dataclass
 from functools import cache, partial
 from itertools import product, zip_longest
 from pathlib import Path
-from typing import Final, Self
+from typing import Final
 
 from kit.breadth_first import reached_from
 from kit.document.rows import Row, row
 from kit.plain_text import quoted
 from kit.school.game.board import MOVES, Board, Cell, find_cell, grid_rows, letters_of, shortest_way, step
-from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
+from kit.school.game.challenge import AnswerError, AnswerSubmission
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
-from kit.world.yaml_section import Section
+from kit.school.game.moves_challenge import MovesTask
 
 WAIT: Final = "."
 MAX_TICKS: Final = 100
 
 
 @dataclass(frozen=True, slots=True)
-class PassByTask(ChallengeTask):
+class PassByTask(MovesTask):
     """A floor with two robots, ``A`` and ``B``, that want to be where ``a`` and ``b`` are."""
 
     kind = "pass_by"
-    answer_file = "moves.txt"
-
-    grid: tuple[str, ...]
-
-    @classmethod
-    def read(cls, section: Section, folder: Path) -> Self:
-        return cls(section.texts("map", at_least=1))
-
-    def lines(self) -> list[str]:
-        return [*self.grid]
 
     def naive_answer(self) -> str:
         """Each robot goes its own shortest way."""

@@ -5,37 +5,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
-from pathlib import Path
-from typing import Self
 
 from kit.document.rows import Row, row
 from kit.plain_text import counted
 from kit.school.game.board import Board, Cell, distances_to, find_cell, grid_rows, shortest_way, step
-from kit.school.game.challenge import AnswerSubmission, ChallengeTask
+from kit.school.game.challenge import AnswerSubmission
 from kit.school.game.judgement import Judgement, judge_count
 from kit.school.game.medal import Medal
-from kit.school.game.moves_board import MovesBoard, read_moves
-from kit.world.yaml_section import Section
+from kit.school.game.moves_challenge import MovesBoard, MovesTask, read_moves
 
 MAX_MOVES = 400
 
 
 @dataclass(frozen=True, slots=True)
-class RoundTask(ChallengeTask):
-    """A floor with places to visit, from ``S`` and back."""
+class RoundTask(MovesTask):
+    """A floor with places to visit, the lower-case letters, from ``S`` and back."""
 
     kind = "round"
-    answer_file = "moves.txt"
-
-    grid: tuple[str, ...]
-    """``#`` wall, ``S`` start and end, lower-case letters the places."""
-
-    @classmethod
-    def read(cls, section: Section, folder: Path) -> Self:
-        return cls(section.texts("map", at_least=1))
-
-    def lines(self) -> list[str]:
-        return [*self.grid]
 
     def naive_answer(self) -> str:
         return f"{naive_round(self)}\n"

@@ -32,8 +32,10 @@ from kit.school.report.chapters.context import (
     topic_title,
 )
 from kit.school.report.class_data import MAX_IDLE, ExerciseWork, LessonWork, started_lessons
-from kit.school.report.inference import non_blank, paired_test, shapiro_wilk, summary_statistics
-from kit.school.report.measures import AnswerSheet, ItemAnalysis, StudentMeasure, analyse_item, kr20
+from kit.school.report.inference import non_blank, paired_test, summary_statistics
+from kit.school.report.item_analysis import ItemAnalysis, analyse_item, kr20
+from kit.school.report.measures import AnswerSheet, StudentMeasure
+from kit.school.report.normality import shapiro_wilk
 
 MAX_NAMED_CRITERIA: Final = 2
 """Largest number of lost criteria named for an exercise."""

@@ -1,14 +1,34 @@
-"""Boards on which arrows walk: each arrow adds a move to the answer, and the newest can be taken back."""
+"""Challenges on a map whose answer is moves, and their board, on which each arrow adds a move or the newest is taken back."""
 
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 from kit.plain_text import quoted
 from kit.school.game.board import MOVES, Board, letters_of
 from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import Judgement
+from kit.world.yaml_section import Section
+
+
+@dataclass(frozen=True, slots=True)
+class MovesTask(ChallengeTask):
+    """A challenge on a map whose answer is moves."""
+
+    answer_file = "moves.txt"
+
+    grid: tuple[str, ...]
+    """``#`` is a wall; the docstring of each kind says what its letters are."""
+
+    @classmethod
+    def read(cls, section: Section, folder: Path) -> Self:
+        return cls(section.texts("map", at_least=1))
+
+    def lines(self) -> list[str]:
+        return [*self.grid]
 
 
 def read_moves(answer: str, most: int) -> str:
