@@ -77,6 +77,20 @@ CONTROLS: Final = (
         "school/game/league/test_league.py::test_who_came_first_with_many_files_keeps_nobody_out",
     ),
     Control(
+        "a reply that sleeps and computes a twentieth of the time",
+        "kit/host/process.py",
+        "                delayed_s = self._delayed_s() - delayed_before_s\n",
+        "                delayed_s = used_s / 0.05\n",
+        "host/test_process.py::test_who_computes_now_and_then_and_sleeps_is_ended_by_the_wall_clock",
+    ),
+    Control(
+        "a drive whose input names no topic",
+        "kit/school/game/shared_drives.py",
+        "type(each.content[0]) is not str or ",
+        "",
+        "school/game/test_leaderboard.py::test_a_damaged_drive_is_passed_over",
+    ),
+    Control(
         "a league full of one user's entries",
         "kit/school/game/league/entries.py",
         "            elif user != owner and others >= MAX_OF_ONE_USER:\n",

@@ -392,6 +392,9 @@ def test_a_damaged_name_is_passed_over(tmp_path: Path, content: str) -> None:
         lambda content: content["drives"][0].update(ticks=10**9),
         lambda content: content["drives"][0].update(inputs=[[0, "accept", []]]),
         lambda content: content["drives"][0].update(inputs=[[0, "explode", []]]),
+        lambda content: content["drives"][0]["inputs"][0][2].__setitem__(0, []),
+        lambda content: content["drives"][0]["inputs"][0][2].__setitem__(0, {}),
+        lambda content: content["drives"][0]["inputs"][0][2][2]["linear"].update(x=10**400),
     ],
 )
 def test_a_damaged_drive_is_passed_over(tmp_path: Path, damage: Callable[[dict[str, Any]], None]) -> None:
