@@ -91,6 +91,20 @@ CONTROLS: Final = (
         "school/game/test_leaderboard.py::test_a_damaged_drive_is_passed_over",
     ),
     Control(
+        "one user's drives that take hours to run again",
+        "kit/school/game/leaderboard.py",
+        "        if self._ticks_left <= 0:\n",
+        "        if self._ticks_left is None:\n",
+        "school/game/test_leaderboard.py::test_many_files_of_one_user_make_nobody_wait",
+    ),
+    Control(
+        "a host that sends a frame byte by byte",
+        "kit/inspection/sockets.py",
+        "            if time.monotonic() > ends:\n",
+        "            if ends is None:\n",
+        "school/game/test_shared_game.py::test_a_host_that_sends_a_frame_byte_by_byte_is_left",
+    ),
+    Control(
         "a league full of one user's entries",
         "kit/school/game/league/entries.py",
         "            elif user != owner and others >= MAX_OF_ONE_USER:\n",
