@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from queue import SimpleQueue
+from queue import Queue
 from typing import TYPE_CHECKING
 
 import click
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 TELL_INTERVAL = 2.0
 """Simulated seconds between two lines about a shared game in which nothing else changes."""
+MAX_TOLD = 100
+"""States that wait to be printed: a host that sends without end has to wait itself, and fills no memory."""
 
 
 @click.command("host")
@@ -139,7 +141,7 @@ def _tell_shared_game(client: SharedGameClient) -> None:
     from kit.school.game.two_players import SharedGameState, SharedMode, SharedPhase
     from kit.tui.rows.shared_game_rows import shared_message
 
-    told: SimpleQueue[SharedGameState | str] = SimpleQueue()
+    told: Queue[SharedGameState | str] = Queue(MAX_TOLD)
     client.follow(told.put, told.put)
     offer, before = client.offer, None
     click.echo(f"{find_level(offer.level).title}, {offer.mode.value}")

@@ -68,8 +68,6 @@ ROS_DISTRO: Final = "jazzy"
 """The distribution that programs read in their environment: the one whose messages and names the kit follows."""
 CHECK_S: Final = 0.02
 """How long to wait at least before the processor time is read again [s]."""
-COMPUTING_SHARE: Final = 0.05
-"""Who computes so much of the time is not ended by the wall clock: a busy machine may give it no more."""
 STACK_DUMP_S: Final = 1.0
 """How long to wait, after a deadline, for the stack dump of the child's Python [s]."""
 SHUTDOWN_S: Final = 3.0
@@ -272,7 +270,7 @@ class StudentProcess:
         self._poller = select.poll()
         for descriptor in (self._pipe.fileno(), *self._streams):
             self._poller.register(descriptor, select.POLLIN)
-        self._processor_clock: int | None = None
+        self._program: int | None = None
         self._deadline = time.monotonic() + limits.start_wall_s
         self._start_used_s = 0.0
         self._first_answer: Frame | None = None
@@ -319,7 +317,7 @@ class StudentProcess:
         """Sends the student's code, and what it needs to start, to a child that is confined."""
         if frame.level != self._level:
             raise self.fail(protocol_violation("another level of confinement than was asked for"))
-        self._processor_clock = _processor_clock(self._process.pid)
+        self._program = _program_below(self._process.pid)
         self._start_fields["start_s"] = self._limits.start_s
         self._start_fields["start_wall_s"] = max(0.001, self._deadline - time.monotonic())
         self._unsent += encode(["start", 0, self._start_fields])
@@ -345,7 +343,9 @@ class StudentProcess:
         try:
             if wall_s is None:
                 return self._check_answer(self._receive_within(limits.reply_s, limits.reply_wall_s, "reply"))
-            return self._check_answer(self._receive_within(limits.reply_s, wall_s, "reply", math.inf))
+            return self._check_answer(
+                self._receive_within(limits.reply_s, wall_s, "reply", extends_wall=False)
+            )
         finally:
             self._waited_s += time.monotonic() - began
 
@@ -354,34 +354,40 @@ class StudentProcess:
         there is none. Raises StudentCodeError."""
         if self._state is ProcessState.IDLE:
             return None
-        return self._check_answer(self._receive_within(self._limits.reply_s, wall_s, "reply", math.inf))
+        return self._check_answer(
+            self._receive_within(self._limits.reply_s, wall_s, "reply", extends_wall=False)
+        )
 
     def _receive_within(
         self,
         processor_s: float,
         wall_s: float,
         budget: Literal["start", "reply"],
-        computing_share: float = COMPUTING_SHARE,
+        *,
+        extends_wall: bool = True,
     ) -> Frame:
         """Returns the answer to a command. Ends a child that uses more processor time before it answers, or more of the wall
-        clock while it computes for less than ``computing_share`` of it. Raises StudentCodeError."""
-        began, used_before_s = time.monotonic(), self._processor_s()
+        clock, of which with ``extends_wall`` its waiting for a processor does not count. Raises StudentCodeError."""
+        began, used_before_s, delayed_before_s = time.monotonic(), self._processor_s(), self._delayed_s()
         total_s = self._limits.total_s
         left_s = math.inf if total_s is None or budget == "start" else total_s - self._waited_s
-        used_s, pause_s = 0.0, processor_s
+        used_s, delayed_s, pause_s = 0.0, 0.0, processor_s
         while True:
-            end = began + min(wall_s + used_s / computing_share, left_s)
-            frame = self._receive(min(end, time.monotonic() + pause_s))
+            now = time.monotonic()
+            end = began + min(wall_s + delayed_s, left_s)
+            frame = self._receive(min(max(end, now + CHECK_S), now + pause_s))
             if frame is not None:
                 return frame
-            if self._processor_clock is None:  # nothing but the wall clock is known
+            if self._program is None:  # nothing but the wall clock is known
                 used_s = time.monotonic() - began
             else:
                 used_s = self._processor_s() - used_before_s
             if used_s >= processor_s:
                 self._fail_timeout(budget, processor_s)
+            if extends_wall:
+                delayed_s = self._delayed_s() - delayed_before_s
             waited_s = time.monotonic() - began
-            if waited_s >= min(wall_s + used_s / computing_share, left_s):
+            if waited_s >= min(wall_s + delayed_s, left_s):
                 if total_s is not None and waited_s >= left_s:
                     self._fail_timeout("total", total_s)
                 self._fail_timeout("start wall" if budget == "start" else "reply wall", wall_s)
@@ -389,12 +395,24 @@ class StudentProcess:
 
     def _processor_s(self) -> float:
         """Returns the processor time that the student's process has used [s]; 0 where it cannot be known."""
-        if self._processor_clock is None:
+        if self._program is None:
             return 0.0
         try:
-            return time.clock_gettime(self._processor_clock)
+            # The kernel's number for the clock of a process, as of clock_getcpuclockid(3).
+            return time.clock_gettime((~self._program << 3) | 2)
         except OSError:  # it has ended
             return 0.0
+
+    def _delayed_s(self) -> float:
+        """Returns for how long the student's process was ready to compute and had no processor [s]: the longest of its threads.
+        0 where it cannot be known."""
+        delays_ns = [0]
+        if self._program is not None:
+            with suppress(OSError):  # it has ended, or this kernel does not tell
+                for thread in os.listdir(f"/proc/{self._program}/task"):
+                    with open(f"/proc/{self._program}/task/{thread}/schedstat", "rb") as file:
+                        delays_ns.append(int(file.read().split()[1]))
+        return max(delays_ns) / 1e9
 
     def _send_command(self, kind: str, *content: Json) -> None:
         assert self._first_answer is not None, "a command before wait_started"
@@ -558,13 +576,10 @@ class StudentProcess:
         raise self.fail(timed_out(budget, limit_s, self._last_position()))
 
 
-def _processor_clock(supervisor: int) -> int | None:
-    """Returns the number of the clock of the processor time of the student's process, the last one below its supervisor.
-
-    None on other systems than Linux. The number is the kernel's for a process, as of clock_getcpuclockid(3).
-    """
+def _program_below(supervisor: int) -> int | None:
+    """Returns the id of the student's process, the last one below its supervisor; None on other systems than Linux."""
     below = descendants(supervisor)
-    return (~below[-1] << 3) | 2 if below else None
+    return below[-1] if below else None
 
 
 def _read_program(file: Path) -> dict[str, Json]:

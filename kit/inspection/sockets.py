@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import socket
 import struct
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -23,11 +25,21 @@ _CREDENTIALS: Final = struct.Struct("3i")
 
 
 class FramedSocket:
-    """Frames over a stream socket. EOFError when the other end has gone, ProtocolError for what is no frame."""
+    """Frames over a stream socket. EOFError when the other end has gone, ProtocolError for what is no frame.
 
-    def __init__(self, connection: socket.socket, *, largest_frame: int = LARGEST_FRAME) -> None:
+    ``longest_wait_s``: TimeoutError where a whole frame takes longer than this, however often a part of it comes [s].
+    """
+
+    def __init__(
+        self,
+        connection: socket.socket,
+        *,
+        largest_frame: int = LARGEST_FRAME,
+        longest_wait_s: float = math.inf,
+    ) -> None:
         self._connection = connection
         self._largest_frame = largest_frame
+        self._longest_wait_s = longest_wait_s
 
     @property
     def peer_user(self) -> int | None:
@@ -52,10 +64,11 @@ class FramedSocket:
             raise EOFError from problem
 
     def receive(self) -> Json:
-        (length,) = HEADER.unpack(self._receive_exactly(HEADER.size))
+        ends = time.monotonic() + self._longest_wait_s
+        (length,) = HEADER.unpack(self._receive_exactly(HEADER.size, ends))
         if length > self._largest_frame:
             raise ProtocolError(f"a frame of {length} bytes; {self._largest_frame} are allowed")
-        return decode(self._receive_exactly(length))
+        return decode(self._receive_exactly(length, ends))
 
     def close(self) -> None:
         """Closes the connection; a waiting ``receive`` at either end raises EOFError."""
@@ -63,9 +76,11 @@ class FramedSocket:
             self._connection.shutdown(socket.SHUT_RDWR)
         self._connection.close()
 
-    def _receive_exactly(self, count: int) -> bytes:
+    def _receive_exactly(self, count: int, ends: float) -> bytes:
         data = bytearray()
         while len(data) < count:
+            if time.monotonic() > ends:
+                raise TimeoutError
             try:
                 part = self._connection.recv(min(count - len(data), MIB))
             except ConnectionError as problem:

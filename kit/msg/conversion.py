@@ -105,7 +105,10 @@ def _scalar(kind: ScalarKind, data: Any, path: str) -> Any:
     if type(data) is kind.python_type:
         return data
     if kind.python_type is float and type(data) is int:
-        return float(data)
+        try:
+            return float(data)
+        except OverflowError:
+            raise ConversionError(f"{path}: a whole number too large for a float") from None
     if kind.python_type is bytes and type(data) is int and 0 <= data <= 255:
         return bytes([data])
     raise ConversionError(f"{path}: needs {_WANTED[kind.python_type]}, not {_describe(data)}")

@@ -218,23 +218,49 @@ def test_a_busy_machine_stops_nobody(student: Student) -> None:
 
 
 @pytest.mark.long
-def test_who_computes_now_and_then_is_not_ended_by_the_wall_clock(student: Student) -> None:
-    """As on a machine that gives it a fifth of the time."""
+@LINUX
+def test_who_gets_no_processor_is_not_ended_by_the_wall_clock(student: Student) -> None:
+    """Beside a process that has the only processor for nearly all of the time."""
     file = student(
         """
-        import select, time
+        import os, time
         def f():
+            os.nice(19)
             began = time.process_time()
-            while time.process_time() - began < 0.5:
-                until = time.process_time() + 0.01
-                while time.process_time() < until: pass
-                select.select([], [], [], 0.04)
+            while time.process_time() - began < 0.05: pass
             return 1.0
         """
     )
-    limits = dataclasses.replace(QUICK, reply_s=1.0, wall_factor=0.8)
-    with StudentFunctions(file, limits=limits) as functions:
-        assert functions.call_batch("f", [{}]) == [1.0]
+    processors = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(processors)})
+    busy = subprocess.Popen([sys.executable, "-c", "while True: pass"])
+    try:
+        with StudentFunctions(
+            file, limits=dataclasses.replace(QUICK, reply_s=1.0, wall_factor=0.5)
+        ) as functions:
+            assert functions.call_batch("f", [{}]) == [1.0]
+    finally:
+        os.sched_setaffinity(0, processors)
+        busy.kill()
+        busy.wait()
+
+
+@pytest.mark.long
+@LINUX
+def test_who_computes_now_and_then_and_sleeps_is_ended_by_the_wall_clock(student: Student) -> None:
+    file = student(
+        """
+        import time
+        def f():
+            while True:
+                until = time.process_time() + 0.005
+                while time.process_time() < until: pass
+                time.sleep(0.05)
+        """
+    )
+    failure = fail(file, dataclasses.replace(QUICK, reply_s=1.0, wall_factor=1.0))
+    assert failure.kind is FailureKind.TIMEOUT
+    assert "processor time" not in failure.message
 
 
 @pytest.mark.long

@@ -96,6 +96,7 @@ def test_what_is_not_given_keeps_its_default() -> None:
     [
         (Twist, {"liner": {}}, "geometry_msgs/msg/Twist has no field 'liner'; did you mean 'linear'?"),
         (Twist, {"linear": {"x": "fast"}}, "linear.x: needs a number, not str 'fast'"),
+        (Twist, {"linear": {"x": 10**400}}, "linear.x: a whole number too large for a float"),
         (Twist, {"linear": {"x": True}}, "linear.x: needs a number, not bool True"),
         (Twist, {"linear": None}, "linear: geometry_msgs/msg/Vector3 needs its fields by name, not nothing"),
         (Twist, [1, 2], "needs its fields by name, not list"),

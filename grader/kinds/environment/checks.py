@@ -63,19 +63,16 @@ def spaces(record: EnvironmentRecord) -> Iterator[str]:
     expected = len(record.task.moves)
     # The spaces are what the program says of itself; that it acts on what it says is seen in the world.
     unproved = "" if _has_acted(record) else UNPROVED_SPACE
-    changed = {
-        name: f"{name} was another one after {what}: what an agent may do and sees stays the same for good."
-        for name, what in record.changed_spaces.items()
-    }
-    yield changed.get("action_space") or (
+    if record.changed_spaces:  # whoever has read one space must know that neither will be another
+        yield _changed_text(record, *record.changed_spaces)
+        return
+    yield (
         unproved and unproved.format(name="action_space")
         if (action.get("kind"), action.get("n"), action.get("start")) == ("Discrete", expected, 0)
         else f"action_space should be Discrete({expected}), one number for each action, and is {_space_text(action)}."
     )
     fits = observation.get("kind") == "Box" and observation.get("shape") == [SECTORS]
-    if "observation_space" in changed:
-        yield changed["observation_space"]
-    elif not fits:
+    if not fits:
         yield f"observation_space should be a Box of shape ({SECTORS},), and is {_space_text(observation)}."
     elif observation.get("low") != 0.0 or observation.get("high") != record.task.clip:
         yield f"observation_space should reach from 0 to {record.task.clip:g}, and is {_space_text(observation)}."
@@ -88,6 +85,18 @@ def spaces(record: EnvironmentRecord) -> Iterator[str]:
 UNPROVED_SPACE: Final = (
     "{name} is right, and counts as soon as step() drives the robot as one of the actions says."
 )
+
+
+def _changed_text(record: EnvironmentRecord, *names: str) -> str:
+    """Returns what is wrong with the first of these spaces that has become another one; empty if none has."""
+    return next(
+        (
+            f"{name} was another one after {record.changed_spaces[name]}: what an agent may do and sees stays the same for good."
+            for name in names
+            if name in record.changed_spaces
+        ),
+        "",
+    )
 
 
 def _has_acted(record: EnvironmentRecord) -> bool:
@@ -122,6 +131,8 @@ def resets(record: EnvironmentRecord) -> Iterator[str]:
             yield f"reset() returns two values, observation and info, not a {returned.get('kind')}."
         elif parts[1].get("kind") != "dict":
             yield f"The second value of reset() is info, a dictionary, not a {parts[1].get('kind')}."
+        elif changed := _changed_text(record, "observation_space"):
+            yield f"What reset() returned lies in no space that stays: {changed}"
         elif not episode.is_in_space:
             yield "The observation of reset() is not in observation_space: look at its shape, dtype and bounds."
         elif away > MAX_START_OFFSET[0] or turned > MAX_START_OFFSET[1]:
@@ -142,6 +153,8 @@ def steps(record: EnvironmentRecord) -> Iterator[str]:
         if returned.get("kind") != "tuple" or returned.get("count") != 5:
             count = returned.get("count", "no")
             yield f"step() returns five values: observation, reward, terminated, truncated, info; not {count}."
+        elif changed := _changed_text(record, "observation_space"):
+            yield f"What step() returned lies in no space that stays: {changed}"
         elif not step.is_in_space:
             yield "The observation of step() is not in observation_space: look at its shape, dtype and bounds."
         elif step.part(1).get("kind") not in NUMBER_TYPES or step.part(1).get("value") is None:

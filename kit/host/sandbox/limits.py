@@ -1,8 +1,8 @@
 """Limits of a student process, and what counts against that of its disk.
 
 Where a reply or the start is waited for, processor time counts, so that a busy machine stops nobody; a longer limit by the wall
-clock ends what neither computes nor answers; a twentieth of the time is enough, for a machine may be that busy. The limit of
-all waiting together is of the wall clock.
+clock ends what neither computes nor answers. The time for which a program is ready to compute and gets no processor does not
+count (Linux). The limit of all waiting together is of the wall clock.
 """
 
 from __future__ import annotations

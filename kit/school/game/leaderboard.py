@@ -13,7 +13,7 @@ import json
 import os
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -31,10 +31,12 @@ from kit.school.game.medal import RUNGS, Medal
 from kit.school.game.race import DriverKind
 from kit.school.game.shared_drives import (
     MAX_FILE_BYTES,
+    TRACK_STRIDE,
     DriveRefused,
     JudgedDrive,
     digest_of,
     judge_shared_drives,
+    read_shared_drives,
     share_drives,
 )
 from kit.workspace import open_common_folder, write_atomically
@@ -56,6 +58,11 @@ MAX_FORMER: Final = 50
 """So many drives of one user by one driver on one level are compared with those of others, the oldest ones."""
 MAX_JUDGED: Final = 4096
 """Drives whose judgement is kept in memory."""
+MAX_TICKS_OF_ONE_USER: Final = 100_000
+"""Ticks of one user's drives that are run again for each level that is read, about ten seconds of processor time: what is
+beyond them is passed over, so that nobody makes others wait for hours."""
+TICKS_OF_A_FILE: Final = 500
+"""What reading a file costs, at least."""
 
 
 class LeaderboardError(Exception):
@@ -184,21 +191,30 @@ def own_name(folder: Path) -> str:
 def read_entries(folder: Path, levels: Sequence[GameLevel] | None = None) -> list[LeaderboardEntry]:
     """Judges the drives of all who have joined, by default on all levels and that of the day; sorted by level and time.
     Passes over what may not stand there, and what is another's drive by hand. Takes about a second for twenty drives that were not judged before."""
-    entries, former = [], []
     names = _user_names(folder)
-    for user in {**names, **dict.fromkeys(_drivers(folder))}:
-        name = names.get(user, LEFT)
-        for level in levels if levels is not None else (*all_levels(), daily_level(today())):
-            for driver in DriverKind:
-                file = _drive_file(folder, user, level.id, driver)
-                judged = _judge_shared_drive(file, user, level, driver) if user in names else None
-                if judged is not None:
-                    entries.append(_make_entry(name, user, level, driver, *judged))
-                former += [
-                    _make_entry(name, user, level, driver, *judged)
-                    for each in _former_files(file)
-                    if (judged := _judge_shared_drive(each, user, level, driver)) is not None
-                ]
+    read = levels if levels is not None else (*all_levels(), daily_level(today()))
+    users = {**names, **dict.fromkeys(_drivers(folder))}
+    judges = {user: _Judge(user, MAX_TICKS_OF_ONE_USER * len(read)) for user in users}
+    entries = [
+        _make_entry(name, user, level, driver, *judged)
+        for user, name in names.items()
+        for level in read
+        for driver in DriverKind
+        if (judged := judges[user].judge(_drive_file(folder, user, level.id, driver), level, driver))
+        is not None
+    ]
+    lengths: dict[tuple[str, DriverKind], set[int]] = {}
+    for entry in entries:
+        lengths.setdefault((entry.level, entry.driver), set()).update(map(len, entry.tracks))
+    former = [
+        _make_entry(names.get(user, LEFT), user, level, driver, *judged)
+        for user in users
+        for level in read
+        for driver in DriverKind
+        if (wanted := lengths.get((level.id, driver)))
+        for file in _former_files(_drive_file(folder, user, level.id, driver))
+        if (judged := judges[user].judge(file, level, driver, wanted)) is not None
+    ]
     told = _without_copies(entries, former)
     return sorted(told, key=lambda each: (each.level, each.seconds, bool(each.copy_of), each.name))
 
@@ -266,16 +282,41 @@ def _former_files(file: Path) -> list[Path]:
     return []
 
 
-def _judge_shared_drive(
-    file: Path, user: int, level: GameLevel, driver: DriverKind
-) -> tuple[JudgedDrive, int] | None:
-    """A user's shared drive of a level, run again, and since when it stands there [ns]; None if there is none that may."""
-    try:
-        content, since_ns = read_own(file, user, MAX_FILE_BYTES), file.lstat().st_ctime_ns
-        judged = _judge_once(content, level, driver)
-    except (OSError, DriveRefused):
-        return None
-    return None if judged is None else (judged, since_ns)
+class _Judge:
+    """Judges the drives of one user, for as many ticks as are left."""
+
+    def __init__(self, user: int, ticks: int) -> None:
+        self._user = user
+        self._ticks_left = ticks
+        self._seen: set[bytes] = set()
+
+    def judge(
+        self, file: Path, level: GameLevel, driver: DriverKind, lengths: Collection[int] | None = None
+    ) -> tuple[JudgedDrive, int] | None:
+        """A shared drive of a level, run again, and since when it stands there [ns]; None if there is none that may.
+
+        ``lengths``: of the tracks that it is to be compared with: one that is as long as none of them is not run.
+        """
+        if self._ticks_left <= 0:
+            return None
+        try:
+            content, since_ns = read_own(file, self._user, MAX_FILE_BYTES), file.lstat().st_ctime_ns
+            if (digest := hashlib.sha256(content).digest()) not in self._seen:
+                self._seen.add(digest)
+                self._ticks_left -= TICKS_OF_A_FILE
+                ticks = [each.ticks for each in read_shared_drives(content).recordings]
+                if lengths is not None and not _is_as_long(ticks, lengths):
+                    return None
+                self._ticks_left -= sum(ticks)
+            judged = _judge_once(content, level, driver)
+        except (OSError, DriveRefused):
+            return None
+        return None if judged is None else (judged, since_ns)
+
+
+def _is_as_long(ticks: Iterable[int], lengths: Collection[int]) -> bool:
+    """Whether one of several drives is about as long as one of these tracks."""
+    return any(abs(each // TRACK_STRIDE - length) <= 2 for each in ticks for length in lengths)
 
 
 def _without_copies(

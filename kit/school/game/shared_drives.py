@@ -216,7 +216,7 @@ def check_inputs(
     topics = {topic for robot in robots for topic in simulation.command_topics(robot)}
     for each in recording.inputs:
         if each.kind == ACCEPT:
-            if not each.content or each.content[0] not in topics:
+            if not each.content or type(each.content[0]) is not str or each.content[0] not in topics:
                 raise DriveRefused("it moves something other than its robots")
         elif each.kind not in services:
             raise DriveRefused(f"the world was changed during the race ({each.kind})")

@@ -327,7 +327,7 @@ class SharedGameClient:
     def __init__(self, game: FoundGame, name: str, *, plays: bool) -> None:
         connection = game.connect()
         connection.settimeout(SILENCE)
-        self._socket = FramedSocket(connection, largest_frame=MAX_FRAME)
+        self._socket = FramedSocket(connection, largest_frame=MAX_FRAME, longest_wait_s=2 * SILENCE)
         self._push = KeyPush(0.0, 0.0)
         self._asks_again = False
         self._has_news = threading.Event()

@@ -253,6 +253,38 @@ def test_a_link_that_another_user_has_put_there_leads_to_no_file_of_ones_own(tmp
     assert len(read_entries(board, [FIRST])) == 1
 
 
+def test_many_files_of_one_user_make_nobody_wait(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    board = join(tmp_path / "board", by_hand())
+    for number in range(40):
+        file = board / f"{OWN}.{FIRST.id}.keys.{number:016x}.npz"
+        shutil.copy(own_file(board), file)
+        change(file, lambda content, number=number: content["remarks"].append(str(number)))
+    ran: list[int] = []
+    judge = leaderboard.judge_shared_drives
+    monkeypatch.setattr(
+        leaderboard, "judge_shared_drives", lambda *given: (ran.append(by_hand().ticks), judge(*given))[1]
+    )
+    monkeypatch.setattr(leaderboard, "MAX_TICKS_OF_ONE_USER", 4 * by_hand().ticks)
+    leaderboard._judge_once.cache_clear()
+    assert len(read_entries(board, [FIRST])) == 1
+    assert sum(ran) <= 4 * by_hand().ticks + by_hand().ticks
+
+
+def test_a_former_drive_that_is_as_long_as_no_other_is_not_run_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    board = join(tmp_path / "board", quicker())
+    join(board, by_hand())
+    ran: list[object] = []
+    judge = leaderboard.judge_shared_drives
+    monkeypatch.setattr(
+        leaderboard, "judge_shared_drives", lambda *given: (ran.append(given), judge(*given))[1]
+    )
+    leaderboard._judge_once.cache_clear()
+    assert len(read_entries(board, [FIRST])) == 1
+    assert len(ran) == 1
+
+
 @pytest.fixture
 def of_many_users(monkeypatch: pytest.MonkeyPatch) -> None:
     """As if each file belonged to the user it is named after."""
@@ -392,6 +424,9 @@ def test_a_damaged_name_is_passed_over(tmp_path: Path, content: str) -> None:
         lambda content: content["drives"][0].update(ticks=10**9),
         lambda content: content["drives"][0].update(inputs=[[0, "accept", []]]),
         lambda content: content["drives"][0].update(inputs=[[0, "explode", []]]),
+        lambda content: content["drives"][0]["inputs"][0][2].__setitem__(0, []),
+        lambda content: content["drives"][0]["inputs"][0][2].__setitem__(0, {}),
+        lambda content: content["drives"][0]["inputs"][0][2][2]["linear"].update(x=10**400),
     ],
 )
 def test_a_damaged_drive_is_passed_over(tmp_path: Path, damage: Callable[[dict[str, Any]], None]) -> None:

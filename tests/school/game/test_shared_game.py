@@ -622,6 +622,29 @@ def test_a_host_that_lies_is_left(tmp_path: Path) -> None:
     listener.close()
 
 
+@pytest.mark.long
+def test_a_host_that_sends_a_frame_byte_by_byte_is_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(shared_server, "SILENCE", 0.5)
+    listener, path = listen_for_guests(tmp_path / "games", "race", Audience())
+    has_left = threading.Event()
+
+    def dribble() -> None:
+        connection, _ = listener.accept()
+        with suppress(OSError):
+            for byte in encode(encode_offer(GameOffer("first-drive", SharedMode.RACE, "a", True))):
+                connection.sendall(bytes([byte]))
+                has_left.wait(0.05)
+        connection.close()
+
+    threading.Thread(target=dribble, daemon=True).start()
+    with pytest.raises(SharedGameError, match="does not let you in"):
+        SharedGameClient(FoundGame(path, os.getuid()), "Ben", plays=True)
+    has_left.set()
+    listener.close()
+
+
 def test_a_game_of_tag_in_which_nobody_catches_is_left(tmp_path: Path) -> None:
     rules = Rules()
     rules.mode = SharedMode.TAG
