@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from itertools import pairwise
+
 import numpy as np
 
 from kit.arrays import BoolArray, FloatArray
@@ -13,6 +16,7 @@ from kit.learning.maps.batch_map import BatchMap, batch_geometry, load_batch_map
 from kit.learning.tasks.case_reader import START_KEYS, TARGET_KEYS, PlacedCase
 from kit.learning.tasks.learning_task import LearningTask
 from kit.learning.tasks.student_reward import reward_parameters
+from kit.learning.tasks.task_case import TaskCase
 from kit.learning.tasks.task_reader import ReadTask
 from kit.plain_text import quoted, suggestion
 from kit.sim.simulation import load_world
@@ -38,6 +42,8 @@ def check_task(read: ReadTask) -> None:
             )
     for placed in read.cases:
         _check_case(task, placed, maps[placed.map_number])
+    read.problems.raise_if_any()
+    _check_time(read, maps)
     read.problems.raise_if_any()
     CaseArrays(task)
 
@@ -82,6 +88,8 @@ def _check_case(task: LearningTask, placed: PlacedCase, batch_map: BatchMap) -> 
                 (("other_starts",) if robot else ()) + START_KEYS,
             )
     is_free = is_free and _has_floor_to_start_on(placed, batch_map)
+    if _starts_in_target(task, case):
+        placed.error("every robot starts in the target, so that an episode is over at once", START_KEYS)
     if case.targets.model is None and task.goal.needs_target and is_free:
         _check_targets(task, placed, batch_map)
 
@@ -94,6 +102,56 @@ def _has_floor_to_start_on(placed: PlacedCase, batch_map: BatchMap) -> bool:
         return True
     placed.error("it has no free floor for a robot to start on", START_KEYS)
     return False
+
+
+def _check_time(read: ReadTask, maps: list[BatchMap]) -> None:
+    """Notes what cannot be reached before the time is up, however a robot drives."""
+    task, speed = read.task, read.task.actions.largest[0]
+    if not speed:
+        read.section.error("no action moves a robot forward or back", "actions")
+        return
+    lasts = task.max_steps * task.step_time
+    for card, case in task.map_cases():
+        way = _least_way(task, case, hull_radius(maps[task.map_cards.index(card)]))
+        needed = task.goal.least_time(way, speed)
+        if needed > lasts:
+            read.section.error(
+                f"an episode is over after {lasts:g} s, and at {speed:g} m/s the goal takes {needed:.1f} s or more in {case.name}: "
+                "give a greater limit, or faster actions",
+                "step",
+            )
+
+
+def _least_way(task: LearningTask, case: TaskCase, hull: float) -> float:
+    """[m] No way of the first robot to its targets is shorter; 0 where they or its start are drawn by chance. ``hull`` [m]: the
+    robot's radius."""
+    starts, targets = (
+        [(pose.x, pose.y) for pose in places.poses] for places in (case.starts[0], case.targets)
+    )
+    if not (starts and targets and task.goal.has_standing_targets):
+        return 0.0
+    reach = task.target_radius + hull + _most_shift(task, case)
+    route = task.route(case) if task.goal.is_route else ()
+    to_first = min(math.dist(start, end) for start in starts for end in route[:1] or targets) - reach
+    return max(0.0, to_first) + sum(max(0.0, math.dist(*leg) - 2.0 * reach) for leg in pairwise(route))
+
+
+def _starts_in_target(task: LearningTask, case: TaskCase) -> bool:
+    """Whether in some start all robots are in the target for sure, whatever is drawn."""
+    room = task.target_radius - _most_shift(task, case)
+    if not task.goal.begins_outside_target or task.goal.heading_tolerance is not None:
+        return False
+    return any(
+        all(math.hypot(pose.x - target.x, pose.y - target.y) <= room for pose in start)
+        for start in zip(*(places.poses for places in case.starts), strict=True)
+        for target in case.targets.poses
+    )
+
+
+def _most_shift(task: LearningTask, case: TaskCase) -> float:
+    """[m] By so much a start and its target are nearer or farther at most than the file says."""
+    shifts = (case.start_shift, case.target_shift, (task.start.noise, task.start.noise))
+    return sum(math.hypot(*shift) for shift in shifts)
 
 
 def _check_targets(task: LearningTask, placed: PlacedCase, batch_map: BatchMap) -> None:

@@ -34,7 +34,8 @@ from kit.world.records import Circle, Polygon
 
 Observation = NDArray[np.floating[Any] | np.integer[Any]]
 """float32, which gymnasium's Box does not tell apart."""
-Action = int | np.integer[Any] | NDArray[np.integer[Any] | np.floating[Any]]
+ActionArray = NDArray[np.integer[Any] | np.floating[Any]]
+Action = int | np.integer[Any] | ActionArray
 """A number of a table of moves, or one for each robot; or the numbers of continuous actions."""
 
 ObservationArray = Float32Array

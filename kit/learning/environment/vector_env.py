@@ -19,6 +19,7 @@ from kit.arrays import BoolArray, FloatArray, IntArray
 from kit.learning.environment.batch import BatchEnv
 from kit.learning.environment.batch_state import BatchStep
 from kit.learning.environment.env import (
+    ActionArray,
     ObservationArray,
     TaskEnv,
     build_batch_scene,
@@ -42,7 +43,7 @@ _NOT_ALONE = "the worlds of a batch share their attributes, and"
 _ALONE = '. With vectorization_mode="sync" every world is an environment of its own'
 
 
-class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
+class BatchVectorEnv(VectorEnv[ObservationArray, ActionArray, NDArray[Any]]):
     """``num_envs`` worlds of a task, which are simulated all at once.
 
     World i of a ``reset(seed=s)`` has the randomness of a single environment with the seed s + i; worlds take the cases in
@@ -157,7 +158,7 @@ class BatchVectorEnv(VectorEnv[ObservationArray, IntArray, NDArray[Any]]):
         return mask
 
     def step(
-        self, actions: IntArray
+        self, actions: ActionArray
     ) -> tuple[ObservationArray, FloatArray, BoolArray, BoolArray, dict[str, Any]]:
         """Every world does one step. ``info`` has what a single environment's has, an array for each key, and beside it a mask
         of the worlds for which it holds."""

@@ -99,6 +99,12 @@ class CaseReader:
         """The starts of the other robots: a pose for each of them, beside each start of the first one."""
         others = self._robots - 1
         if not others:
+            if section.has("other_starts"):
+                section.poses("other_starts", at_most=MAX_PLACES)
+                section.error(
+                    'one robot drives: without "robots" that name more, there are no other starts',
+                    "other_starts",
+                )
             return ()
         if not section.has("other_starts"):
             section.error(

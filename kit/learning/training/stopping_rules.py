@@ -12,6 +12,9 @@ from typing import Protocol, TypeAlias
 
 from kit.learning.policies.confidence_intervals import ConfidenceInterval, lower_bound, wilson_interval
 
+CONFIRMING_PARTS = 2
+"""A long test's first look is at so many parts. In more parts, worlds wait for the longest episodes for longer than is won."""
+
 
 @dataclass(frozen=True, slots=True)
 class CaseCount:
@@ -21,11 +24,28 @@ class CaseCount:
     episodes: int
     adjacency: float = 0.0
     """Mean share of steps that two robots were side by side."""
+    collided: int = 0
+    reward: float = 0.0
+    """Mean sum over an episode."""
 
     @property
     def share(self) -> float:
         return self.reached / self.episodes if self.episodes else 0.0
 
+    def plus(self, other: CaseCount) -> CaseCount:
+        """The counts of the episodes of both."""
+        episodes = self.episodes + other.episodes
+        weight = other.episodes / episodes if episodes else 0.0
+        return CaseCount(
+            self.reached + other.reached,
+            episodes,
+            self.adjacency + weight * (other.adjacency - self.adjacency),
+            self.collided + other.collided,
+            self.reward + weight * (other.reward - self.reward),
+        )
+
+
+NO_EPISODES = CaseCount(0, 0)
 
 CaseCounts: TypeAlias = Mapping[str, CaseCount]
 """Counts by the case's name."""
@@ -171,7 +191,8 @@ class TrainUntilSure:
     one follows, on new episodes, and only that one counts: each case's share must be at least the goal with a confidence that
     is shared out among the cases and among all such attempts (attempt k gets 1 / (k (k + 1)) of what may go wrong), so that
     trying often does not help.
-    Where the longer test leaves it open, one four times as long follows, up to the longest.
+    Where the longer test leaves it open, it goes on to four times as many episodes, up to the most. It is made in parts, and
+    stops as soon as not even success in all the episodes that are left could make it sure.
     """
 
     test_interval: int
@@ -182,9 +203,9 @@ class TrainUntilSure:
     screening_episodes: int = 40
     """Episodes of each case in a short test."""
     confirming_episodes: int = 500
-    """Episodes of each case in a long test."""
+    """Episodes of each case in a long test, before it is first looked whether it is sure."""
     most_confirming_episodes: int = 0
-    """Episodes of each case in the longest test; by default no test is longer than the first long one."""
+    """Most episodes of each case in a long test; by default it does not go on."""
     confidence: float = 0.95
     restore_margin: float = 0.3
     """Where the accuracy is surely by so much below the best one's, training goes back to that policy."""
@@ -197,11 +218,14 @@ class TrainUntilSure:
     greedy: bool = True
 
     def evaluate(self, steps: int, memory: StoppingMemory, test: PolicyTest) -> StoppingDecision:
-        counts, episodes = self._screen(test), self.confirming_episodes
-        while worst_share(counts) >= self.goal:
-            counts = test(episodes * test.cases)
-            memory = replace(memory, confirmations=memory.confirmations + 1)
-            low = self._confident_share(counts, memory.confirmations)
+        counts = self._screen(test)
+        looks = self._looks() if worst_share(counts) >= self.goal else ()
+        first = memory.confirmations + 1
+        for number in range(len(looks)):
+            attempts = dict(enumerate(looks[number:], first + number))
+            counts = self._tested_further(test, counts if number else {}, attempts)
+            memory = replace(memory, confirmations=first + number)
+            low = self._confident_share(counts, first + number)
             if low >= self.goal and not self.use_all_steps:
                 memory, _ = _with_best(counts, steps, replace(memory, best=None))
                 return StoppingDecision(
@@ -211,9 +235,8 @@ class TrainUntilSure:
                     stop=True,
                     reason=f"every case reaches {low:.3f} or more with confidence",
                 )
-            if episodes >= self.most_confirming_episodes:
+            if worst_share(counts) < self.goal or self._is_lost(counts, attempts):
                 break
-            episodes = min(4 * episodes, self.most_confirming_episodes)
         remembered, keep = _with_best(counts, steps, memory, self.sufficient_share)
         if not keep and self._has_forgotten(counts, memory):
             return StoppingDecision(
@@ -234,10 +257,45 @@ class TrainUntilSure:
                 return counts
         return test(self.screening_episodes * test.cases)
 
+    def _looks(self) -> tuple[int, ...]:
+        """Of how many episodes of each case a long test consists when it is looked whether it is sure."""
+        looks = [self.confirming_episodes]
+        while looks[-1] < self.most_confirming_episodes:
+            looks.append(min(4 * looks[-1], self.most_confirming_episodes))
+        return tuple(looks)
+
+    def _tested_further(
+        self, test: PolicyTest, counts: CaseCounts, attempts: Mapping[int, int]
+    ) -> CaseCounts:
+        """The long test with the parts up to the first of the ``attempts``, if it is not lost before: episodes of each case, by the
+        attempt's number."""
+        part = -(-self.confirming_episodes // CONFIRMING_PARTS) * test.cases
+        while not counts or min(count.episodes for count in counts.values()) < min(attempts.values()):
+            tested = test(part)
+            counts = {name: count.plus(counts.get(name, NO_EPISODES)) for name, count in tested.items()}
+            if self._is_lost(counts, attempts):
+                break
+        return counts
+
+    def _is_lost(self, counts: CaseCounts, attempts: Mapping[int, int]) -> bool:
+        """Whether none of the attempts can be sure any more. Where all steps are used, a long test ranks policies, and is made whole."""
+        if self.use_all_steps:
+            return False
+        failed = max(count.episodes - count.reached for count in counts.values())
+        return all(
+            lower_bound(max(0, episodes - failed), episodes, self._confidence_of(attempt, len(counts)))
+            < self.goal
+            for attempt, episodes in attempts.items()
+        )
+
     def _confident_share(self, counts: CaseCounts, attempt: int) -> float:
         """Lower bound of every case's share, all together with the wanted confidence."""
-        wrong = (1 - self.confidence) / (attempt * (attempt + 1)) / len(counts)
-        return min(lower_bound(count.reached, count.episodes, 1 - wrong) for count in counts.values())
+        confidence = self._confidence_of(attempt, len(counts))
+        return min(lower_bound(count.reached, count.episodes, confidence) for count in counts.values())
+
+    def _confidence_of(self, attempt: int, cases: int) -> float:
+        """With which confidence one case's share must be good enough in an attempt."""
+        return 1 - (1 - self.confidence) / (attempt * (attempt + 1)) / cases
 
     def _has_forgotten(self, counts: CaseCounts, memory: StoppingMemory) -> bool:
         far_below = _pooled_interval(counts).high < memory.best_low - self.restore_margin

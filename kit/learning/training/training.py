@@ -24,7 +24,7 @@ from kit.host.failure import StudentCodeError
 from kit.learning.environment.batch import BatchEnv, RewardError
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
 from kit.learning.maps.batch_map import UnsupportedWorld
-from kit.learning.policies.evaluation import CaseResult, EvaluationResult, Evaluator
+from kit.learning.policies.evaluation import CaseResult, Evaluator
 from kit.learning.policies.policy import Policy, PolicyError
 from kit.learning.policies.policy_file import save_policy
 from kit.learning.policies.seeds import derive_seed
@@ -333,7 +333,9 @@ class _TrainingLoop:
             save_policy(policy, self._run.best_policy)
             self._best_snapshot = self._learner.snapshot()
         measures = self._learner.measures()
-        self._events.write(_evaluation_event(steps, self._elapsed(), decision, test, measures))
+        self._events.write(
+            _evaluation_event(steps, self._elapsed(), decision, self._task.robots > 1, measures)
+        )
         if is_value_too_large(measures) and not self._is_warned:
             self._is_warned = True
             self._events.write(TrainingNote(value_warning(measures)))
@@ -472,7 +474,7 @@ def _tensorboard_folder(run: TrainingRun) -> Path | None:
 
 
 class _SeededPolicyTest:
-    """Tries a policy on episodes of its own; notes what came of the last test."""
+    """Tries a policy on episodes of its own."""
 
     def __init__(
         self, evaluator: Evaluator, policy: Policy, seed: int, test_count: int, greedy: bool
@@ -483,7 +485,6 @@ class _SeededPolicyTest:
         self._greedy = greedy
         self.test_count = test_count
         """Number of tests so far, over all policies: each has its own episodes."""
-        self.result: EvaluationResult | None = None
 
     @property
     def cases(self) -> int:
@@ -493,8 +494,8 @@ class _SeededPolicyTest:
         each = -(-episodes // self.cases)
         seed = derive_seed(self._seed, "test", self.test_count)
         self.test_count += 1
-        self.result = self._evaluator.test(self._policy, each, seed, greedy=self._greedy)
-        return {case.case: _count_of_case(case) for case in self.result.cases}
+        result = self._evaluator.test(self._policy, each, seed, greedy=self._greedy)
+        return {case.case: _count_of_case(case) for case in result.cases}
 
 
 def practice_shares(counts: CaseCounts, hard_case_share: float) -> FloatArray:
@@ -509,24 +510,21 @@ def practice_shares(counts: CaseCounts, hard_case_share: float) -> FloatArray:
 
 def _count_of_case(case: CaseResult) -> CaseCount:
     """What counts of a test's result on one case; an adjacency that was not measured as 0."""
-    return CaseCount(case.reached, case.episodes, 0.0 if math.isnan(case.adjacency) else case.adjacency)
+    adjacency = 0.0 if math.isnan(case.adjacency) else case.adjacency
+    return CaseCount(case.reached, case.episodes, adjacency, case.outcomes[1], case.reward)
 
 
 def _evaluation_event(
-    steps: int,
-    seconds: float,
-    decision: StoppingDecision,
-    test: _SeededPolicyTest,
-    measures: dict[str, float],
+    steps: int, seconds: float, decision: StoppingDecision, is_pair: bool, measures: dict[str, float]
 ) -> Evaluated:
-    assert test.result is not None  # every strategy tests
-    cases = {case.case: list(case.outcomes) for case in test.result.cases}
-    adjacency = (
-        float(np.mean([case.adjacency for case in test.result.cases])) if test.result.is_pair else None
-    )
-    return Evaluated(
-        steps, seconds, cases, decision.is_best, test.result.reward, decision.reason, adjacency, measures
-    )
+    counts = decision.counts
+    cases = {
+        name: [count.reached, count.collided, count.episodes - count.reached - count.collided]
+        for name, count in counts.items()
+    }
+    reward = float(np.mean([count.reward for count in counts.values()]))
+    adjacency = float(np.mean([count.adjacency for count in counts.values()])) if is_pair else None
+    return Evaluated(steps, seconds, cases, decision.is_best, reward, decision.reason, adjacency, measures)
 
 
 class _ProgressBatch:

@@ -107,7 +107,7 @@ def test_start_and_target_change_places() -> None:
     assert cases == ["turn_a_to_b", "turn_b_to_a"] * 2
     ends = False
     while not ends:
-        *_, ends, late, info = env.step(np.int64(0))
+        *_, ends, late, info = env.step(0)
         ends = ends or late
     assert info["outcome"] in ("reached", "collided", "timed out")
     assert env.reset()[1]["case"] == "turn_a_to_b"  # also after an episode that was driven to its end
@@ -156,7 +156,7 @@ def test_running_out_of_time(terminal: bool) -> None:
 
 def test_a_step_before_the_first_reset_is_refused() -> None:
     with pytest.raises(gymnasium.error.ResetNeeded):
-        TaskEnv(TURN).step(np.int64(0))
+        TaskEnv(TURN).step(0)
 
 
 def test_an_unknown_render_mode_is_refused_with_the_nearest_name() -> None:

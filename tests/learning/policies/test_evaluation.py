@@ -72,6 +72,9 @@ def test_the_task_is_given_by_name_too() -> None:
     assert by_name.as_dict() == kit.evaluate_policy(policy, episodes=2).as_dict()
     assert "turn" in repr(by_name)
     assert len(repr(by_name)) < 100
+    table = by_name._repr_html_()
+    assert table.startswith("<")
+    assert all(case.case in table for case in by_name.cases)
     with pytest.raises(UnknownTask, match='did you mean "turn"'):
         kit.evaluate_policy(policy, task="tern")
     with pytest.raises(ValueError, match="at least one episode"):

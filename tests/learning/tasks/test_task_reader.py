@@ -184,15 +184,17 @@ OUT_OF_PLACE = {
     "start: [0, 0, 0], targets: [[1.6, 1.6], [1.6, 0.3]]": "(1.6, 0.3) cannot be reached",
     "start: [0, 0, 0], target_area: [1, 0, 1.5, 0.5]": "nothing in it can be reached",
     "start_area: [1, 0, 1.5, 0.5], target: [0, 0]": "no path",
+    "start: [0, 0, 0], target: [0.1, 0.1]": "starts in the target",
+    "start: [0, 0, 0], target: [1.6, 1.6], other_starts: [[0, 0, 0]]": "no other starts",
 }
 
 
 @every_case("case", OUT_OF_PLACE)
 def test_a_start_in_a_wall_and_a_target_out_of_reach(case: str, tmp_path: Path) -> None:
     text = "\n".join([SOUND["actions"], SOUND["observation"], SOUND["reward"], "maps: [turn]", "cases:"])
-    read = read_task(written(tmp_path, f"{text}\n  - {{{case}}}\n"))
+    file = written(tmp_path, f"{text}\n  - {{{case}}}\n")
     with pytest.raises(WorldError) as caught:
-        check_task(read)
+        check_task(read_task(file))
     (problem,) = caught.value.problems
     assert OUT_OF_PLACE[case] in problem.message
     assert (problem.location.file.name, problem.location.line) == ("mine.yaml", 6)
@@ -215,6 +217,28 @@ def test_what_the_world_lacks_is_said_where_the_task_asks_for_it(line: str, tmp_
     (problem,) = caught.value.problems
     assert MISSING[line] in problem.message
     assert (problem.location.file.name, problem.location.line) == ("mine.yaml", 6 if "follow" in line else 5)
+
+
+LONG = {
+    "goal: {kind: target}": "target: [1.6, 1.6]",
+    "goal: {kind: patrol, rounds: 9}": "targets: [[1.6, 1.6], [0, 0.5]]",
+    "goal: {kind: wall, length: 60}": "",
+}
+
+
+@every_case("goal", LONG)
+def test_a_goal_that_takes_longer_than_an_episode_is_told(goal: str, tmp_path: Path) -> None:
+    case = ", ".join(["start: [0, 0, 0]", *filter(None, [LONG[goal]])])
+    rest = [
+        *(SOUND[key] for key in ("actions", "observation", "reward")),
+        "maps: [turn]",
+        f"cases: [{{{case}}}]",
+    ]
+    check_task(read_task(written(tmp_path, "\n".join(["step: {limit: 9000}", goal, *rest]))))
+    with pytest.raises(WorldError, match=r"an episode is over after 0\.8 s") as caught:
+        check_task(read_task(written(tmp_path, "\n".join(["step: {limit: 4}", goal, *rest]))))
+    (problem,) = caught.value.problems
+    assert problem.location.line == 1
 
 
 def test_starts_of_other_robots_are_asked_for(tmp_path: Path) -> None:

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -20,19 +20,32 @@ from kit.learning.training.stopping_rules import (
 
 
 class Tries:
-    """A test with made-up outcomes; each call takes the next shares."""
+    """A test with made-up outcomes; each call takes the next shares, or the last ones again."""
 
     def __init__(self, *shares: tuple[float, ...]) -> None:
-        self._shares: Iterator[tuple[float, ...]] = iter(shares)
+        self._shares = list(shares)
         self.cases = len(shares[0])
         self.sizes: list[int] = []
 
     def __call__(self, episodes: int) -> CaseCounts:
         each = -(-episodes // self.cases)
         self.sizes.append(each)
-        return {
-            f"case {i}": CaseCount(round(share * each), each) for i, share in enumerate(next(self._shares))
-        }
+        shares = self._shares.pop(0) if len(self._shares) > 1 else self._shares[0]
+        return {f"case {i}": CaseCount(round(share * each), each) for i, share in enumerate(shares)}
+
+
+class Coins:
+    """A test whose episodes succeed by chance."""
+
+    def __init__(self, seed: int, *shares: float) -> None:
+        self._chance, self._shares, self.cases = np.random.default_rng(seed), shares, len(shares)
+        self.episodes = 0
+
+    def __call__(self, episodes: int) -> CaseCounts:
+        each = -(-episodes // self.cases)
+        self.episodes += each
+        drawn = self._chance.binomial(each, self._shares).tolist()
+        return {str(number): CaseCount(reached, each) for number, reached in enumerate(drawn)}
 
 
 def test_the_first_goes_on_whatever_happens_and_keeps_the_newest() -> None:
@@ -73,12 +86,12 @@ def test_a_pooled_accuracy_does_not_hide_a_bad_case() -> None:
 
 
 def test_a_good_short_test_is_confirmed_on_new_episodes() -> None:
-    tries = Tries((1.0, 1.0), (0.998, 0.996))
+    tries = Tries((1.0, 1.0), (0.996, 0.992))
     decision = SURE.evaluate(10, StoppingMemory(), tries)
     assert decision.stop
     assert decision.is_best
-    assert tries.sizes == [40, 500]
-    assert success_rate(decision.counts) == pytest.approx(0.997)
+    assert tries.sizes == [40, 250, 250]
+    assert success_rate(decision.counts) == pytest.approx(0.994)
 
 
 def test_a_look_decides_where_the_goal_is_out_of_reach() -> None:
@@ -89,7 +102,7 @@ def test_a_look_decides_where_the_goal_is_out_of_reach() -> None:
     assert success_rate(decision.counts) == pytest.approx(0.925)
     near = Tries((1.0, 0.9), (1.0, 1.0), (0.998, 0.996))
     assert rule.evaluate(10, StoppingMemory(), near).stop
-    assert near.sizes == [20, 40, 500], "what is looked at does not count in the test"
+    assert near.sizes == [20, 40, 250, 250], "what is looked at does not count in the test"
 
 
 def test_luck_in_the_short_test_is_not_enough() -> None:
@@ -104,19 +117,50 @@ def test_trying_often_makes_it_harder() -> None:
     assert not SURE.evaluate(10, StoppingMemory(confirmations=50), Tries((1.0, 1.0), shares)).stop
 
 
-def test_a_test_that_leaves_it_open_is_followed_by_a_longer_one() -> None:
-    rule, open_shares = replace(SURE, most_confirming_episodes=3000), (0.96, 0.96)
-    tries = Tries((1.0, 1.0), open_shares, (0.965, 0.965))
+def test_a_test_that_leaves_it_open_goes_on() -> None:
+    rule = replace(SURE, most_confirming_episodes=3000)
+    tries = Tries((1.0, 1.0), (0.965, 0.965))
     decision = rule.evaluate(10, StoppingMemory(), tries)
     assert decision.stop
-    assert tries.sizes == [40, 500, 2000]
+    assert tries.sizes == [40, *[250] * 8], "its first 500 episodes leave it open"
     assert decision.memory.confirmations == 2
     bad = Tries((1.0, 1.0), (0.94, 1.0))
     assert not rule.evaluate(10, StoppingMemory(), bad).stop
-    assert bad.sizes == [40, 500]
-    never = Tries((1.0, 1.0), open_shares, (0.951, 0.951), (0.951, 0.951))
+    assert bad.sizes == [40, 250, 250]
+    never = Tries((1.0, 1.0), (0.956, 0.956))
     assert not rule.evaluate(10, StoppingMemory(), never).stop
-    assert never.sizes == [40, 500, 2000, 3000]
+    assert 2000 < sum(never.sizes[1:]) <= 3000
+
+
+def test_a_long_test_ends_when_it_is_lost() -> None:
+    lost = Tries((1.0, 1.0), (0.9, 1.0))
+    assert not SURE.evaluate(10, StoppingMemory(), lost).stop
+    assert lost.sizes == [40, 250]
+    pair = replace(SURE, use_all_steps=True)  # there a long test ranks policies
+    whole = Tries((1.0, 1.0), (0.9, 1.0))
+    pair.evaluate(10, StoppingMemory(), whole)
+    assert whole.sizes == [40, 250, 250]
+
+
+def test_a_test_that_ends_early_decides_as_a_whole_one() -> None:
+    class Whole(TrainUntilSure):
+        def _is_lost(self, counts: CaseCounts, attempts: Mapping[int, int]) -> bool:
+            return False
+
+    stops = []
+    spent = {"early": 0, "whole": 0}
+    for seed in range(200):
+        shares = np.random.default_rng(seed).uniform(0.94, 1.0, 3).tolist()
+        given = (10, 0.95, 0, 40, 500, 3000)
+        early, whole = Coins(seed, *shares), Coins(seed, *shares)
+        memory = StoppingMemory(confirmations=seed % 4)
+        decision = TrainUntilSure(*given).evaluate(10, memory, early)
+        assert decision.stop == Whole(*given).evaluate(10, memory, whole).stop
+        stops.append(decision.stop)
+        spent["early"] += early.episodes
+        spent["whole"] += whole.episodes
+    assert 20 < sum(stops) < 180
+    assert spent["early"] < spent["whole"]
 
 
 def test_a_hallway_policy_still_passes_after_many_attempts() -> None:
@@ -129,19 +173,12 @@ def test_a_hallway_policy_still_passes_after_many_attempts() -> None:
 
 def test_a_mediocre_policy_is_all_but_never_passed() -> None:
     """True success 0.93 in both cases, looked at 60 times: the seed's rule with a goal of 0.95 passes it always."""
-    rng = np.random.default_rng(5)
-
-    class Coin:
-        cases = 2
-
-        def __call__(self, episodes: int) -> CaseCounts:
-            each = episodes // 2
-            return {str(i): CaseCount(int(rng.binomial(each, 0.93)), each) for i in range(2)}
+    chance = Coins(5, 0.93, 0.93)
 
     def passes(strategy: TrainUntilSure | TrainUntilGoal) -> bool:
         memory = StoppingMemory()
         for steps in range(60):
-            decision = strategy.evaluate(steps, memory, Coin())
+            decision = strategy.evaluate(steps, memory, chance)
             if decision.stop:
                 return True
             memory = decision.memory

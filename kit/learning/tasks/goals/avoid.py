@@ -37,6 +37,9 @@ class AvoidGoal(Goal):
     def description(self) -> str:
         return f"be more than {self.distance:g} m from everything that moves, for {self.time:g} s in total"
 
+    def least_time(self, way: float, speed: float) -> float:
+        return self.time
+
     def make_count(self, cases: Sequence[GoalCase], n: int, step_time: float) -> GoalCount:
         return _AvoidCount(self, cases, step_time)
 

@@ -37,6 +37,9 @@ class FollowGoal(Goal):
     def description(self) -> str:
         return f"be {self.nearest:g} to {self.farthest:g} m from the leader for {self.time:g} s in total"
 
+    def least_time(self, way: float, speed: float) -> float:
+        return self.time
+
     def make_count(self, cases: Sequence[GoalCase], n: int, step_time: float) -> GoalCount:
         return _FollowCount(self, cases, step_time)
 

@@ -39,6 +39,9 @@ class FormationGoal(Goal):
             f"drive {self.length:g} m, each robot {self.nearest:g} to {self.farthest:g} m from the next one"
         )
 
+    def least_time(self, way: float, speed: float) -> float:
+        return self.length / speed
+
     def make_count(self, cases: Sequence[GoalCase], n: int, step_time: float) -> GoalCount:
         return _FormationCount(self, cases, step_time)
 

@@ -122,6 +122,10 @@ class Goal(ABC):
         """The target's heading must be kept within this [rad]; None: any heading will do."""
         return None
 
+    def least_time(self, way: float, speed: float) -> float:
+        """[s] No episode reaches the goal sooner. ``way`` [m]: no way to the targets is shorter; ``speed`` [m/s]: no robot is faster."""
+        return way / speed
+
     def node_facts(self, case: GoalCase) -> dict[str, Any]:
         """What the program of a node must know to count it in a case, JSON-able: see ``kit/learning/policies/node_goals``."""
         settings = {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]  # a dataclass

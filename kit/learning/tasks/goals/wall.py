@@ -48,6 +48,9 @@ class WallGoal(Goal):
             f"{self.distance - self.tolerance:g} to {self.distance + self.tolerance:g} m away"
         )
 
+    def least_time(self, way: float, speed: float) -> float:
+        return self.length / speed
+
     def make_count(self, cases: Sequence[GoalCase], n: int, step_time: float) -> GoalCount:
         return _WallCount(self, cases, step_time)
 

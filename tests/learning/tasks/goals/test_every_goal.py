@@ -51,7 +51,7 @@ reward: {{terms: {{achieving: 1.0, reached: 1.0}}}}
 goal: {goal}
 start: {{noise: 0.05, max_rotation: 0.3}}
 target: {{radius: 0.15}}
-step: {{limit: 50}}
+step: {{limit: 120}}
 """
 every_goal = pytest.mark.parametrize("kind", KINDS)
 
