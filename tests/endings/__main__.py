@@ -1,4 +1,4 @@
-"""Ends ten recorders in every way, and prints what was kept: ``python -m tests.endings``.
+"""Ends thirteen recorders in every way, and prints what was kept: ``python -m tests.endings``.
 
 ``--only "run --bag,quiz"`` and ``--endings SIGTERM,SIGKILL`` choose. Exit code 1 if anything was lost or ended in a
 traceback, or if a program that could write nothing said nothing. "full disk" and "read only" need the right to mount.
