@@ -179,7 +179,7 @@ class PlainSession:
             if self._record is not None and self._recorder is not None:
                 self._record.complete(self._recorder.recording())
                 if self._prints_file:
-                    click.echo(f"Drive saved to {self._record.file}.")
+                    click.echo(f"Drive saved to {self._record.file}. {self._record.remark}".rstrip())
 
     def _open(self, scenario: Scenario) -> Session:
         session = Session(scenario, seed=self._seed, always_scan=True, on_message=_print_log)

@@ -120,5 +120,5 @@ def command(
             kept.complete(recording)
         except OSError as error:
             messages.fail(messages.describe_os_error(error))
-        click.echo(f"Drive saved to {record}.")
+        click.echo(f"Drive saved to {record}. {kept.remark}".rstrip())
     raise ScreenClosed(code)

@@ -120,6 +120,7 @@ def command(
             else:
                 streams = piped_streams()
             driver = find_controller(controller, opened_workspace.controllers)
+            recording_file = opening.open_recording_file(record)
             summary = run_headless(
                 find_scenario(place, case, root),
                 driver,
@@ -127,7 +128,7 @@ def command(
                 seed=seed,
                 factor=speed or (REAL_TIME if serve else MAXIMUM),
                 until_reached=until_reached,
-                record=opening.open_recording_file(record),
+                record=recording_file,
                 participants=participants,
                 on_message=lambda record: click.echo(format_log(record), err=True),
                 streams=streams,
@@ -137,6 +138,8 @@ def command(
     except OSError as error:
         messages.fail(messages.describe_os_error(error))
     click.echo(json.dumps(summary.as_dict(), indent=2) if as_json else format_summary(summary))
+    if recording_file is not None and recording_file.remark:
+        click.echo(recording_file.remark, err=True)
     if summary.interrupted:
         for kept in filter(None, (record, bag)):
             click.echo(f"What ran until then is in {kept}.", err=True)

@@ -107,7 +107,7 @@ def _endpoint_pairs(graph: Graph) -> Iterator[tuple[str, str, str, str, str]]:
         for publisher in graph.directory.publishers(name):
             for subscription in graph.directory.subscriptions(name):
                 outcome, reason = qos_check_compatible(publisher.qos_profile, subscription.qos_profile)
-                status = "OK" if outcome is QoSCompatibility.OK else reason.rstrip(";")
+                status = reason.rstrip(";") if outcome is QoSCompatibility.ERROR else "OK"
                 yield name, ", ".join(types), publisher.handle.name, subscription.handle.name, status
 
 

@@ -11,7 +11,7 @@ import json
 import math
 import struct
 from array import array
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Protocol, Self
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from kit.array_archives import read_arrays
+from kit.array_archives import MAX_PACKED_BYTES, read_arrays
 from kit.arrays import FloatArray, IntArray
 from kit.interruption import uninterrupted
 from kit.msg.conversion import from_dict, to_dict
@@ -41,6 +41,13 @@ FORMAT: Final = 1
 
 MAX_TIME_S: Final = 2**31 - 1
 """What a stamp of ROS can say [s]."""
+
+MAX_HEADER_BYTES: Final = 32 << 20
+"""Bytes of a recording's inputs and names: reading them takes ten times as much memory."""
+
+MAX_RECORDED_BYTES: Final = MAX_PACKED_BYTES - (1 << 20)
+"""Bytes that a run records at most, so that its file can be read, also where nothing of it can be packed: five hours of one
+robot at 100 ticks a second."""
 
 ACCEPT: Final = "accept"
 """The kind of input that is a message on a topic."""
@@ -148,7 +155,10 @@ class RecordingStore(Protocol):
 
 
 class Recorder(Observer):
-    """Records a run as one of its observers, from its first tick on; into ``store`` too, as the run goes on."""
+    """Records a run as one of its observers, from its first tick on; into ``store`` too, as the run goes on.
+
+    A run that takes more than a recording may hold goes on, and its first ticks are recorded.
+    """
 
     def __init__(
         self,
@@ -164,7 +174,9 @@ class Recorder(Observer):
         self._seed = simulation.seed
         self._step_size = simulation.step_size
         self._simulation = simulation
-        self._inputs: list[Input] = []
+        self._inputs: list[bytes] = []  # JSON, a fifth of the memory that its values take
+        self._header_bytes = 0
+        self._is_full = False
         self._poses = array("d")
         self._counts = array("q")
         self._models: list[tuple[int, tuple[str, ...]]] = []
@@ -185,6 +197,11 @@ class Recorder(Observer):
         """How many have been recorded."""
         return len(self._counts)
 
+    @property
+    def is_full(self) -> bool:
+        """Whether the recording holds as much as it may, and the ticks that follow are left out."""
+        return self._is_full
+
     def on_message(self, topic: str, message: Message) -> None:
         self._add_input(ACCEPT, topic, type(message).__ros_type__, to_dict(message))
 
@@ -192,12 +209,19 @@ class Recorder(Observer):
         self._add_input(service, *arguments)
 
     def on_step(self, simulation: Simulation) -> None:
+        if self._is_full:
+            if self._store is not None:
+                self._store.offer(self)
+            return
         names = simulation.model_names
         if not self._models or self._models[-1][1] != names:
             self._models.append((len(self._counts), names))
+            self._count_header(sum(map(len, names)))
         for pose in simulation.poses():
             self._poses.extend(pose)
         self._counts.append(len(names))
+        recorded = 8 * (len(self._poses) + len(self._counts)) + self._header_bytes
+        self._is_full |= recorded >= MAX_RECORDED_BYTES
         if self._store is not None:
             self._store.offer(self)
 
@@ -212,14 +236,26 @@ class Recorder(Observer):
             self._seed,
             self._step_size,
             tuple(self._models[since.models :]),
-            tuple(self._inputs[since.inputs :]),
+            tuple(_read_input(json.loads(each)) for each in self._inputs[since.inputs :]),
             poses.reshape(-1, 3),
             counts,
             self._level,
         )
 
     def _add_input(self, kind: str, *content: Any) -> None:
-        self._inputs.append(Input(len(self._counts), kind, content))
+        if not self._is_full:
+            self._inputs.append(json.dumps((len(self._counts), kind, content)).encode())
+            self._count_header(len(self._inputs[-1]))
+
+    def _count_header(self, size: int) -> None:
+        """Counts bytes of the header: a megabyte is left for what is not counted."""
+        self._header_bytes += size + 2
+        self._is_full |= self._header_bytes >= MAX_HEADER_BYTES - (1 << 20)
+
+
+def _read_input(entry: Sequence[Any]) -> Input:
+    tick, kind, content = entry
+    return Input(int(tick), str(kind), tuple(content))
 
 
 def save_recording(recording: Recording, file: Path) -> None:
@@ -247,10 +283,6 @@ def recording_header(recording: Recording) -> dict[str, Any]:
         "inputs": [(each.tick, each.kind, each.content) for each in recording.inputs],
         "level": recording.level,
     }
-
-
-MAX_HEADER_BYTES: Final = 32 << 20
-"""Bytes of a recording's inputs and names: reading them takes ten times as much memory."""
 
 
 def load_recording(file: Path | str) -> Recording:
@@ -288,7 +320,7 @@ def recording_from_header(header: Mapping[str, Any], poses: NDArray[Any], counts
         int(header["seed"]),
         float(header["step_size"]),
         tuple((int(tick), tuple(names)) for tick, names in header["models"]),
-        tuple(Input(int(tick), str(kind), tuple(content)) for tick, kind, content in header["inputs"]),
+        tuple(map(_read_input, header["inputs"])),
         poses.reshape(-1, 3),
         counts,
         None if header["level"] is None else str(header["level"]),

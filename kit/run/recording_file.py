@@ -51,6 +51,8 @@ class RecordingFile:
         self._written = NOTHING
         self._written_s = 0.0
         self._failure: OSError | None = None
+        self.remark = ""
+        """A sentence about what of the run is not recorded; empty if there is nothing to say."""
 
     def __enter__(self) -> Self:
         return self
@@ -62,7 +64,7 @@ class RecordingFile:
 
     def begin(self, first: Recording) -> None:
         """Starts anew: what was recorded before is given up, unless it is complete."""
-        self._written, self._failure = NOTHING, None
+        self._written, self._failure, self.remark = NOTHING, None, ""
         if self._part is None and not is_special(self.file):
             try:
                 self._part = lock_part(part_path(self.file), self.file)
@@ -73,9 +75,15 @@ class RecordingFile:
             self._write(recording_header(first))
 
     def offer(self, recorder: Recorder) -> None:
-        """Writes what was recorded since the last time, at most every half second."""
+        """Writes what was recorded since the last time, at most every half second and once it is full."""
+        if self.remark:
+            return
         now_s = time.monotonic()
-        if now_s - self._written_s < INTERVAL_S or self._part is None or self._failure is not None:
+        if recorder.is_full:
+            self.remark = f"{self.file} holds the first {recorder.ticks:,} ticks of the run, as many as a recording may hold."
+        elif now_s - self._written_s < INTERVAL_S:
+            return
+        if self._part is None or self._failure is not None:
             return
         self._written_s = now_s
         news = recorder.recording(self._written)

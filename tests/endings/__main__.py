@@ -1,4 +1,4 @@
-"""Ends ten recorders in every way, and prints what was kept: ``python -m tests.endings``.
+"""Ends thirteen recorders in every way, and prints what was kept: ``python -m tests.endings``.
 
 ``--only "run --bag,quiz"`` and ``--endings SIGTERM,SIGKILL`` choose. Exit code 1 if anything was lost or ended in a
 traceback, or if a program that could write nothing said nothing. "full disk" and "read only" need the right to mount.
@@ -6,6 +6,7 @@ traceback, or if a program that could write nothing said nothing. "full disk" an
 
 from __future__ import annotations
 
+import signal
 import tempfile
 from pathlib import Path
 
@@ -20,6 +21,8 @@ from tests.endings.recorders import RECORDERS
 @click.option("--endings", default=",".join(ENDINGS), help="Endings, separated by commas.")
 @click.option("-v", "--verbose", is_flag=True, help="Print exit codes and last lines.")
 def main(*, only: str, endings: str, verbose: bool) -> None:
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores both,
+    signal.signal(signal.SIGQUIT, signal.SIG_DFL)  # as would what it starts
     names = [name for name in endings.split(",") if name not in NEED_MOUNT or can_mount()]
     click.echo(f"{'':<18}" + "".join(f"{name:>11}" for name in names))
     lost: list[str] = []

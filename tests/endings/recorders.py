@@ -27,13 +27,16 @@ from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.run_config import RunConfig
 from kit.learning.training.run_folders import create_run
 from kit.learning.training.runs import TrainingRun
+from kit.learning.training.training_sweep import TrainingSweep
 from kit.mapmaking.sketch_draft import SketchDraft
 from kit.part_file import part_path, parts_in
 from kit.ros.bag_storage import BagError, restore_bags
 from kit.ros.bags import read_bag
 from kit.run.recording import RecordingError, load_recording
 from kit.run.recording_file import restore_recordings
+from kit.school.game.shared_drives import read_shared_drives
 from kit.school.progress import EventKind, ProgressJournal
+from kit.study.result_logs import read_recorded_result
 from kit.tui.widgets.program_editor import DRAFT_SUFFIX
 from tests.grader.conftest import FORWARD, write_assignment
 from tests.kills.scenarios import Place
@@ -255,6 +258,68 @@ class Cohort(Recorder):
         return sum(bool(json.loads(file.read_text())) for file in files)
 
 
+class Sweep(Recorder):
+    """``kit sweep``: the results of its trainings."""
+
+    @property
+    def words(self) -> Sequence[str]:
+        short = ("--steps", "2000", "--episodes", "5", "--seeds", "200", "--jobs", "1", "--name", "kept")
+        return ("-m", "kit", "sweep", "turn", "--algos", "q-learning", *short)
+
+    def has_something(self) -> bool:
+        return self.kept() > 1
+
+    def kept(self) -> int:
+        """Results that can be read."""
+        folder = self.folder / "sweeps" / "kept"
+        if not (folder / "manifest.json").exists():
+            return 0
+        sweep = TrainingSweep(folder)
+        keys = sweep.keys()
+        return sum(sweep.result(key) is not None for key in keys)
+
+
+class Study(Recorder):
+    """``kit study --again``: the log of its trainings."""
+
+    @property
+    def words(self) -> Sequence[str]:
+        return ("-m", "kit", "study", "3.3", "--again", "--steps", "300", "--seeds", "100", "--jobs", "1")
+
+    def has_something(self) -> bool:
+        return self.kept() > 0
+
+    def kept(self) -> int:
+        """Tests of trained agents."""
+        found = read_recorded_result(self.folder / "study" / "3.3.jsonl")
+        return 0 if found is None else len(found.tests)
+
+
+class LeagueMatches(Recorder):
+    """``kit league run``: the matches that were driven."""
+
+    ENTRIES: ClassVar[int] = 8
+
+    def prepare(self) -> None:
+        for number in range(self.ENTRIES):
+            file = self.place.folder / f"entry{number}.py"
+            file.write_text(FORWARD.replace("SPEED = 0.3", f"SPEED = {0.1 + 0.05 * number:.2f}"))
+            words = ("-m", "kit", "league", "submit", "--controller", str(file))
+            assert self.place.start(*words, output=self.place.folder / "entered.txt").wait() == 0
+
+    @property
+    def words(self) -> Sequence[str]:
+        return ("-m", "kit", "league", "run", "--jobs", "1", "--level", "0")
+
+    def has_something(self) -> bool:
+        return self.kept() > 1
+
+    def kept(self) -> int:
+        """Results that can be read."""
+        files = self.folder.glob("league/results/*.npz")
+        return sum(bool(read_shared_drives(file.read_bytes()).recordings) for file in files)
+
+
 class MapDrawing(Recorder):
     """``kit maps new`` on the screen: the drawing."""
 
@@ -328,6 +393,9 @@ RECORDERS: Final[Mapping[str, Callable[[Place], Recorder]]] = MappingProxyType(
         "train": Training,
         "quiz": Quiz,
         "grader cohort": Cohort,
+        "sweep": Sweep,
+        "study": Study,
+        "league run": LeagueMatches,
         "maps new": MapDrawing,
         "edit": Editing,
     }

@@ -801,6 +801,35 @@ def test_a_thread_that_fails_is_told(harness: GraphHarness, student: Student) ->
     assert "from a thread" in process.failure.message
 
 
+def test_ticks_pass_beside_a_thread_that_computes_without_end(
+    harness: GraphHarness, student: Student
+) -> None:
+    """As a camera's thread does. Each time a tick waits for the interpreter, that thread may keep it for a switch interval."""
+    file = student(
+        """
+        import sys, threading, rclpy
+        from std_msgs.msg import String
+
+        def compute():
+            while True:
+                sum(range(1000))
+
+        def main():
+            rclpy.init()
+            node = rclpy.create_node("camera")
+            threading.Thread(target=compute, daemon=True).start()
+            found = node.create_publisher(String, "found", 10)
+            node.create_timer(0.1, lambda: found.publish(String(data=str(sys.getswitchinterval() <= 0.001))))
+            rclpy.spin(node)
+        """
+    )
+    found = harness.subscribe(String, "/found")
+    harness.start(file)
+    harness.tick(30)
+    assert texts(found)
+    assert set(texts(found)) == {"True"}
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("end", ["raise ValueError('late')", "return"])
 def test_an_end_while_another_thread_waits_for_the_kit(

@@ -53,9 +53,10 @@ def test_ends_that_do_not_fit_are_named_with_the_policy(graph: Graph) -> None:
     create_graph_node(graph, "sensor").create_publisher(String, "said", BEST_EFFORT)
     create_graph_node(graph, "driver").create_subscription(String, "said", print, 1)
     (error,) = found(graph)["middleware"]
-    assert all(word in error for word in ("/said", "sensor", "driver", "RELIABILITY"))
+    assert all(word in error for word in ("/said", "sensor", "driver", "Best effort publisher"))
     (report,) = [each for each in reports(graph, "w", {}, {}, "jazzy") if each.title.startswith("QOS")]
-    assert "RELIABILITY" in str(dict(report.rows)["compatibility status"])
+    told = "ERROR: Best effort publisher and reliable subscription"
+    assert dict(report.rows)["compatibility status"] == told
 
 
 def test_what_a_robot_does_at_most_is_reported_and_who_asked_for_more_is_told(graph: Graph) -> None:

@@ -10,6 +10,7 @@ import pytest
 
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.part_file import BeingWrittenError, part_path
+from kit.run import recording as recording_module
 from kit.run import recording_file
 from kit.run.episode import run_until
 from kit.run.recording import Recorder, Recording, load_recording, rerun
@@ -99,3 +100,23 @@ def test_a_part_that_is_none_is_no_recording(tmp_path: Path, content: bytes) -> 
     part_path(tmp_path / "x").write_bytes(content)
     assert list(restore_recordings(tmp_path)) == []
     assert part_path(tmp_path / "x").exists() == bool(content)
+
+
+@pytest.mark.parametrize(
+    ("limit", "size"), [("MAX_RECORDED_BYTES", 12 * 32), ("MAX_HEADER_BYTES", (1 << 20) + 400)]
+)
+def test_a_run_that_is_too_long_for_a_recording_keeps_its_beginning(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limit: str, size: int
+) -> None:
+    with RecordingFile(tmp_path / "whole.npz") as file:
+        whole = drive(file, 40)
+        assert file.remark == ""
+    monkeypatch.setattr(recording_module, limit, size)
+    with RecordingFile(tmp_path / "run.npz") as file:
+        recording = drive(file, 40)
+        assert f"first {recording.ticks} ticks" in file.remark
+        file.complete(recording)
+    loaded = load_recording(tmp_path / "run.npz")
+    assert 0 < loaded.ticks == recording.ticks < 40
+    assert np.array_equal(loaded.poses, whole.poses[: len(loaded.poses)])
+    assert np.array_equal(rerun(loaded, find_scenario("maze").world).poses, loaded.poses)

@@ -27,7 +27,7 @@ from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
 
 SWITCH_S: Final = 0.0005
-"""How long one of a package's threads may keep the interpreter while others want it [s]."""
+"""How long one of the program's threads may keep the interpreter while others want it [s]."""
 
 
 def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]) -> None:
@@ -46,6 +46,8 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     waiter = bridge.graph.waiter
     assert isinstance(waiter, AllThreadsWaiter)  # the bridge's default
     waiter.max_computing_s = session.reply_s / 2
+    # A tick needs the interpreter several times: a thread that computes or polls must not keep it for long each time.
+    sys.setswitchinterval(SWITCH_S)
     if "folder" in start:  # the user's own, not a submission
         answer_ticks_meanwhile(partial(waiter.waiting_for_user, bridge.graph))
     session.interrupts.install()
@@ -115,8 +117,6 @@ def _begin_when_needed(
 
 def _run_entry_point(entry: str, program: StudentProgram) -> None:
     """Calls the function of an entry point, as the script would that an installation makes of it."""
-    # A thread that polls must not keep the others from the interpreter for long.
-    sys.setswitchinterval(SWITCH_S)
     name, _, function = entry.partition(":")
     module = importlib.import_module(name)
     main = getattr(module, function, None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from enum import Enum, IntEnum
 from typing import Any, ClassVar, Self
 
@@ -286,11 +287,71 @@ class QoSCompatibility(IntEnum):
 def qos_check_compatible(
     publisher_qos: QoSProfile, subscription_qos: QoSProfile
 ) -> tuple[QoSCompatibility, str]:
-    """Whether messages pass between a publisher and a subscription with these profiles, and if not, why."""
-    policy = first_incompatibility(publisher_qos, subscription_qos)
-    if policy is None:
-        return QoSCompatibility.OK, ""
-    return (
-        QoSCompatibility.ERROR,
-        f"ERROR: the publisher offers less {policy.name} than the subscription asks for;",
-    )
+    """Whether messages pass between a publisher and a subscription with these profiles, and every reason why not.
+
+    The reasons are those of the middleware, each ended by a semicolon. Where none speaks against it, a policy that is left
+    to the middleware is a warning; that is so for two profiles that say nothing of liveliness.
+    """
+    if errors := "".join(f"ERROR: {each};" for each in _contradictions(publisher_qos, subscription_qos)):
+        return QoSCompatibility.ERROR, errors
+    if warnings := "".join(f"WARNING: {each};" for each in _doubts(publisher_qos, subscription_qos)):
+        return QoSCompatibility.WARNING, warnings
+    return QoSCompatibility.OK, ""
+
+
+def _contradictions(offered: QoSProfile, requested: QoSProfile) -> Iterator[str]:
+    """Yields in what a publisher certainly offers less than a subscription asks for."""
+    if offered.is_best_effort and requested.reliability == ReliabilityPolicy.RELIABLE:
+        yield "Best effort publisher and reliable subscription"
+    if offered.durability == DurabilityPolicy.VOLATILE and requested.is_transient_local:
+        yield "Volatile publisher and transient local subscription"
+    if _is_longer(offered.deadline, requested.deadline):
+        if offered.deadline.nanoseconds == 0:
+            yield "Subscription has a deadline, but publisher does not"
+        else:
+            yield "Subscription deadline is less than publisher deadline"
+    if (offered.liveliness, requested.liveliness) == (
+        LivelinessPolicy.AUTOMATIC,
+        LivelinessPolicy.MANUAL_BY_TOPIC,
+    ):
+        yield "Publisher's liveliness is automatic and subscription's is manual by topic"
+    if _is_longer(offered.liveliness_lease_duration, requested.liveliness_lease_duration):
+        if offered.liveliness_lease_duration.nanoseconds == 0:
+            yield "Subscription has a liveliness lease duration, but publisher does not"
+        else:
+            yield "Subscription liveliness lease duration is less than publisher"
+
+
+def _doubts(offered: QoSProfile, requested: QoSProfile) -> Iterator[str]:
+    """Yields the policies of which one or both sides leave the choice to the middleware, which may choose amiss."""
+    for policy, least, if_least, most, if_most in (
+        (
+            "reliability",
+            ReliabilityPolicy.BEST_EFFORT,
+            "Best effort publisher, but subscription is",
+            ReliabilityPolicy.RELIABLE,
+            "Reliable subscription, but publisher is",
+        ),
+        (
+            "durability",
+            DurabilityPolicy.VOLATILE,
+            "Volatile publisher, but subscription is",
+            DurabilityPolicy.TRANSIENT_LOCAL,
+            "Transient local subscription, but publisher is",
+        ),
+        (
+            "liveliness",
+            LivelinessPolicy.AUTOMATIC,
+            "Publisher's liveliness is automatic, but subscription's is",
+            LivelinessPolicy.MANUAL_BY_TOPIC,
+            "Subscription's liveliness is manual by topic, but publisher's is",
+        ),
+    ):
+        ours, theirs = getattr(offered, policy), getattr(requested, policy)
+        open_ours, open_theirs = (each.name in ("SYSTEM_DEFAULT", "UNKNOWN") for each in (ours, theirs))
+        if open_ours and open_theirs:
+            yield f"Publisher {policy} is {ours.short_key} and subscription {policy} is {theirs.short_key}"
+        elif open_ours and theirs == most:
+            yield f"{if_most} {ours.short_key}"
+        elif open_theirs and ours == least:
+            yield f"{if_least} {theirs.short_key}"

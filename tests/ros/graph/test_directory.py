@@ -169,7 +169,51 @@ class TestQualityOfService:
         assert all(f"Last incompatible policy: {policy}" in text for text in warnings.values())
         assert "requesting incompatible QoS. No messages will be sent to it" in warnings["talker"]
         assert "offering incompatible QoS. No messages will be received from it" in warnings["listener"]
-        assert qos_check_compatible(offered, asked)[0] is QoSCompatibility.ERROR
+        assert qos_check_compatible(offered, asked)[0] is not QoSCompatibility.OK
+
+    @pytest.mark.parametrize(
+        ("offered", "asked", "outcome", "reason"),
+        [
+            (
+                qos_profile_sensor_data,
+                offers(durability=DurabilityPolicy.TRANSIENT_LOCAL, deadline=Duration(seconds=1)),
+                QoSCompatibility.ERROR,
+                (
+                    "ERROR: Best effort publisher and reliable subscription;"
+                    "ERROR: Volatile publisher and transient local subscription;"
+                    "ERROR: Subscription has a deadline, but publisher does not;"
+                ),
+            ),
+            (
+                offers(liveliness_lease_duration=Duration(seconds=2)),
+                offers(liveliness_lease_duration=Duration(seconds=1)),
+                QoSCompatibility.ERROR,
+                "ERROR: Subscription liveliness lease duration is less than publisher;",
+            ),
+            (
+                offers(),
+                offers(),
+                QoSCompatibility.WARNING,
+                "WARNING: Publisher liveliness is system_default and subscription liveliness is system_default;",
+            ),
+            (
+                offers(liveliness=LivelinessPolicy.AUTOMATIC, reliability=ReliabilityPolicy.UNKNOWN),
+                offers(liveliness=LivelinessPolicy.AUTOMATIC),
+                QoSCompatibility.WARNING,
+                "WARNING: Reliable subscription, but publisher is unknown;",
+            ),
+            (
+                offers(liveliness=LivelinessPolicy.AUTOMATIC),
+                offers(liveliness=LivelinessPolicy.AUTOMATIC),
+                QoSCompatibility.OK,
+                "",
+            ),
+        ],
+    )
+    def test_every_reason_against_two_profiles_is_told(
+        self, offered: QoSProfile, asked: QoSProfile, outcome: QoSCompatibility, reason: str
+    ) -> None:
+        assert qos_check_compatible(offered, asked) == (outcome, reason)
 
     def test_more_offered_than_asked_is_fine(self, graph: Graph, lines: list[LogRecord], node: Node) -> None:
         heard: list[Int32] = []

@@ -121,7 +121,7 @@ def main():
         print(type(error).__name__)
     executor = rclpy.executors.SingleThreadedExecutor()
     talker, listener = Talker(), Listener()
-    print(sorted(p for p in talker._parameters if p.startswith("qos_overrides./chatter")))
+    print(sorted(talker.get_parameters_by_prefix("qos_overrides./chatter.publisher")))
     executor.add_node(talker)
     executor.add_node(listener)
     try:

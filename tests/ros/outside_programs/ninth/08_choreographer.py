@@ -66,7 +66,7 @@ class Director(Node):
     def __init__(self, choreographer):
         super().__init__("director")
         self.stage = choreographer
-        self.client = self.create_client(Trigger, "dance")
+        self.client = self.create_client(Trigger, "dance", callback_group=MutuallyExclusiveCallbackGroup())
         self.cmd = self.create_publisher(Twist, "/d2/cmd_vel", 10)
         self.timer = self.create_timer(0.5, self.direct)
         self.ticks = 0
