@@ -65,6 +65,8 @@ class PosedTaskPlan:
     """Name of the file of such a policy; empty where none is asked for."""
     seed: int
     secret_seed: int | None
+    enough: float = 1.0
+    """The share that earns all points: once one training surely reaches it, no further one is made, as the best counts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +117,12 @@ class TrainingResult:
     @property
     def accuracy(self) -> float:
         return success_rate(self.exam)
+
+    @property
+    def sure_success(self) -> float:
+        """The lower bound of the success in the exam, with 95 % confidence (Wilson)."""
+        counts = self.exam.values()
+        return lower_bound(sum(count.reached for count in counts), sum(count.episodes for count in counts))
 
 
 @dataclass(frozen=True, slots=True)

@@ -164,7 +164,8 @@ def collect_evidence(
     assignment: Assignment, file: Path, options: EvidenceOptions, stack: ExitStack
 ) -> EvidenceRecord:
     """Reads the task, in a process that ends with ``stack``; what checks measure is worked out when they ask."""
-    plan: PosedTaskPlan = assignment.task
+    full = (each.anchors.full for each in assignment.criteria if each.check == learns.name)
+    plan: PosedTaskPlan = replace(assignment.task, enough=max(full, default=1.0))
     secret = options.secret and plan.secret_seed is not None
     seed = plan.secret_seed if secret and plan.secret_seed is not None else plan.seed
     record = EvidenceRecord(secret=secret, label="the task with a secret seed" if secret else "the task")

@@ -226,7 +226,7 @@ class PosedTask:
             keeps_best=True,
             steps=plan.steps,
         )
-        return run_trainings(settings, budget, seeds, self._clock)
+        return run_trainings(settings, budget, seeds, self._clock, plan.enough)
 
     @cached_property
     def policy_test(self) -> EvaluationResult | str:
@@ -290,11 +290,7 @@ class PosedTask:
         )
 
     def _measure_learning(self, params: Mapping[str, str]) -> PosedMeasure:
-        exams = [training.exam.values() for training in self.results.trainings]
-        surest = max(
-            lower_bound(sum(count.reached for count in exam), sum(count.episodes for count in exam))
-            for exam in exams
-        )
+        surest = max(training.sure_success for training in self.results.trainings)
         shares = ", ".join(f"{training.accuracy:.2f}" for training in self.results.trainings)
         inputs = int(self.task.observation.space(self.task.robots).shape[0])
         rows = table_rows(inputs, len(TABLE_EDGES) + 1)
