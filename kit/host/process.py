@@ -368,10 +368,15 @@ class StudentProcess:
     ) -> Frame:
         """Returns the answer to a command. Ends a child that uses more processor time before it answers, or more of the wall
         clock, of which with ``extends_wall`` its waiting for a processor does not count. Raises StudentCodeError."""
-        began, used_before_s, delayed_before_s = time.monotonic(), self._processor_s(), self._delayed_s()
+        began, used_before_s = time.monotonic(), self._processor_s()
         total_s = self._limits.total_s
         left_s = math.inf if total_s is None or budget == "start" else total_s - self._waited_s
-        used_s, delayed_s, pause_s = 0.0, 0.0, processor_s
+        used_s, delayed_s, pause_s = (
+            0.0,
+            0.0,
+            CHECK_S,
+        )  # the kernel's files are read only for who is not at once done
+        delayed_before_s: float | None = None
         while True:
             now = time.monotonic()
             end = began + min(wall_s + delayed_s, left_s)
@@ -385,6 +390,8 @@ class StudentProcess:
             if used_s >= processor_s:
                 self._fail_timeout(budget, processor_s)
             if extends_wall:
+                if delayed_before_s is None:
+                    delayed_before_s = self._delayed_s()
                 delayed_s = self._delayed_s() - delayed_before_s
             waited_s = time.monotonic() - began
             if waited_s >= min(wall_s + delayed_s, left_s):
