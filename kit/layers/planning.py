@@ -1,4 +1,4 @@
-"""From a case to its plan: the fewest layers, the assignment and the proof; and the ways out where Flatland has too few.
+"""Plans the layers of a case: the fewest, with assignment and proof, or the ways out where Flatland has too few.
 
 The proof is a lower bound on the number of layers that a person can check. A certificate counts requirements of which no
 two fit one layer: ten such requirements need ten layers. Where no such set is large enough, requirements are given weights

@@ -1,5 +1,7 @@
-"""Settings that work: *seed*, as in the dissertation's code, and *kit*, fast and reliable, each reason beside its value;
-and *seed-text*, as the dissertation's text has them, which do not.
+"""Presets: the settings with which an algorithm learns a task, each with its reason beside it.
+
+*seed* has those of the dissertation's code, *seed-text* those of its text, which do not work, and *kit* the kit's own, fast
+and reliable.
 
 Names of settings are those of stable-baselines3; None leaves the library's own value.
 """
