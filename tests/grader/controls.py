@@ -105,6 +105,13 @@ CONTROLS: Final = (
         "school/game/test_shared_game.py::test_a_host_that_sends_a_frame_byte_by_byte_is_left",
     ),
     Control(
+        "the reward of a packed task, with one's own rights",
+        "kit/cli/task.py",
+        "check_reward(found.reward_file, found, highest_level_up_to(max(Level)))",
+        "check_reward(found.reward_file, found)",
+        "cli/test_task.py::test_the_reward_of_a_packed_task_is_run_without_ones_rights",
+    ),
+    Control(
         "a league full of one user's entries",
         "kit/school/game/league/entries.py",
         "            elif user != owner and others >= MAX_OF_ONE_USER:\n",
