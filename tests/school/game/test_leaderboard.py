@@ -28,9 +28,15 @@ from kit.school.game.leaderboard import (
     standings,
 )
 from kit.school.game.medal import Medal
-from kit.school.game.race import DriverKind, judge_recording, race_from_all_starts
+from kit.school.game.race import DriverKind, judge_recording, race_from_all_starts, run_again
 from kit.school.game.references import drive_reference
-from kit.school.game.shared_drives import MAX_FILE_BYTES, platform_key, share_drives
+from kit.school.game.shared_drives import (
+    MAX_FILE_BYTES,
+    digest_of,
+    judge_shared_drives,
+    platform_key,
+    share_drives,
+)
 from kit.school.game.starts import OWN_SEED
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.rows.leaderboard_rows import leaderboard_times
@@ -433,6 +439,22 @@ def test_a_damaged_drive_is_passed_over(tmp_path: Path, damage: Callable[[dict[s
     board = join(tmp_path / "board", by_hand())
     change(own_file(board), damage)
     assert read_entries(board, [FIRST]) == []
+
+
+def test_a_drive_with_many_messages_a_tick_is_shared_and_the_same(tmp_path: Path) -> None:
+    """Of which the robot obeys the last: so many commands keep nobody's drive from being judged."""
+    told = by_hand()
+    other = {"linear": {"x": -9.0}}
+    many = tuple(
+        each
+        for one in told.inputs
+        for each in (*(replace(one, content=(*one.content[:2], other)),) * 20, one)
+    )
+    assert digest_of(run_again(FIRST, replace(told, inputs=many))[1]) == digest_of(told)
+    share_drives([replace(told, inputs=many)], tmp_path / "many.npz")
+    share_drives([told], tmp_path / "few.npz")
+    assert (tmp_path / "many.npz").read_bytes() == (tmp_path / "few.npz").read_bytes()
+    assert judge_shared_drives((tmp_path / "many.npz").read_bytes(), FIRST, KEYS).finish.reached
 
 
 def test_a_folder_in_which_others_can_replace_files_is_refused(tmp_path: Path) -> None:
