@@ -105,11 +105,11 @@ CONTROLS: Final = (
         "school/game/test_shared_game.py::test_a_host_that_sends_a_frame_byte_by_byte_is_left",
     ),
     Control(
-        "the reward of a packed task, with one's own rights",
-        "kit/cli/task.py",
-        "check_reward(found.reward_file, found, highest_level_up_to(max(Level)))",
-        "check_reward(found.reward_file, found)",
-        "cli/test_task.py::test_the_reward_of_a_packed_task_is_run_without_ones_rights",
+        "commands without end that keep a match from being judged",
+        "kit/school/game/shared_drives.py",
+        "            if each.content[0] in following:\n",
+        "            if each.content is following:\n",
+        "school/game/test_leaderboard.py::test_a_drive_with_many_messages_a_tick_is_shared_and_the_same",
     ),
     Control(
         "a league full of one user's entries",
