@@ -371,11 +371,8 @@ class StudentProcess:
         began, used_before_s = time.monotonic(), self._processor_s()
         total_s = self._limits.total_s
         left_s = math.inf if total_s is None or budget == "start" else total_s - self._waited_s
-        used_s, delayed_s, pause_s = (
-            0.0,
-            0.0,
-            CHECK_S,
-        )  # the kernel's files are read only for who is not at once done
+        used_s, delayed_s = 0.0, 0.0
+        pause_s = CHECK_S  # the kernel's files are read only of a program that does not answer at once
         delayed_before_s: float | None = None
         while True:
             now = time.monotonic()

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from kit.host.sandbox.probe import highest_level_up_to
+from kit.host.sandbox.sandbox_config import Level
 from kit.layers.case_sources import open_task
 from kit.learning.policies.policy_file import load_policy
 from kit.learning.tasks.catalogue import find_task, task_names
@@ -239,6 +241,20 @@ def test_a_start_in_a_wall_is_told_before_anything_is_written(tmp_path: Path) ->
 
 def test_continuous_actions_take_an_algorithm_that_learns_them() -> None:
     assert "ppo" in kit("train", "smooth-turn", "--algo", "dqn", code=2).output
+
+
+@pytest.mark.skipif(highest_level_up_to(max(Level)) is Level.LIMITED, reason="nothing is confined here")
+def test_the_reward_of_a_packed_task_is_run_without_ones_rights(tmp_path: Path) -> None:
+    kit("task", "new", "mine")
+    task = Path("mine/task.yaml")
+    task.write_text(task.read_text().replace("name: algorithm-3\n  scale: 0.01", "file: own.py"))
+    written = tmp_path / "written"
+    Path("mine/own.py").write_text(
+        f"try:\n    open({str(written)!r}, 'w')\nexcept OSError:\n    pass\ndef reward(reached):\n    return 1.0 * reached\n"
+    )
+    kit("task", "pack", "mine", "--to", "sent.zip")
+    assert ": valid" in kit("task", "check", "sent.zip").output
+    assert not written.exists()
 
 
 def test_a_packed_task_is_checked_and_unpacked() -> None:

@@ -105,6 +105,13 @@ CONTROLS: Final = (
         "school/game/test_shared_game.py::test_a_host_that_sends_a_frame_byte_by_byte_is_left",
     ),
     Control(
+        "commands without end that keep a match from being judged",
+        "kit/school/game/shared_drives.py",
+        "            if each.content[0] in following:\n",
+        "            if each.content is following:\n",
+        "school/game/test_leaderboard.py::test_a_drive_with_many_messages_a_tick_is_shared_and_the_same",
+    ),
+    Control(
         "a league full of one user's entries",
         "kit/school/game/league/entries.py",
         "            elif user != owner and others >= MAX_OF_ONE_USER:\n",

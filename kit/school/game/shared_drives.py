@@ -13,7 +13,7 @@ import json
 import os
 import platform
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -22,7 +22,14 @@ import numpy as np
 from kit.array_archives import READ_ERRORS, unpack_arrays
 from kit.arrays import FloatArray
 from kit.plain_files import open_plain_file
-from kit.run.recording import ACCEPT, Recording, RecordingError, recording_from_header, recording_header
+from kit.run.recording import (
+    ACCEPT,
+    Input,
+    Recording,
+    RecordingError,
+    recording_from_header,
+    recording_header,
+)
 from kit.school.game.levels import GameLevel
 from kit.school.game.medal import Medal, medal_of
 from kit.school.game.player_progress import BY_HAND, ExtraRule, kept_rules
@@ -36,9 +43,9 @@ from kit.world.records import World
 FORMAT: Final = 1
 TRACK_STRIDE: Final = 10
 """One of this many poses of a track is kept."""
-MAX_FILE_BYTES: Final = 1 << 20
+MAX_FILE_BYTES: Final = 4 << 20
 MAX_INPUTS_BYTES: Final = 16 << 20
-"""Bytes of a file's inputs, unpacked."""
+"""Bytes of a file's inputs, unpacked: one command in each tick of the five drives of a program."""
 
 
 class DriveRefused(ValueError):
@@ -74,7 +81,12 @@ def share_drives(recordings: Sequence[Recording], file: Path, remarks: Sequence[
         "format": FORMAT,
         "platform": platform_key(),
         "drives": [
-            {**recording_header(each), "ticks": each.ticks, "digest": digest_of(each)} for each in recordings
+            {
+                **recording_header(replace(each, inputs=_inputs_that_count(each.inputs))),
+                "ticks": each.ticks,
+                "digest": digest_of(each),
+            }
+            for each in recordings
         ],
         "remarks": list(remarks),
     }
@@ -82,6 +94,24 @@ def share_drives(recordings: Sequence[Recording], file: Path, remarks: Sequence[
     np.savez_compressed(data, drives=np.frombuffer(json.dumps(content).encode(), dtype=np.uint8))
     if not _holds(file, data.getvalue()):  # else it stays as old as it is
         write_atomically(file, data.getvalue(), follows_links=False)
+
+
+def _inputs_that_count(inputs: Sequence[Input]) -> tuple[Input, ...]:
+    """The inputs without the messages that another one follows in the same tick, on the same topic: robots obey the last. So
+    nobody can send so many that a drive cannot be shared, and a lost match does not count."""
+    kept: list[Input] = []
+    following: set[str] = set()
+    tick = None
+    for each in reversed(inputs):
+        if each.tick != tick or each.kind != ACCEPT:
+            tick = each.tick
+            following.clear()
+        if each.kind == ACCEPT:
+            if each.content[0] in following:
+                continue
+            following.add(each.content[0])
+        kept.append(each)
+    return tuple(reversed(kept))
 
 
 def _holds(file: Path, content: bytes) -> bool:
@@ -173,7 +203,10 @@ def _read_drives_archive(data: bytes) -> dict[str, Any]:
     if len(data) > MAX_FILE_BYTES:
         raise DriveRefused("it is too large")
     try:
-        packed = unpack_arrays(data, MAX_INPUTS_BYTES)["drives"]
+        # A number counts as 8 bytes, and these are bytes.
+        packed = unpack_arrays(data, 8 * MAX_INPUTS_BYTES)["drives"]
+        if packed.nbytes > MAX_INPUTS_BYTES:
+            raise DriveRefused("it is too large")
         content = json.loads(bytes(packed))
         if content["format"] != FORMAT or not isinstance(content["platform"], str):
             raise DriveRefused("it was shared by another version of the kit")
