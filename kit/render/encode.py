@@ -226,12 +226,10 @@ class HalfBlockEncoder:
     across, down, symbols = 1, 2, UNICODE_GLYPHS
 
     _upper, _lower, _full = ord("▀"), ord("▄"), ord("█")
-    _thin = MappingProxyType(
-        {
-            **{role: "·" for role in Role if role is Role.BEAM or Role.PATH <= role < Role.WALL},
-            Role.HIT: "▒",
-        }
-    )
+    _thin = np.zeros(max(Role) + 1, dtype=np.uint32)
+    """The glyph of each role that is thin; 0 for others."""
+    _thin[[role for role in Role if role is Role.BEAM or Role.PATH <= role < Role.WALL]] = ord("·")
+    _thin[Role.HIT] = ord("▒")
 
     def __init__(self, mono: bool = False) -> None:
         self._mono = mono
@@ -250,11 +248,10 @@ class HalfBlockEncoder:
             glyphs[both & (upper == lower)] = self._full
             fg = np.where(upper > 0, upper, lower)
             bg = np.where(both & (upper != lower), lower, 0).astype(np.uint8)
-        for role, glyph in self._thin.items():
-            glyphs[top == role] = ord(glyph)
-            fg[top == role] = role
-            bg[top == role] = Role.EMPTY
-        return Frame(glyphs, fg, bg)
+        thin = self._thin[top]
+        is_thin = thin > 0
+        bg[is_thin] = Role.EMPTY
+        return Frame(np.where(is_thin, thin, glyphs), np.where(is_thin, top, fg), bg)
 
 
 class AsciiEncoder:

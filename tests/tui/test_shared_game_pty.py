@@ -35,12 +35,12 @@ def test_a_race_is_seen_by_three_and_goes_on_when_one_is_killed(kit: Open, tmp_p
     shows(host, "Waiting for the second player")
     shows(host, "kit game guest first_drive")
     guest = kit("game", "guest", "first-drive", "--name", "Ben")
-    shows(guest, "Ada against Ben")
+    shows(guest, "you against Ada")
     spectator = kit("watch", "first-drive")
     told = kit("watch", "first-drive", "--plain")
     for terminal in (host, guest, spectator):
         shows(terminal, "0 targets")  # it has begun
-    shows(host, "Ada against Ben")
+    shows(host, "you against Ben")
     shows(host, " watch ")
     before = robots(spectator)
     assert len(before) >= 2

@@ -20,8 +20,6 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
-import numpy as np
-
 from kit.arrays import FloatArray
 from kit.plain_files import open_plain_file
 from kit.run.recording import Recording
@@ -35,6 +33,7 @@ from kit.school.game.shared_drives import (
     DriveRefused,
     JudgedDrive,
     digest_of,
+    is_same_way,
     judge_shared_drives,
     read_shared_drives,
     share_drives,
@@ -48,8 +47,6 @@ FOLDER_VARIABLE: Final = "KIT_HALL"
 MAX_NAME_LENGTH: Final = 40
 MAX_NAME_BYTES: Final = 4096
 """Of the file with a user's name."""
-SAME_WAY: Final = 0.005
-"""Two drives that are nowhere farther apart than this are one [m]."""
 MAX_USER_DIGITS: Final = 12
 DIGEST_ENDING: Final = re.compile(r"\.[0-9a-f]{16}\.npz$")
 """The end of the name of a file that tells since when a drive was on the board."""
@@ -83,6 +80,8 @@ class LeaderboardEntry:
     medal: Medal = Medal.NONE
     tracks: tuple[FloatArray, ...] = ()
     """The poses of each driven robot (k, 3) [m, m, rad], ``step_size`` [s] apart."""
+    way: tuple[FloatArray, ...] = ()
+    """As in ``JudgedDrive``."""
     step_size: float = 0.1
     user: int = 0
     """The number of the user whose it is."""
@@ -231,6 +230,7 @@ def _make_entry(
         user == os.getuid(),
         judged.medal,
         judged.tracks,
+        judged.way,
         judged.step_size,
         user,
         since_ns,
@@ -322,7 +322,7 @@ def _is_as_long(ticks: Iterable[int], lengths: Collection[int]) -> bool:
 def _without_copies(
     entries: Sequence[LeaderboardEntry], former: Sequence[LeaderboardEntry]
 ) -> list[LeaderboardEntry]:
-    """Leaves out drives by hand that another user had before, a tick sooner or later: no two hands drive the same. Two programs may
+    """Leaves out drives by hand that another user had before, however much sooner or later: no two hands drive the same. Two programs may
     well be equal, so theirs are kept, and told whose they are. The system keeps the time at which a file was last changed, so
     that no user can set it back. ``former``: every drive that was ever put on the board, also by those who have left it."""
     earliest = sorted([*entries, *former], key=lambda entry: (entry.since_ns, entry.user))
@@ -339,7 +339,7 @@ def _without_copies(
                 if (other.since_ns, other.user) < (own_since, each.user)
                 and other.user != each.user
                 and (other.level, other.driver) == (each.level, each.driver)
-                and _is_same_way(each, other)
+                and is_same_way(each.way, other.way)
             ),
             None,
         )
@@ -348,17 +348,6 @@ def _without_copies(
         elif each.driver is not DriverKind.KEYS:
             kept.append(replace(each, copy_of=first.name))
     return kept
-
-
-def _is_same_way(one: LeaderboardEntry, other: LeaderboardEntry) -> bool:
-    """Whether two drives are at the same places at the same times, all but a hair."""
-    if len(one.tracks) != len(other.tracks):
-        return False
-    for first, second in zip(one.tracks, other.tracks, strict=True):
-        rows = min(len(first), len(second))
-        if abs(len(first) - len(second)) > 1 or np.abs(first[:rows, :2] - second[:rows, :2]).max() > SAME_WAY:
-            return False
-    return True
 
 
 @lru_cache(MAX_JUDGED)

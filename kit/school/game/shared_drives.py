@@ -43,6 +43,11 @@ from kit.world.records import World
 FORMAT: Final = 1
 TRACK_STRIDE: Final = 10
 """One of this many poses of a track is kept."""
+SAME_WAY: Final = 0.005
+"""Two drives that are nowhere farther apart than this are one [m]."""
+SET_OFF: Final = 0.0225
+"""A robot that is this far from the start has set off [m]: between two ticks' ways at full speed, so that a drive that is a
+hair slower has set off in the same tick."""
 MAX_FILE_BYTES: Final = 4 << 20
 MAX_INPUTS_BYTES: Final = 16 << 20
 """Bytes of a file's inputs, unpacked: one command in each tick of the five drives of a program."""
@@ -63,6 +68,8 @@ class JudgedDrive:
     """Extra rules of which the drive itself shows that they were kept."""
     tracks: tuple[FloatArray, ...]
     """The poses of each driven robot (k, 3) [m, m, rad], ``step_size`` [s] apart."""
+    way: tuple[FloatArray, ...]
+    """Where each was (k, 2) [m], from when the first of them had set off: the same for a copy that waits first."""
     step_size: float
     is_same_platform: bool
     """Whether it was driven on this platform, and so is the same to the bit."""
@@ -132,15 +139,17 @@ def judge_shared_drives(data: bytes, level: GameLevel, driver: DriverKind) -> Ju
     finish, again = drives[counts]
     if not finish.reached:
         raise DriveRefused("it does not reach the goal")
-    if driver is DriverKind.KEYS and _is_reference(level, again):
-        raise DriveRefused("it is the reference drive")
     robots = scenario_from(level, again.seed).partners
     tracks = tuple(again.track(name)[::TRACK_STRIDE] for name in robots)
+    way = _way_of(level, again)
+    if driver is DriverKind.KEYS and _is_reference(level, way):
+        raise DriveRefused("it is the reference drive")
     return JudgedDrive(
         finish,
         medal_of(finish, reference_seconds(level), driver),
         kept_rules(level, finish, BY_HAND),
         tracks,
+        way,
         TRACK_STRIDE * again.step_size,
         shared.is_same_platform,
     )
@@ -255,13 +264,29 @@ def check_inputs(
             raise DriveRefused(f"the world was changed during the race ({each.kind})")
 
 
-def _is_reference(level: GameLevel, recording: Recording) -> bool:
-    """Whether a drive goes where the reference drive goes, tick by tick: no hand does."""
+def _way_of(level: GameLevel, recording: Recording) -> tuple[FloatArray, ...]:
+    """Where each driven robot was, from when the first of them had set off: ``JudgedDrive.way``."""
+    robots = scenario_from(level, recording.seed).partners
+    tracks = [recording.track(name)[:, :2] for name in robots]
+    has_set_off = np.max([np.hypot(*(each - each[:1]).T) for each in tracks], axis=0) > SET_OFF
+    return tuple(each[np.argmax(has_set_off) :: TRACK_STRIDE] for each in tracks)
+
+
+def _is_reference(level: GameLevel, way: Sequence[FloatArray]) -> bool:
+    """Whether a drive goes where the reference drive goes: no hand does."""
     reference = reference_recording(level)
-    if reference is None:
+    return reference is not None and is_same_way(way, _way_of(level, reference))
+
+
+def is_same_way(way: Sequence[FloatArray], other: Sequence[FloatArray]) -> bool:
+    """Whether two drives are at the same places at the same times after they set off, all but a hair."""
+    if len(way) != len(other):
         return False
-    rows = min(len(reference.poses), len(recording.poses))
-    return bool(np.array_equal(reference.poses[:rows], recording.poses[:rows]))
+    for one, another in zip(way, other, strict=True):
+        rows = min(len(one), len(another))
+        if abs(len(one) - len(another)) > 1 or np.abs(one[:rows] - another[:rows]).max() > SAME_WAY:
+            return False
+    return True
 
 
 def digest_of(recording: Recording) -> str:

@@ -14,14 +14,16 @@ NOBODY: Final = "nobody yet"
 PLAYER_STYLES: Final = ("code", "bold")
 
 
-def shared_heading(level: str, mode: SharedMode, state: SharedGameState, width: int) -> Row:
-    """The level and both players on the left, spectators and the clock on the right: by name where there is room."""
+def shared_heading(level: str, mode: SharedMode, state: SharedGameState, me: int | None, width: int) -> Row:
+    """The level and both players on the left, spectators and the clock on the right: by name where there is room. ``me``: this
+    player, who is named first; None watches."""
+    first = HOST if me is None else me
     left = row(
         (level, "bold"),
         f"  {mode.value}  ",
-        (state.names[0], PLAYER_STYLES[0]),
+        (_name_of(state, first, me), PLAYER_STYLES[0]),
         " against ",
-        state.names[1] or NOBODY,
+        _name_of(state, 1 - first, me),
     )
     seconds = state.seconds
     if mode is SharedMode.TAG and state.phase is SharedPhase.RUNNING:
@@ -52,8 +54,8 @@ def shared_message(
     scores = row(
         " ",
         *(
-            f"{'you' if number == me else name or NOBODY}: {_score_text(mode, state, number)}   "
-            for number, name in enumerate(state.names)
+            f"{_name_of(state, number, me)}: {_score_text(mode, state, number)}   "
+            for number in range(len(state.names))
         ),
     )
     if state.phase is SharedPhase.OVER:
@@ -64,6 +66,10 @@ def shared_message(
         )
         return end, scores
     return row((f" {_task_text(mode, state, me)}", "bold")), scores
+
+
+def _name_of(state: SharedGameState, number: int, me: int | None) -> str:
+    return "you" if number == me else state.names[number] or NOBODY
 
 
 def _rematch_text(state: SharedGameState, me: int | None) -> str:

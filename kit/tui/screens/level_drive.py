@@ -22,6 +22,7 @@ from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.run.view import View
+from kit.school.game.daily import DAILY_PREFIX, has_run
 from kit.school.game.drive_records import DriveRecord, record_drive
 from kit.school.game.ghosts import Ghost, GhostComparison, compare_tracks
 from kit.school.game.levels import GameLevel
@@ -148,8 +149,11 @@ class LevelDrive(WatchScreen):
         self._result_row: Row = ()
         self._finishes: list[RaceFinish] = []
         """The ends of a program's drives from all starts."""
-        self._kept = level_progress([level], journal.events(EventKind.FINISH, level.id))[0].rules
+        driven = journal.events(EventKind.FINISH, level.id)
+        self._kept = level_progress([level], driven)[0].rules
         """The rules that a drive has kept before."""
+        if level.id.startswith(DAILY_PREFIX) and not has_run(driven, level):
+            self._ghost_paths = ()  # finding the way is what the first run is about
         self.wish: Wish = "back"
 
     @property

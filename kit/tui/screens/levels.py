@@ -78,6 +78,8 @@ NOTES: Final = (
 
 DRIVE_ACTIONS: Final = ("hand_over", "agent", "replay")
 """Actions that a challenge does not have."""
+STARTS: Final = (*DRIVE_ACTIONS, "open", "daily")
+"""Actions that begin a drive or a replay."""
 ROWS_ABOVE_LEVELS: Final = 5
 """Of the list: an empty one, the world's two, another empty one, the columns' names."""
 ROWS_AROUND: Final = 2
@@ -577,6 +579,10 @@ class LevelsScreen(RowsScreen[None]):
 
     def action_leaderboard(self) -> None:
         self.app.push_screen(LeaderboardScreen(self._progress, self._workspace))
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """While a drive is being prepared, nothing takes its place: a key that is pressed again would end it."""
+        return not (self._doing and action in STARTS)
 
     def _may_drive(self) -> bool:
         if self._doing or not self.is_active or self.chosen_challenge is not None:

@@ -111,7 +111,7 @@ class SharedScreen(WatchScreen):
         if state is None:  # the world has not begun
             self._rows("heading").show([row((self._level.title, "bold"), f"  {self._mode.value}")])
             return
-        rows = shared_heading(self._level.title, self._mode, state, self.size.width)
+        rows = shared_heading(self._level.title, self._mode, state, self.player, self.size.width)
         self._rows("heading").show([rows])
         self._rows("messages").show(shared_message(self._mode, state, self.player, self.join_command))
 

@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING, ClassVar, Final
 from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Horizontal
+from textual.containers import Horizontal, Vertical
+from textual.geometry import Size
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction, letter
 from kit.document.blocks import Block, Text
 from kit.document.rows import at_both_edges, row
 from kit.plain_text import counted, format_size
+from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.training_list_rows import about_run, no_trainings, training_list
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, NameDialog, wrapped
@@ -31,6 +33,7 @@ from kit.tui.widgets.training_preview import TrainingPreview
 
 if TYPE_CHECKING:
     from kit.learning.tasks.learning_task import LearningTask
+    from kit.learning.training.run_status import RunStatus
     from kit.learning.training.run_upkeep import RunOverview
     from kit.learning.training.runs import TrainingRun
 
@@ -40,6 +43,8 @@ EPISODES: Final = 200
 """Episodes per case in a test from this screen; `kit evaluate --episodes` takes any number."""
 SWEEP_EPISODES: Final = 50
 CURVE_ROWS: Final = 14
+LEAST_ROWS_BELOW: Final = 9
+"""Below the list, for more of the chosen run to be shown there."""
 
 
 class TrainingsScreen(RowsScreen[None]):
@@ -67,14 +72,17 @@ class TrainingsScreen(RowsScreen[None]):
     TrainingsScreen { layout: vertical; }
     TrainingsScreen #heading, TrainingsScreen #note, TrainingsScreen #keys { height: 1; }
     TrainingsScreen #middle { height: 1fr; }
-    TrainingsScreen #body { width: 1fr; }
+    TrainingsScreen #left { width: 1fr; }
     TrainingsScreen #preview { width: 1fr; padding: 0 0 0 2; display: none; }
-    TrainingsScreen.-roomy #body, TrainingsScreen.-wide #body { width: 68; }
+    TrainingsScreen #details { height: 1fr; padding: 1 0 0 3; display: none; }
+    TrainingsScreen.-roomy #left, TrainingsScreen.-wide #left { width: 68; }
     TrainingsScreen.-roomy #preview, TrainingsScreen.-wide #preview { display: block; }
+    TrainingsScreen.-short #body { height: auto; }
+    TrainingsScreen.-short.-roomy #details, TrainingsScreen.-short.-wide #details { display: block; }
     TrainingsScreen TaskPreview { display: none; width: 1fr; }
-    TrainingsScreen.-empty #body { width: 1fr; }
+    TrainingsScreen.-empty #left { width: 1fr; }
     TrainingsScreen.-empty #preview { display: none; }
-    TrainingsScreen.-empty.-wide #body { width: 118; }
+    TrainingsScreen.-empty.-wide #left { width: 118; }
     TrainingsScreen.-empty.-wide TaskPreview { display: block; }
     """
     HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (110, "-roomy"), (160, "-wide")]  # noqa: RUF012 - Textual's own
@@ -92,6 +100,8 @@ class TrainingsScreen(RowsScreen[None]):
         self._marked: set[str] = set()
         self._note = ""
         self._preview = TrainingPreview(theme, id="preview")
+        self._detailed: tuple[RunStatus | None, Size] = (None, Size())
+        """What is told below the list: of what, and in how much room."""
         self._first_task = TaskPreview(theme, runs)
         """What a first training would learn, unless another task is chosen."""
         self.add_class("-empty")
@@ -99,7 +109,9 @@ class TrainingsScreen(RowsScreen[None]):
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
         with Horizontal(id="middle"):
-            yield TextRows(id="body")
+            with Vertical(id="left"):
+                yield TextRows(id="body")
+                yield TextRows(id="details")
             yield self._preview
             yield self._first_task
         yield TextRows(id="note")
@@ -140,23 +152,19 @@ class TrainingsScreen(RowsScreen[None]):
 
     def _show(self) -> None:
         width, runs = self.size.width, self._overviews
+        room, columns = max(2, self.size.height - 3), self.query_one("#left", Vertical).size.width or width
+        listed = training_list(runs, self._chosen, self._marked, columns, room) if runs else []
         self.set_class(not runs, "-empty")
+        self.set_class(bool(runs) and room - len(listed) >= LEAST_ROWS_BELOW, "-short")
         count = "" if not runs else counted(len(runs), "run")
         self._rows("heading").show([at_both_edges(row(("Trainings", "bold")), row((count, "dim")), width)])
         if runs is None:
             self._rows("body").show([row((" reading ...", "dim"))])
         else:
-            room, columns = max(2, self.size.height - 3), self._rows("body").size.width or width
-            self._rows("body").show(
-                training_list(runs, self._chosen, self._marked, columns, room)
-                if runs
-                else no_trainings(self._tasks, columns, room)
-            )
-        chosen = self._chosen_run
+            self._rows("body").show(listed or no_trainings(self._tasks, columns, room))
         if self._first_task.display:
             self._first_task.tell(TrainingChoices())
-        if self.is_active:
-            self._preview.follow(chosen.run if chosen is not None and self._preview.display else None)
+        self.call_after_refresh(self._follow_chosen)  # once it is decided whether the preview is displayed
         total = sum(each.disk_bytes for each in runs or ())
         about = about_run(self._chosen_run, total, width)
         self._rows("note").show([row((self._note[:width], "warn")) if self._note else about])
@@ -166,6 +174,23 @@ class TrainingsScreen(RowsScreen[None]):
             else ("choose", "open", "evaluate", "mark_run", "compare", "robustness", "rename", "delete_run")
         )
         self._rows("keys").show([footer(self.screen_actions, width, without=unusable)])
+
+    def _follow_chosen(self) -> None:
+        chosen = self._chosen_run
+        if self.is_active:
+            self._preview.follow(chosen.run if chosen is not None and self._preview.display else None)
+            self._show_details()
+
+    def on_training_preview_arrived(self) -> None:
+        self._show_details()
+
+    def _show_details(self) -> None:
+        """Below a short list: the first page of what the chosen run's own screen has in its panel."""
+        details, status = self._rows("details"), self._preview.status
+        room = details.content_size
+        if (status, room) != self._detailed:
+            self._detailed = status, room
+            details.show(training_rows.pages(status, room.width, room.height)[0] if status and room else [])
 
     @property
     def _chosen_run(self) -> RunOverview | None:

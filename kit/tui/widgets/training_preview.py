@@ -44,7 +44,8 @@ class TrainingPreview(Vertical):
         self._run: TrainingRun | None = None
         self._follower: TrainingFollower | None = None
         self._opening: Timer | None = None
-        self._status: RunStatus | None = None
+        self.status: RunStatus | None = None
+        """What its files told last."""
         self._view: DemonstrationView | None = None
         self._problem = ""
         self._is_announced = False
@@ -61,6 +62,9 @@ class TrainingPreview(Vertical):
     def on_unmount(self) -> None:
         self.follow(None)
 
+    def on_resize(self) -> None:
+        self._show()
+
     def follow(self, run: TrainingRun | None) -> None:
         """Shows this run from now on; None ends the looking."""
         if run == self._run:
@@ -72,7 +76,7 @@ class TrainingPreview(Vertical):
         if self._follower is not None:  # it waits for its threads: not here
             threading.Thread(target=self._follower.close, name="closing", daemon=True).start()
             self._follower = None
-        self._status = self._view = None
+        self.status = self._view = None
         self._problem = ""
         if run is not None:
             self._world.clear()
@@ -87,7 +91,7 @@ class TrainingPreview(Vertical):
 
         def status_arrived(status: RunStatus) -> None:
             if self._run is run:
-                self._status = status
+                self.status = status
                 self._announce()
 
         def view_arrived(view: DemonstrationView) -> None:
@@ -120,7 +124,7 @@ class TrainingPreview(Vertical):
         run, width = self._run, self.size.width
         if run is None or not width:
             return
-        status, view = self._status, self._view
+        status, view = self.status, self._view
         self._title.show(
             [row((run.name, "bold")) if status is None else training_rows.heading(run.name, status, width)]
         )
@@ -132,9 +136,12 @@ class TrainingPreview(Vertical):
         if self._problem:
             self._caption.show([row((self._problem[:width], "warn"))])
         elif view is None:
-            self._caption.show(
-                [row(("no policy yet: it is shown driving after its first test"[:width], "dim"))]
+            text = (
+                "reading its policy ..."
+                if run.best_policy.exists()
+                else "no policy yet: it drives here after the first test"
             )
+            self._caption.show([row((text[:width], "dim"))])
         else:
             self._caption.show([training_rows.caption(view, width)])
             self._world.offer(lambda: view.scene)

@@ -190,6 +190,34 @@ def reference_drive_as_a_hand(board: Path) -> None:
     join(board, drive_reference(FIRST)[1])
 
 
+def reference_drive_a_moment_later(board: Path) -> None:
+    """The reference's commands, each as much later; the drive that they make is shared as it is."""
+    reference = drive_reference(FIRST)[1]
+    join(board, delayed(reference, 7))
+
+
+def reference_drive_with_a_slower_start(board: Path) -> None:
+    """The first command is slower by less than a thousandth: the same drive, but for a fraction of a millimetre."""
+    reference = drive_reference(FIRST)[1]
+    first, *others = reference.inputs
+    topic, interface, command = first.content
+    linear = {axis: 0.9998 * speed for axis, speed in command["linear"].items()}
+    slower = replace(first, content=(topic, interface, {**command, "linear": linear}))
+    join(board, driven(replace(reference, inputs=(slower, *others))))
+
+
+def driven(recording: Recording) -> Recording:
+    """The drive that these inputs make."""
+    return run_again(FIRST, recording)[1]
+
+
+def delayed(recording: Recording, ticks: int) -> Recording:
+    """The drive of the same inputs that sets off later."""
+    counts = np.append(recording.counts, np.zeros(ticks, dtype=recording.counts.dtype))
+    inputs = tuple(replace(each, tick=each.tick + ticks) for each in recording.inputs)
+    return driven(replace(recording, counts=counts, inputs=inputs))
+
+
 def digest_of_another_drive(board: Path) -> None:
     """A forged fingerprint, from a machine like this one."""
     join(board, by_hand())
@@ -230,6 +258,8 @@ CHEATS: tuple[Cheat, ...] = (
     one_start_as_a_program,
     one_start_five_times,
     reference_drive_as_a_hand,
+    reference_drive_a_moment_later,
+    reference_drive_with_a_slower_start,
     digest_of_another_drive,
     file_that_is_too_large,
     archive_that_unpacks_to_much,
@@ -321,13 +351,13 @@ def test_a_replay_of_anothers_drive_by_hand_stands_nowhere(tmp_path: Path) -> No
     )  # joining again does not make the first one younger
     assert [each.user for each in read_entries(board, [FIRST])] == [OWN]
 
-    def a_tick_later(content: dict[str, Any]) -> None:
+    def a_moment_later(content: dict[str, Any]) -> None:
         inputs = content["drives"][0]["inputs"]
-        content["drives"][0]["inputs"] = [[tick + 1, kind, what] for tick, kind, what in inputs]
-        content["drives"][0]["ticks"] += 1
+        content["drives"][0]["inputs"] = [[tick + 37, kind, what] for tick, kind, what in inputs]
+        content["drives"][0]["ticks"] += 37
         content["platform"] = "another"
 
-    change(copy, a_tick_later)
+    change(copy, a_moment_later)
     assert [each.user for each in read_entries(board, [FIRST])] == [OWN]
 
 

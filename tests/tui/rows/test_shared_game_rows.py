@@ -34,10 +34,17 @@ def test_a_rematch_is_offered_and_asked_for(me: int | None, before: str, after: 
     assert ("rematch" in said(OVER, me)) == (me == 1)
 
 
+@pytest.mark.parametrize(
+    ("me", "players"), [(HOST, "you against Ben"), (1, "you against Ada"), (None, "Ada against Ben")]
+)
+def test_a_player_is_told_who_the_other_one_is(me: int | None, players: str) -> None:
+    assert players in row_text(shared_heading("The maze", SharedMode.TAG, OVER, me, 80))
+
+
 def test_spectators_are_named_where_there_is_room() -> None:
     watched = replace(OVER, watching=("Eve", "Mallory"))
-    assert "Eve, Mallory watch" in row_text(shared_heading("The maze", SharedMode.TAG, watched, 80))
-    narrow = row_text(shared_heading("The maze", SharedMode.TAG, watched, 50))
+    assert "Eve, Mallory watch" in row_text(shared_heading("The maze", SharedMode.TAG, watched, None, 80))
+    narrow = row_text(shared_heading("The maze", SharedMode.TAG, watched, None, 50))
     assert "2 spectators" in narrow
     assert len(narrow) <= 50
-    assert "watch" not in row_text(shared_heading("The maze", SharedMode.TAG, OVER, 80))
+    assert "watch" not in row_text(shared_heading("The maze", SharedMode.TAG, OVER, None, 80))

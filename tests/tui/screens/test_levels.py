@@ -182,6 +182,7 @@ def test_it_is_shown_how_far_the_ghosts_are_and_they_are_prepared_once(
         try:
             await wait_until_shown(pilot, lambda: half.is_set() and "█░" in flat(pilot.app))
             assert " 50%" in flat(pilot.app)
+            await pilot.press("w", "enter", "d")  # by someone who does not wait
         finally:
             go_on.set()
         await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, LevelDrive))

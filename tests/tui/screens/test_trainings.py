@@ -260,8 +260,10 @@ def test_where_there_is_room_the_chosen_run_drives_beside_the_list(folder: Path)
         await pilot.press("down", "down")
         await seen(pilot, "no policy yet")
         assert "turn_a_to_b" not in text(pilot)
+        await seen(pilot, "case   recent")  # below the list, what the run's own screen tells
         await pilot.resize_terminal(80, 24)
         await until(pilot, lambda: "no policy yet" not in text(pilot), "the list alone")
+        assert "case   recent" not in text(pilot)
 
     stage(lambda theme: TrainingsScreen(theme, folder), scene, size=(120, 36))
 
