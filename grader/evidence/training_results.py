@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from functools import reduce
 from typing import Final
 
 from kit.learning.policies.confidence_intervals import lower_bound
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.algorithm_settings import LinearSchedule
-from kit.learning.training.stopping_rules import CaseCount, CaseCounts, success_rate
+from kit.learning.training.stopping_rules import NO_EPISODES, CaseCount, CaseCounts, success_rate
 
 PICTURE_ROWS: Final = 16
 
@@ -136,12 +137,12 @@ class TrainingResults:
     def pooled_count(self, case: str) -> CaseCount:
         """Adds up a case's counts of all final tests."""
         counts = [training.exam[case] for training in self.trainings]
-        return CaseCount(sum(count.reached for count in counts), sum(count.episodes for count in counts))
+        return reduce(CaseCount.plus, counts, NO_EPISODES)
 
     def last_tests(self, case: str) -> CaseCount:
         """Adds up a case's counts of the last test of each training, which is of its newest policy."""
         counts = [training.tests[-1].counts[case] for training in self.trainings if training.tests]
-        return CaseCount(sum(count.reached for count in counts), sum(count.episodes for count in counts))
+        return reduce(CaseCount.plus, counts, NO_EPISODES)
 
     def success_lower_bound(self, *cases: str) -> float:
         """Returns the lower bound of the success in these cases together, with 95 % confidence (Wilson)."""

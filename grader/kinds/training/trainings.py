@@ -124,7 +124,13 @@ def _make_stopping_rule(settings: TrainingSettings, cases: int) -> StoppingRule:
     if settings.stop is StopRule.SURE:
         screening = -(-settings.test_episodes // cases)
         confirming = max(CONFIRMING_EPISODES, screening)
-        return TrainUntilSure(settings.batch, settings.goal, screening, confirming, patience=0)
+        return TrainUntilSure(
+            test_interval=settings.batch,
+            goal=settings.goal,
+            screening_episodes=screening,
+            confirming_episodes=confirming,
+            patience=0,
+        )
     goal = settings.goal if settings.stop is StopRule.FIRST else UNREACHABLE_GOAL
     return TrainUntilGoal(settings.batch, settings.test_episodes, goal)
 

@@ -183,7 +183,7 @@ class TrainUntilGoal:
         return StoppingDecision(counts, memory, keep)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class TrainUntilSure:
     """Stop when every single case is sure to be good enough; keep the best policy; go back if one has forgotten.
 

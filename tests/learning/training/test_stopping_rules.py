@@ -151,11 +151,14 @@ def test_a_test_that_ends_early_decides_as_a_whole_one() -> None:
     spent = {"early": 0, "whole": 0}
     for seed in range(200):
         shares = np.random.default_rng(seed).uniform(0.94, 1.0, 3).tolist()
-        given = (10, 0.95, 0, 40, 500, 3000)
+        rule = replace(SURE, most_confirming_episodes=3000)
         early, whole = Coins(seed, *shares), Coins(seed, *shares)
         memory = StoppingMemory(confirmations=seed % 4)
-        decision = TrainUntilSure(*given).evaluate(10, memory, early)
-        assert decision.stop == Whole(*given).evaluate(10, memory, whole).stop
+        decision = rule.evaluate(10, memory, early)
+        assert (
+            decision.stop
+            == Whole(test_interval=10, most_confirming_episodes=3000).evaluate(10, memory, whole).stop
+        )
         stops.append(decision.stop)
         spent["early"] += early.episodes
         spent["whole"] += whole.episodes
