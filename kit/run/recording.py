@@ -102,6 +102,11 @@ class Recording:
         """``Recording(maze: 100 ticks of 0.01 s, serp)``"""
         return f"Recording({self.place}: {self.ticks:,} ticks of {self.step_size:g} s, {', '.join(self._model_names())})"
 
+    def moves(self, least: float = 0.01) -> bool:
+        """Whether any model comes ``least`` metres or radians away from where it once was."""
+        tracks = (self.track(name) for name in self._model_names())
+        return any(len(track) and float(np.ptp(track, axis=0).max()) >= least for track in tracks)
+
     def _model_names(self) -> tuple[str, ...]:
         """The names of all models that there ever were."""
         return tuple(dict.fromkeys(name for _, names in self.models for name in names))

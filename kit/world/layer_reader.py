@@ -258,10 +258,10 @@ class LayerReader:
         type            ``line_segments`` for a file of lines; anything else, or nothing, for a picture
         image           the picture, relative to this file
         resolution      size of a pixel [m]
-        occupied_thresh how dark a wall is at least, 0 white to 1 black
-        free_thresh     how dark the floor is at most; read for others, of no effect here
-        negate          1: walls are bright
-        mode            how grey becomes darkness, as map_server has it
+        occupied_thresh how bright a wall stays below, 0 black to 1 white
+        free_thresh     how dark the floor is at most, to ROS's map_server; of no effect here
+        negate          1: walls are bright, to ROS's map_server; of no effect here
+        mode            how grey becomes darkness, to ROS's map_server; of no effect here
         data            file of lines ``x1 y1 x2 y2``, relative to this file
         scale           length of the file's unit [m]
         =============== ===============================================================================

@@ -11,6 +11,7 @@ from typing import cast
 import numpy as np
 import pytest
 
+from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.msg.builtin_interfaces import Time
 from kit.run.recording import MAX_TIME_S, Recorder, Recording, RecordingError, load_recording, save_recording
@@ -52,3 +53,17 @@ def test_a_recording_ends_before_the_tick_that_was_interrupted(tmp_path: Path) -
     recording = load_recording(tmp_path / "run.npz")
     assert recording.ticks == 1
     assert recording.track("box").tolist() == [[3.0, 4.0, -0.5]]
+
+
+def test_a_run_in_which_nothing_moves_is_known() -> None:
+    still = np.tile([[1.0, 2.0, 0.5], [3.0, 0.0, 0.0]], (4, 1))
+    turned = still.copy()
+    turned[-1, 2] += 0.1
+
+    def recording(poses: FloatArray, counts: tuple[int, ...] = (2, 2, 2, 2)) -> Recording:
+        models = ((0, ("serp", "crate")),)
+        return Recording("simple", None, 1, 0.01, models, (), poses, np.array(counts))
+
+    assert not recording(still).moves()
+    assert recording(turned).moves()
+    assert not recording(still[:0], ()).moves()

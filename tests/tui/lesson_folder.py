@@ -96,6 +96,22 @@ def main():
 if __name__ == "__main__":
     main()
 '''
+TURNING = (
+    STILL.replace("Stands still", "Turns on the spot")
+    .replace(
+        """        print("here I stand")
+""",
+        """        self.wheels = self.create_publisher(Twist, "cmd_vel", 10)
+        self.create_timer(0.1, self.turn)
+
+    def turn(self):
+        command = Twist()
+        command.angular.z = 0.3
+        self.wheels.publish(command)
+""",
+    )
+    .replace("import rclpy\n", "import rclpy\nfrom geometry_msgs.msg import Twist\n", 1)
+)
 
 
 def write_lessons(folder: Path, more: int = 0) -> Path:

@@ -72,9 +72,20 @@ def _wrong_result(
     """Makes the error for a function that does not return what is required."""
     code = function.__code__
     hint = " Does every path through it end with a return?" if value is None else ""
-    message = f"{code.co_name}() must return {wanted}, not {short_repr(value)}.{hint}"
+    odd = _odd_number(value, MAX_RESULT_DEPTH) if isinstance(value, (list, tuple)) else None
+    returned = short_repr(value) if odd is None else f"a list with {odd} in it"
+    message = f"{code.co_name}() must return {wanted}, not {returned}.{hint}"
     place = program.relative_path(code.co_filename), code.co_firstlineno
     return StudentCodeError(Failure(FailureKind.EXCEPTION, message, *place))
+
+
+def _odd_number(value: object, deep: int) -> float | None:
+    """Returns the first number in nested lists that is not finite; None if there is none."""
+    if isinstance(value, (list, tuple)):
+        found = (_odd_number(each, deep - 1) for each in value if deep)
+        return next((each for each in found if each is not None), None)
+    number = _to_float(value)
+    return number if number is not None and number - number != 0 else None
 
 
 def _json_result(function: FunctionType, record: dict[str, Json], program: StudentProgram) -> Json:

@@ -20,6 +20,8 @@ from kit.host.wire import MAX_ID, MAX_TEXT
 STDERR = 2
 MAX_MESSAGE = 600
 """Characters of an exception's own text."""
+MAX_REPR = 60
+"""Characters of a value that is shown."""
 ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 
 
@@ -240,7 +242,8 @@ def _make_failure(
 def short_repr(value: object) -> str:
     """Returns a value as a short text, whatever it is: without its place in memory, which differs from run to run."""
     try:
-        return ADDRESS.sub("", repr(value))[:60]
+        text = ADDRESS.sub("", repr(value))
+        return text if len(text) <= MAX_REPR else f"{text[:MAX_REPR]}..."
     except Exception:  # noqa: BLE001 - a student's class may have a broken __repr__
         return f"a {type(value).__name__}"
 

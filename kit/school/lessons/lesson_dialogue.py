@@ -861,12 +861,12 @@ class LessonDialogue(Dialogue):
 
 
 def _load_run(file: Path) -> tuple[Recording, Scenario] | None:
-    """A recorded run and where it was driven; None where either cannot be read: a pass is a pass, whatever the world or the
-    disk does to its picture. Slow: the physics takes a moment to import."""
+    """A recorded run and where it was driven; None where nothing moves, as there is nothing to see, and where either cannot be
+    read: a pass is a pass, whatever the world or the disk does to its picture. Slow: the physics takes a moment to import."""
     from kit.run.recording import load_recording
 
     try:
         recording = load_recording(file)
-        return recording, find_scenario(recording.place, recording.case)
+        return (recording, find_scenario(recording.place, recording.case)) if recording.moves() else None
     except Exception:  # noqa: BLE001 - as above
         return None

@@ -130,7 +130,8 @@ def test_a_lessons_title_is_whole_however_long_the_goal(lesson: Lesson) -> None:
     assert all(title in heading("a" * count) for count in range(1, 60))
 
 
-def test_the_kits_titles_are_whole_on_80_columns() -> None:
+def test_the_kits_titles_and_goals_are_whole_on_80_columns() -> None:
+    cut = []
     for name in lesson_names():
         lesson = read_lesson(lessons_folder() / name)
         stand = lesson_progress_from_events(lesson, [])
@@ -139,6 +140,9 @@ def test_the_kits_titles_are_whole_on_80_columns() -> None:
             assert f"{lesson.number} {lesson.title}" in shown
             assert f"step {step.number} of {len(lesson.steps)}" in shown
             assert len(shown.rstrip()) <= 80
+            if step.goal not in shown:
+                cut.append(f"{lesson.number} step {step.number}: {step.goal}")
+    assert cut == []
 
 
 def test_a_verdict_names_points_and_what_was_wanted() -> None:

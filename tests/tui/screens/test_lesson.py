@@ -26,7 +26,7 @@ from kit.tui.widgets.program_colours import MOST_COLOURED
 from kit.tui.widgets.program_editor import MAX_BYTES, ProgramEditor
 from kit.workspace import Workspace, open_workspace
 from tests.kit_content import kit_lesson
-from tests.tui.lesson_folder import write_lessons, write_solutions
+from tests.tui.lesson_folder import STILL, TURNING, write_lessons, write_solutions
 from tests.tui.lesson_stage import Scene, rows, seen, stage, text, until
 from tests.tui.tape import painted
 
@@ -368,7 +368,12 @@ def test_ascii_means_ascii_everywhere(student: Student) -> None:
 
 
 @pytest.mark.long
-def test_a_pass_plays_the_students_own_run_which_stays(student: Student, play: Play) -> None:
+@pytest.mark.parametrize(("program", "is_played"), [(TURNING, True), (STILL, False)])
+def test_a_pass_plays_the_students_own_run_which_stays(
+    student: Student, play: Play, program: str, *, is_played: bool
+) -> None:
+    """A robot that stands still is nothing to see: its run takes no room from the text."""
+    (student.lesson / "corner" / "starter.py").write_text(program)
     student.goes_to(CORNER)
     assignment = student.lesson / "corner" / "assignment.yaml"
     assignment.write_text(
@@ -379,11 +384,15 @@ def test_a_pass_plays_the_students_own_run_which_stays(student: Student, play: P
         await seen(pilot, "step 5 of 5")
         await pilot.press("c")
         await seen(pilot, "Passed: ***")
-        await seen(pilot, "your run: w shows it again")
-        await seen(pilot, "▲")
+        if is_played:
+            await seen(pilot, "your run: w shows it again")
+            assert pilot.app.screen.query_one(LessonSceneView).display
         assert "[ok] It runs" in text(pilot)
         await pilot.press("w")
         await seen(pilot, "your last run")
+        await pilot.press("escape")
+        await seen(pilot, "step 5 of 5")
+        assert ("your run" in text(pilot)) == is_played
 
     async def again(pilot: Pilot[None]) -> None:
         await pilot.press("l", "end", "enter")
