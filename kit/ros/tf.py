@@ -175,7 +175,7 @@ class Buffer(BufferInterface):
     ) -> TransformStamped:
         """The transform of ``source_frame`` in ``target_frame``; time zero means the newest common time.
 
-        Waits up to ``timeout`` for it, unless in a callback that the transforms would have to wait for. Raises
+        Waits up to ``timeout`` for it; in a callback that the transforms have to wait for, in vain. Raises
         LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException.
         """
         if timeout.nanoseconds > 0:
@@ -296,8 +296,8 @@ class Buffer(BufferInterface):
     def _wait_for(self, target: str, source: str, time: Time, timeout: Duration) -> None:
         graph = get_default_context().graph if self._node is None else self._node.handle.graph
         work = graph.thread_state.work
-        if work is not None and work[0].is_exclusive:
-            return
+        if work is not None and work[0].is_exclusive and graph.waiter is None:
+            return  # time cannot pass in it
         until = graph.now_ns + timeout.nanoseconds
         self._waited_in = graph
         graph.wait(lambda: self.can_transform(target, source, time) is True, until, what="lookup_transform()")

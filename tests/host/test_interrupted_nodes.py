@@ -133,3 +133,27 @@ def test_who_goes_on_is_ended(student: Student, runs: list[Run], caught: str) ->
     assert run.process.failure is None
     assert run.graph.now_ns < (0.5 + INTERRUPT_S) * 1e9
     run.process.close()
+
+
+def test_a_program_whose_thread_outlives_its_main_one_ends_without_a_failure(
+    student: Student, runs: list[Run]
+) -> None:
+    file = student(
+        """
+        import atexit, threading, time
+        import rclpy
+
+        def work():
+            while True:
+                time.sleep(0.5)
+
+        def main():
+            rclpy.init()
+            rclpy.create_node("brief")
+            atexit.register(print, "the end")
+            threading.Thread(target=work).start()
+        """
+    )
+    runs.append(Run(file))
+    assert runs[-1].interrupt() == ["the end"]
+    assert runs[-1].process.failure is None

@@ -801,6 +801,39 @@ def test_a_thread_that_fails_is_told(harness: GraphHarness, student: Student) ->
     assert "from a thread" in process.failure.message
 
 
+def test_a_transform_is_waited_for_in_a_callback_too(harness: GraphHarness, student: Student) -> None:
+    """As tf2_ros does: in vain where one thread spins, and its time-out passes."""
+    file = student(
+        """
+        import rclpy, tf2_ros
+        from rclpy.duration import Duration
+        from rclpy.time import Time
+        from std_msgs.msg import String
+
+        def look():
+            began = node.get_clock().now()
+            try:
+                buffer.lookup_transform("a", "b", Time(), timeout=Duration(seconds=0.2))
+            except tf2_ros.LookupException:
+                waited = (node.get_clock().now() - began).nanoseconds / 1e9
+                publisher.publish(String(data=f"{waited:.1f}"))
+
+        rclpy.init()
+        node = rclpy.create_node("late")
+        publisher = node.create_publisher(String, "waited", 10)
+        buffer = tf2_ros.Buffer()
+        listener = tf2_ros.TransformListener(buffer, node)
+        node.create_timer(0.1, look)
+        rclpy.spin(node)
+        """
+    )
+    waited = harness.subscribe(String, "/waited")
+    harness.start(file)
+    harness.tick(60)
+    assert texts(waited)
+    assert set(texts(waited)) == {"0.2"}
+
+
 def test_ticks_pass_beside_a_thread_that_computes_without_end(
     harness: GraphHarness, student: Student
 ) -> None:

@@ -69,7 +69,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
                 _run_main(module, program)
     except SystemExit as stop:
         if exit_status(stop):
-            _end_program(waits)
+            _end_program(waits, session)
             bridge.send_last_messages()
             raise
     except MemoryError:
@@ -78,20 +78,25 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
         if not session.interrupts.are_asked:
             bridge.send_last_messages()
             raise
-        _end_program(waits)
+        _end_program(waits, session)
         bridge.end()
     except BaseException:
         bridge.send_last_messages()
         raise
-    _end_program(waits)
+    _end_program(waits, session)
     if not bridge.has_had_nodes and not as_package:
         raise _no_program_error("The program ended without creating a node.", program)
     bridge.end()
 
 
-def _end_program(waits: SimulatedWaits) -> None:
-    """Does what Python does when a program has ended: waits for its threads, then calls what it has registered with atexit."""
-    waits.wait_for_threads()
+def _end_program(waits: SimulatedWaits, session: CommandSession) -> None:
+    """Does what Python does when a program has ended: waits for its threads, or until it is asked to end, then calls what it
+    has registered with atexit."""
+    try:
+        waits.wait_for_threads()
+    except KeyboardInterrupt:
+        if not session.interrupts.are_asked:
+            raise
     atexit._run_exitfuncs()
 
 

@@ -10,7 +10,7 @@ class Talker(Node):
 
     def __init__(self) -> None:
         super().__init__("talker")
-        self.number = 1
+        self.number = 0
         self.publisher = self.create_publisher(String, "chatter", 10)
         self.create_timer(1.0, self.say)
 
