@@ -40,7 +40,7 @@ def test_noise_reaches_as_far_as_it_should() -> None:
 
 
 def test_the_number_of_robots_must_be_that_of_the_map() -> None:
-    with pytest.raises(UnsupportedWorld, match="has 1 robots, task wheelchairs has 2"):
+    with pytest.raises(UnsupportedWorld, match="has 1 robot, task wheelchairs has 2"):
         CaseArrays(replace(WHEELCHAIRS, maps=("hall_straight",)))
 
 

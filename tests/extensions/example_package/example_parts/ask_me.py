@@ -36,7 +36,7 @@ class AskMe(Dialogue):
     def entry(self) -> str | None:
         return None if self.is_over else self._colour
 
-    def typed(self, line: str) -> Effect:
+    def take_line(self, line: str) -> Effect:
         self._colour = line.strip()
         return None
 
