@@ -111,7 +111,12 @@ def _run_one(kind: type[JobFolder], folder: str, key: str) -> None:
 
 def serve_keys(run_job: Callable[[str], object]) -> None:
     """Runs the jobs whose keys come on standard input. Whatever else is printed goes to standard error: it must not mix with
-    the answers."""
+    the answers. A result that cannot be saved ends the process, with a sentence; whoever started it tries once more."""
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    serve_jobs(run_job, sys.stdin, answers)
+    try:
+        serve_jobs(run_job, sys.stdin, answers)
+    except BrokenPipeError:  # the process that started this one has ended
+        raise SystemExit(1) from None
+    except OSError as error:
+        raise SystemExit(f"{error.filename or 'a result'}: {error.strerror or error}") from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -77,3 +78,11 @@ def test_nothing_is_run_nowhere(tmp_path: Path) -> None:
     jobs = Folder(tmp_path)
     JobExecutor("none").run(jobs, jobs.waiting(), pytest.fail)
     assert jobs.waiting() == KEYS
+
+
+def test_a_result_that_cannot_be_saved_is_told_without_a_traceback(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", WORKER, str(tmp_path / "missing")]
+    ended = subprocess.run(command, input="a0\n", capture_output=True, text=True, check=False)
+    assert ended.returncode == 1
+    assert ended.stderr.splitlines()[-1] == f"{tmp_path}/missing/a0: No such file or directory"
+    assert "Traceback" not in ended.stderr

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import re
+import shutil
+import tempfile
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
+from typing import Final
 
 from kit.learning.training.run_config import RunConfig, RunError
 from kit.learning.training.runs import TrainingRun
@@ -13,10 +19,17 @@ from kit.plain_text import quoted, suggestion
 from kit.workspace import write_atomically
 
 NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,99}")
+DRAFT_PREFIX: Final = ".new-"
+"""Begins the name of a run's folder while it is written."""
+
+
+class RunExists(RunError):
+    """The name of a new run is taken."""
 
 
 def create_run(folder: Path, config: RunConfig, name: str | None = None) -> TrainingRun:
-    """Makes a run's folder in ``folder``; by default named after what it learns. RunError if that is taken.
+    """Makes a run's folder in ``folder``; by default named after what it learns. RunExists if the name is taken,
+    RunError, and OSError.
 
     The run keeps its own copies of the task's and the reward's files.
     """
@@ -26,49 +39,54 @@ def create_run(folder: Path, config: RunConfig, name: str | None = None) -> Trai
         config = replace(config, reward_file=str(task.reward_file.absolute()))
     if name is not None and not NAME_PATTERN.fullmatch(name):
         raise RunError(f"{quoted(name)}: a run's name may contain letters, digits, '_', '-' and '.'.")
-    made = (
-        _make_folder(folder, name) if name is not None else _make_unused_folder(folder, _default_name(config))
-    )
-    if config.reward_file is not None:  # the run keeps its own: the student goes on writing
-        write_atomically(TrainingRun(made).reward, Path(config.reward_file).read_bytes())
+    draft = Path(tempfile.mkdtemp(dir=folder, prefix=DRAFT_PREFIX))
+    try:
+        _fill(TrainingRun(draft), config)
+        draft.chmod(0o755)
+        return TrainingRun(
+            _rename_to_first_free(draft, [name] if name is not None else _default_names(config))
+        )
+    except BaseException:  # a full disk, Ctrl-C: no half of a run is left
+        shutil.rmtree(draft, ignore_errors=True)
+        raise
+
+
+def _fill(run: TrainingRun, config: RunConfig) -> None:
+    """Writes the run's configuration, and its own copies of the files that it needs."""
+    if config.reward_file is not None:  # the student goes on writing in theirs
+        write_atomically(run.reward, Path(config.reward_file).read_bytes())
     for number, name in enumerate(config.imitate):
         if name.endswith(".npz"):
-            write_atomically(made / f"demonstration-{number}.npz", Path(name).read_bytes())
+            write_atomically(run.folder / f"demonstration-{number}.npz", Path(name).read_bytes())
     if config.choice.text is not None:
-        write_atomically(TrainingRun(made).task, config.choice.text.encode())
-    write_atomically(made / "config.json", json.dumps(config.as_dict(), indent=1).encode())
-    return TrainingRun(made)
+        write_atomically(run.task, config.choice.text.encode())
+    write_atomically(run.folder / "config.json", json.dumps(config.as_dict(), indent=1).encode())
 
 
-def _default_name(config: RunConfig) -> str:
+def _default_names(config: RunConfig) -> Iterator[str]:
+    """What it learns, then the same with -2, -3 and so on."""
     parts = [config.choice.name, *config.choice.on, config.algorithm, config.preset]
-    return "-".join([*parts, str(config.seed)])[:90]
+    name = "-".join([*parts, str(config.seed)])[:90]
+    yield name
+    yield from (f"{name}-{number}" for number in count(2))
 
 
-def _make_folder(folder: Path, name: str) -> Path:
-    try:
-        (folder / name).mkdir()
-    except FileExistsError:
-        raise RunError(
-            f"a run {name} already exists. Choose another name with --name, or resume it: "
-            f"`kit train --resume {name}`."
-        ) from None
-    return folder / name
-
-
-def _make_unused_folder(folder: Path, name: str) -> Path:
-    """The first of name, name-2, name-3, ... that is free."""
-    number = 1
-    while True:
+def _rename_to_first_free(draft: Path, names: Iterable[str]) -> Path:
+    """Gives a run its name, whole, so that no other process finds a part of it. Raises RunExists if all are taken."""
+    for name in names:
         try:
-            return _make_folder(folder, name if number == 1 else f"{name}-{number}")
-        except RunError:
-            number += 1
+            return draft.rename(draft.with_name(name))
+        except OSError as error:
+            if error.errno not in (errno.EEXIST, errno.ENOTEMPTY, errno.ENOTDIR):
+                raise
+    raise RunExists(
+        f"a run {name} already exists. Choose another name with --name, or resume it: `kit train --resume {name}`."
+    )
 
 
 def list_runs(folder: Path) -> tuple[TrainingRun, ...]:
     """Every run in the folder, the one begun last first."""
-    files = [(file.stat().st_mtime, file.parent) for file in folder.glob("*/config.json")]
+    files = [(file.stat().st_mtime, file.parent) for file in folder.glob("[!.]*/config.json")]
     return tuple(TrainingRun(each) for _, each in sorted(files, reverse=True))
 
 

@@ -29,7 +29,7 @@ from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training.process_lock import is_locked
 from kit.learning.training.run_config import PresetName, RunConfig, RunError, format_settings
-from kit.learning.training.run_folders import create_run
+from kit.learning.training.run_folders import RunExists, create_run
 from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training import train
 from kit.workspace import make_private_folder, write_atomically
@@ -186,7 +186,8 @@ class TrainingSweep(JobFolder):
         entry = {each.key: each for each in self.entries()}[key]
         run = self.run_of(entry)
         if not (run.folder / "config.json").exists():
-            run = create_run(self.folder / "runs", entry.config, run.name)
+            with suppress(RunExists):  # another process of this sweep has begun it at this moment
+                create_run(self.folder / "runs", entry.config, run.name)
         waited_until = time.monotonic() + TAKEOVER_S
         while run.is_active and time.monotonic() < waited_until:
             time.sleep(0.1)  # the process of a sweep that was killed is about to end

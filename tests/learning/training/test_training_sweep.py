@@ -20,7 +20,9 @@ from kit.cli import main
 from kit.document.layout import lines_of
 from kit.host.job_folder import JobExecutor
 from kit.learning.policies.confidence_intervals import wilson_interval
-from kit.learning.training.run_config import RunError
+from kit.learning.training import training_sweep
+from kit.learning.training.run_config import RunConfig, RunError
+from kit.learning.training.run_folders import create_run
 from kit.learning.training.runs import TrainingRun
 from kit.learning.training.sweep_table import problems, sweep_rows, sweep_table, sweep_table_csv
 from kit.learning.training.sweep_worker import start_sweep
@@ -92,6 +94,20 @@ def test_a_training_of_a_sweep_is_kept_and_not_run_again(tmp_path: Path) -> None
     failing.run_job(*failing.waiting())
     assert "division" in problems(failing)[0]
     assert len(failing.waiting()) == 1
+
+
+def test_a_training_that_another_process_begins_at_this_moment_is_no_failure(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sweep = TrainingSweep.prepare(tmp_path, QUICK[:1], 5)
+
+    def create_twice(folder: Path, config: RunConfig, name: str) -> TrainingRun:
+        create_run(folder, config, name)
+        return create_run(folder, config, name)
+
+    monkeypatch.setattr(training_sweep, "create_run", create_twice)
+    sweep.run_job(*sweep.waiting())
+    assert (sweep.waiting(), problems(sweep)) == ((), [])
 
 
 def kit_sweep(*arguments: object) -> tuple[int, str]:
