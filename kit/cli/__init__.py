@@ -90,6 +90,18 @@ VERBS: Final[dict[str, tuple[str, str]]] = {
     ),
 }
 """Every verb: its module, with the name of its command where that is not ``command``, and its line in ``kit --help``."""
+ELSEWHERE: Final = {
+    "learn": "a lesson is `kit lesson`, a training `kit train`.",
+    "levels": "they are in `kit game`.",
+    "race": "it is `kit game race`.",
+    "daily": "it is `kit game daily`.",
+    "tag": "it is `kit game host LEVEL` and `kit game guest`.",
+    "grade": "work is graded by `grader check`, a class by `grader cohort`.",
+    "check": "it is `kit world check`, `kit task check`, or `grader check` for an exercise.",
+    "export": "it is `kit evaluate RUN --node` or `--package`, or `kit progress export`.",
+    "test": "a policy is tested by `kit evaluate`, an assignment by `grader self-test`.",
+}
+"""Words that somebody may try as verbs, and the commands that they stand for."""
 VERSION: Final[str] = getattr(kit, "__version__", "unknown")
 """Unknown where another package has written over the kit's files, which ``run_as_process`` says."""
 
@@ -97,6 +109,7 @@ VERSION: Final[str] = getattr(kit, "__version__", "unknown")
 @click.group(
     cls=LazyGroup,
     verbs=VERBS,
+    absent=ELSEWHERE,
     has_others=True,
     everywhere=(PLAIN_OPTION,),
     invoke_without_command=True,

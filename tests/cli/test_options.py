@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
-from kit.cli import messages
+from kit.cli import ELSEWHERE, messages
 from kit.school.progress import FILE, EventKind, ProgressJournal
 from kit.workspace import open_workspace
 from tests.cli.verbs import kit
@@ -29,6 +31,15 @@ def test_a_damaged_journal_is_told_by_every_verb_that_opens_it(arguments: tuple[
 def test_plain_is_taken_by_commands_that_open_no_screen(command: str) -> None:
     expected, result = kit(*command.split()), kit(*command.split(), "--plain")
     assert (result.output, result.exit_code) == (expected.output, expected.exit_code)
+
+
+@pytest.mark.parametrize("word", ELSEWHERE)
+def test_a_word_that_is_no_verb_leads_to_commands_that_there_are(word: str) -> None:
+    said = " ".join(kit(word, code=2).stderr.split())
+    named = [each.split() for each in re.findall(r"`kit ([^`]+)`", said) if each != word]
+    assert named or "grader" in said
+    for words in named:
+        kit(*[each for each in words if each.islower() and each[0] != "-"], "--help")
 
 
 def test_sentences_and_errors_are_broken_between_words(
