@@ -5,8 +5,8 @@ from __future__ import annotations
 import errno
 import json
 import re
+import secrets
 import shutil
-import tempfile
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import count
@@ -39,10 +39,10 @@ def create_run(folder: Path, config: RunConfig, name: str | None = None) -> Trai
         config = replace(config, reward_file=str(task.reward_file.absolute()))
     if name is not None and not NAME_PATTERN.fullmatch(name):
         raise RunError(f"{quoted(name)}: a run's name may contain letters, digits, '_', '-' and '.'.")
-    draft = Path(tempfile.mkdtemp(dir=folder, prefix=DRAFT_PREFIX))
+    draft = folder / f"{DRAFT_PREFIX}{secrets.token_hex(8)}"
+    draft.mkdir()
     try:
         _fill(TrainingRun(draft), config)
-        draft.chmod(0o755)
         return TrainingRun(
             _rename_to_first_free(draft, [name] if name is not None else _default_names(config))
         )
