@@ -75,6 +75,26 @@ def student(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Student
     made.progress.close()
 
 
+class HeldChecks:
+    """Checks whose reports do not come while they are held: what is shown meanwhile does not depend on how long one takes."""
+
+    def __init__(self) -> None:
+        self.is_held = False
+
+    def hold(self) -> None:
+        self.is_held = True
+
+    def let_go(self) -> None:
+        self.is_held = False
+
+
+@pytest.fixture
+def checks(monkeypatch: pytest.MonkeyPatch) -> HeldChecks:
+    held, poll = HeldChecks(), checking.ExerciseCheck.poll
+    monkeypatch.setattr(checking.ExerciseCheck, "poll", lambda check: None if held.is_held else poll(check))
+    return held
+
+
 Play = Callable[[Scene], None]
 
 
@@ -279,16 +299,20 @@ def test_what_went_wrong_moves_again_and_what_was_printed_is_shown(student: Stud
 
 
 @pytest.mark.long
-def test_a_check_goes_on_while_another_step_is_looked_at(student: Student, play: Play) -> None:
+def test_a_check_goes_on_while_another_step_is_looked_at(
+    student: Student, play: Play, checks: HeldChecks
+) -> None:
     student.goes_to(CORNER)
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, "controller.py")
+        checks.hold()
         await pilot.press("c")
         assert "Checking ..." in text(pilot), "at once, and not when the check says its first word"
         await pilot.press("b", "b")
         assert "step 3 of 5" in rows(pilot)[0]
         assert "Step 5 is being checked" in text(pilot)
+        checks.let_go()
         await seen(pilot, "The check of step 5 has ended: not yet passed.")
         await pilot.press("n", "n")
         await seen(pilot, "It reaches the target: 0 of 3")
@@ -405,7 +429,9 @@ def test_a_pass_plays_the_students_own_run_which_stays(
 
 
 @pytest.mark.long
-def test_a_hint_and_the_first_lost_criterion_come_into_sight(student: Student, play: Play) -> None:
+def test_a_hint_and_the_first_lost_criterion_come_into_sight(
+    student: Student, play: Play, checks: HeldChecks
+) -> None:
     student.goes_to(COLOUR)
     sheet = student.lesson / "lesson.yaml"
     sheet.write_text(
@@ -418,8 +444,10 @@ def test_a_hint_and_the_first_lost_criterion_come_into_sight(student: Student, p
     async def scene(pilot: Pilot[None]) -> None:
         await pilot.press("c")
         await seen(pilot, "[no] The colour")
+        checks.hold()
         await pilot.press("c")
         assert "[no] The colour" not in text(pilot), "an old verdict while the new check runs"
+        checks.let_go()
         await seen(pilot, "[no] The colour")
         for number in range(1, 4):
             await pilot.press("h")
