@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import secrets
+import shutil
 import stat
 import tempfile
 from collections.abc import Iterator
@@ -12,6 +13,9 @@ from dataclasses import dataclass
 from errno import EACCES, EISDIR
 from pathlib import Path
 from typing import Final
+
+DRAFT_PREFIX: Final = ".new-"
+"""Begins the name of a folder while it is filled."""
 
 
 class WorkspaceError(Exception):
@@ -151,6 +155,24 @@ def write_atomically(path: Path, data: bytes, *, follows_links: bool = True) -> 
             with suppress(OSError):
                 temporary.unlink()
             raise
+
+
+@contextmanager
+def draft_folder(parent: Path) -> Iterator[Path]:
+    """Yields an empty hidden folder in ``parent``, to be filled and then renamed to what it shall be: so nobody finds a part of
+    it. What has not been renamed when the block ends, in whatever way, is removed. Raises OSError.
+
+    >>> with tempfile.TemporaryDirectory() as name, draft_folder(Path(name)) as draft:
+    ...     _ = draft.joinpath("map.yaml").write_text("")
+    ...     draft.rename(Path(name, "hall")).name
+    'hall'
+    """
+    draft = parent / f"{DRAFT_PREFIX}{secrets.token_hex(8)}"
+    draft.mkdir()
+    try:
+        yield draft
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
 
 
 def make_private_folder(folder: Path) -> None:

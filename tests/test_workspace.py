@@ -14,6 +14,7 @@ from kit.controllers import find_controller, prepare_workspace, user_controllers
 from kit.workspace import (
     WorkspaceError,
     check_writable,
+    draft_folder,
     expand_home,
     open_common_folder,
     open_workspace,
@@ -57,6 +58,29 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
     assert caught.value.filename == str(file)
     assert file.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_folder_is_there_whole_or_not_at_all(tmp_path: Path) -> None:
+    wanted = tmp_path / "hall"
+    with draft_folder(tmp_path) as draft:
+        (draft / "map.yaml").write_text("whole")
+        assert not wanted.exists()
+        (tmp_path / "other").mkdir()
+        assert draft.stat().st_mode == (tmp_path / "other").stat().st_mode, (
+            "readable as any folder of the user's"
+        )
+        (tmp_path / "other").rmdir()
+        draft.rename(wanted)
+    assert [path.name for path in wanted.iterdir()] == ["map.yaml"]
+    with pytest.raises(KeyboardInterrupt):
+        _fill_and_interrupt(tmp_path)
+    assert list(tmp_path.iterdir()) == [wanted]
+
+
+def _fill_and_interrupt(folder: Path) -> None:
+    with draft_folder(folder) as draft:
+        (draft / "map.yaml").write_text("ha")
+        raise KeyboardInterrupt
 
 
 def test_a_desk_on_a_full_disk_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 import io
 import shlex
-import shutil
 import zipfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -28,7 +27,7 @@ from kit.cli.existing_path import ExistingPath
 from kit.document.blocks import Block, Code, Table, Text, labelled_table
 from kit.document.layout import lines_of
 from kit.plain_text import counted, join_names
-from kit.workspace import write_atomically
+from kit.workspace import draft_folder, write_atomically
 from kit.world.problems import WorldError
 
 ASSIGNMENT_FOLDER: Final = "assignment"
@@ -151,14 +150,11 @@ def _write_handout(files: Mapping[str, bytes], target: Path) -> None:
                 archive.writestr(entry, data)
         write_atomically(target.absolute(), packed.getvalue())
         return
-    coming = target.with_name(f".{target.name}.coming")
-    shutil.rmtree(coming, ignore_errors=True)
-    for name, data in files.items():
-        (coming / name).parent.mkdir(parents=True, exist_ok=True)
-        (coming / name).write_bytes(data)
-    if target.exists():
-        target.rmdir()
-    coming.rename(target)
+    with draft_folder(target.parent) as draft:
+        for name, data in files.items():
+            (draft / name).parent.mkdir(parents=True, exist_ok=True)
+            (draft / name).write_bytes(data)
+        draft.rename(target)  # an empty folder of that name makes room
 
 
 def _check_readable(folder: Path) -> None:

@@ -38,7 +38,7 @@ from kit.results.grading_result import (
     GradingResult,
     GradingVerdict,
 )
-from kit.workspace import make_private_folder, write_atomically
+from kit.workspace import draft_folder, make_private_folder, write_atomically
 
 MANIFEST: Final = "manifest.json"
 GRACE_S: Final = 120.0
@@ -349,10 +349,9 @@ def _copy_assignment(queue: Queue, assignment: Assignment) -> None:
         if read_assignment(target).version == assignment.version:
             return
         shutil.rmtree(target)
-    coming = queue.folder / "assignment.coming"
-    shutil.rmtree(coming, ignore_errors=True)
-    shutil.copytree(assignment.folder, coming)
-    coming.rename(target)
+    with draft_folder(queue.folder) as draft:
+        shutil.copytree(assignment.folder, draft, dirs_exist_ok=True)
+        draft.rename(target)
 
 
 @cache

@@ -110,7 +110,7 @@ def _own_maps() -> list[Path]:
         folder = open_workspace(None, make=False).worlds
     except WorkspaceError:
         return []
-    return sorted(card.parent for card in folder.glob(f"*/{CARD_FILE}"))
+    return sorted(card.parent for card in folder.glob(f"[!.]*/{CARD_FILE}"))
 
 
 @command.command()

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 import shutil
-import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ import yaml
 from kit.controllers import FOLDER as CONTROLLERS
 from kit.geometry import Pose
 from kit.ros.packages import PackageError
+from kit.workspace import draft_folder
 from kit.world.catalogue import find_map
 
 TEMPLATES: Final = Path(__file__).parent / "new_package"
@@ -86,14 +86,9 @@ def new_package_folder(name: str, destination: Path, program: str) -> Iterator[P
         raise PackageError(f"{folder} already exists. Choose another name, or remove it.")
     try:
         destination.mkdir(parents=True, exist_ok=True)
-        part = Path(tempfile.mkdtemp(dir=destination, prefix=f".{name}."))
-        try:
-            yield part
-            part.chmod(0o755)
-            part.rename(folder)
-        except BaseException:  # Ctrl-C too: no half-written package stays; raised again
-            shutil.rmtree(part, ignore_errors=True)
-            raise
+        with draft_folder(destination) as draft:
+            yield draft
+            draft.rename(folder)
     except OSError as problem:
         raise PackageError(f"{folder}: cannot be created ({problem.strerror})") from None
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -26,7 +25,7 @@ from kit.mapmaking.route import (
     widest_route,
 )
 from kit.plain_text import quoted
-from kit.workspace import errors_name_file
+from kit.workspace import draft_folder, errors_name_file
 from kit.world.catalogue import CARD_FILE, WORLD_FILE, maps_folder
 from kit.world.connected_parts import connected_parts
 from kit.world.loading import load_world
@@ -158,12 +157,7 @@ def write_map(
     """Writes the map's files into a new folder, all or none. ``overlay``: the drawing, as large as the plan, with its
     walls tinted, over which the way is shown. ``is_pair``: whether two robots start side by side. Raises NoRoute, OSError, and ValueError if there are no walls."""
     folder.parent.mkdir(parents=True, exist_ok=True)
-    with (
-        errors_name_file(folder),
-        tempfile.TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}.") as name,
-    ):
-        made = Path(name) / folder.name
-        made.mkdir()
+    with errors_name_file(folder), draft_folder(folder.parent) as made:
         picture = Image.fromarray(np.where(plan.walls, 0, 255).astype(np.uint8))
         picture.save(made / PICTURE_FILE)
         (made / MAP_FILE).write_text(MAP_TEXT.format(resolution=plan.resolution))

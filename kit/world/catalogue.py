@@ -159,7 +159,7 @@ def map_names(folder: Path | None = None) -> tuple[str, ...]:
     """The names of all maps, without reading them: every folder with a card is one. Without ``folder`` those of others'
     packages too."""
     places = [maps_folder(), *_folders_of_others()] if folder is None else [folder]
-    return tuple(sorted({card.parent.name for place in places for card in place.glob(f"*/{CARD_FILE}")}))
+    return tuple(sorted({card.parent.name for place in places for card in place.glob(f"[!.]*/{CARD_FILE}")}))
 
 
 def _folders_of_others() -> list[Path]:

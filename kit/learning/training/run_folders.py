@@ -5,22 +5,17 @@ from __future__ import annotations
 import errno
 import json
 import re
-import secrets
-import shutil
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import count
 from pathlib import Path
-from typing import Final
 
 from kit.learning.training.run_config import RunConfig, RunError
 from kit.learning.training.runs import TrainingRun
 from kit.plain_text import quoted, suggestion
-from kit.workspace import write_atomically
+from kit.workspace import draft_folder, write_atomically
 
 NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,99}")
-DRAFT_PREFIX: Final = ".new-"
-"""Begins the name of a run's folder while it is written."""
 
 
 class RunExists(RunError):
@@ -39,16 +34,11 @@ def create_run(folder: Path, config: RunConfig, name: str | None = None) -> Trai
         config = replace(config, reward_file=str(task.reward_file.absolute()))
     if name is not None and not NAME_PATTERN.fullmatch(name):
         raise RunError(f"{quoted(name)}: a run's name may contain letters, digits, '_', '-' and '.'.")
-    draft = folder / f"{DRAFT_PREFIX}{secrets.token_hex(8)}"
-    draft.mkdir()
-    try:
+    with draft_folder(folder) as draft:
         _fill(TrainingRun(draft), config)
         return TrainingRun(
             _rename_to_first_free(draft, [name] if name is not None else _default_names(config))
         )
-    except BaseException:  # a full disk, Ctrl-C: no half of a run is left
-        shutil.rmtree(draft, ignore_errors=True)
-        raise
 
 
 def _fill(run: TrainingRun, config: RunConfig) -> None:

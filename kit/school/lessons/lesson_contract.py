@@ -41,7 +41,7 @@ def lesson_folders(folder: Path) -> tuple[Path, ...]:
     """The lessons in a folder, in order of their names; the folder itself where it is one."""
     if (folder / LESSON_FILE).is_file():
         return (folder,)
-    return tuple(sorted(each.parent for each in folder.glob(f"*/{LESSON_FILE}")))
+    return tuple(sorted(each.parent for each in folder.glob(f"[!.]*/{LESSON_FILE}")))
 
 
 def check_contract(folder: Path, verbs: Collection[str]) -> Iterator[ContractFinding]:

@@ -81,7 +81,7 @@ def solutions_folder() -> Path:
 def lesson_names(folder: Path | None = None) -> tuple[str, ...]:
     """The names of all lessons, in the order in which to take them: unit by unit, then those of no unit by name."""
     folder = lessons_folder() if folder is None else folder
-    found = sorted(each.parent.name for each in folder.glob(f"*/{LESSON_FILE}"))
+    found = sorted(each.parent.name for each in folder.glob(f"[!.]*/{LESSON_FILE}"))
     in_units = [name for unit in read_units(folder) for name in unit.lessons if name in found]
     return (*in_units, *(name for name in found if name not in in_units))
 

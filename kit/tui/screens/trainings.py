@@ -400,7 +400,9 @@ def _sweep_items(folder: Path) -> list[PickerItem]:
     """The sweeps that `kit sweep` keeps, the last one first."""
     from kit.learning.training.training_sweep import TrainingSweep
 
-    manifests = sorted(folder.glob("*/manifest.json"), key=lambda file: file.stat().st_mtime, reverse=True)
+    manifests = sorted(
+        folder.glob("[!.]*/manifest.json"), key=lambda file: file.stat().st_mtime, reverse=True
+    )
     items = []
     for file in manifests:
         sweep = TrainingSweep(file.parent)

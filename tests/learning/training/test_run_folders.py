@@ -10,7 +10,8 @@ import pytest
 from kit.learning.tasks.task_spec import TaskSpec
 from kit.learning.training import run_folders
 from kit.learning.training.run_config import RunConfig
-from kit.learning.training.run_folders import DRAFT_PREFIX, RunExists, create_run, list_runs
+from kit.learning.training.run_folders import RunExists, create_run, list_runs
+from kit.workspace import DRAFT_PREFIX
 
 TURN = RunConfig(TaskSpec("turn"), "q-learning")
 
