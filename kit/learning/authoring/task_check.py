@@ -40,6 +40,14 @@ def check_task(read: ReadTask) -> None:
                 "a model with a Tween, as the map crossing has",
                 "goal",
             )
+        seen = min(task.observation.clip, batch_map.robot.reach)
+        if task.goal.farthest_measured >= seen:
+            read.section.error(
+                f"the goal {task.goal.kind} counts up to {task.goal.farthest_measured:g} m from a wall, and an agent on "
+                f"{batch_map.name} sees {seen:g} m at the most (the observation's clip, the lidar's range): "
+                "it could not tell what counts from what does not",
+                "goal",
+            )
     for placed in read.cases:
         _check_case(task, placed, maps[placed.map_number])
     read.problems.raise_if_any()

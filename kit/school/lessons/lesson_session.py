@@ -88,7 +88,9 @@ class LessonSession:
     def _find_next_in_folder(self) -> LessonSession | None:
         """Returns the next lesson of a folder that is not the kit's own; None after the last."""
         folder = self.lesson.folder
-        after = sorted(each.parent for each in folder.parent.glob(f"[!.]*/{LESSON_FILE}") if each.parent > folder)
+        after = sorted(
+            each.parent for each in folder.parent.glob(f"[!.]*/{LESSON_FILE}") if each.parent > folder
+        )
         try:
             lesson = read_lesson(after[0], is_foreign=True) if after else None
         except WorldError:

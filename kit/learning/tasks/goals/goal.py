@@ -133,6 +133,11 @@ class Goal(ABC):
         return {**settings, "needed": needed, "is_observation_delayed": self.is_observation_delayed}
 
     @property
+    def farthest_measured(self) -> float:
+        """[m] The farthest wall that counts for something; 0 where none does."""
+        return 0.0
+
+    @property
     def needs_target(self) -> bool:
         """Whether a case must have a target."""
         return self.case_targets is not CaseTargets.NONE

@@ -48,6 +48,10 @@ class WallGoal(Goal):
             f"{self.distance - self.tolerance:g} to {self.distance + self.tolerance:g} m away"
         )
 
+    @property
+    def farthest_measured(self) -> float:
+        return self.distance + self.tolerance
+
     def least_time(self, way: float, speed: float) -> float:
         return self.length / speed
 
