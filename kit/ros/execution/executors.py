@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Callable, Sequence
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Protocol, Self
+from typing import TYPE_CHECKING, Any, Final, Protocol, Self
 
 from kit.ros.exceptions import (
     ConditionReachedException,
@@ -34,6 +33,11 @@ __all__ = [
     "SingleThreadedExecutor",
     "TimeoutException",
 ]
+
+
+DEFAULT_THREADS: Final = 8
+"""The threads of a MultiThreadedExecutor that is told no number: those of a common computer, not of this one. How many
+callbacks can wait for others at one time, and so whether a program deadlocks, is the same on every machine."""
 
 
 class SpinnableHandle(Protocol):
@@ -319,7 +323,7 @@ class SingleThreadedExecutor(Executor):
 class MultiThreadedExecutor(Executor):
     """Callbacks in a pool of threads, as far as their callback groups let them overlap.
 
-    ``num_threads``: how many; by default one per processor, at least two.
+    ``num_threads``: how many; by default DEFAULT_THREADS.
     """
 
     is_exclusive = False
@@ -328,7 +332,7 @@ class MultiThreadedExecutor(Executor):
         from concurrent.futures import ThreadPoolExecutor  # imported here, since few programs need it
 
         super().__init__(context=context)
-        count = max(2, os.cpu_count() or 2) if num_threads is None else num_threads
+        count = DEFAULT_THREADS if num_threads is None else num_threads
         self._pool = ThreadPoolExecutor(count, thread_name_prefix="ros-callback")
         self._thread_count = count
         self._open_jobs = 0

@@ -281,6 +281,27 @@ class TestGroups:
             with pytest.raises(ZeroDivisionError):
                 executor.spin()
 
+    def test_four_callbacks_meet_without_a_number_of_threads(
+        self, alone: Graph, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr("os.cpu_count", lambda: 1)  # what a program may do is the same on every machine
+        node, group = create_graph_node(alone, "node"), ReentrantCallbackGroup()
+        meeting, done = threading.Barrier(4), Future[None]()
+
+        def callback() -> None:
+            meeting.wait(10.0)
+            if not done.done():
+                done.set_result(None)
+
+        conditions = [node.create_guard_condition(callback, callback_group=group) for _ in range(4)]
+        with MultiThreadedExecutor(context=context_of(alone)) as executor:
+            executor.add_node(node)
+            for condition in conditions:
+                condition.trigger()
+            executor.spin_until_future_complete(done, timeout_sec=20)
+        assert not meeting.broken
+        assert done.done()
+
     def test_a_group_knows_its_entities(self, graph: Graph) -> None:
         node, group = create_graph_node(graph, "node"), MutuallyExclusiveCallbackGroup()
         timer = node.create_timer(1.0, lambda: None, group)

@@ -48,7 +48,7 @@ class Cook(Node):
         super().__init__('cook')
         self.client = AsyncParameterClient(self, 'oven')
         self.handler = ParameterEventHandler(self)
-        self.handle = self.handler.add_parameter_callback(
+        self.watch = self.handler.add_parameter_callback(
             parameter_name='top', node_name='oven', callback=self.on_top)
         self.events = self.handler.add_parameter_event_callback(callback=self.on_event)
         self.seen = 0
@@ -94,7 +94,7 @@ def main():
         print('types', list(types) == [ParameterType.PARAMETER_INTEGER, ParameterType.PARAMETER_STRING])
         names = wait(cook.client.list_parameters()).result.names
         print('listed', sorted(n for n in names if n in ('top', 'bottom', 'both', 'name')))
-        cook.handler.remove_parameter_callback(cook.handle)
+        cook.handler.remove_parameter_callback(cook.watch)
         wait(cook.client.set_parameters([Parameter('top', value=150)]))
         settle()
         print('events', cook.seen - before)

@@ -20,7 +20,7 @@ class Clinic(Node):
         weak = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
         strong = QoSProfile(depth=5, reliability=ReliabilityPolicy.RELIABLE)
         compatibility, reason = qos_check_compatible(weak, strong)
-        print('checked', compatibility == QoSCompatibility.ERROR, 'reliability' in reason.lower())
+        print('checked', compatibility == QoSCompatibility.ERROR, 'best effort' in reason.lower())
         self.a = self.create_publisher(
             String, 'a', weak, event_callbacks=PublisherEventCallbacks(
                 incompatible_qos=lambda e: self.tell('publisher', e), use_default_callbacks=False))

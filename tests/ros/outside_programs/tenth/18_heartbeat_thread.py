@@ -19,12 +19,12 @@ class Heart(Node):
         self.publisher = self.create_publisher(UInt8, 'beat', 10)
         self.guard = self.create_guard_condition(self.on_guard)
         self.rate = self.create_rate(5)
-        self.beats = self.guards = 0
+        self.beats = self.triggered = 0
         self.stamps = []
         self.ended = threading.Event()
 
     def on_guard(self):
-        self.guards += 1
+        self.triggered += 1
 
     def run(self):
         try:
@@ -56,7 +56,7 @@ def main():
     print('silence', nothing)
     clock = ear.get_clock()
     clock.sleep_until(clock.now() + rclpy.duration.Duration(seconds=3))
-    beats, guards = heart.beats, heart.guards
+    beats, guards = heart.beats, heart.triggered
     print('beats', 15 <= beats <= 21, 'guards', abs(beats - guards) <= 1)
     gaps = [b - a for a, b in zip(heart.stamps, heart.stamps[1:])]
     print('even', all(abs(gap - 200_000_000) < 20_000_000 for gap in gaps[1:]))

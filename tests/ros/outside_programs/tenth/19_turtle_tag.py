@@ -28,10 +28,10 @@ class Tag(Node):
         self.caught = rclpy.task.Future()
         self.chasing = None
 
-    async def call(self, kind, name, **fields):
-        client = self.create_client(kind, name)
+    async def call(self, kind, service, **fields):
+        client = self.create_client(kind, service)
         if not client.wait_for_service(timeout_sec=5.0):
-            raise RuntimeError(name)
+            raise RuntimeError(service)
         answer = await client.call_async(kind.Request(**fields))
         self.destroy_client(client)
         return answer

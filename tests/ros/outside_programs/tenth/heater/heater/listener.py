@@ -1,6 +1,7 @@
 import rclpy
 from lifecycle_msgs.msg import TransitionEvent
 from lifecycle_msgs.srv import GetState
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 from std_msgs.msg import Float64
 
@@ -12,7 +13,8 @@ class Listener(Node):
         self.create_subscription(Float64, 'temperature', lambda m: self.values.append(m.data), 10)
         self.create_subscription(
             TransitionEvent, 'thermometer/transition_event', self.on_event, 10)
-        self.client = self.create_client(GetState, 'thermometer/get_state')
+        self.client = self.create_client(
+            GetState, 'thermometer/get_state', callback_group=ReentrantCallbackGroup())
         self.create_timer(1.0, self.ask)
 
     def on_event(self, event):
