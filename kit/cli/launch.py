@@ -98,12 +98,12 @@ def command(
 
     try:
         opened_workspace = open_workspace(workspace)
-        file, arguments = _parse_words(words)
+        file, arguments = parse_words(words)
         target = find_launch_file(where, file, [opened_workspace.packages])
     except (PackageError, WorkspaceError) as problem:
         messages.fail(str(problem))
     if show_args:
-        _show_arguments(target)
+        show_arguments(target)
         return
     terminal = terminal_options.decide(plain=plain, glyphs=glyphs, color=color)
     run_launch(
@@ -146,7 +146,7 @@ def run_launch(
         raise SystemExit(code or 1)
 
 
-def _parse_words(words: Sequence[str]) -> tuple[str | None, dict[str, str]]:
+def parse_words(words: Sequence[str]) -> tuple[str | None, dict[str, str]]:
     """Splits the words into the launch file's name, None if there is none, and the launch arguments."""
     arguments = dict(word.split(":=", 1) for word in words if ":=" in word)
     rest = [word for word in words if ":=" not in word]
@@ -157,11 +157,12 @@ def _parse_words(words: Sequence[str]) -> tuple[str | None, dict[str, str]]:
     return (rest[0] if rest else None), arguments
 
 
-def _show_arguments(target: LaunchTarget) -> None:
+def show_arguments(target: LaunchTarget, *, is_test: bool = False) -> None:
+    """Prints the arguments that a launch file, or a test for launch_testing, declares."""
     from kit.launch.launch_file_process import declared_arguments
 
     try:
-        declared = declared_arguments(target.file, target.folder, target.search)
+        declared = declared_arguments(target, is_test=is_test)
     except StudentCodeError as error:
         messages.fail(str(error.failure))
     click.echo("Arguments (pass arguments as '<name>:=<value>'):")

@@ -13,6 +13,7 @@ from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol
 
 from kit.host.codec import Codec, NotFiniteError
@@ -32,6 +33,12 @@ if TYPE_CHECKING:
 
 INTERRUPT: Final = "interrupt"
 """The event by which the parent asks a program to end, as Ctrl-C does."""
+
+
+LAUNCH_CHANNEL: Final = "launch"
+"""The kind of event by which a test for launch_testing requests what a launch file does, and hears what happens."""
+LAUNCH_OVER: Final = "over"
+"""The last of what it hears: every process has ended."""
 
 
 class PendingEvent(NamedTuple):
@@ -72,6 +79,16 @@ class GraphBridge(ABC):
     def has_pending(self) -> bool:
         """Whether there is something to send."""
         return bool(self.pending) or self._diff.has_changed
+
+    def open_channel(self, name: str, apply: Callable[[list[Json]], object]) -> Callable[..., None]:
+        """Adds a kind of event to those of the graph: ``apply`` is called with the fields of each that comes, the function that
+        is returned sends one."""
+
+        def apply_fields(fields: list[Json]) -> None:
+            apply(fields)
+
+        self._handlers[name] = apply_fields
+        return partial(self._add, name)
 
     def take_changes(self) -> list[Json]:
         """Returns the events for what has changed among this end's own nodes since the last call."""

@@ -7,7 +7,7 @@ So a key that reaches a student's node in one tick moves the wheels in the same 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Final, Self
@@ -56,6 +56,7 @@ class NodeProcess(HostedFile):
         streams: ProgramStreams | None = None,
         replaces: NodeProcess | None = None,
         scope: NameScope | None = None,
+        launch_test: Mapping[str, Json] | None = None,
     ) -> None:
         """``args``: what would follow the file's name on a command line, such as ``--ros-args -p speed:=0.4``.
 
@@ -72,6 +73,8 @@ class NodeProcess(HostedFile):
         ``replaces``: the process that is to end before this one joins. That its nodes have the same names is no mistake.
 
         ``scope``: the names that it may use, where other programs take part that it must not disturb; by default all.
+
+        ``launch_test``: the file is a test for launch_testing, which is run as this says: ``kit.host.child.launch_test_program``.
         """
         self.file = file
         self._graph = graph
@@ -85,7 +88,14 @@ class NodeProcess(HostedFile):
         self.has_ended = False
         """Whether the program has ended by itself."""
         events = None if loads_first else self._bridge.take_changes()
-        start = {"args": list(args), "seed": seed, "now": self._now_ns, "events": events}
+        start: dict[str, Json] = {
+            "args": list(args),
+            "seed": seed,
+            "now": self._now_ns,
+            "events": events,
+        }
+        if launch_test is not None:
+            start["launch_test"] = dict(launch_test)
         if replaces is not None:
             start["replaced"] = sorted(replaces.node_names)
         super().__init__(
@@ -96,6 +106,11 @@ class NodeProcess(HostedFile):
     def node_names(self) -> frozenset[str]:
         """The full names of its nodes that are in the graph."""
         return self._bridge.node_names
+
+    def open_channel(self, name: str, apply: Callable[[list[Json]], object]) -> Callable[..., None]:
+        """Adds a kind of event to those of the graph: ``apply`` is called with the fields of each that comes, the function that
+        is returned sends one in the next ``exchange``. To be called before ``join``."""
+        return self._bridge.open_channel(name, apply)
 
     @classmethod
     def start(

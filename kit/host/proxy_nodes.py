@@ -431,7 +431,17 @@ class GraphDiff:
                         events += self._interface_events(endpoint)
                         events.append([kind, endpoint.number, node, *_describe(endpoint)])
         lost = [number for number in (*self.endpoints, *self._nodes.values()) if number not in present]
-        events += [["gone", number] for number in lost]
+        # Where a node of the same name has come, the other one went before it.
+        names = {handle.full_name for handle, number in self._nodes.items() if number in present}
+        replaced = {
+            handle
+            for handle, number in self._nodes.items()
+            if number not in present and handle.full_name in names
+        }
+        early = {number for number, endpoint in self.endpoints.items() if endpoint.handle in replaced}
+        early |= {self._nodes[handle] for handle in replaced}
+        first = [["gone", number] for number in lost if number in early]
+        events = [*first, *events, *(["gone", number] for number in lost if number not in early)]
         self.endpoints = {
             number: endpoint for number, endpoint in self.endpoints.items() if number in present
         }

@@ -57,7 +57,9 @@ class CommandTime:
         now_ns = self._launch.graph.now_ns
         began_s, began_ns = self._seen.setdefault(command.pid, (now_s, now_ns))
         if command.poll() is not None:
-            return True  # until the launch has taken note
+            return (
+                now_ns != began_ns
+            )  # until the launch has taken note, which does so in the tick after the start
         if not command.is_of_kit:
             taken_s = now_s - began_s
             return taken_s < COMMAND_S or (now_ns - began_ns) / 1e9 > taken_s

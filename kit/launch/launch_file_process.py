@@ -6,9 +6,10 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal, Protocol
 
 from kit.host.failure import protocol_violation
+from kit.host.output import ProgramOutput
 from kit.host.process import HostedFile, PackageProgram, StudentProcess
 from kit.host.protocol import Ended, Frame, Reply
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, MIB
@@ -31,16 +32,53 @@ LIMITS: Final = replace(INTERACTIVE_LIMITS, reply_s=10.0, frame=16 * MIB)
 
 
 def declared_arguments(
-    file: Path, folder: Path, search: Sequence[Path], bounds: LaunchBounds = INTERACTIVE_BOUNDS
+    target: LaunchTarget, bounds: LaunchBounds = INTERACTIVE_BOUNDS, *, is_test: bool = False
 ) -> list[DeclaredArgument]:
-    """The arguments that a launch file declares, without carrying it out. Raises StudentCodeError."""
-    with _start_child(file, folder, search, {}, bounds, only_arguments=True) as child:
+    """The arguments that a launch file, or a test for launch_testing, declares, without carrying it out. Raises StudentCodeError."""
+    only: Literal["launch", "test"] = "test" if is_test else "launch"
+    with _start_child(target.file, target.folder, target.search, {}, bounds, only_arguments_of=only) as child:
         requests = _parse_requests(child, child.wait_started(), Ended)
     return [request for request in requests if isinstance(request, DeclaredArgument)]
 
 
+class LaunchFile(Protocol):
+    """What a launch needs of the process that runs its file. All failures are raised as StudentCodeError."""
+
+    is_told_of_the_end: bool
+    """Whether it hears of the end of every process, and may go on after that."""
+    wake_ns: int | None
+    """When its next timer is due [ns of the launch's time]; None without timers."""
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether the launch goes on for its sake, though no process runs."""
+
+    def start(self) -> list[Request]:
+        """Waits until the file is loaded; returns its first requests."""
+
+    def advance(self, now_ns: int, events: list[Json]) -> list[Request]:
+        """Sends events at a time of the launch; returns the requests that follow."""
+
+    def end(self, events: list[Json]) -> None:
+        """Sends the last events: every process has ended."""
+
+    def exchange(self) -> bool:
+        """Exchanges messages, as a participant of the lock-step."""
+
+    def take_requests(self) -> list[Request]:
+        """Removes and returns the requests that have come of its own accord."""
+
+    def take_output(self) -> ProgramOutput:
+        """Removes and returns what the file has printed."""
+
+    def close(self) -> None:
+        """Ends the process. May be called twice."""
+
+
 class LaunchFileProcess(HostedFile):
     """One run of a launch file; the process starts with the constructor. All failures are raised as StudentCodeError."""
+
+    is_told_of_the_end = False
 
     def __init__(
         self,
@@ -50,9 +88,13 @@ class LaunchFileProcess(HostedFile):
         arguments: Mapping[str, str],
         bounds: LaunchBounds = INTERACTIVE_BOUNDS,
     ) -> None:
-        super().__init__(_start_child(file, folder, search, arguments, bounds, only_arguments=False))
+        super().__init__(_start_child(file, folder, search, arguments, bounds))
         self.wake_ns: int | None = None
-        """When its next timer is due [ns of the launch's time]; None without timers."""
+
+    @property
+    def is_busy(self) -> bool:
+        """Never: it acts only when it is told of something."""
+        return False
 
     def start(self) -> list[Request]:
         """Waits until the file is loaded; returns its first requests."""
@@ -61,6 +103,17 @@ class LaunchFileProcess(HostedFile):
     def advance(self, now_ns: int, events: list[Json]) -> list[Request]:
         """Sends events at a time of the launch; returns the requests that follow."""
         return self._read_requests(self._process.request("tick", now_ns, events))
+
+    def end(self, events: list[Json]) -> None:
+        """No-op: it acts only while its processes run."""
+
+    def exchange(self) -> bool:
+        """False: it has no nodes."""
+        return False
+
+    def take_requests(self) -> list[Request]:
+        """None: it requests nothing but in its answers."""
+        return []
 
     def _read_requests(self, frame: Frame | None) -> list[Request]:
         requests = _parse_requests(self._process, frame, Reply)
@@ -75,7 +128,7 @@ def _start_child(
     arguments: Mapping[str, str],
     bounds: LaunchBounds,
     *,
-    only_arguments: bool,
+    only_arguments_of: Literal["launch", "test"] | None = None,
 ) -> StudentProcess:
     # A bounded launch file sees neither the environment nor the user's working directory.
     environment = with_commands(os.environ) if bounds.is_interactive else {}
@@ -84,7 +137,7 @@ def _start_child(
         Path.cwd() if bounds.is_interactive else folder,
         {**environment, SEARCH_VARIABLE: os.pathsep.join(map(str, search))},
     )
-    start = {"seed": 0, "arguments": dict(arguments), "only_arguments": only_arguments}
+    start = {"seed": 0, "arguments": dict(arguments), "only_arguments_of": only_arguments_of}
     return StudentProcess(
         "launch",
         file,
@@ -143,8 +196,7 @@ def find_launch_file(where: str, file: str | None, extra_folders: Iterable[Path]
                 f"{where} is already a launch file, so {file!r} has no meaning; arguments look like NAME:=VALUE"
             )
         path = path.absolute()
-        folder = next((each for each in path.parents if (each / "package.xml").is_file()), path.parent)
-        return LaunchTarget(path, folder, _search_order(folder, extra_folders))
+        return _target_of(path, extra_folders)
     if not path.is_dir():
         packages = find_packages(here)
         if where not in packages:
@@ -170,6 +222,17 @@ def find_launch_file(where: str, file: str | None, extra_folders: Iterable[Path]
     raise PackageError(
         f"{where}: it contains several packages: {', '.join(sorted(inside))}. Give the folder of one."
     )
+
+
+def find_test_file(file: Path, extra_folders: Iterable[Path]) -> LaunchTarget:
+    """A test for launch_testing as the launch file that it is. ``extra_folders`` are searched for packages too."""
+    return _target_of(file.absolute(), (*extra_folders, SHARE_FOLDER))
+
+
+def _target_of(file: Path, extra_folders: Iterable[Path]) -> LaunchTarget:
+    """A launch file with the package in which it lies."""
+    folder = next((each for each in file.parents if (each / "package.xml").is_file()), file.parent)
+    return LaunchTarget(file, folder, _search_order(folder, extra_folders))
 
 
 def _choose_launch_file(folder: Path, file: str | None, extra_folders: Iterable[Path]) -> LaunchTarget:

@@ -5,8 +5,10 @@ Of its lifecycle nodes it requests transitions, one after the other, and reports
 
 from __future__ import annotations
 
+import signal
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
@@ -14,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 from kit.host.failure import StudentCodeError
 from kit.host.wire import Json
 from kit.launch.launch_bounds import INTERACTIVE_BOUNDS, LaunchBounds
-from kit.launch.launch_file_process import LaunchFileProcess, LaunchTarget
+from kit.launch.launch_file_process import LaunchFile, LaunchFileProcess, LaunchTarget
 from kit.launch.processes import (
     CommandProcess,
     Process,
@@ -122,6 +124,8 @@ class LifecycleTransitions:
         self._waiting.pop(0)
 
 
+KILLED: Final = 128 + signal.SIGKILL
+"""The exit code of a program that did not end when it was asked to."""
 POLL_INTERVAL_S: Final = 0.05
 """How often processes are polled while the simulated time does not advance [s]."""
 
@@ -149,6 +153,8 @@ class _RunningProcess:
 
     request: StartRequest
     process: Process
+    started_ns: int
+    """When it was started [ns of the graph]."""
 
 
 class Launch:
@@ -170,7 +176,9 @@ class Launch:
         name: str = "",
         bounds: LaunchBounds = INTERACTIVE_BOUNDS,
         on_output: Callable[[LaunchOutputLine], None] = lambda line: None,
+        launch_file: LaunchFile | None = None,
     ) -> None:
+        """``launch_file``: the process that runs the file, where that is not simply a launch file; closed with the launch."""
         self.target = target
         self.graph = graph
         self.world: WorldRequest | None = None
@@ -181,8 +189,11 @@ class Launch:
         """What is drawn with the world and is not part of it."""
         self.failures: list[str] = []
         """Failures of its processes and of the launch file, as text."""
-        self.is_over = False
+        self._has_ended = False
         """Whether all processes have been ended, by the launch file or by the user."""
+        self.delays_command_ends = False
+        """Whether the end of a command counts in the tick after its start at the earliest: in a run that waits for commands, so
+        that it does not depend on how fast they are."""
         self._on_output = on_output
         self._start_context = StartContext(
             graph,
@@ -212,7 +223,7 @@ class Launch:
         self._polled_s = 0.0
         self._has_sent = False
         """Whether a program sent something in the last exchange, which others may not have received yet."""
-        self._launch_file = LaunchFileProcess(
+        self._launch_file: LaunchFile = launch_file or LaunchFileProcess(
             target.file, target.folder, target.search, arguments or {}, bounds
         )
 
@@ -232,10 +243,15 @@ class Launch:
         self._poll_processes()
 
     @property
+    def is_over(self) -> bool:
+        """Whether all processes have been ended, and the launch file has nothing more to do."""
+        return self._has_ended and not self._launch_file.is_busy
+
+    @property
     def has_programs(self) -> bool:
-        """True if a process runs or waits that can end by itself, or the launch file is still to hear of an end."""
+        """True if a process runs or waits that can end by itself, or the launch file is still to hear of an end, or is busy."""
         return any(not running.process.is_builtin for running in self._running.values()) or bool(
-            self._waiting or self._events
+            self._waiting or self._events or self._launch_file.is_busy
         )
 
     @property
@@ -259,20 +275,25 @@ class Launch:
             self._seen_ns = now
             self._poll_processes()
         had_sent, self._has_sent = self._has_sent, False
+        if self._launch_file.exchange():
+            self._has_sent = True
+            with self._launch_file_failures():
+                self._carry_out(self._launch_file.take_requests())
+            self._start_requested()
         for running in list(self._running.values()):
             self._has_sent |= running.process.exchange()
         if self._has_sent or not had_sent:
             return self._has_sent
         # All have received what a program has sent before it ended: its end counts in the tick in which it comes, however
         # long that takes.
-        has_ended = any(running.process.poll() is not None for running in self._running.values())
+        has_ended = any(self._poll(running) is not None for running in self._running.values())
         if has_ended:
             self._poll_processes()
         return has_ended
 
     def interrupt(self, reason: str) -> None:
         """Ends the launch for the user: the launch file may react, then all processes are ended."""
-        if not self.is_over:
+        if not self._has_ended:
             self._log(f"ended by the user: {reason}")
             self._advance_launch_file([["interrupted", reason]])
             self._end_all_processes()
@@ -283,16 +304,16 @@ class Launch:
 
     def close(self) -> None:
         """Ends all processes. May be called twice."""
-        self._end_all_processes()
+        self._end_all_processes(tells=False)
         self._transitions.close()
         self._launch_file.close()
 
     def _poll_processes(self) -> None:
         self._polled_s = time.monotonic()
-        if self.is_over:
+        if self._has_ended:
             return
         for number, running in list(self._running.items()):
-            ended = running.process.poll()
+            ended = self._poll(running)
             self._pass_on_output(running)
             if ended is not None:
                 self._record_exit(number, running, ended)
@@ -302,25 +323,41 @@ class Launch:
         if self._events or (wake is not None and wake <= self._clock_ns):
             events, self._events = self._events, []
             self._advance_launch_file(events)
-            try:
-                # Time stands still until they are there: they are in step from the tick in which they were due.
-                for started in self._start_waiting():
-                    started.wait_until_started()
-                    self._has_sent = True  # it may have ended already: its end counts in this tick
-            except ProcessStartError as problem:
-                self._record_failure(str(problem))
-                self._end_all_processes()
+            self._start_requested()
+        elif self._launch_file.is_busy and not (self._running or self._waiting or self.has_timers):
+            self._end_all_processes()  # as ROS 2 ends a launch in which nothing runs any more
 
-    def _advance_launch_file(self, events: list[Json]) -> None:
+    def _poll(self, running: _RunningProcess) -> ProcessExit | None:
+        is_command = isinstance(running.process, CommandProcess)
+        if self.delays_command_ends and is_command and running.started_ns == self.graph.now_ns:
+            return None
+        return running.process.poll()
+
+    def _start_requested(self) -> None:
         try:
-            self._carry_out(self._launch_file.advance(self._clock_ns, events))
-        except StudentCodeError as error:
-            self._record_failure(f"the launch file stopped: {error.failure}")
+            # Time stands still until they are there: they are in step from the tick in which they were due.
+            for started in self._start_waiting():
+                started.wait_until_started()
+                self._has_sent = True  # it may have ended already: its end counts in this tick
+        except ProcessStartError as problem:
+            self._record_failure(str(problem))
             self._end_all_processes()
 
+    def _advance_launch_file(self, events: list[Json]) -> None:
+        with self._launch_file_failures():
+            self._carry_out(self._launch_file.advance(self._clock_ns, events))
+
+    @contextmanager
+    def _launch_file_failures(self) -> Iterator[None]:
+        """Ends the launch if its file fails."""
+        try:
+            yield
+        except StudentCodeError as error:
+            self._record_failure(f"the launch file stopped: {error.failure}")
+            self._end_all_processes(tells=False)
+
     def _carry_out(self, requests: list[Request]) -> None:
-        for line in self._launch_file.take_output().lines:
-            self._on_output(LaunchOutputLine("launch", line.text, line.stream))
+        self._pass_on_file_output()
         for request in requests:
             if isinstance(request, StartRequest):
                 self._waiting.append(request)
@@ -355,7 +392,7 @@ class Launch:
             except ProgramUnavailable as problem:
                 self._log(f"skipped: {problem}", "WARN", name=request.name)
                 continue
-            self._running[request.number] = _RunningProcess(request, process)
+            self._running[request.number] = _RunningProcess(request, process, self.graph.now_ns)
             started.append(process)
             self._events.append(["started", request.number, process.pid])
             self._log(f"process started with pid [{process.pid}]", name=request.name)
@@ -383,14 +420,33 @@ class Launch:
             self._record_exit(number, running, ProcessExit(0))
         self._waiting = [request for request in self._waiting if request.number != number]
 
-    def _end_all_processes(self) -> None:
-        for running in self._running.values():
+    def _end_all_processes(self, *, tells: bool = True) -> None:
+        """``tells``: whether the launch file hears of it, where it goes on after the end."""
+        had_ended, self._has_ended = self._has_ended, True
+        for number, running in self._running.items():
             self._pass_on_output(running)
             running.process.close()
             self._pass_on_output(running)
+            ended = running.process.poll()
+            code = (
+                KILLED
+                if ended is None and not running.process.is_builtin
+                else 0
+                if ended is None
+                else ended.code
+            )
+            self._events.append(["exited", number, running.process.pid, code])
         self._running.clear()
         self._waiting.clear()
-        self.is_over = True
+        events, self._events = self._events, []
+        if tells and not had_ended and self._launch_file.is_told_of_the_end:
+            with self._launch_file_failures():
+                self._launch_file.end(events)
+            self._pass_on_file_output()
+
+    def _pass_on_file_output(self) -> None:
+        for line in self._launch_file.take_output().lines:
+            self._on_output(LaunchOutputLine("launch", line.text, line.stream))
 
     def _pass_on_output(self, running: _RunningProcess) -> None:
         for text, stream in running.process.take_lines():

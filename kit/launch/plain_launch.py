@@ -110,6 +110,7 @@ def run_plain_launch(
         if factor == MAXIMUM:
             clients = companion.owed_answers if isinstance(companion, InspectionServer) else dict
             command_time = CommandTime(launch, clients)
+            launch.delays_command_ends = True
         if companion is not None:
             stack.callback(companion.close)
             companions.append(companion)

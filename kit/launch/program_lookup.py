@@ -130,6 +130,10 @@ def _start_turtlesim(request: StartRequest, context: StartContext) -> Process:
     return BuiltinProcess(turtles.node)
 
 
+def _start_keep_alive(request: StartRequest, context: StartContext) -> Process:
+    return BuiltinProcess()
+
+
 BUILTIN_PROGRAMS: Final[
     Mapping[tuple[str | None, str | None], Callable[[StartRequest, StartContext], Process]]
 ] = MappingProxyType(
@@ -140,6 +144,7 @@ BUILTIN_PROGRAMS: Final[
         ("rqt_graph", "rqt_graph"): _start_builtin_view,
         ("tf2_ros", "static_transform_publisher"): _start_static_transform,
         ("turtlesim", "turtlesim_node"): _start_turtlesim,
+        ("launch_testing", "keep_alive"): _start_keep_alive,
     }
 )
 """Functions that start the programs that the kit brings itself, by package and executable."""
@@ -218,14 +223,45 @@ def _start_node_program(
 
 
 def _environment(request: StartRequest, context: StartContext) -> dict[str, str]:
-    kit_variables = {
-        SEARCH_VARIABLE: os.pathsep.join(map(str, context.search)),
-        WORLD_VARIABLE: context.world,
-    }
-    if context.workspace is not None:
-        kit_variables["KIT_WORKSPACE"] = str(context.workspace)
-    environment = {**request.environment, **kit_variables}
+    variables = _kit_variables(context.search, context.workspace, context.world)
+    environment = {**request.environment, **variables}
     return with_commands(environment) if context.bounds.is_interactive else environment
+
+
+def _kit_variables(search: tuple[Path, ...], workspace: Path | None, world: str) -> dict[str, str]:
+    """What a program must know to find packages, the workspace and the running world."""
+    variables = {SEARCH_VARIABLE: os.pathsep.join(map(str, search)), WORLD_VARIABLE: world}
+    return variables | ({} if workspace is None else {"KIT_WORKSPACE": str(workspace)})
+
+
+# A Python file
+
+
+def program_of_file(
+    file: Path, cwd: Path, search: tuple[Path, ...], workspace: Path | None, world: str
+) -> PackageProgram:
+    """A file that is run by its path, in this process's environment, with what the workspace around it offers when sourced."""
+    search = _search_of_file(file, search)
+    environment = {**os.environ, **_kit_variables(search, workspace, world)}
+    return _program_of_file(file, cwd, search, with_commands(environment))
+
+
+def _search_of_file(file: Path, search: tuple[Path, ...]) -> tuple[Path, ...]:
+    """The folders in which packages are searched for it: those of its own workspace first."""
+    return tuple(dict.fromkeys([*workspace_folders(file), *search]))
+
+
+def _program_of_file(
+    file: Path, cwd: Path, search: tuple[Path, ...], environment: Mapping[str, str]
+) -> PackageProgram:
+    folders = find_packages(search)
+    return PackageProgram(
+        file.parent,
+        cwd,
+        environment,
+        imports=import_folders(folders.values()),
+        interfaces=_register_interfaces(folders),
+    )
 
 
 # Other commands
@@ -242,17 +278,8 @@ def _start_command(request: StartRequest, context: StartContext) -> Process:
     name = Path(command[0]).name if command else ""
     if name.startswith("python") and len(command) > 1 and command[1].endswith(".py") and not request.shell:
         file = (cwd / command[1]).absolute()
-        workspace = workspace_folders(file)
-        if workspace:
-            context = replace(context, search=tuple(dict.fromkeys([*workspace, *context.search])))
-        folders = find_packages(context.search)
-        package_program = PackageProgram(
-            file.parent,
-            cwd,
-            _environment(request, context),
-            imports=import_folders(folders.values()),
-            interfaces=_register_interfaces(folders),
-        )
+        context = replace(context, search=_search_of_file(file, context.search))
+        package_program = _program_of_file(file, cwd, context.search, _environment(request, context))
         return _start_node_program(file, command[2:], package_program, context)
     if not request.shell:
         _require_available(name, request)

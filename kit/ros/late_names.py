@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping
 from importlib import import_module
+from importlib.util import find_spec
 from typing import Any, Final, NoReturn
 
 ABSENT: Final = "!"
@@ -53,11 +54,14 @@ def import_late_name(module: str, sources: Mapping[str, str], name: str) -> Any:
     """Returns the name of a module, which has it from now on; a module's ``__getattr__`` ends in this.
 
     ``sources``: where each such name lives, as ``MODULE:NAME``, or ``MODULE`` for a module; for a name that the kit does
-    not have, ``!`` and what it would need. Raises AttributeError.
+    not have, ``!`` and what it would need. A module within this one is one of its names too: in ROS 2, something has imported
+    it by then. Raises AttributeError.
     """
-    if name not in sources:
-        raise AttributeError(f"module '{module}' has no attribute '{name}'")
-    source = sources[name]
+    source = sources.get(name)
+    if source is None:
+        source = f"{module}.{name}"
+        if name.startswith("_") or not hasattr(sys.modules[module], "__path__") or find_spec(source) is None:
+            raise AttributeError(f"module '{module}' has no attribute '{name}'")
     if source.startswith(ABSENT):
         value: Any = make_absent_name(module, name, source.removeprefix(ABSENT))
     else:

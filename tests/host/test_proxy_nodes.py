@@ -7,9 +7,10 @@ from typing import Any
 import pytest
 
 from kit.host import proxy_nodes
-from kit.host.proxy_nodes import ProxyNodes
+from kit.host.proxy_nodes import GraphDiff, ProxyNodes
 from kit.host.wire import MAX_NAME, ProtocolError
 from kit.ros.graph.graph import Graph
+from kit.ros.node.node import create_graph_node
 
 
 class NobodyListens:
@@ -51,6 +52,29 @@ def test_too_many_one_after_the_other_are_refused(
         proxies.apply_event("gone", [number])
     with pytest.raises(ProtocolError, match=r"more than 10 .* one after the other"):
         add_publisher(proxies, 11)
+
+
+def test_a_node_that_another_one_of_its_name_replaces_has_gone_before_it() -> None:
+    """As in tests, each of which makes and destroys a node: nobody is warned of two nodes of one name."""
+    here, warnings = Graph(), list[str]()
+    there = Graph(log_sink=lambda record: warnings.append(record.text))
+    diff = GraphDiff(here, ProxyNodes(here, NobodyListens()), shares_interfaces=False)
+    proxies = ProxyNodes(there, NobodyListens())
+
+    def tell() -> None:
+        for name, *fields in diff.take_changes():
+            proxies.apply_event(name, fields)
+
+    node = create_graph_node(here, "tester")
+    tell()
+    node.destroy_node()
+    other = create_graph_node(here, "tester")
+    tell()
+    assert not warnings
+    assert [each.get_name() for each in there.nodes] == ["tester"]
+    other.destroy_node()
+    tell()
+    assert there.nodes == ()
 
 
 def test_a_definition_of_too_many_or_too_long_lines_is_refused() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from kit.host.failure import FailureKind, StudentCodeError
 from kit.launch.launch_bounds import LaunchBounds
-from kit.launch.launch_file_process import LIMITS, LaunchFileProcess, declared_arguments
+from kit.launch.launch_file_process import LIMITS, LaunchFileProcess, LaunchTarget, declared_arguments
 from tests.fuzz.frames import HEAR, LAUNCH_PROGRAM, packed, scripted
 
 CONFINED = [HEAR, packed(["confined", 0]), HEAR]
@@ -42,7 +42,7 @@ def test_a_launch_file_that_is_described_cannot_run(launch_file: Path) -> None:
         scripted([*CONFINED, packed(["reply", 0, None, []])]),
         pytest.raises(StudentCodeError) as caught,
     ):
-        declared_arguments(launch_file, launch_file.parent, [])
+        declared_arguments(LaunchTarget(launch_file, launch_file.parent, ()))
     assert caught.value.failure.kind is FailureKind.PROTOCOL
 
 

@@ -161,7 +161,7 @@ def run_launch(
     graph.reserved_names |= RESERVED_NODES
     package_files = _read_package(target.folder)
     try:
-        arguments = tuple(declared_arguments(target.file, target.folder, target.search, bounds))
+        arguments = tuple(declared_arguments(target, bounds))
         _restore_package(target.folder, package_files)
         launch = Launch(
             target,

@@ -31,6 +31,11 @@ VERBS: Final[Verbs] = {
     "bag": ("kit.cli.ros.bag", "Record and play bags, which ROS 2's tools open: record, play, info."),
     "run": ("kit.cli.ros.run", "Run a package's program, or a Python file, in the running world."),
     "launch": ("kit.cli.launch", "Same as `kit launch`."),
+    "launch_test": (
+        "kit.cli.ros.launch_test",
+        "Run a test for launch_testing: its launch, its tests, and those after the end.",
+    ),
+    "test": ("kit.cli.ros.launch_test", "Same as `kit ros launch_test`."),
     "pkg": ("kit.cli.launch:package_command", "Same as `kit pkg`."),
     "doctor": ("kit.cli.ros.doctor", "Check the running world, packages and this shell; report on them."),
     "wtf": ("kit.cli.ros.doctor", "Same as `kit ros doctor`."),

@@ -23,6 +23,7 @@ ABSENT_OPTIONS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
         "service echo": ("--csv", "--flow-style", "--qos-profile"),
         "param set": ("--atomic",),
         "param load": ("--no-use-wildcard",),
+        "test": ("--verbose", "--disable-isolation"),
         "bag record": (
             "--max-bag-size",
             "--max-bag-duration",

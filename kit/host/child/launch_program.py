@@ -16,6 +16,7 @@ from kit.ros.launch.context import LaunchContext, LaunchError
 from kit.ros.launch.description_sources import MARKUP_SUFFIXES, description_of
 from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.service import LaunchService, Request
+from kit.ros.launch.testing.runs import read_test_runs
 from kit.ros.launch.unavailable import install_unavailable_imports
 from kit.ros.packages import LAUNCH_VARIABLE
 
@@ -29,25 +30,27 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     install_unavailable_imports()
     service = LaunchService(program.file, start["arguments"], environment=dict(os.environ))
     os.environ[LAUNCH_VARIABLE] = "1"  # for this process alone
-    with _explained(program, service.context):
+    with explained(program, service.context):
         if program.file.endswith(MARKUP_SUFFIXES):
             description = read_launch_description(program.file, program.source)
         else:
-            description = description_of(program.load(MODULE))
-        arguments = description.get_launch_arguments() if start["only_arguments"] else None
-        requests = [] if start["only_arguments"] else service.start(description)
+            module = program.load(MODULE)
+            is_test = start["only_arguments_of"] == "test"
+            description = read_test_runs(module)[0].describe()[0] if is_test else description_of(module)
+        arguments = description.get_launch_arguments() if start["only_arguments_of"] else None
+        requests = [] if start["only_arguments_of"] else service.start(description)
     if arguments is not None:
         session.answer("ended", _describe_arguments(arguments))
         return
     while True:
-        session.answer("reply", service.wake_ns, _truncated(requests))
+        session.answer("reply", service.wake_ns, truncated(requests))
         _, now_ns, events = session.next_command()
-        with _explained(program, service.context):
+        with explained(program, service.context):
             requests = service.advance(now_ns, events)
 
 
 @contextmanager
-def _explained(program: StudentProgram, context: LaunchContext) -> Iterator[None]:
+def explained(program: StudentProgram, context: LaunchContext) -> Iterator[None]:
     """Turns every error of the launch file into StudentCodeError, with the line of the action that was carried out where no
     line of the author's is to blame."""
     try:
@@ -66,7 +69,7 @@ def _describe_arguments(declared: list[Json]) -> list[Json]:
     return [["argument", each.name, each.shown_default, each.description, each.choices] for each in declared]
 
 
-def _truncated(requests: list[Request]) -> list[Json]:
+def truncated(requests: list[Request]) -> list[Json]:
     """Shortens texts to the length that the parent accepts."""
     return [
         [kind, *(part[:MAX_TEXT] if isinstance(part, str) else part for part in content)]

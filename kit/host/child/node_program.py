@@ -60,7 +60,11 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     else:
         bridge.apply_events(start["events"])
     try:
-        if start.get("entry"):
+        if "launch_test" in start:
+            from kit.host.child import launch_test_program  # here: every program's start would pay for it
+
+            launch_test_program.run(program, bridge, start["launch_test"])
+        elif start.get("entry"):
             _run_entry_point(start["entry"], program)
         else:
             module = program.load("__main__")

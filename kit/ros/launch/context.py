@@ -111,6 +111,8 @@ class LaunchContext:
         """Reads a launch file in XML or YAML, given its path and content, into a launch description."""
         self.start_timer: Callable[[float, Iterable[Any], Visitable], Callable[[], None]]
         """Carries out entities after some seconds, for an action that is complete then; returns what cancels it."""
+        self.on_ready_to_test: Callable[[], object] = _ignore
+        """Called when the tests of the launch may begin."""
         self.location: LaunchFileLocation | None = None
         """The line of the launch file that is being carried out."""
         self.anonymous_names: dict[str, int] = {}

@@ -59,7 +59,7 @@ def description_of(module: ModuleType) -> LaunchDescription:
     if not callable(generate):
         hint = ""
         if hasattr(module, TEST_GENERATOR_FUNCTION):
-            hint = f", but {TEST_GENERATOR_FUNCTION}(): it is a test for launch_testing, which the kit does not run"
+            hint = f", but {TEST_GENERATOR_FUNCTION}(): it is a test, which `kit ros launch_test` runs"
         raise LaunchError(f"{module.__file__}: there is no {GENERATOR_FUNCTION}() in it{hint}")
     description = generate()
     if not isinstance(description, LaunchDescription):

@@ -21,8 +21,9 @@ import yaml
 from kit.host.failure import StudentCodeError
 from kit.inspection.server import InspectionServer
 from kit.inspection.sockets import sockets_folder, world_name
-from kit.launch.launch_file_process import find_launch_file
+from kit.launch.launch_file_process import find_launch_file, find_test_file
 from kit.launch.launch_run import Launch, LaunchOutputLine
+from kit.launch.launch_test import run_launch_test
 from kit.launch.plain_launch import LaunchLimit, run_plain_launch
 from kit.launch.processes import ProcessStartError
 from kit.msg.message import type_name
@@ -71,6 +72,7 @@ class OutsideProgram:
     """Where it and the packages lie that it uses."""
     file: Path
     is_launch_file: bool
+    is_launch_test: bool
     world: str
     seconds: float
     arguments: tuple[str, ...]
@@ -94,6 +96,7 @@ def _read(file: Path) -> OutsideProgram:
         file.parent,
         file.parent / card.get("file", f"{file.stem}.py"),
         card.get("launch", False),
+        card.get("launch_test", False),
         card["world"],
         card["seconds"],
         tuple(str(each) for each in card.get("arguments", ())),
@@ -153,7 +156,9 @@ class _LimitedServer(InspectionServer):
 
 
 def run_program(program: OutsideProgram, seed: int = 0) -> Outcome:
-    """Runs a program beside its helpers, and compares what it does with what is expected."""
+    """Runs a program beside its helpers, or a launch test, and compares what it does with what is expected."""
+    if program.is_launch_test:
+        return _run_test(program, seed)
     graph, outcome = Graph(), Outcome()
     program_name = program.file.name
     ending = re.compile(r"process has (finished cleanly|died) \[pid \d+(?:, exit code (\d+))?")
@@ -203,6 +208,25 @@ def run_program(program: OutsideProgram, seed: int = 0) -> Outcome:
         except TimeoutError:
             outcome.complaints.append(f"not done after {LIMIT_S:g} s of the wall clock")
     outcome.complaints += _complaints(program, outcome, graph.now_ns)
+    return outcome
+
+
+def _run_test(program: OutsideProgram, seed: int) -> Outcome:
+    outcome = Outcome()
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            tested = run_launch_test(
+                find_test_file(program.file, ()),
+                dict(word.split(":=", 1) for word in program.arguments),
+                seed=seed,
+                workspace=Path(folder),
+                on_output=lambda line: outcome.lines.append((line.text, line.stream)),
+            )
+        except (StudentCodeError, ProcessStartError) as problem:
+            outcome.complaints.append(f"the launch failed: {problem}")
+        else:
+            outcome.status = int(any(each.is_failed for each in tested))
+    outcome.complaints += _complaints(program, outcome, 0)
     return outcome
 
 

@@ -11,21 +11,23 @@ from launch_testing.ready_to_test_action_timeout import (
 )
 
 if TYPE_CHECKING:
-    from kit.ros.launch.testing import post_shutdown_test as post_shutdown_test
+    from kit.ros.launch.testing.marks import post_shutdown_test as post_shutdown_test
+    from kit.ros.launch.testing.records import (
+        ActiveIoHandler as ActiveIoHandler,
+        ActiveProcInfoHandler as ActiveProcInfoHandler,
+        IoHandler as IoHandler,
+        ProcInfoHandler as ProcInfoHandler,
+    )
     from launch_testing import tools as tools
-    ActiveIoHandler: Any
-    ActiveProcInfoHandler: Any
-    IoHandler: Any
-    ProcInfoHandler: Any
     ReadyAggregator: Any
 else:
     _LATE_NAMES = {
-        "ActiveIoHandler": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "ActiveProcInfoHandler": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "IoHandler": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "ProcInfoHandler": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "ReadyAggregator": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "post_shutdown_test": "kit.ros.launch.testing:post_shutdown_test",
+        "ActiveIoHandler": "kit.ros.launch.testing.records:ActiveIoHandler",
+        "ActiveProcInfoHandler": "kit.ros.launch.testing.records:ActiveProcInfoHandler",
+        "IoHandler": "kit.ros.launch.testing.records:IoHandler",
+        "ProcInfoHandler": "kit.ros.launch.testing.records:ProcInfoHandler",
+        "ReadyAggregator": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "post_shutdown_test": "kit.ros.launch.testing.marks:post_shutdown_test",
         "tools": "launch_testing.tools",
     }
 

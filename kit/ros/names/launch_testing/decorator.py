@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
-    from kit.ros.launch.testing import post_shutdown_test as post_shutdown_test
+    from kit.ros.launch.testing.marks import post_shutdown_test as post_shutdown_test
 else:
     _LATE_NAMES = {
-        "post_shutdown_test": "kit.ros.launch.testing:post_shutdown_test",
+        "post_shutdown_test": "kit.ros.launch.testing.marks:post_shutdown_test",
     }
 
     def __getattr__(name):

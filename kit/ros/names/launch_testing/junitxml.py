@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     unittestResultsToXml: Any
 else:
     _LATE_NAMES = {
-        "unittestCaseToXml": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "unittestResultToXml": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "unittestResultsToXml": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "unittestCaseToXml": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "unittestResultToXml": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "unittestResultsToXml": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
     }
 
     def __getattr__(name):

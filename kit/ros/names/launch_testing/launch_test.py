@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     unittestResultsToXml: Any
 else:
     _LATE_NAMES = {
-        "LaunchTestRunner": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "LoadTestsFromPythonModule": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "add_arguments": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "main": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "LaunchTestRunner": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "LoadTestsFromPythonModule": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "add_arguments": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "main": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
         "parse_arguments": "launch_testing.parse_arguments",
-        "print_arguments_of_launch_description": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "run": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "unittestResultsToXml": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "print_arguments_of_launch_description": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "run": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "unittestResultsToXml": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
     }
 
     def __getattr__(name):

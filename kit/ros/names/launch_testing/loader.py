@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
-    from kit.ros.launch.testing import ReadyToTest as ReadyToTest
+    from kit.ros.launch.testing.marks import ReadyToTest as ReadyToTest
     LoadTestsFromPythonModule: Any
     PostShutdownTestLoader: Any
     PreShutdownTestLoader: Any
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     slim_formatwarning: Any
 else:
     _LATE_NAMES = {
-        "LoadTestsFromPythonModule": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "PostShutdownTestLoader": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "PreShutdownTestLoader": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "ReadyToTest": "kit.ros.launch.testing:ReadyToTest",
-        "TestRun": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "slim_formatwarning": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "LoadTestsFromPythonModule": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "PostShutdownTestLoader": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "PreShutdownTestLoader": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "ReadyToTest": "kit.ros.launch.testing.marks:ReadyToTest",
+        "TestRun": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "slim_formatwarning": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
     }
 
     def __getattr__(name):

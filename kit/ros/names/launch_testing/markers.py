@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
-    from kit.ros.launch.testing import keep_alive as keep_alive
+    from kit.ros.launch.testing.marks import keep_alive as keep_alive
     retry_on_failure: Any
 else:
     _LATE_NAMES = {
-        "keep_alive": "kit.ros.launch.testing:keep_alive",
-        "retry_on_failure": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "keep_alive": "kit.ros.launch.testing.marks:keep_alive",
+        "retry_on_failure": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
     }
 
     def __getattr__(name):

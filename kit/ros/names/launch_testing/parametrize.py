@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
-    from kit.ros.launch.testing import parametrize as parametrize
+    from kit.ros.launch.testing.marks import parametrize as parametrize
 else:
     _LATE_NAMES = {
-        "parametrize": "kit.ros.launch.testing:parametrize",
+        "parametrize": "kit.ros.launch.testing.marks:parametrize",
     }
 
     def __getattr__(name):

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     parse_launch_arguments: Any
 else:
     _LATE_NAMES = {
-        "parse_launch_arguments": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "parse_launch_arguments": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
     }
 
     def __getattr__(name):

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     print_arguments_of_launch_description: Any
 else:
     _LATE_NAMES = {
-        "print_arguments_of_launch_description": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "print_arguments_of_launch_description": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
     }
 
     def __getattr__(name):

@@ -2,25 +2,31 @@
 
 # Made by: python -m tests.ros.import_names
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
     from kit.ros.launch.events import ProcessExited as ProcessExited
     from kit.ros.launch.processes import ExecuteProcess as ExecuteProcess
-    ActiveProcInfoHandler: Any
-    NoMatchingProcessException: Any
-    ProcInfoHandler: Any
-    resolveProcesses: Any
+    from kit.ros.launch.testing.lookup import (
+        NoMatchingProcessException as NoMatchingProcessException,
+        resolve_processes as _resolveProcesses,
+    )
+    from kit.ros.launch.testing.records import (
+        ActiveProcInfoHandler as ActiveProcInfoHandler,
+        ProcInfoHandler as ProcInfoHandler,
+    )
+
+    resolveProcesses = _resolveProcesses
 else:
     _LATE_NAMES = {
-        "ActiveProcInfoHandler": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "ActiveProcInfoHandler": "kit.ros.launch.testing.records:ActiveProcInfoHandler",
         "ExecuteProcess": "kit.ros.launch.processes:ExecuteProcess",
-        "NoMatchingProcessException": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "ProcInfoHandler": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "NoMatchingProcessException": "kit.ros.launch.testing.lookup:NoMatchingProcessException",
+        "ProcInfoHandler": "kit.ros.launch.testing.records:ProcInfoHandler",
         "ProcessExited": "kit.ros.launch.events:ProcessExited",
-        "resolveProcesses": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "resolveProcesses": "kit.ros.launch.testing.lookup:resolve_processes",
     }
 
     def __getattr__(name):

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
-    from kit.ros.launch.testing import ready_to_test_action_timeout as ready_to_test_action_timeout
+    from kit.ros.launch.testing.marks import ready_to_test_action_timeout as ready_to_test_action_timeout
 else:
     _LATE_NAMES = {
-        "ready_to_test_action_timeout": "kit.ros.launch.testing:ready_to_test_action_timeout",
+        "ready_to_test_action_timeout": "kit.ros.launch.testing.marks:ready_to_test_action_timeout",
     }
 
     def __getattr__(name):

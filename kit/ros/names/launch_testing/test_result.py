@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     TestResult: Any
 else:
     _LATE_NAMES = {
-        "FailResult": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "SkipResult": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "TestResult": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "FailResult": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "SkipResult": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "TestResult": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
     }
 
     def __getattr__(name):

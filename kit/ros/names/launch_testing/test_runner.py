@@ -14,9 +14,11 @@ if TYPE_CHECKING:
         OnProcessIO as OnProcessIO,
         OnProcessStart as OnProcessStart,
     )
+    from kit.ros.launch.testing.records import (
+        ActiveIoHandler as ActiveIoHandler,
+        ActiveProcInfoHandler as ActiveProcInfoHandler,
+    )
     from unittest import TestResult as TestResult
-    ActiveIoHandler: Any
-    ActiveProcInfoHandler: Any
     FailResult: Any
     LaunchService: Any
     LaunchTestRunner: Any
@@ -24,19 +26,19 @@ if TYPE_CHECKING:
     parse_launch_arguments: Any
 else:
     _LATE_NAMES = {
-        "ActiveIoHandler": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "ActiveProcInfoHandler": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "FailResult": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "ActiveIoHandler": "kit.ros.launch.testing.records:ActiveIoHandler",
+        "ActiveProcInfoHandler": "kit.ros.launch.testing.records:ActiveProcInfoHandler",
+        "FailResult": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
         "LaunchDescription": "kit.ros.launch.entity:LaunchDescription",
-        "LaunchService": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "LaunchTestRunner": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "LaunchService": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "LaunchTestRunner": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
         "OnProcessExit": "kit.ros.launch.event_handlers:OnProcessExit",
         "OnProcessIO": "kit.ros.launch.event_handlers:OnProcessIO",
         "OnProcessStart": "kit.ros.launch.event_handlers:OnProcessStart",
         "RegisterEventHandler": "kit.ros.launch.actions:RegisterEventHandler",
-        "SkipResult": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "SkipResult": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
         "TestResult": "unittest:TestResult",
-        "parse_launch_arguments": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "parse_launch_arguments": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
     }
 
     def __getattr__(name):

@@ -54,7 +54,7 @@ class TestCounting(unittest.TestCase):
             self.node.destroy_subscription(sub)
 
     def test_output(self, proc_output, counter):
-        proc_output.assertWaitFor('sent 3', timeout=20, process=counter)
+        proc_output.assertWaitFor('sent 3', timeout=20, process=counter, stream='stdout')
 
 
 @launch_testing.post_shutdown_test()

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
-    from kit.ros.launch.testing import ReadyToTest as ReadyToTest
+    from kit.ros.launch.testing.marks import ReadyToTest as ReadyToTest
     GTest: Any
     PyTest: Any
 else:
     _LATE_NAMES = {
-        "GTest": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "PyTest": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "ReadyToTest": "kit.ros.launch.testing:ReadyToTest",
+        "GTest": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "PyTest": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "ReadyToTest": "kit.ros.launch.testing.marks:ReadyToTest",
     }
 
     def __getattr__(name):

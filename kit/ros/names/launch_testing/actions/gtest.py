@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     Test: Any
 else:
     _LATE_NAMES = {
-        "GTest": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "GTest": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
         "SomeSubstitutionsType": "kit.ros.launch.substitutions:SomeText",
-        "Test": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "Test": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
     }
 
     def __getattr__(name):

@@ -9,13 +9,13 @@ from kit.ros.late_names import import_late_name
 if TYPE_CHECKING:
     from kit.ros.launch.context import LaunchContext as LaunchContext
     from kit.ros.launch.entity import Action as Action, LaunchDescriptionEntity as LaunchDescriptionEntity
-    from kit.ros.launch.testing import ReadyToTest as ReadyToTest
+    from kit.ros.launch.testing.marks import ReadyToTest as ReadyToTest
 else:
     _LATE_NAMES = {
         "Action": "kit.ros.launch.entity:Action",
         "LaunchContext": "kit.ros.launch.context:LaunchContext",
         "LaunchDescriptionEntity": "kit.ros.launch.entity:LaunchDescriptionEntity",
-        "ReadyToTest": "kit.ros.launch.testing:ReadyToTest",
+        "ReadyToTest": "kit.ros.launch.testing.marks:ReadyToTest",
     }
 
     def __getattr__(name):

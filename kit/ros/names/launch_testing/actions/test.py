@@ -31,7 +31,7 @@ else:
         "SomeActionsType": "kit.ros.launch.normalization:SomeEntities",
         "SomeEntitiesType": "kit.ros.launch.normalization:SomeEntities",
         "SomeSubstitutionsType": "kit.ros.launch.substitutions:SomeText",
-        "Test": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "Test": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
         "TimerAction": "kit.ros.launch.actions:TimerAction",
     }
 

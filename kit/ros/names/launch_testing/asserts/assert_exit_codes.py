@@ -2,12 +2,14 @@
 
 # Made by: python -m tests.ros.import_names
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
-    from kit.ros.launch.testing import (
+    from kit.ros.launch.testing.asserts import assert_exit_codes as _assertExitCodes
+    from kit.ros.launch.testing.lookup import resolve_processes as _resolveProcesses
+    from kit.ros.launch.testing.marks import (
         EXIT_FORCED as EXIT_FORCED,
         EXIT_OK as EXIT_OK,
         EXIT_SIGINT as EXIT_SIGINT,
@@ -15,18 +17,19 @@ if TYPE_CHECKING:
         EXIT_SIGQUIT as EXIT_SIGQUIT,
         EXIT_SIGSEGV as EXIT_SIGSEGV,
     )
-    assertExitCodes: Any
-    resolveProcesses: Any
+
+    assertExitCodes = _assertExitCodes
+    resolveProcesses = _resolveProcesses
 else:
     _LATE_NAMES = {
-        "EXIT_FORCED": "kit.ros.launch.testing:EXIT_FORCED",
-        "EXIT_OK": "kit.ros.launch.testing:EXIT_OK",
-        "EXIT_SIGINT": "kit.ros.launch.testing:EXIT_SIGINT",
-        "EXIT_SIGKILL": "kit.ros.launch.testing:EXIT_SIGKILL",
-        "EXIT_SIGQUIT": "kit.ros.launch.testing:EXIT_SIGQUIT",
-        "EXIT_SIGSEGV": "kit.ros.launch.testing:EXIT_SIGSEGV",
-        "assertExitCodes": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "resolveProcesses": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "EXIT_FORCED": "kit.ros.launch.testing.marks:EXIT_FORCED",
+        "EXIT_OK": "kit.ros.launch.testing.marks:EXIT_OK",
+        "EXIT_SIGINT": "kit.ros.launch.testing.marks:EXIT_SIGINT",
+        "EXIT_SIGKILL": "kit.ros.launch.testing.marks:EXIT_SIGKILL",
+        "EXIT_SIGQUIT": "kit.ros.launch.testing.marks:EXIT_SIGQUIT",
+        "EXIT_SIGSEGV": "kit.ros.launch.testing.marks:EXIT_SIGSEGV",
+        "assertExitCodes": "kit.ros.launch.testing.asserts:assert_exit_codes",
+        "resolveProcesses": "kit.ros.launch.testing.lookup:resolve_processes",
     }
 
     def __getattr__(name):

@@ -2,27 +2,35 @@
 
 # Made by: python -m tests.ros.import_names
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
-    assertDefaultStream: Any
-    assertInStderr: Any
-    assertInStdout: Any
-    assertInStream: Any
-    build_text_match: Any
-    remove_ansi_escape_sequences: Any
-    resolveProcesses: Any
+    from kit.ros.launch.testing.asserts import (
+        assert_in_stderr as _assertInStderr,
+        assert_in_stdout as _assertInStdout,
+        assert_in_stream as _assertDefaultStream,
+        assert_in_stream as _assertInStream,
+        build_text_match as build_text_match,
+        remove_ansi_escape_sequences as remove_ansi_escape_sequences,
+    )
+    from kit.ros.launch.testing.lookup import resolve_processes as _resolveProcesses
+
+    assertDefaultStream = _assertDefaultStream
+    assertInStderr = _assertInStderr
+    assertInStdout = _assertInStdout
+    assertInStream = _assertInStream
+    resolveProcesses = _resolveProcesses
 else:
     _LATE_NAMES = {
-        "assertDefaultStream": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "assertInStderr": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "assertInStdout": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "assertInStream": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "build_text_match": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "remove_ansi_escape_sequences": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "resolveProcesses": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "assertDefaultStream": "kit.ros.launch.testing.asserts:assert_in_stream",
+        "assertInStderr": "kit.ros.launch.testing.asserts:assert_in_stderr",
+        "assertInStdout": "kit.ros.launch.testing.asserts:assert_in_stdout",
+        "assertInStream": "kit.ros.launch.testing.asserts:assert_in_stream",
+        "build_text_match": "kit.ros.launch.testing.asserts:build_text_match",
+        "remove_ansi_escape_sequences": "kit.ros.launch.testing.asserts:remove_ansi_escape_sequences",
+        "resolveProcesses": "kit.ros.launch.testing.lookup:resolve_processes",
     }
 
     def __getattr__(name):

@@ -2,21 +2,26 @@
 
 # Made by: python -m tests.ros.import_names
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
     from contextlib import contextmanager as contextmanager
-    SequentialTextChecker: Any
-    assertSequentialStdout: Any
-    resolveProcesses: Any
+    from kit.ros.launch.testing.asserts import (
+        SequentialTextChecker as SequentialTextChecker,
+        assert_sequential_stdout as _assertSequentialStdout,
+    )
+    from kit.ros.launch.testing.lookup import resolve_processes as _resolveProcesses
+
+    assertSequentialStdout = _assertSequentialStdout
+    resolveProcesses = _resolveProcesses
 else:
     _LATE_NAMES = {
-        "SequentialTextChecker": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "assertSequentialStdout": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "SequentialTextChecker": "kit.ros.launch.testing.asserts:SequentialTextChecker",
+        "assertSequentialStdout": "kit.ros.launch.testing.asserts:assert_sequential_stdout",
         "contextmanager": "contextlib:contextmanager",
-        "resolveProcesses": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "resolveProcesses": "kit.ros.launch.testing.lookup:resolve_processes",
     }
 
     def __getattr__(name):

@@ -20,7 +20,7 @@ else:
         "OnProcessIO": "kit.ros.launch.event_handlers:OnProcessIO",
         "SomeActionsType": "kit.ros.launch.normalization:SomeEntities",
         "SomeEntitiesType": "kit.ros.launch.normalization:SomeEntities",
-        "StdoutReadyListener": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "StdoutReadyListener": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
     }
 
     def __getattr__(name):

@@ -25,7 +25,7 @@ else:
     _LATE_NAMES = {
         "EmitEvent": "kit.ros.launch.actions:EmitEvent",
         "ExecuteProcess": "kit.ros.launch.processes:ExecuteProcess",
-        "LaunchTestService": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "LaunchTestService": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
         "OnExecutionComplete": "kit.ros.launch.event_handlers:OnExecutionComplete",
         "OnProcessExit": "kit.ros.launch.event_handlers:OnProcessExit",
         "OnProcessIO": "kit.ros.launch.event_handlers:OnProcessIO",

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     get_rmw_output_filter: Any
 else:
     _LATE_NAMES = {
-        "create_output_lines_filter": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "create_output_lines_test": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "create_output_regex_test": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "create_output_test_from_file": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "get_default_filtered_patterns": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "get_default_filtered_prefixes": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "get_rmw_output_filter": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "create_output_lines_filter": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "create_output_lines_test": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "create_output_regex_test": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "create_output_test_from_file": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "get_default_filtered_patterns": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "get_default_filtered_prefixes": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "get_rmw_output_filter": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
     }
 
     def __getattr__(name):

@@ -23,20 +23,20 @@ if TYPE_CHECKING:
     pytest_pycollect_makemodule: Any
 else:
     _LATE_NAMES = {
-        "LaunchTestFailure": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "LaunchTestFailureRepr": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "LaunchTestItem": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "LaunchTestModule": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "LaunchTestRunner": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "LoadTestsFromPythonModule": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "ReprFileLocation": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "LaunchTestFailure": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "LaunchTestFailureRepr": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "LaunchTestItem": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "LaunchTestModule": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "LaunchTestRunner": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "LoadTestsFromPythonModule": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "ReprFileLocation": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
         "TestCase": "unittest:TestCase",
-        "find_launch_test_entrypoint": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "pytest_addhooks": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "pytest_addoption": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "pytest_configure": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "pytest_launch_collect_makemodule": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "pytest_pycollect_makemodule": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "find_launch_test_entrypoint": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "pytest_addhooks": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "pytest_addoption": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "pytest_configure": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "pytest_launch_collect_makemodule": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "pytest_pycollect_makemodule": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
     }
 
     def __getattr__(name):

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     launch_process: Any
 else:
     _LATE_NAMES = {
-        "ProcessProxy": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "basic_output_filter": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "expect_output": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "expected_output_from_file": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "launch_process": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "ProcessProxy": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "basic_output_filter": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "expect_output": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "expected_output_from_file": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "launch_process": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
     }
 
     def __getattr__(name):

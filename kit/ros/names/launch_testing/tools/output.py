@@ -7,24 +7,26 @@ from typing import TYPE_CHECKING, Any
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
+    from kit.ros.launch.testing.asserts import (
+        build_text_match as build_text_match,
+        remove_ansi_escape_sequences as remove_ansi_escape_sequences,
+    )
     basic_output_filter: Any
     build_line_match: Any
-    build_text_match: Any
     expect_output: Any
     expected_output_from_file: Any
     get_default_filtered_patterns: Any
     get_default_filtered_prefixes: Any
-    remove_ansi_escape_sequences: Any
 else:
     _LATE_NAMES = {
-        "basic_output_filter": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "build_line_match": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "build_text_match": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "expect_output": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "expected_output_from_file": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "get_default_filtered_patterns": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "get_default_filtered_prefixes": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "remove_ansi_escape_sequences": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "basic_output_filter": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "build_line_match": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "build_text_match": "kit.ros.launch.testing.asserts:build_text_match",
+        "expect_output": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "expected_output_from_file": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "get_default_filtered_patterns": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "get_default_filtered_prefixes": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "remove_ansi_escape_sequences": "kit.ros.launch.testing.asserts:remove_ansi_escape_sequences",
     }
 
     def __getattr__(name):

@@ -8,17 +8,19 @@ from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
     from kit.ros.launch.normalization import ensure_argument_type as ensure_argument_type
-    ActiveIoHandler: Any
-    ActiveProcInfoHandler: Any
+    from kit.ros.launch.testing.records import (
+        ActiveIoHandler as ActiveIoHandler,
+        ActiveProcInfoHandler as ActiveProcInfoHandler,
+    )
     ProcessProxy: Any
     launch_process: Any
 else:
     _LATE_NAMES = {
-        "ActiveIoHandler": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "ActiveProcInfoHandler": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "ProcessProxy": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "ActiveIoHandler": "kit.ros.launch.testing.records:ActiveIoHandler",
+        "ActiveProcInfoHandler": "kit.ros.launch.testing.records:ActiveProcInfoHandler",
+        "ProcessProxy": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
         "ensure_argument_type": "kit.ros.launch.normalization:ensure_argument_type",
-        "launch_process": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "launch_process": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
     }
 
     def __getattr__(name):

@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING, Any
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
+    from kit.ros.launch.testing.asserts import (
+        build_text_match as build_text_match,
+        normalize_lineseps as normalize_lineseps,
+    )
     build_line_match: Any
-    build_text_match: Any
-    normalize_lineseps: Any
 else:
     _LATE_NAMES = {
-        "build_line_match": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "build_text_match": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "normalize_lineseps": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "build_line_match": "!a part of launch_testing's own runner, in whose place `kit ros launch_test FILE` runs the file",
+        "build_text_match": "kit.ros.launch.testing.asserts:build_text_match",
+        "normalize_lineseps": "kit.ros.launch.testing.asserts:normalize_lineseps",
     }
 
     def __getattr__(name):

@@ -2,21 +2,25 @@
 
 # Made by: python -m tests.ros.import_names
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from kit.ros.late_names import import_late_name
 
 if TYPE_CHECKING:
-    from kit.ros.launch.testing import KeepAliveProc as KeepAliveProc
-    NO_CMD_ARGS: Any
-    NoMatchingProcessException: Any
-    resolveProcesses: Any
+    from kit.ros.launch.testing.lookup import (
+        NO_CMD_ARGS as NO_CMD_ARGS,
+        NoMatchingProcessException as NoMatchingProcessException,
+        resolve_processes as _resolveProcesses,
+    )
+    from kit.ros.launch.testing.marks import KeepAliveProc as KeepAliveProc
+
+    resolveProcesses = _resolveProcesses
 else:
     _LATE_NAMES = {
-        "KeepAliveProc": "kit.ros.launch.testing:KeepAliveProc",
-        "NO_CMD_ARGS": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "NoMatchingProcessException": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
-        "resolveProcesses": "!the test runner of launch_testing; `kit launch` runs the launch file, and `pytest` tests of its programs",
+        "KeepAliveProc": "kit.ros.launch.testing.marks:KeepAliveProc",
+        "NO_CMD_ARGS": "kit.ros.launch.testing.lookup:NO_CMD_ARGS",
+        "NoMatchingProcessException": "kit.ros.launch.testing.lookup:NoMatchingProcessException",
+        "resolveProcesses": "kit.ros.launch.testing.lookup:resolve_processes",
     }
 
     def __getattr__(name):

@@ -1,4 +1,4 @@
-"""What launch files for ``launch_testing`` use outside their tests; the tests themselves are not run by ``kit launch``."""
+"""How a launch file says what is to be tested: when its tests may begin, which come after the end, with which values."""
 
 from __future__ import annotations
 
@@ -25,18 +25,23 @@ class ReadyToTest(Action):
     """Says that tests may begin: ``kit launch`` goes on without a word, as ``ros2 launch`` does."""
 
     def execute(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity] | None:
+        context.on_ready_to_test()
         return None
 
 
 class KeepAliveProc(ExecuteProcess):
-    """A process that does nothing until the launch ends."""
+    """Keeps a launch under test going when the processes under test have ended: a program of the kit's own, which waits."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(cmd=["sleep", "infinity"], name="keep_alive", **kwargs)
 
+    def specification(self, context: LaunchContext) -> dict[str, Any]:
+        program = {"package": "launch_testing", "executable": "keep_alive", "arguments": []}
+        return {**super().specification(context), "kind": "node", **program}
+
 
 def post_shutdown_test() -> Callable[[type], type]:
-    """Marks a class of tests that would run after the processes have ended."""
+    """Marks a class of tests that run after the processes have ended."""
 
     def mark(cls: type) -> type:
         cls.__post_shutdown_test__ = True  # type: ignore[attr-defined]  # what launch_testing looks for
@@ -46,13 +51,13 @@ def post_shutdown_test() -> Callable[[type], type]:
 
 
 def keep_alive(function: Function) -> Function:
-    """Marks a launch description whose processes would be kept running for its tests."""
+    """Marks a launch description that goes on though its processes may end before its tests."""
     function.__launch_test_keep_alive__ = True  # type: ignore[attr-defined]  # likewise
     return function
 
 
 def ready_to_test_action_timeout(timeout: float) -> Callable[[Function], Function]:
-    """Marks a launch description with how long its tests would wait for ReadyToTest [s]."""
+    """Marks a launch description with how long its tests wait for ReadyToTest [s]."""
 
     def mark(function: Function) -> Function:
         function.__ready_to_test_action_timeout__ = timeout  # type: ignore[attr-defined]  # likewise
