@@ -1,7 +1,8 @@
 """How a bag lies on the disk: its kinds of storage, the part that is written while it is recorded, and its restoration.
 
 ``.NAME.part`` is a folder beside NAME: the bag as its library writes it, ``topics`` with what its files do not say until
-they are complete, and ``lock``, which the program that records keeps.
+they are complete, and ``lock``, which the program that records keeps. The bag's file is ``NAME_0.mcap`` or ``NAME_0.db3``,
+as ROS 2 calls the first of several; its library names it after its folder, which is ``NAME_0`` until it is complete.
 """
 
 from __future__ import annotations
@@ -81,7 +82,7 @@ class BagPart:
         try:
             self._part.mkdir(exist_ok=True)
             self._lock = lock_part(self._part / LOCK_FILE, folder)
-            self._writer = _open_writer(self._part / folder.name, self._settings)
+            self._writer = _open_writer(self._part / first_file(folder), self._settings)
             self._topics = (self._part / TOPICS_FILE).open("a", encoding="utf-8")
         except BeingWrittenError:
             raise
@@ -207,7 +208,12 @@ def _rewrite(part: Path, folder: Path) -> int:
     Raises one of WRITE_ERRORS, ReaderError or ValueError; then nothing has changed.
     """
     written = next(
-        (path for path in part.glob(f"{path_of_part(part).name}/*") if path.suffix in (".mcap", ".db3")), None
+        (
+            path
+            for path in part.glob(f"{first_file(path_of_part(part))}/*")
+            if path.suffix in (".mcap", ".db3")
+        ),
+        None,
     )
     if written is None:
         return 0
@@ -220,7 +226,7 @@ def _rewrite(part: Path, folder: Path) -> int:
     if reader is None:
         return 0
     count = 0
-    new = part / "restored" / folder.name
+    new = part / "restored" / first_file(folder)
     shutil.rmtree(new.parent, ignore_errors=True)
     try:
         reader.open()
@@ -275,6 +281,11 @@ def _repaired(file: Path) -> McapReader | Sqlite3Reader | None:
         data.seek(end)
         data.write(MCAP_END)
     return McapReader(file) if end > len(MCAP_MAGIC) else None
+
+
+def first_file(folder: Path) -> str:
+    """The name of the first file of a bag, without its ending."""
+    return f"{folder.name}_0"
 
 
 def _open_writer(folder: Path, settings: StorageSettings) -> Writer:

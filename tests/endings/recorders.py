@@ -145,7 +145,7 @@ class RunBag(Recorder):
         return ("-m", "kit", "run", "maze", "--steps", "100000000", "--speed", "5", *bag)
 
     def has_something(self) -> bool:
-        data = [path for path in part_path(self.bag).glob("bag/*") if path.suffix in (".mcap", ".db3")]
+        data = [path for path in part_path(self.bag).glob("bag_0/*") if path.suffix in (".mcap", ".db3")]
         return bool(data) and data[0].stat().st_size > 60_000
 
     def kept(self) -> int:
@@ -166,7 +166,7 @@ class RunSqliteBag(RunBag):
         if not super().has_something():
             return False
         with tempfile.TemporaryDirectory() as folder, suppress(OSError, shutil.Error, sqlite3.Error):
-            copy = shutil.copytree(part_path(self.bag) / "bag", Path(folder, "copy"))
+            copy = shutil.copytree(part_path(self.bag) / "bag_0", Path(folder, "copy"))
             with closing(sqlite3.connect(next(copy.glob("*.db3")))) as opened:
                 return bool(opened.execute("SELECT count(*) FROM messages").fetchone()[0])
         return False

@@ -21,7 +21,7 @@ from tests.tui.input.conftest import Terminal
 MAIN = Path(kit.__file__).with_name("__main__.py")
 
 INFO = """
-Files:             words.mcap
+Files:             words_0.mcap
 Bag size:          {size}
 Storage id:        mcap
 ROS Distro:        rosbags
@@ -54,7 +54,7 @@ def write(folder: Path, storage: Storage = "mcap") -> Path:
 
 def test_a_bag_s_summary(kit_ros: Kit, bag: Path) -> None:
     out, err, code = kit_ros("bag", "info", str(bag))
-    size = f"{(bag / 'words.mcap').stat().st_size / 1024:.1f} KiB"
+    size = f"{(bag / 'words_0.mcap').stat().st_size / 1024:.1f} KiB"
     assert (out, err, code) == (INFO.format(size=size), "", 0)
 
 

@@ -138,7 +138,7 @@ def test_a_bag_recorded_from_another_terminal_is_read_by_an_independent_reader(
         err, code = interrupted(process)
     assert code == EXIT_INTERRUPTED
     assert "messages in drive" in err
-    with (tmp_path / "drive" / "drive.mcap").open("rb") as opened:
+    with (tmp_path / "drive" / "drive_0.mcap").open("rb") as opened:
         found = [
             (channel.topic, message.log_time, decoded)
             for _, channel, message, decoded in make_reader(

@@ -69,7 +69,7 @@ def record(
 
 def test_an_independent_reader_decodes_the_messages(tmp_path: Path) -> None:
     record(tmp_path / "bag")
-    with (tmp_path / "bag" / "bag.mcap").open("rb") as opened:
+    with (tmp_path / "bag" / "bag_0.mcap").open("rb") as opened:
         messages = make_reader(opened, decoder_factories=[DecoderFactory()]).iter_decoded_messages()
         found = [(channel.topic, message.log_time, decoded) for _, channel, message, decoded in messages]
     by_topic: dict[str, list[Any]] = {}
@@ -162,7 +162,7 @@ def test_what_a_killed_recording_left_is_restored_at_the_next_start(
         read_bag(tmp_path / "bag")
     left = tmp_path / "left"
     shutil.copytree(part, left / part.name)  # what is on the disk at this moment
-    data = next((left / part.name / "bag").glob("bag.*"))
+    data = next((left / part.name / "bag_0").glob("bag_0.*"))
     if torn and storage == "mcap":
         data.write_bytes(data.read_bytes()[:-torn])
     (notice,) = restore_bags(left)
@@ -270,7 +270,7 @@ def test_a_message_of_a_package_is_read_where_nobody_knows_the_package(
 def test_damaged_bags_are_refused(damage: str, tmp_path: Path) -> None:
     folder = tmp_path / "bag"
     record(folder)
-    metadata, data = folder / "metadata.yaml", folder / "bag.mcap"
+    metadata, data = folder / "metadata.yaml", folder / "bag_0.mcap"
     if damage == "no metadata":
         metadata.unlink()
     elif damage == "broken metadata":
@@ -285,7 +285,7 @@ def test_damaged_bags_are_refused(damage: str, tmp_path: Path) -> None:
         list(read_messages(folder))
 
 
-@pytest.mark.parametrize("name", ["metadata.yaml", "bag.mcap", "beside"])
+@pytest.mark.parametrize("name", ["metadata.yaml", "bag_0.mcap", "beside"])
 def test_a_pipe_in_a_bag_holds_no_reader(name: str, tmp_path: Path) -> None:
     folder = tmp_path / "bag"
     record(folder)
@@ -333,7 +333,7 @@ def test_a_chunk_that_unpacks_to_more_than_it_may_takes_no_memory(
 
     chunk = struct.pack("<QQQI", 0, 1, said, 0) + part(name) + struct.pack("<Q", len(data)) + data
     head = part(b"ros2") + part(b"test")
-    (folder / "bag.mcap").write_bytes(
+    (folder / "bag_0.mcap").write_bytes(
         MCAP_MAGIC
         + RECORD_HEAD.pack(1, len(head))
         + head
@@ -355,16 +355,16 @@ def test_a_bag_that_is_compressed_as_a_whole_fills_no_disk(
 ) -> None:
     folder = tmp_path / "bag"
     record(folder, "sqlite3")
-    whole = (folder / "bag.db3").read_bytes()
+    whole = (folder / "bag_0.db3").read_bytes()
     metadata = folder / "metadata.yaml"
     metadata.write_text(
         metadata.read_text()
         .replace("compression_format: ''", "compression_format: zstd")
         .replace("compression_mode: ''", "compression_mode: file")
-        .replace("bag.db3", "bag.db3.zstd")
+        .replace("bag_0.db3", "bag_0.db3.zstd")
     )
-    (folder / "bag.db3").unlink()
-    (folder / "bag.db3.zstd").write_bytes(zstandard.compress(whole))
+    (folder / "bag_0.db3").unlink()
+    (folder / "bag_0.db3.zstd").write_bytes(zstandard.compress(whole))
     assert list(read_messages(folder))
     monkeypatch.setattr(bag_reader, "MAX_UNPACKED_FILE", len(whole) - 1)
     with pytest.raises(BagError, match="come out of"):
@@ -390,7 +390,7 @@ def test_a_bag_that_is_compressed_as_a_whole_fills_no_disk(
 def test_a_bag_whose_rows_are_computed_is_refused(change: str, tmp_path: Path) -> None:
     folder = tmp_path / "bag"
     record(folder, "sqlite3")
-    with closing(sqlite3.connect(folder / "bag.db3")) as database:
+    with closing(sqlite3.connect(folder / "bag_0.db3")) as database:
         database.executescript(change)
     with pytest.raises(BagError, match="computed"):
         read_bag(folder)
