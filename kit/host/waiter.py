@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from kit.ros.graph.graph import Graph
 
 OTHER_THREAD_WAIT_S: Final = 0.05
-"""How long to wait for a thread that has never waited in the graph."""
+"""How long to wait for a thread that has never waited in the graph, while nothing computes."""
+MAX_OTHER_WAIT_S: Final = 2.0
+"""How long to wait for it at most while something computes, it or another thread."""
 CALLBACK_WAIT_S: Final = 0.5
 """How long to wait for a callback in a pool, and for a thread that has waited in the graph before, while nothing computes."""
 MAX_COMPUTING_FACTOR: Final = 10.0
@@ -167,11 +169,12 @@ class AllThreadsWaiter:
             has_callbacks = callbacks > self._abandoned_callbacks
             if not (is_waking or others or has_callbacks):
                 return True
-            if has_callbacks or others & self._expected:
-                has_time = idle_s < CALLBACK_WAIT_S and waited_s < MAX_COMPUTING_FACTOR * CALLBACK_WAIT_S
-                has_time &= seen_s - self._tick_began_s < self.max_computing_s
-            else:
-                has_time = waited_s < OTHER_THREAD_WAIT_S
+            is_expected = has_callbacks or bool(others & self._expected)
+            has_time = idle_s < (CALLBACK_WAIT_S if is_expected else OTHER_THREAD_WAIT_S)
+            has_time &= waited_s < (
+                MAX_COMPUTING_FACTOR * CALLBACK_WAIT_S if is_expected else MAX_OTHER_WAIT_S
+            )
+            has_time &= seen_s - self._tick_began_s < self.max_computing_s
             if not (has_time or is_waking):
                 self._absent |= others
                 self._unreliable |= others

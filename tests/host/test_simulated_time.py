@@ -141,11 +141,7 @@ def test_a_second_passes(student: Student, wait: str, use: str) -> None:
 GUARDED: Final = ("variable under a lock", "variable under a condition", "join with no time")
 """Loops that do nothing but acquire a lock, which may also guard what is computed."""
 POLLED: Final = [name for name, wait in WAITS.items() if "reads += 1" in wait]
-COUNTED: Final = [
-    (name, use) for name in POLLED for use in USES if name not in GUARDED or use == "in a callback"
-]
-"""Without the guarded ones before the first spin: a thread that computes so long before it has ever waited is not waited
-for."""
+COUNTED: Final = [(name, use) for name in POLLED for use in USES]
 
 
 @pytest.mark.sampled(6)
