@@ -65,7 +65,9 @@ class RosGroup(LazyGroup):
     verbs=VERBS,
     absent=ABSENT,
     epilog="A world runs while `kit play`, `kit launch` or `kit run --serve` runs. If several run, the newest is used, "
-    "or the one given by --world. Times are simulated. Ctrl-C stops a command that keeps running.",
+    "or the one given by --world. Times are simulated. Ctrl-C stops a command that keeps running. A command takes effect when it "
+    "arrives, at no certain instant of simulated time: one that is to come at the same instant in every run belongs in a launch "
+    "file, in a TimerAction.",
 )
 def command() -> None:
     """Inspect a running world from a second terminal, as `ros2` does on a robot.
