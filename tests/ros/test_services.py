@@ -215,6 +215,26 @@ class TestBlockingCalls:
             with pytest.raises(WouldDeadlock, match="callback group of its own"):
                 executor.spin()
 
+    @pytest.mark.parametrize("has_own_group", [False, True])
+    def test_one_that_is_awaited_in_its_own_group_is_told(self, has_own_group: bool) -> None:
+        logged: list[str] = []
+        graph = Graph(log_sink=lambda record: logged.append(record.text))
+        node = create_graph_node(graph, "node")
+        server = create_graph_node(graph, "server")
+        server.create_service(Trigger, "s", lambda request, response: response)
+        group = MutuallyExclusiveCallbackGroup() if has_own_group else None
+        client = node.create_client(Trigger, "s", callback_group=group)
+        answers: list[Any] = []
+
+        async def ask() -> None:
+            answers.append(await client.call_async(Trigger.Request()))
+
+        node.create_timer(1.0, ask)
+        graph.advance(10**9)
+        graph.run_due()
+        assert len(answers) == has_own_group
+        assert any("mutually exclusive" in text for text in logged) is not has_own_group
+
     def test_many_threads_and_a_group_of_its_own_do(self, alone: Graph) -> None:
         node = create_graph_node(alone, "node")
         self.serve(node)

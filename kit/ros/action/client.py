@@ -342,7 +342,7 @@ class ActionClient:
     def _ask(self, client: _ActionServiceClient, request: Any, convert: Callable[[Any], Any]) -> Future[Any]:
         """Sends a request; the future gets what ``convert`` makes of the response."""
         future = _ResponseFuture()
-        future.set_owner(self._node.handle)
+        future.set_owner(self._node.handle, self._group)
         response = client.call_async(request)
 
         def on_response() -> None:

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
+
+if TYPE_CHECKING:
+    from kit.ros.log import RcutilsLogger
 
 NO_WORK: Final = object()
 """Returned by ``ReadyItem.take`` if the work is gone: cancelled, destroyed, or already done."""
@@ -27,6 +30,9 @@ class QueueOwner(Protocol):
 
 class ItemOwner(QueueOwner, Protocol):
     """The part of a NodeHandle that the scheduling of its items needs."""
+
+    @property
+    def logger(self) -> RcutilsLogger: ...
 
     @property
     def full_name(self) -> str: ...

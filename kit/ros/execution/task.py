@@ -13,6 +13,7 @@ from kit.ros.execution.callback_groups import (
     CallbackGroup,
     ItemOwner,
     ItemQueue,
+    MutuallyExclusiveCallbackGroup,
     QueueOwner,
     ReadyItem,
 )
@@ -29,6 +30,8 @@ class Future(Generic[T]):
     def __init__(self, *, executor: QueueOwner | None = None) -> None:
         self._executor = executor
         self._handle: ItemOwner | None = None
+        self._answering_group: CallbackGroup | None = None
+        """The group of the callback that sets it, if one does."""
         self._lock = threading.Lock()
         self._done = False
         self._cancelled = False
@@ -96,9 +99,9 @@ class Future(Generic[T]):
                 return
         waker()
 
-    def set_owner(self, handle: ItemOwner) -> None:
-        """Runs the done callbacks where the callbacks of this node run."""
-        self._handle = handle
+    def set_owner(self, handle: ItemOwner, group: CallbackGroup | None = None) -> None:
+        """Runs the done callbacks where the callbacks of this node run. ``group``: that of the callback that will set it."""
+        self._handle, self._answering_group = handle, group
 
     @property
     def _ready_queue(self) -> ItemQueue | None:
@@ -182,6 +185,7 @@ class Task(Future[T]):
             raise
         else:
             if isinstance(awaited, Future):
+                self._warn_of_deadlock(awaited)
                 awaited.call_when_done(self._resume)
             else:
                 self._resume()
@@ -192,6 +196,22 @@ class Task(Future[T]):
             self._coroutine.close()
             self._finish_source_turn()
         super().cancel()
+
+    def _warn_of_deadlock(self, awaited: Future[Any]) -> None:
+        """Warns where the answer that is awaited would have to run in the group that this callback keeps until it has it."""
+        group, source = awaited._answering_group, self._source
+        if (
+            source is None
+            or not isinstance(group, MutuallyExclusiveCallbackGroup)
+            or group.active is not source
+        ):
+            return
+        if self._handle is not None and not awaited.done():
+            warning = (
+                f"{source} awaits an answer that is handled in its own callback group, which is mutually exclusive: it waits "
+                "forever. Give the client a callback group of its own: create_client(..., callback_group=...)"
+            )
+            self._handle.logger.warning(warning)
 
     def _resume(self) -> None:
         ready_queue = self._ready_queue or self._home_queue

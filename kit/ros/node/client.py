@@ -126,7 +126,7 @@ class Client(CallbackEntity, Generic[Request, Response]):
         self._check_not_destroyed()
         self._check(request)
         future: Future[Response] = Future()
-        future.set_owner(self._handle)
+        future.set_owner(self._handle, self.callback_group)
         graph = self._graph
         with graph.lock:
             self._last_number += 1
