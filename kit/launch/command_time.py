@@ -31,8 +31,8 @@ class CommandTime:
     def __init__(self, launch: Launch, clients: Callable[[], Mapping[int, bool]]) -> None:
         """``clients``: the programs that are connected to the world, by process id, and whether each owes it an answer."""
         self._launch, self._clients = launch, clients
-        self._seen: dict[int, tuple[float, int]] = {}
-        """When each command was first seen, on the monotonic clock [s] and in simulated time [ns], by process id."""
+        self._seen_s: dict[int, float] = {}
+        """When each command was first seen, on the monotonic clock [s], by process id."""
         self._answered_s: dict[int, float] = {}
         """When each was last found not to owe an answer [s]."""
 
@@ -51,11 +51,14 @@ class CommandTime:
         for pid, owes in self._clients().items():
             with suppress(OSError):  # it has ended
                 owing[os.getpgid(pid)] = owes
-        return any(self._is_waited_for(command, owing, now_s) for command in commands)
+        return any(self._is_waited_for(each, began_ns, owing, now_s) for each, began_ns in commands.items())
 
-    def _is_waited_for(self, command: CommandProcess, owing: Mapping[int, bool], now_s: float) -> bool:
+    def _is_waited_for(
+        self, command: CommandProcess, began_ns: int, owing: Mapping[int, bool], now_s: float
+    ) -> bool:
+        """``began_ns``: when it was started, in simulated time."""
         now_ns = self._launch.graph.now_ns
-        began_s, began_ns = self._seen.setdefault(command.pid, (now_s, now_ns))
+        began_s = self._seen_s.setdefault(command.pid, now_s)
         if command.poll() is not None:
             return (
                 now_ns != began_ns

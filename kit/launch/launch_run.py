@@ -255,10 +255,10 @@ class Launch:
         )
 
     @property
-    def commands(self) -> list[CommandProcess]:
-        """The processes that run by the wall clock, and not in the lock-step."""
-        processes = (running.process for running in self._running.values())
-        return [process for process in processes if isinstance(process, CommandProcess)]
+    def commands(self) -> dict[CommandProcess, int]:
+        """The processes that run by the wall clock, and not in the lock-step, and when each was started [ns of the graph]."""
+        every = self._running.values()
+        return {each.process: each.started_ns for each in every if isinstance(each.process, CommandProcess)}
 
     @property
     def has_timers(self) -> bool:

@@ -183,7 +183,7 @@ class _LaunchTest:
                         _say(f"  {line.text.decode().rstrip()}")
         if not self._is_ready:
             _say("ReadyToTest was not carried out.")
-        elif self._not_tested == STOPPED:
+        elif self._not_tested == STOPPED and not self._service.context.is_shutdown:
             _say(
                 f"{_process_names(self._proc_info)} ended before the tests did; a launch whose processes may end is marked "
                 "with @launch_testing.markers.keep_alive"
