@@ -154,7 +154,7 @@ class _RunningProcess:
     request: StartRequest
     process: Process
     started_ns: int
-    """When it was started [ns of the graph]."""
+    """When it was started [ns of the graph]; what was started before the first tick, just before that."""
 
 
 class Launch:
@@ -192,8 +192,8 @@ class Launch:
         self._has_ended = False
         """Whether all processes have been ended, by the launch file or by the user."""
         self.delays_command_ends = False
-        """Whether the end of a command counts in the tick after its start at the earliest: in a run that waits for commands, so
-        that it does not depend on how fast they are."""
+        """Whether the end of a command that is started within a tick counts in the next one at the earliest: in a run that waits
+        for commands, so that it does not depend on how fast they are."""
         self._on_output = on_output
         self._start_context = StartContext(
             graph,
@@ -237,7 +237,7 @@ class Launch:
 
     def start_processes(self) -> None:
         """Starts the requested processes and waits until they are in the graph. Raises ProcessStartError."""
-        self._start_waiting()
+        self._start_waiting(started_ns=self.graph.now_ns - 1)
         for running in list(self._running.values()):
             running.process.wait_until_started()
         self._poll_processes()
@@ -377,8 +377,14 @@ class Launch:
                 self._log(f"everything is stopped: {request.reason}")
                 self._end_all_processes()
 
-    def _start_waiting(self, which: Callable[[StartRequest], bool] = lambda request: True) -> list[Process]:
-        """Starts the processes that wait to be started, and returns them. Raises ProcessStartError."""
+    def _start_waiting(
+        self,
+        which: Callable[[StartRequest], bool] = lambda request: True,
+        *,
+        started_ns: int | None = None,
+    ) -> list[Process]:
+        """Starts the processes that wait to be started, and returns them. ``started_ns``: by default now. Raises
+        ProcessStartError."""
         chosen = [request for request in self._waiting if which(request)]
         self._waiting = [request for request in self._waiting if not which(request)]
         max_processes = self._start_context.bounds.max_processes
@@ -392,7 +398,9 @@ class Launch:
             except ProgramUnavailable as problem:
                 self._log(f"skipped: {problem}", "WARN", name=request.name)
                 continue
-            self._running[request.number] = _RunningProcess(request, process, self.graph.now_ns)
+            self._running[request.number] = _RunningProcess(
+                request, process, self.graph.now_ns if started_ns is None else started_ns
+            )
             started.append(process)
             self._events.append(["started", request.number, process.pid])
             self._log(f"process started with pid [{process.pid}]", name=request.name)
