@@ -334,3 +334,31 @@ def test_a_listener_that_spins_by_itself_fills_the_buffer(student: Student) -> N
         """
     )
     assert run(file, 1.5) == ["0.5"]
+
+
+def test_callbacks_of_one_instant_begin_in_their_order_though_they_run_in_threads(student: Student) -> None:
+    """The first of them take longest: without their order, the last would speak first."""
+    file = student(
+        """
+        import rclpy
+        from rclpy.callback_groups import ReentrantCallbackGroup
+        from rclpy.executors import MultiThreadedExecutor
+        from std_msgs.msg import String
+
+        rclpy.init()
+        node = rclpy.create_node("many")
+        says = node.create_publisher(String, "said", 100)
+        group = ReentrantCallbackGroup()
+
+        def callback(number):
+            sum(range(100_000 * (6 - number)))
+            says.publish(String(data=f"{number}"))
+
+        for number in range(6):
+            node.create_timer(0.5, lambda number=number: callback(number), group)
+        executor = MultiThreadedExecutor(6)
+        executor.add_node(node)
+        executor.spin()
+        """
+    )
+    assert run(file, 1.2) == [*"012345"] * 2

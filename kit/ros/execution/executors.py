@@ -40,6 +40,11 @@ DEFAULT_THREADS: Final = 8
 callbacks can wait for others at one time, and so whether a program deadlocks, is the same on every machine."""
 
 
+TURN_PAUSE_S: Final = 0.01
+MAX_TURN_PAUSES: Final = 50
+"""How long the next callback waits for the one before, which neither ends nor waits in the graph: by pauses of this length [s]."""
+
+
 class SpinnableHandle(Protocol):
     """The part of a NodeHandle that executors use."""
 
@@ -368,11 +373,27 @@ class MultiThreadedExecutor(Executor):
             # Others cannot run before a thread is free: nobody is to wait for them while all threads wait.
             if self._open_jobs <= self._thread_count:
                 self._graph.running_pool_callbacks += 1
-        job = self._pool.submit(self._execute, work)
+        threads: list[int] = []
+        job = self._pool.submit(self._execute, work, threads)
         self._jobs.add(job)
         job.add_done_callback(self._done)
+        if self._graph.waiter is not None:
+            self._let_begin(job, threads)
 
-    def _execute(self, work: TakenWork) -> None:
+    def _let_begin(self, job: Job[None], threads: Sequence[int]) -> None:
+        """Waits until the callback has ended or waits in the graph: so those of one instant begin in their order, on every
+        machine. One that does neither, but waits for something outside, delays the others for a while only."""
+        graph = self._graph
+        with graph.lock:
+            for _ in range(MAX_TURN_PAUSES):
+                if job.done() or any(each in graph.waiting_threads for each in threads):
+                    return
+                if self._open_jobs > self._thread_count:  # it waits for a thread of the pool
+                    return
+                graph.wait_started.wait(TURN_PAUSE_S)
+
+    def _execute(self, work: TakenWork, threads: list[int]) -> None:
+        threads.append(threading.get_ident())
         self._graph.pool_threads.add(threading.current_thread())
         self._graph.thread_state.is_pooled = True
         self.ready_queue.execute(work)
@@ -387,4 +408,5 @@ class MultiThreadedExecutor(Executor):
             if self._open_jobs <= self._thread_count:
                 self._graph.running_pool_callbacks -= 1
             self._open_jobs -= 1
+            self._graph.wait_started.notify_all()
             self.wake()

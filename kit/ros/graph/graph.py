@@ -315,6 +315,7 @@ class Graph:
                 self._changed.wait(timeout)
                 return
             self.is_waiter_running = True
+            self.wait_started.notify_all()
             self.lock.release()
             try:
                 self.waiter.wait(self, until_ns)
