@@ -56,8 +56,8 @@ def command(
     and alike on every machine. `pytest FILE` does not launch anything here.
 
     \b
-    kit ros launch_test test/test_talker.launch.py
-    kit ros launch_test test/test_talker.launch.py rate:=10 --junit-xml results.xml
+    kit ros launch_test test_talker.launch.py
+    kit ros launch_test test_talker.launch.py rate:=10 --junit-xml results.xml
 
     Exit code: 0 all tests passed; 1 one failed, or the launch ended before its tests; 2 something is missing or wrong; 130
     interrupted by Ctrl-C.
