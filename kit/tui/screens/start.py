@@ -386,7 +386,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         await self._reopen_own_world()
 
     async def _open_progress(self) -> None:
-        from kit.tui.screens.lessons import show_progress
+        from kit.tui.screens.progress import show_progress
 
         self._close_own_world()
         await show_progress(self, self._store)
