@@ -247,7 +247,7 @@ class LevelDrive(WatchScreen):
     def _show(self) -> None:
         super()._show()
         view, referee = self.view, self._referee
-        if view is None or not self.is_active:
+        if view is None or not self.is_current:
             return
         if (
             referee is not None

@@ -129,7 +129,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     def _show(self) -> None:
         view = self.view
         self._show_menu()
-        if view is None or not self.is_active or self._is_away:
+        if view is None or not self.is_current or self._is_away:
             return
         self.world.offer(self._newest_scene)
         self._rows("heading").show([self._heading(view)])

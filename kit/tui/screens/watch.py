@@ -268,7 +268,8 @@ class WatchScreen(RowsScreen[None], DriveScreen):
             text = f"It could not be saved: {error.strerror}."
         told = wrapped(text)
         rows_left = self.size.height - len(told) - 3  # the dialog's frame and a blank row
-        picture = scene_rows(scene, MAP_COLUMNS, max(1, min(MAP_ROWS, rows_left)), self.world.encoder)
+        columns = max(1, min(MAP_COLUMNS, self.size.width - 4))
+        picture = scene_rows(scene, columns, max(1, min(MAP_ROWS, rows_left)), self.world.encoder)
         self.app.push_screen(
             MessageDialog("The robot's map", [*(row(each) for each in picture), row(), *told])
         )
@@ -333,7 +334,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
     def _show(self) -> None:
         width = self.size.width
         view = self.view
-        if view is None or not self.is_active:
+        if view is None or not self.is_current:
             return
         if view.scene.walls is not self._walls:  # another world
             self._walls = view.scene.walls
