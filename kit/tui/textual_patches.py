@@ -20,6 +20,7 @@ import textual.message_pump
 from rich.color import ColorSystem
 from rich.console import Console
 from rich.style import Style
+from textual import events, on
 from textual._compositor import ChopsUpdate, Compositor, CompositorUpdate
 from textual.app import App
 from textual.geometry import Offset, Size
@@ -128,7 +129,8 @@ class ActivePaintScreen(Screen[Result]):
     def is_current(self) -> bool:
         return self.is_active or (self.is_attached and self._fitted_to not in {None, self.app.size})
 
-    def on_resize(self) -> None:
+    @on(events.Resize)
+    def _note_size_later(self) -> None:
         self.set_timer(FITTING_S, self._note_size)
 
     def _note_size(self) -> None:
