@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from kit.document.rows import Row, row
-from kit.render.camera import CELL_ASPECT
 from kit.tui.rows.chart_rows import laser_chart, time_chart
 from kit.tui.rows.readout_rows import message_rows, readout
 from kit.tui.rows.ruled_title import ruled_title
@@ -35,8 +34,12 @@ def panel_width(columns: int, rows: int, shape: float) -> int:
     picture's world divided by its height; infinite where nothing is known of it."""
     if columns >= LARGE_SIZE[0] and rows >= LARGE_SIZE[1]:
         return WIDE_PANEL[1] if columns >= WIDE_PANEL[0] else LARGE_PANEL_WIDTH
+    if rows < LEAST_ROWS or math.isinf(shape):
+        return 0
+    from kit.render.camera import CELL_ASPECT  # numpy, which the first frame does not wait for
+
     spare = columns - CELL_ASPECT * rows * shape
-    return int(min(spare, WIDE_PANEL[1])) if rows >= LEAST_ROWS and spare >= LARGE_PANEL_WIDTH else 0
+    return int(min(spare, WIDE_PANEL[1])) if spare >= LARGE_PANEL_WIDTH else 0
 
 
 @dataclass
