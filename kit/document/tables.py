@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Final, NamedTuple
 
 from kit.document.blocks import Cell, CellStyle, Column, Table, Tone, ToneText, format_cell
-from kit.document.rows import Row, at_both_edges, lines_shown, row, row_text
+from kit.document.rows import Row, at_both_edges, lines_shown, row, row_text, row_width, side_by_side
 from kit.plain_text import COLUMN_GAP, fit_widths, longest_part, printable_line, wrap
 
 MIN_TEXT_WIDTH: Final = 8
@@ -15,6 +15,8 @@ MIN_TEXT_WIDTH: Final = 8
 SENTENCE_WIDTH: Final = 24
 """Columns in which sentences are still easy to read."""
 MAX_CELL_LENGTH: Final = 600
+BETWEEN_TABLES: Final = 4
+"""Columns between the parts of a table that stand beside each other."""
 LIST_MARGIN: Final = 3
 """Columns before the entries of a list: which one is chosen, and which are marked."""
 
@@ -46,6 +48,35 @@ def table_rows(table: Table, width: int) -> TableRows:
         for texts, told in zip(cells, table.rows, strict=True)
     )
     return TableRows(tuple(head), tuple(entries))
+
+
+def table_columns(table: Table, width: int, height: int) -> list[Row]:
+    """A table of at most ``height`` rows where ``width`` allows that: its entries in as few columns as it takes, beside each
+    other and each with the heads, groups undivided."""
+    if not table.rows:
+        return list(table_rows(table, width).heads)
+    starts = [
+        number for number in range(len(table.rows)) if not table.grouped or table.shows_first_cell(number)
+    ]
+    best = _rows_of_table(table, width)
+    for count in range(2, len(starts) + 1):
+        firsts = [starts[-(-len(starts) * part // count)] for part in range(count)]
+        parts = [
+            _rows_of_table(replace(table, rows=table.rows[first:last]), width)
+            for first, last in zip(firsts, [*firsts[1:], len(table.rows)], strict=True)
+        ]
+        widths = [max(map(row_width, part)) + BETWEEN_TABLES for part in parts]
+        if len(best) <= height or sum(widths) - BETWEEN_TABLES > width:
+            break
+        best = parts[-1]
+        for part, columns in zip(parts[-2::-1], widths[-2::-1], strict=True):
+            best = side_by_side(part, best, columns)
+    return best
+
+
+def _rows_of_table(table: Table, width: int) -> list[Row]:
+    placed = table_rows(table, width)
+    return [*placed.heads, *(each for entry in placed.entries for each in entry)]
 
 
 def list_rows(table: Table, width: int, height: int, chosen: int, marked: Collection[int] = ()) -> list[Row]:

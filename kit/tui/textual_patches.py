@@ -20,9 +20,10 @@ import textual.message_pump
 from rich.color import ColorSystem
 from rich.console import Console
 from rich.style import Style
+from textual import events, on
 from textual._compositor import ChopsUpdate, Compositor, CompositorUpdate
 from textual.app import App
-from textual.geometry import Offset
+from textual.geometry import Offset, Size
 from textual.screen import Screen
 from textual.widget import Widget
 
@@ -40,6 +41,8 @@ KNOWN_TEXTUAL: Final = "8.2.8"
 ASK_CURSOR: Final = "\x1b[6n"
 """The terminal answers with its cursor position when it has dealt with all that was written before;
 Textual turns the answer into ``events.CursorPosition``, sent to the app."""
+FITTING_S: Final = 0.3
+"""Seconds after a change of the terminal's size in which a covered screen is painted."""
 Result = TypeVar("Result")
 
 
@@ -116,12 +119,22 @@ class CroppingCompositor(Compositor):
 
 
 class ActivePaintScreen(Screen[Result]):
-    """A screen that is not painted while another lies over it. Textual would paint both, whole, each time
-    anything changes underneath, and from then on for every message."""
+    """A screen that is not painted while another lies over it, but for a moment after the terminal has got another size. Textual
+    would paint both, whole, each time anything changes underneath, and from then on for every message."""
+
+    _fitted_to: Size | None = None
+    """The size of the terminal for which it has been painted."""
 
     @property
     def is_current(self) -> bool:
-        return self.is_active
+        return self.is_active or (self.is_attached and self._fitted_to not in {None, self.app.size})
+
+    @on(events.Resize)
+    def _note_size_later(self) -> None:
+        self.set_timer(FITTING_S, self._note_size)
+
+    def _note_size(self) -> None:
+        self._fitted_to = self.app.size
 
 
 def crop_left(screen: Screen[Any]) -> bool:

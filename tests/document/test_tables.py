@@ -7,7 +7,7 @@ import pytest
 from kit.document.blocks import CellStyle, Column, Table, Tone, labelled_table
 from kit.document.layout import lines_of
 from kit.document.rows import Row, row_text
-from kit.document.tables import list_rows, table_rows
+from kit.document.tables import list_rows, table_columns, table_rows
 
 NAMES = tuple(f"run-{number}/{'long-name/' * (number % 4)}end" for number in range(30))
 
@@ -73,3 +73,32 @@ def test_heads_of_numbers_go_on_below_before_a_name_is_broken(width: int, lines:
     columns = (Column("case", CellStyle.TEXT), Column("timed out"), Column("side by side"))
     placed = table_rows(Table("test", "", columns, (("turn_right_180", 0.5, 0.25),), is_ruled=False), width)
     assert [row_text(each) for each in (*placed.heads, *placed.entries[0])][: len(lines)] == lines
+
+
+@pytest.mark.parametrize("width", [30, 80, 200])
+@pytest.mark.parametrize("height", [5, 12, 40])
+def test_parts_of_a_long_table_stand_beside_each_other_where_there_is_room(width: int, height: int) -> None:
+    short = table(tuple(f"run-{number:02}" for number in range(30)))
+    rows = [row_text(each) for each in table_columns(short, width, height)]
+    assert all(len(each) <= width for each in rows)
+    assert sorted(word for each in rows for word in each.split() if word.startswith("run-")) == [
+        name for name, *_ in short.rows
+    ]
+    assert len(rows) <= len(table_columns(short, 30, height))
+    if width == 200 and height == 12:
+        assert len(rows) <= height
+
+
+def test_a_group_stays_together_in_the_parts_of_a_table() -> None:
+    columns = (Column("", CellStyle.TEXT), Column("", CellStyle.TEXT))
+    rows = tuple((f"group {group}", f"{group}.{member}") for group in range(5) for member in range(3))
+    shown = [row_text(each) for each in table_columns(Table("t", "", columns, rows, grouped=True), 80, 6)]
+    assert len(shown) == 6
+    assert [each.split() for each in shown[:2]] == [
+        ["group", "0", "0.0", "group", "2", "2.0", "group", "4", "4.0"],
+        ["0.1", "2.1", "4.1"],
+    ]
+
+
+def test_a_table_without_entries_has_only_its_heads() -> None:
+    assert [row_text(each) for each in table_columns(table(()), 40, 5)][:1] == ["run  steps  time"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
 
 LARGE_SIZE: Final = (120, 36)
-"""Columns and rows from which on a screen has room for instruments."""
+"""Columns and rows from which on a screen has room for instruments, whatever the picture needs."""
+LEAST_ROWS: Final = 28
+"""Rows from which on it has room for them where the picture leaves them the columns."""
 LARGE_PANEL_WIDTH: Final = 46
 WIDE_PANEL: Final = (160, 60)
 """From this many columns on, the panel is this wide."""
@@ -27,9 +29,17 @@ SAMPLE_S: Final = 0.2
 """Seconds of the simulation that the charts of the past cover, and between two of their points."""
 
 
-def panel_width(columns: int) -> int:
-    """Returns the width of the panel of a large screen."""
-    return WIDE_PANEL[1] if columns >= WIDE_PANEL[0] else LARGE_PANEL_WIDTH
+def panel_width(columns: int, rows: int, shape: float) -> int:
+    """The width of the panel on a screen of this size; 0 where there is no room for instruments. ``shape``: the width of the
+    picture's world divided by its height; infinite where nothing is known of it."""
+    if columns >= LARGE_SIZE[0] and rows >= LARGE_SIZE[1]:
+        return WIDE_PANEL[1] if columns >= WIDE_PANEL[0] else LARGE_PANEL_WIDTH
+    if rows < LEAST_ROWS or math.isinf(shape):
+        return 0
+    from kit.render.camera import CELL_ASPECT  # numpy, which the first frame does not wait for
+
+    spare = columns - CELL_ASPECT * rows * shape
+    return int(min(spare, WIDE_PANEL[1])) if spare >= LARGE_PANEL_WIDTH else 0
 
 
 @dataclass
@@ -58,24 +68,16 @@ class SpeedHistory:
 def instruments(
     view: View, history: SpeedHistory, drive: str | None, program: Sequence[str], size: tuple[int, int]
 ) -> tuple[Row, ...]:
-    """The panel of a large screen, in order of importance as far as ``size``, columns and rows, has room.
+    """The panel of a large screen, in order of importance as far as ``size``, columns and rows, has room; a chart for which there
+    is no room is left out whole.
 
     ``program``: the lines of the controller's file.
     """
     width, height = size
-    rows: list[Row] = [ruled_title("robot", width), *_two_columns(readout(view, drive), width)]
-    ranges = view.laser.tolist()
-    if any(map(math.isfinite, ranges)):
-        rows += [
-            ruled_title("laser", width, "distance to the left, ahead, to the right"),
-            *laser_chart(ranges, width),
-        ]
-    if history.forward_speeds:
-        rows += [
-            ruled_title("speed", width, f"last {HISTORY_S:.0f} s, m/s"),
-            *time_chart(history.forward_speeds, width, 0.1),
-        ]
-        rows += [ruled_title("turning", width, "rad/s, up is left"), *time_chart(history.turning, width, 0.5)]
+    rows = figure_rows(view, drive, width)
+    for chart in _charts(view, history, width) if len(rows) < height else ():
+        if len(rows) + len(chart) <= height:
+            rows += chart
     left = height - len(rows)
     if view.messages and left > 2:
         shown = view.messages[-max(1, min(len(view.messages), 8, left - 1)) :]
@@ -90,6 +92,23 @@ def instruments(
             *_code_rows(program, width, left - 1),
         ]
     return tuple(rows[:height])
+
+
+def figure_rows(view: View, drive: str | None, width: int) -> list[Row]:
+    """The robot's figures in two columns, with which the panel begins."""
+    return [ruled_title("robot", width), *_two_columns(readout(view, drive), width)]
+
+
+def _charts(view: View, history: SpeedHistory, width: int) -> Iterator[list[Row]]:
+    """What the laser sees, and the speeds of the last minute."""
+    ranges = view.laser.tolist()
+    if any(map(math.isfinite, ranges)):
+        title = ruled_title("laser", width, "distance to the left, ahead, to the right")
+        yield [title, *laser_chart(ranges, width)]
+    if history.forward_speeds:
+        title = ruled_title("speed", width, f"last {HISTORY_S:.0f} s, m/s")
+        yield [title, *time_chart(history.forward_speeds, width, 0.1)]
+        yield [ruled_title("turning", width, "rad/s, up is left"), *time_chart(history.turning, width, 0.5)]
 
 
 def _two_columns(rows: Sequence[Row], width: int) -> list[Row]:

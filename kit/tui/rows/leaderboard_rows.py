@@ -72,18 +72,20 @@ def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
 
 
 def times_to_beat(found: Sequence[LevelProgress]) -> Table:
-    """The reference drive's time of each level and the player's best ones, for a board on which nobody stands yet."""
+    """The reference drive's time of each level and the player's best ones by every driver that has arrived somewhere, for a board
+    on which nobody stands yet."""
+    drivers = [driver for driver in DriverKind if any(driver in each.best_times for each in found)]
     rows = tuple(
         (
             each.level.title,
             f"{reference:.2f} s",
             *(
                 f"{each.best_times[driver]:.2f} s" if driver in each.best_times else ToneText("-", Tone.DIM)
-                for driver in DriverKind
+                for driver in drivers
             ),
         )
         for each in found
         if (reference := reference_seconds(each.level)) is not None
     )
-    drivers = (Column(f"you {driver.phrase}") for driver in DriverKind)
-    return Table("to-beat", "", (Column("", CellStyle.TEXT), Column("the kit"), *drivers), rows)
+    yours = (Column(f"you {driver.phrase}") for driver in drivers)
+    return Table("to-beat", "", (Column("level", CellStyle.TEXT), Column("the kit"), *yours), rows)

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from typing import Final
 
 from kit.document.rows import Row, at_both_edges, row, row_width
-from kit.plain_text import counted
+from kit.plain_text import counted, wrap
 from kit.school.game.two_players import COUNTDOWN, TAG_SECONDS, SharedGameState, SharedMode, SharedPhase
+from kit.tui.rows.ruled_title import ruled_title
 
 HOST: Final = 0
 """The number of the player whose process runs the world."""
 NOBODY: Final = "nobody yet"
 PLAYER_STYLES: Final = ("code", "bold")
+LEAST_WIDTH: Final = 16
+"""Columns of the players' card."""
+RULES: Final = {
+    SharedMode.RACE: "First at the target wins.",
+    SharedMode.TAG: f"A touch makes the other one the catcher. Whoever was it for less of {TAG_SECONDS:.0f} s has won.",
+}
 
 
 def shared_heading(level: str, mode: SharedMode, state: SharedGameState, me: int | None, width: int) -> Row:
@@ -68,6 +76,27 @@ def shared_message(
     return row((f" {_task_text(mode, state, me)}", "bold")), scores
 
 
+def players_card(mode: SharedMode, state: SharedGameState, me: int | None, width: int) -> list[Row]:
+    """Both players with their scores, how far apart their robots are, and the rule of the game. ``me``: as of
+    ``shared_message``."""
+    if width < LEAST_WIDTH:  # the screen has no size yet
+        return []
+    rows = [ruled_title("players", width)]
+    for number in range(len(state.names)):
+        catches = mode is SharedMode.TAG and number == state.catcher
+        rows += [
+            row(
+                (f"{number + 1} ", "dim"),
+                (_name_of(state, number, me), PLAYER_STYLES[number == me]),
+                ("  catches" if catches else "", "warn"),
+            ),
+            row(f"  {_score_text(mode, state, number)}"),
+        ]
+    one, other = state.poses
+    rows.append(row(f"apart {math.dist(one[:2], other[:2]):.2f} m"))
+    return [*rows, ruled_title(mode.value, width), *(row((line, "dim")) for line in wrap(RULES[mode], width))]
+
+
 def _name_of(state: SharedGameState, number: int, me: int | None) -> str:
     return "you" if number == me else state.names[number] or NOBODY
 
@@ -86,7 +115,7 @@ def _rematch_text(state: SharedGameState, me: int | None) -> str:
 
 def _task_text(mode: SharedMode, state: SharedGameState, me: int | None) -> str:
     if mode is SharedMode.RACE:
-        return "First at the target wins."
+        return RULES[mode]
     assert state.catcher is not None
     if me is None:
         return f"{state.names[state.catcher]} catches."

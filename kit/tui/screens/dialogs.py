@@ -12,7 +12,7 @@ from textual.containers import Vertical
 from textual.widgets import Input
 
 from kit.dialogue.actions import ScreenActions
-from kit.document.rows import Row, row
+from kit.document.rows import Row, broken, row
 from kit.plain_text import wrap
 from kit.tui.input.drive_keys import base_key
 from kit.tui.rows.key_rows import help_page
@@ -21,6 +21,8 @@ from kit.tui.widgets.text_rows import TextRows
 
 WIDTH: Final = 74
 BORDER_ROWS: Final = 2
+BORDER_COLUMNS: Final = 4
+"""With a blank on either side of the text."""
 MODIFIERS: Final = ("left_shift", "right_shift", "left_control", "right_control")
 SCROLL_ROWS: Final = {"up": -1, "down": 1, "pageup": -10, "pagedown": 10}
 
@@ -73,13 +75,19 @@ class MessageDialog(Dialog[None]):
     @property
     def _overflow(self) -> int:
         """Rows that do not fit."""
-        return max(0, len(self._shown_rows) + BORDER_ROWS - self.size.height)
+        return max(0, len(self._broken_rows) + BORDER_ROWS - self.size.height)
+
+    @property
+    def _broken_rows(self) -> list[Row]:
+        """The rows in the width of the box: a longer one goes on below."""
+        width = max(1, min(WIDTH, self.size.width) - BORDER_COLUMNS)
+        return [each for parts in self._shown_rows for each in broken(parts, width)]
 
     def _show(self) -> None:
         if not self.query(TextRows):  # before they are mounted, or while the kit is left
             return
         self._top = max(0, min(self._top, self._overflow))
-        self.query_one(TextRows).show(self._shown_rows[self._top :])
+        self.query_one(TextRows).show(self._broken_rows[self._top :])
         more = "arrows scroll, " if self._overflow else ""
         self.query_one(Vertical).border_subtitle = more + self.CLOSES
 

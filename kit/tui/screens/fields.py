@@ -201,7 +201,7 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
     def _show(self) -> None:
         super()._show()
         opened, view = self._opened, self.view
-        if view is not None and opened is not None and self.is_active:
+        if view is not None and opened is not None and self.is_current:
             self._rows("panel").show(self._panel(opened.picture, self._poses(view.scene, opened.picture)))
 
     def _newest_scene(self) -> Scene:

@@ -11,8 +11,10 @@ from textual.binding import BindingType
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
+from kit.document.blocks import Block, Table, Text, Tone
 from kit.document.layout import Page, rows_of
-from kit.document.rows import Row, row
+from kit.document.rows import MARGIN, Row, row
+from kit.document.tables import table_columns
 from kit.school.game import leaderboard
 from kit.school.game.drive_records import join_leaderboard
 from kit.school.game.levels import all_levels
@@ -21,7 +23,7 @@ from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.leaderboard_rows import leaderboard_standings, leaderboard_times, times_to_beat
 from kit.tui.screens.dialogs import MessageDialog, wrapped
-from kit.tui.screens.text_screen import COLUMN, TextScreen
+from kit.tui.screens.text_screen import TextScreen
 from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
 from kit.world.problems import WorldError
@@ -30,7 +32,6 @@ from kit.world.problems import WorldError
 class LeaderboardScreen(TextScreen, inherit_bindings=False):
     """Shows all who have joined."""
 
-    least_beside = COLUMN  # a table is not broken
     screen_actions = ScreenActions(
         "leaderboard",
         ("scroll", "join", "back"),
@@ -48,13 +49,23 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         self._folder = leaderboard.leaderboard_folder()
         self._player_name = journal.student_name or getpass.getuser()
         self._has_joined = False
+        self._standings: list[Block] = [Text("Running the drives again ...", Tone.DIM)]
+        self._times: Table | None = None
 
     def on_mount(self) -> None:
-        self._rows = (row(), row(("  Running the drives again ...", "dim")))
         self._read()
 
     def on_resize(self, event: events.Resize) -> None:
         self._width = 0  # Textual calls the inherited handler after this one, which then wraps the rows again
+
+    def _arranged(self, width: int, height: int) -> list[Row]:
+        """The standings, and below them the times, in as many columns as there is room for."""
+        page = Page(width=width - 2 * MARGIN, margin=MARGIN)
+        rows = [row(), *rows_of(self._standings, page)]
+        if self._times is not None:
+            times = table_columns(self._times, page.width, max(1, height - len(rows) - 1))
+            rows += [row(), *(row(" " * MARGIN) + each for each in times)]
+        return rows
 
     @work(exclusive=True, group="read")
     async def _read(self) -> None:
@@ -62,11 +73,8 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         self._has_joined = leaderboard.has_joined(self._folder)
         entries = await to_thread(leaderboard.read_entries, self._folder)
         own = () if entries else await to_thread(self._own_progress)
-        standings = leaderboard_standings(leaderboard.standings(entries), self._offer)
-        page = Page(width=COLUMN - 4, margin=2)
-        self._rows = (row(), *rows_of(standings, page))
-        times = leaderboard_times(entries) if entries else times_to_beat(own)
-        self._beside = (row(), *rows_of([times], page))
+        self._standings = leaderboard_standings(leaderboard.standings(entries), self._offer)
+        self._times = leaderboard_times(entries) if entries else times_to_beat(own)
         self._width = 0
         if self.query(TextRows):  # not where the screen was left meanwhile
             self._show()

@@ -1,33 +1,26 @@
-"""All lessons: what each is about, what is done of it; Enter opens one.
-
-What a student has done so far: lessons, exercises, the quiz by topic, and how to take it along.
-"""
+"""All lessons: what each is about, what is done of it; Enter opens one."""
 
 from __future__ import annotations
 
 from asyncio import to_thread
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 from textual import events, work
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
-from textual.screen import Screen
 
 from kit.dialogue.actions import ScreenActions
-from kit.document.layout import lines_of
-from kit.document.rows import Row, at_both_edges, lines_shown, row
+from kit.document.rows import at_both_edges, lines_shown, row
 from kit.school.game.levels import GameLevel, levels_of_lesson
 from kit.school.lessons.catalogue import LessonEntry
 from kit.school.lessons.records import Lesson
 from kit.school.news import take_news
-from kit.school.progress import EventKind, ProgressError
-from kit.school.quiz.items import read_bank
-from kit.tui.rows import lesson_list_rows, progress_rows
+from kit.school.progress import ProgressError
+from kit.tui.rows import lesson_list_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
-from kit.tui.screens.text_screen import TextScreen
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows
@@ -207,49 +200,3 @@ def _read_world_and_levels(lesson: Lesson) -> tuple[Scene | None, tuple[GameLeve
         return scene_of_lesson(lesson), levels
     except (WorldError, LookupError, OSError):
         return None, levels
-
-
-async def show_progress(screen: Screen[Any], store: StudentStore) -> None:
-    """Opens the page, and comes back when it is left. To be called in a worker."""
-    found = await to_thread(_rows, store)
-    if isinstance(found, str):
-        screen.app.push_screen(MessageDialog("Progress cannot be read", wrapped(found)))
-    else:
-        game_and_quiz, lessons = found
-        await screen.app.push_screen_wait(TextScreen("Progress", game_and_quiz, lessons))
-
-
-def _rows(store: StudentStore) -> tuple[list[Row], list[Row]] | str:
-    """Reads the game with all else, and the lessons, or the problem; runs in another thread, since there are many files."""
-    overview = store.read_overview()
-    if overview.problem:
-        return overview.problem
-    first = progress_rows.game_and_quiz_progress(_game(store), _quiz(store), str(store.workspace.folder))
-    return first, progress_rows.progress(overview.shelf)
-
-
-def _game(store: StudentStore) -> list[Row]:
-    from kit.school.game.challenges import game_summary
-    from kit.tui.rows.level_rows import game_progress
-
-    try:
-        return game_progress(game_summary(store.progress().events(EventKind.FINISH)))
-    except (WorldError, FileNotFoundError) as error:
-        return [row(f"  {line}") for line in str(error).splitlines()]
-
-
-def _quiz(store: StudentStore) -> list[str]:
-    from kit.school.quiz.answers import answers_from_events
-    from kit.school.quiz.quiz_session import local_now
-    from kit.school.quiz.quiz_text import scores_blocks
-    from kit.school.quiz.schedule import build_schedule
-
-    events = store.progress().events()
-    try:
-        bank = read_bank()
-    except (WorldError, FileNotFoundError) as error:
-        return str(error).splitlines()
-    answers = answers_from_events(events)
-    if not answers:
-        return ["Nothing answered yet."]
-    return lines_of(scores_blocks(bank, answers, build_schedule(bank, events, local_now())))

@@ -201,15 +201,11 @@ class LevelDrive(WatchScreen):
 
     # What is shown
 
-    def _panel_rows(self, view: View) -> tuple[Row, ...]:
-        """The level's card fills the rest of the panel."""
-        rows, panel = super()._panel_rows(view), self._rows("panel").content_size
+    def _card(self, width: int, room: int) -> list[Row]:
         reference = reference_seconds(self._level)
-        card = level_card(
-            self._level, self._driver, reference, self._kept, panel.width - 1, panel.height - len(rows)
-        )
+        card = level_card(self._level, self._driver, reference, self._kept, width, room)
         self._task_in_sight = "task" in card and self.query_one("#panel").display
-        return (*rows, *(each for part in card.values() for each in part))
+        return [each for part in card.values() for each in part]
 
     def _view_arrived(self, view: View) -> None:
         """Replaces the targets and bumps of the map's case by the level's, in the world's thread."""
@@ -251,7 +247,7 @@ class LevelDrive(WatchScreen):
     def _show(self) -> None:
         super()._show()
         view, referee = self.view, self._referee
-        if view is None or not self.is_active:
+        if view is None or not self.is_current:
             return
         if (
             referee is not None

@@ -13,7 +13,7 @@ from textual.message import Message
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.shared_actions import VIEW_IDS
-from kit.document.rows import row
+from kit.document.rows import Row, row
 from kit.geometry import Pose
 from kit.render.scene import Disc, Scene, ScenePath
 from kit.run.recording import Recorder, Recording
@@ -34,7 +34,7 @@ from kit.school.game.two_players import (
 from kit.sim.simulation import Simulation
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.shared_game_rows import HOST, shared_heading, shared_message
+from kit.tui.rows.shared_game_rows import HOST, players_card, shared_heading, shared_message
 from kit.tui.screens.dialogs import MessageDialog, wrapped
 from kit.tui.screens.level_drive import LETTER_NOTES
 from kit.tui.screens.level_pictures import ghost_marks, ghost_paths
@@ -201,6 +201,12 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         super()._show()
         self._show_state()
 
+    def _card(self, width: int, room: int) -> list[Row]:
+        if self.state is None:
+            return []
+        card = players_card(self._mode, self.state, self.player, width)
+        return card if len(card) <= room else []
+
     def _newest_scene(self) -> Scene:
         return self._with_targets_and_ghosts(super()._newest_scene())
 
@@ -226,7 +232,6 @@ class SharedGuestScreen(SharedScreen, inherit_bindings=False):
 
     screen_actions = ScreenActions("joined game", FOOTER, OFF_FOOTER, drives=True)
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
-    DEFAULT_CSS = "SharedGuestScreen #panel { display: none; }"
 
     def __init__(self, theme: Theme, client: SharedGameClient, workspace: Workspace | None = None) -> None:
         """``workspace`` and what it raises: as of ``SharedScreen``."""
@@ -277,6 +282,8 @@ class SharedGuestScreen(SharedScreen, inherit_bindings=False):
         if self.state is not None and self.is_active and not self.ended:
             self.world.offer(self._newest_scene)
             self._show_state()
+            panel = self._rows("panel")
+            panel.show(players_card(self._mode, self.state, self.player, panel.content_size.width - 1))
 
     def _newest_scene(self) -> Scene:
         assert self.state is not None  # nothing is offered before the first state

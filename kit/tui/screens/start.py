@@ -129,7 +129,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     def _show(self) -> None:
         view = self.view
         self._show_menu()
-        if view is None or not self.is_active or self._is_away:
+        if view is None or not self.is_current or self._is_away:
             return
         self.world.offer(self._newest_scene)
         self._rows("heading").show([self._heading(view)])
@@ -386,7 +386,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         await self._reopen_own_world()
 
     async def _open_progress(self) -> None:
-        from kit.tui.screens.lessons import show_progress
+        from kit.tui.screens.progress import show_progress
 
         self._close_own_world()
         await show_progress(self, self._store)

@@ -19,13 +19,12 @@ COLUMN: Final = 80
 """Columns of the left one of two texts beside each other, where there is room for two of them."""
 COLUMNS_BETWEEN: Final = 2
 LEAST_BESIDE: Final = 54
+"""Columns without which nothing stands beside the rest."""
 
 
 class TextScreen(ActivePaintScreen[None]):
     """Shows rows as they are; one that is too long goes on below."""
 
-    least_beside: ClassVar[int] = LEAST_BESIDE
-    """Columns without which nothing stands beside the rest."""
     AUTO_FOCUS = ""
     screen_actions = ScreenActions("text", ("scroll", "back"), ("close",))
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
@@ -58,12 +57,7 @@ class TextScreen(ActivePaintScreen[None]):
         room = max(1, self.size.height - 2 - self._rows_below)
         if self.size.width != self._width:
             self._width = self.size.width
-            column = self._column
-            if column:
-                right = [each for parts in self._beside for each in broken(parts, self._width - column)]
-                together = side_by_side(self._rows, right, column)
-            else:
-                together = [*self._rows, *self._beside]
+            together = self._arranged(self._width, room)
             self._shown = [each for parts in together for each in broken(parts, self._width)]
         self._top = max(0, min(self._top, len(self._shown) - room))
         last = min(len(self._shown), self._top + room)
@@ -73,13 +67,21 @@ class TextScreen(ActivePaintScreen[None]):
         self.query_one("#body", TextRows).show(self._shown[self._top : last])
         self.query_one("#keys", TextRows).show([self._keys()])
 
+    def _arranged(self, width: int, height: int) -> list[Row]:
+        """All rows in the order in which they stand; what is too wide is broken afterwards. ``height``: without scrolling."""
+        column = self._column
+        if not column:
+            return [*self._rows, *self._beside]
+        right = [each for parts in self._beside for each in broken(parts, width - column)]
+        return side_by_side(self._rows, right, column)
+
     @property
     def _column(self) -> int:
         """The column of what stands beside the rest; 0 where there is no room, or nothing."""
         if not self._beside or self._width >= 2 * COLUMN:
             return COLUMN if self._beside else 0
         column = max(map(row_width, self._rows), default=0) + COLUMNS_BETWEEN
-        return column if column + self.least_beside <= self._width else 0
+        return column if column + LEAST_BESIDE <= self._width else 0
 
     @property
     def _rows_below(self) -> int:

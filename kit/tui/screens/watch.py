@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
@@ -18,7 +19,7 @@ from kit.kernels.compilation_progress import PROGRESS
 from kit.run.pacing import MAXIMUM, REAL_TIME
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.agent_rows import AGENT_WIDTH, agent_panel
-from kit.tui.rows.instrument_rows import LARGE_SIZE, SpeedHistory, instruments, panel_width
+from kit.tui.rows.instrument_rows import SpeedHistory, figure_rows, instruments, panel_width
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import PANEL_WIDTH, failure_or_messages, heading, readout
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
@@ -133,6 +134,10 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         """What the robot's laser has seen of the world; None before it has been asked for, and in a new world."""
         self._mapper: LaserMapper | None = None
         self._no_walls: FloatArray | None = None
+        self._walls: FloatArray | None = None
+        """Of the world for which the panel has its width."""
+        self._instruments_width = 0
+        """Columns of the panel with instruments; 0 where it has none."""
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -263,7 +268,8 @@ class WatchScreen(RowsScreen[None], DriveScreen):
             text = f"It could not be saved: {error.strerror}."
         told = wrapped(text)
         rows_left = self.size.height - len(told) - 3  # the dialog's frame and a blank row
-        picture = scene_rows(scene, MAP_COLUMNS, max(1, min(MAP_ROWS, rows_left)), self.world.encoder)
+        columns = max(1, min(MAP_COLUMNS, self.size.width - 4))
+        picture = scene_rows(scene, columns, max(1, min(MAP_ROWS, rows_left)), self.world.encoder)
         self.app.push_screen(
             MessageDialog("The robot's map", [*(row(each) for each in picture), row(), *told])
         )
@@ -310,10 +316,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
             self._rows("heading").show([row(("nothing is open", "dim"))])
 
     def on_resize(self) -> None:
-        if self.has_instruments:
-            self.query_one("#panel").styles.width = (
-                panel_width(self.size.width) if self._is_large else PANEL_WIDTH
-            )
+        self._fit_panel()
         self._show_keys()
         self._show()
 
@@ -331,8 +334,11 @@ class WatchScreen(RowsScreen[None], DriveScreen):
     def _show(self) -> None:
         width = self.size.width
         view = self.view
-        if view is None or not self.is_active:
+        if view is None or not self.is_current:
             return
+        if view.scene.walls is not self._walls:  # another world
+            self._walls = view.scene.walls
+            self._fit_panel()
         self.world.offer(self._newest_scene)
         self._rows("heading").show([heading(view, self.host.pacing, width, self.driver_name)])
         self._rows("panel").show(self._panel_rows(view))
@@ -349,22 +355,31 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         about = (("agent", self.agent_name), ("environment", view.title))
         panel.show(agent_panel(agent, about, *panel.content_size))
 
-    @property
-    def _is_large(self) -> bool:
-        return self.has_instruments and all(
-            size >= least for size, least in zip(self.size, LARGE_SIZE, strict=True)
-        )
+    def _fit_panel(self) -> None:
+        """Gives the panel what the picture does not need of the screen."""
+        if self.has_instruments:
+            bounds = None if self.view is None else self.view.scene.bounds
+            shape = math.inf if bounds is None else bounds.width / bounds.height
+            self._instruments_width = panel_width(*self.size, shape)
+            self.query_one("#panel").styles.width = self._instruments_width or PANEL_WIDTH
 
     def _panel_rows(self, view: View) -> tuple[Row, ...]:
         mode = self.drive.choice.mode if self.shows_mode else None
         self._history.add(view)
-        if not self._is_large:
-            return readout(view, mode)
+        panel, width = self._rows("panel").content_size, self._instruments_width - 2
+        figures = readout(view, mode) if not self._instruments_width else figure_rows(view, mode, width)
+        card = self._card(panel.width - 1, panel.height - len(figures))
+        if not self._instruments_width:
+            return (*figures, *card)
         if view.program != self._program[0]:
             self._program = view.program, _lines_of(view.program)
-        size = panel_width(self.size.width) - 2, self.query_one("#panel").size.height
         program = self._program[1] if self.shows_program else ()
-        return instruments(view, self._history, mode, program, size)
+        size = width, panel.height - len(card)
+        return (*instruments(view, self._history, mode, program, size), *card)
+
+    def _card(self, width: int, room: int) -> list[Row]:
+        """What stands below the figures of the panel; charts and the program get the room that it leaves. ``room``: rows."""
+        return []
 
     def _newest_scene(self) -> Scene:
         assert self.view is not None  # nothing is offered before the first view

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import rclpy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
@@ -64,26 +65,20 @@ class LaserProgram(Node):
     def freest(self, wanted, look):
         """The heading nearest to the wanted one in which the robot has room, and how much it has."""
         scan = self.scan
-        points = []
-        for number, distance in enumerate(scan.ranges):
-            if scan.range_min <= distance <= scan.range_max and math.isfinite(distance):
-                angle = scan.angle_min + number * scan.angle_increment
-                points.append((distance * math.cos(angle), distance * math.sin(angle)))
-        best, best_cost, best_room = wanted, math.inf, 0.0
-        candidates = [math.radians(degrees) for degrees in range(-110, 111, 5)]
+        ranges = np.asarray(scan.ranges)
+        angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
+        seen = (scan.range_min <= ranges) & (ranges <= scan.range_max)
+        x, y = ranges[seen] * np.cos(angles[seen]), ranges[seen] * np.sin(angles[seen])
+        headings = np.radians(np.arange(-110.0, 111.0, 5.0))
         if abs(wanted) <= math.radians(110):
-            candidates.append(wanted)
-        for heading in candidates:
-            cosine, sine = math.cos(heading), math.sin(heading)
-            room = look
-            for x, y in points:
-                along, across = x * cosine + y * sine, y * cosine - x * sine
-                if along > 0.0 and abs(across) < HALF_WIDTH:
-                    room = min(room, along)
-            cost = abs(math.remainder(heading - wanted, math.tau)) + 0.2 * abs(heading) + 3.0 * (look - room)
-            if cost < best_cost:
-                best, best_cost, best_room = heading, cost, room
-        return best, max(0.0, best_room - 0.1)
+            headings = np.append(headings, wanted)
+        cosine, sine = np.cos(headings)[:, None], np.sin(headings)[:, None]
+        along, across = x * cosine + y * sine, y * cosine - x * sine
+        is_in_the_way = (along > 0.0) & (np.abs(across) < HALF_WIDTH)
+        room = np.min(np.where(is_in_the_way, along, look), axis=1, initial=look)
+        away = np.abs((headings - wanted + math.pi) % math.tau - math.pi)
+        best = np.argmin(away + 0.2 * np.abs(headings) + 3.0 * (look - room))
+        return float(headings[best]), max(0.0, float(room[best]) - 0.1)
 
 
 def main():

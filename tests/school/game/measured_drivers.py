@@ -1,16 +1,22 @@
-"""The drivers that the medals are measured by, each on every level, from all five starts: what they drive, and what it earns.
+"""What the drivers by whom the medals are set drive on every level, and what it earns.
 
-    python -m tests.school.game.measured_drivers [--level ID ...] [--driver tape keys laser] [--agent RUN_FOLDER]
+    python -m tests.school.game.measured_drivers              # the table of what has been measured
+    python -m tests.school.game.measured_drivers --measure    # drives what is missing in it, a line as soon as it is known
 
-``keys`` presses the keys of a hand with ordinary skill, ``laser`` is a tidy program, ``tape`` plays the commands of the
-reference drive back, ``agent`` is what ``kit train`` makes with the preset's settings.
+``keys`` presses the keys of a hand with ordinary skill, ``laser`` is a tidy program without a map, ``agent`` is trained for the
+level by the kit's preset, and ``tape`` plays the commands of the reference drive back. The drives stand in
+``measured_drivers.csv``; the medals are not in it, but derived from the bars as they are now.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Sequence
+import csv
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Final
 
 from kit.controllers import find_controller
@@ -23,90 +29,197 @@ from kit.school.game.race import (
     RaceFinish,
     agent_controller,
     middle_drive,
-    race_from_all_starts,
+    race_controller,
     run_race,
 )
 from kit.school.game.references import CommandPlayer, find_drive, reference_seconds
 from kit.school.game.starts import OWN_SEED, scenario_from, seeds_of
+from tests.school.game.level_agents import train_agent
 from tests.school.game.ordinary import OrdinaryDriver
 
 LASER_PROGRAM: Final = Path(__file__).with_name("laser_program.py")
+MEASURED: Final = Path(__file__).with_name("measured_drivers.csv")
+DRIVERS: Final = {
+    "keys": DriverKind.KEYS,
+    "laser": DriverKind.CONTROLLER,
+    "agent": DriverKind.AGENT,
+    "tape": DriverKind.CONTROLLER,
+}
+LONGEST: Final = 3.0
+"""So many times as long as the reference drive a measured drive may take: later, it has not arrived."""
 
 Install = Callable[[Session], None]
+Drive = tuple[RaceFinish, Recording]
 
 
-def drive(level: GameLevel, seed: int, install: Install) -> tuple[RaceFinish, Recording]:
+@dataclass(frozen=True, slots=True)
+class MeasuredDrive:
+    """The drive that counts of one driver on one level."""
+
+    level: str
+    driver: str
+    reached: bool
+    seconds: float
+    collisions: int
+    remark: str = ""
+    """Why nothing was driven."""
+
+    @property
+    def finish(self) -> RaceFinish:
+        return RaceFinish(self.reached, self.seconds, self.collisions)
+
+    def medal(self, level: GameLevel) -> Medal:
+        """What it earns by the bars as they are."""
+        return medal_of(self.finish, reference_seconds(level), DRIVERS[self.driver])
+
+
+def drive(level: GameLevel, seed: int, install: Install) -> Drive:
     """One drive from one start."""
     return run_race(level, scenario_from(level, seed), install, seed=seed)
 
 
-def keys_drive(level: GameLevel, seed: int = OWN_SEED) -> tuple[RaceFinish, Recording]:
+def keys_drive(level: GameLevel, seed: int = OWN_SEED) -> Drive:
     """The ordinary hand's drive."""
     return drive(
         level, seed, lambda session: session.runner.participants.append(OrdinaryDriver(session, level))
     )
 
 
-def tape_drives(level: GameLevel) -> list[tuple[RaceFinish, Recording]]:
-    """The reference's commands from all starts."""
+def tape_drive(level: GameLevel, seed: int) -> Drive:
+    """The reference's commands from one start."""
     reference = find_drive(level)
     assert reference is not None
-    return [
-        drive(
-            level, seed, lambda session: session.runner.participants.append(CommandPlayer(session, reference))
-        )
-        for seed in seeds_of(level)
-    ]
+    return drive(
+        level, seed, lambda session: session.runner.participants.append(CommandPlayer(session, reference))
+    )
 
 
-def judged(
-    level: GameLevel, driver: DriverKind, drives: Sequence[tuple[RaceFinish, Recording]]
-) -> tuple[RaceFinish, Medal]:
+def tape_drives(level: GameLevel) -> list[Drive]:
+    """The reference's commands from all starts."""
+    return [tape_drive(level, seed) for seed in seeds_of(level)]
+
+
+def judged(level: GameLevel, driver: DriverKind, drives: Sequence[Drive]) -> tuple[RaceFinish, Medal]:
     """The drive that counts, and its medal."""
     finishes = [finish for finish, _ in drives]
     finish = finishes[middle_drive(finishes)]
     return finish, medal_of(finish, reference_seconds(level), driver)
 
 
+def measure(level: GameLevel, driver: str) -> MeasuredDrive:
+    """Drives a level as the driver does: a hand once, the others from the starts, until it is known which drive is the middle
+    one or that most do not arrive."""
+    with TemporaryDirectory() as folder, _driver(level, driver, Path(folder)) as drive_from:
+        if isinstance(drive_from, str):
+            return MeasuredDrive(level.id, driver, False, 0.0, 0, drive_from)
+        seeds = seeds_of(level) if driver != "keys" else (OWN_SEED,)
+        shorter = replace(
+            level, time_limit=min(level.time_limit, LONGEST * (reference_seconds(level) or 1e3))
+        )
+        finishes: list[RaceFinish] = []
+        for seed in seeds:
+            finishes.append(drive_from(shorter, seed)[0])
+            if 2 * sum(not each.reached for each in finishes) > len(seeds):
+                break
+        middle = finishes[middle_drive(finishes)]
+        return MeasuredDrive(level.id, driver, middle.reached, round(middle.seconds, 2), middle.collisions)
+
+
+@contextmanager
+def _driver(level: GameLevel, name: str, folder: Path) -> Iterator[Callable[[GameLevel, int], Drive] | str]:
+    """What drives a level from the start of a seed; or why nothing can."""
+    if name == "keys":
+        yield keys_drive
+    elif name == "tape":
+        yield tape_drive
+    elif name == "laser":
+        program = find_controller(str(LASER_PROGRAM))
+        yield lambda each, seed: race_controller(each, program, seed=seed)
+    else:
+        policy = train_agent(level, folder)
+        if isinstance(policy, str):
+            yield policy
+        else:
+            with agent_controller(policy) as node:
+                yield lambda each, seed: race_controller(each, node, seed=seed)
+
+
+def measured() -> dict[tuple[str, str], MeasuredDrive]:
+    """What has been measured, by level and driver."""
+    with MEASURED.open(newline="") as file:
+        rows = [
+            MeasuredDrive(
+                row["level"],
+                row["driver"],
+                row["reached"] == "yes",
+                float(row["seconds"]),
+                int(row["collisions"]),
+                row["remark"],
+            )
+            for row in csv.DictReader(file)
+        ]
+    return {(row.level, row.driver): row for row in rows}
+
+
+def write_measured(drives: dict[tuple[str, str], MeasuredDrive]) -> None:
+    """Writes the file anew, in the order of the levels and drivers; a kill leaves the old one."""
+    draft = MEASURED.with_suffix(".draft")
+    with draft.open("w", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(("level", "driver", "reached", "seconds", "collisions", "remark"))
+        for level in all_levels():
+            for driver in DRIVERS:
+                row = drives.get((level.id, driver))
+                if row is not None:
+                    reached = "yes" if row.reached else "no"
+                    table.writerow((row.level, row.driver, reached, row.seconds, row.collisions, row.remark))
+    draft.replace(MEASURED)
+
+
+def table_lines(drives: dict[tuple[str, str], MeasuredDrive]) -> Iterator[str]:
+    """A line for each level: the reference's time, and for each driver its time as a multiple of that, and its medal."""
+    yield f"{'level':<18} {'reference':>9}  " + "".join(f"{driver:<18}" for driver in DRIVERS)
+    counts = {driver: dict.fromkeys(Medal, 0) for driver in DRIVERS}
+    for level in all_levels():
+        reference = reference_seconds(level)
+        assert reference is not None
+        cells = []
+        for driver in DRIVERS:
+            row = drives.get((level.id, driver))
+            if row is None:
+                cells.append("not measured")
+                continue
+            counts[driver][row.medal(level)] += 1
+            touched = "*" if row.collisions else " "
+            share = f"{row.seconds / reference:.2f}{touched}" if row.reached else " --  "
+            cells.append(f"{share} {row.medal(level).title if row.medal(level) else ''}")
+        yield f"{level.id:<18} {reference:7.2f} s  " + "".join(f"{cell:<18}" for cell in cells).rstrip()
+    yield ""
+    for driver, count in counts.items():
+        told = ", ".join(f"{number} {medal.title}" for medal, number in reversed(count.items()) if number)
+        yield f"{driver:<6} {told}"
+    yield "Times are multiples of the reference's; * touched something; -- did not arrive."
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--level", nargs="*", default=[level.id for level in all_levels()])
-    parser.add_argument("--driver", nargs="*", default=["keys", "laser", "tape"])
-    parser.add_argument("--agent", type=Path, help="folder of a training run, or a policy file")
+    levels = [level.id for level in all_levels()]
+    parser.add_argument("--measure", action="store_true")
+    parser.add_argument("--again", action="store_true", help="also what has been measured")
+    parser.add_argument("--level", nargs="*", default=levels, choices=levels, metavar="ID")
+    parser.add_argument("--driver", nargs="*", default=list(DRIVERS), choices=DRIVERS)
     options = parser.parse_args()
-    for level in all_levels():
-        if level.id not in options.level:
-            continue
-        reference = reference_seconds(level) or 0.0
-        cells = []
-        for name in (*options.driver, *(["agent"] if options.agent else [])):
-            if name == "keys":
-                finish, medal = judged(level, DriverKind.KEYS, [keys_drive(level)])
-            elif name == "laser":
-                program = find_controller(str(LASER_PROGRAM))
-                finish, medal = judged(level, DriverKind.CONTROLLER, race_from_all_starts(level, program))
-            elif name == "tape":
-                finish, medal = judged(level, DriverKind.CONTROLLER, tape_drives(level))
-            else:
-                finish, medal = _agent(level, options.agent)
-            time = (
-                f"{finish.seconds / reference:5.2f} b{finish.collisions:<2}"
-                if finish.reached
-                else "  --     "
-            )
-            cells.append(f"{name} {time} {medal.title:<9}")
-        print(f"{level.id:<18} {reference:6.2f} s  {'  '.join(cells)}", flush=True)
-
-
-def _agent(level: GameLevel, place: Path) -> tuple[RaceFinish, Medal]:
-    from kit.learning.policies.policy_file import load_policy
-    from kit.learning.training.run_folders import find_run
-
-    policy = load_policy(place) if place.is_file() else find_run(place.parent, place.name).policy()
-    with agent_controller(policy) as program:
-        return judged(level, DriverKind.AGENT, race_from_all_starts(level, program))
+    if options.measure:
+        for driver in options.driver:
+            for level in all_levels():
+                drives = measured() if MEASURED.exists() else {}
+                if level.id in options.level and (options.again or (level.id, driver) not in drives):
+                    row = measure(level, driver)
+                    print(f"{row} {row.medal(level).title}", flush=True)
+                    write_measured((measured() if MEASURED.exists() else {}) | {(level.id, driver): row})
+    print("\n".join(table_lines(measured())))
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from kit.run.view import LASER_DIRECTIONS, View, ViewBuilder
 from kit.tui.rows.chart_rows import CHART_ROWS, laser_chart, time_chart
-from kit.tui.rows.instrument_rows import SpeedHistory, instruments
+from kit.tui.rows.instrument_rows import SpeedHistory, instruments, panel_width
 from kit.tui.rows.readout_rows import failure_or_messages, readout
 from tests.cases import every_case
 from tests.tui.lesson_stage import row_text
@@ -53,6 +54,35 @@ def test_the_panel_keeps_to_its_size_and_leaves_out_the_least_important(views: l
         "line 5" in line for line in texts(instruments(views[-1], history, None, program, (44, 24)))
     )
     assert any("line 5" in line for line in texts(instruments(views[-1], history, None, program, (58, 60))))
+
+
+def test_a_chart_without_room_is_left_out_whole(views: list[View]) -> None:
+    history = SpeedHistory()
+    for view in views:
+        history.add(view)
+    for height in range(8, 46):
+        rows = texts(instruments(views[-1], history, "repeat", (), (58, height)))
+        titles = [number for number, line in enumerate(rows) if line.startswith("── ")]
+        for first, last in pairwise([*titles[1:], len(rows)]):
+            assert last - first == 1 + CHART_ROWS, (height, rows[first])
+
+
+@pytest.mark.parametrize(
+    ("columns", "rows", "shape", "width"),
+    [
+        (80, 24, 1.0, 0),
+        (120, 35, 1.0, 50),  # 70 columns of 35 rows are as wide as they are high
+        (120, 35, 0.5, 60),
+        (120, 35, 1.5, 0),  # the picture needs them
+        (120, 36, 1.5, 46),
+        (200, 50, 1.5, 60),
+        (200, 24, 1.0, 0),
+    ],
+)
+def test_instruments_get_the_columns_that_the_picture_leaves(
+    columns: int, rows: int, shape: float, width: int
+) -> None:
+    assert panel_width(columns, rows, shape) == width
 
 
 def test_a_program_is_shown_from_its_first_class_on(views: list[View]) -> None:

@@ -9,7 +9,7 @@ import pytest
 from kit.document.rows import row_text
 from kit.geometry import Pose
 from kit.school.game.two_players import SharedGameState, SharedMode, SharedPhase
-from kit.tui.rows.shared_game_rows import HOST, shared_heading, shared_message
+from kit.tui.rows.shared_game_rows import HOST, players_card, shared_heading, shared_message
 
 OVER = SharedGameState(
     SharedPhase.OVER, 1.0, (Pose(0.0, 0.0), Pose(1.0, 0.0)), (30.0, 60.0), 0, 0, ("Ada", "Ben")
@@ -48,3 +48,20 @@ def test_spectators_are_named_where_there_is_room() -> None:
     assert "2 spectators" in narrow
     assert len(narrow) <= 50
     assert "watch" not in row_text(shared_heading("The maze", SharedMode.TAG, OVER, None, 80))
+
+
+@pytest.mark.parametrize("me", [HOST, 1, None])
+def test_the_card_of_the_players_has_both_scores_and_who_catches(me: int | None) -> None:
+    running = replace(OVER, phase=SharedPhase.RUNNING, catcher=1)
+    card = [row_text(each) for each in players_card(SharedMode.TAG, running, me, 23)]
+    assert all(len(each) <= 23 for each in card)
+    first, second = (number for number, line in enumerate(card) if line[:2] in ("1 ", "2 "))
+    assert card[first] == ("1 you" if me == HOST else "1 Ada")
+    assert "30.0 s" in card[first + 1]
+    assert card[second] == ("2 you  catches" if me == 1 else "2 Ben  catches")
+    assert "60.0 s" in card[second + 1]
+    assert "apart 1.00 m" in card
+
+
+def test_a_panel_without_a_size_yet_has_no_card() -> None:
+    assert players_card(SharedMode.TAG, OVER, HOST, -1) == []

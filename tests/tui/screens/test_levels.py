@@ -19,6 +19,7 @@ from kit.learning.authoring.new_task import new_task_file
 from kit.learning.tasks.goals.target import REACH_TARGET
 from kit.mapmaking.map_drawing import read_drawing
 from kit.mapmaking.new_map import write_map
+from kit.run.recording import Recording
 from kit.school.game import ghosts, leaderboard, references
 from kit.school.game.challenges import all_challenges
 from kit.school.game.daily import daily_level, today
@@ -30,6 +31,7 @@ from kit.school.game.race import DriverKind
 from kit.school.game.task_levels import task_level
 from kit.school.progress import EventKind, ProgressJournal
 from kit.tui.app import KitApp
+from kit.tui.screens import level_result
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_drive import LevelDrive
@@ -476,6 +478,35 @@ def test_sharing_writes_a_card_and_a_moving_picture_and_copies_the_card(
         (film,) = (workspace.folder / "cards").glob("*.gif")
         assert film.read_bytes().startswith(b"GIF8")
         assert film.with_suffix(".txt").read_text().strip() == copied[0].strip()
+
+    play(scene, progress, tmp_path / "desk")
+
+
+def test_a_result_that_is_left_while_its_film_is_written_is_gone_and_the_film_is_whole(
+    progress: ProgressJournal, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    workspace = prepare_workspace(tmp_path / "desk")
+    result = result_of(workspace, progress)
+    begun, may_end = threading.Event(), threading.Event()
+
+    def write_slowly(card: Path, level: GameLevel, recording: Recording) -> Path:
+        begun.set()
+        assert may_end.wait(30.0)
+        return card.rename(card.with_suffix(".whole"))
+
+    monkeypatch.setattr(level_result, "save_film", write_slowly)
+
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await screen.app.push_screen(DriveResultScreen(screen._theme, result, workspace))
+        await pilot.press("y")
+        await wait_until_shown(pilot, begun.is_set)
+        await pilot.press("escape")
+        await wait_until_shown(pilot, lambda: pilot.app.screen is screen)
+        may_end.set()
+        await wait_until_shown(pilot, lambda: bool(list((workspace.folder / "cards").glob("*.whole"))))
+        await pilot.press("right")
+        await pilot.pause()
+        assert pilot.app.screen is screen
 
     play(scene, progress, tmp_path / "desk")
 

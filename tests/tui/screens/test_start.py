@@ -13,6 +13,7 @@ from kit.controllers import prepare_workspace
 from kit.document.rows import Row
 from kit.school.progress import FILE, EventKind, ProgressJournal
 from kit.tui.screens.start import MENU, StartScreen
+from kit.tui.screens.text_screen import COLUMN
 from kit.tui.student_store import StudentStore
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import TextRows
@@ -195,8 +196,11 @@ def test_a_wide_screen_shows_what_was_won_in_the_game_beside_the_lessons(house: 
         await seen(pilot, "Lesson 1")
         await pilot.press("9")
         await seen(pilot, "exercises passed")
-        (first,) = (line for line in rows(pilot) if "exercises passed" in line)
-        assert first.strip().startswith("Game")
+        lines = rows(pilot)
+        (game,) = (number for number, line in enumerate(lines) if line.strip().startswith("Game"))
+        lesson = next(number for number, line in enumerate(lines) if "[ ] Colours" in line)
+        assert lesson <= game
+        assert not lines[lesson][:COLUMN].strip()  # it stands beside the rest
         assert "gold 0" in text(pilot)
         assert "Export your progress" in text(pilot)
 

@@ -39,6 +39,18 @@ class TrainingTask(ChallengeTask):
             section.flag("own_reward"),
         )
 
+    def lines(self) -> list[str]:
+        """What earns the medals, and the commands for it."""
+        shares = ((Medal.GOLD, GOLD_STEPS), (Medal.SILVER, SILVER_STEPS), (Medal.BRONZE, 1.0))
+        rungs = (f"{medal.title:<6} at most {share * self.max_steps:7,.0f} steps" for medal, share in shares)
+        reward = " --reward FILE" if self.own_reward else ""
+        return [
+            *rungs,
+            "",
+            f"kit train {self.trains} --steps N{reward}   trains; it always ends a batch of steps",
+            f"kit train {self.trains} --list   names the settings that --set changes",
+        ]
+
     def parse_answer(self, argument: str) -> str:
         return argument  # a run's name, also where a file is called so
 

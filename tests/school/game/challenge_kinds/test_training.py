@@ -42,6 +42,21 @@ def test_a_training_counts_steps_and_successes(challenge, tmp_path: Path) -> Non
         challenge.task.judge(AnswerSubmission("no-such-run", tmp_path))
 
 
+@pytest.mark.parametrize("challenge", TRAININGS, ids=lambda each: each.id)
+def test_the_page_says_with_how_many_steps_each_medal_is_earned(challenge: Challenge) -> None:
+    assert isinstance(challenge.task, TrainingTask)
+    own = challenge.task.own_reward
+    told = [line.split() for line in challenge.task.lines() if "at most" in line]
+    for medal, *_, steps, _ in told:
+        most = int(steps.replace(",", ""))
+        earned = [
+            judge_training(challenge.task, count, 1.0, has_own_reward=own).medal for count in (most, most + 1)
+        ]
+        assert earned[0] is Medal[medal.upper()]
+        assert earned[1] < earned[0]
+    assert len(told) == 3
+
+
 @pytest.mark.nightly
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("challenge", TRAININGS, ids=lambda each: each.id)
