@@ -240,7 +240,7 @@ WITHOUT_DEFENCE: Final[Mapping[str, tuple[str, tuple[str, ...]]]] = MappingProxy
         "kernel": (NO_FILTER, ("use a keyring",)),
         "uncounted": (
             NO_FILTER,
-            ("use memory that nobody counts", "use shared memory", "leave pages in a pipe", "widen a pipe"),
+            ("use memory that nobody counts", "use shared memory", "use semaphores", "use a message queue", "leave pages in a pipe", "widen a pipe"),
         ),
     }
 )  # fmt: skip
