@@ -98,7 +98,8 @@ class Criterion:
     trials: tuple[str, ...]
     seeds: SeedSet
     need: float | None
-    """The share of episodes that must earn full points; None takes the mean over all episodes."""
+    """The share of episodes that must earn full points; None takes the mean over all episodes. Episodes with secret seeds must
+    do so by themselves too."""
     after: str | None
     """Id of a criterion: only episodes that earned full points there count."""
     visibility: Visibility

@@ -663,19 +663,26 @@ def judge_findings(
 def _earned_share(criterion: Criterion, scored: Sequence[_ScoredEvidence]) -> float:
     """Returns the share of a criterion's points that its evidence earns together, 0 to 1.
 
-    Where secret evidence counts, the share is one of a few steps, so that its digits carry no measure of a secret
+    Where secret evidence counts, all of it together earns no more than the secret alone: what only repeats the cases it was
+    tried on has earned nothing. The share is one of a few steps then, so that its digits carry no measure of a secret
     episode out. Of secret evidence alone, each piece earns all or nothing unless the assignment states the steps.
     """
     shares = [each.share for each in scored]
-    secret = [each.evidence.secret for each in scored]
-    if all(secret) and criterion.share_steps is None:
-        shares = [float(share == 1.0) for share in shares]
-    if criterion.need is None:
-        share = math.fsum(shares) / len(shares)
-    else:
-        passed = sum(share == 1.0 for share in shares) / len(shares)
-        share = 1.0 if passed >= criterion.need - 1e-9 else passed / criterion.need
-    return round_share(share, criterion.share_steps or DEFAULT_STEPS) if any(secret) else share
+    secret = [each.share for each in scored if each.evidence.secret]
+    if len(secret) == len(scored) and criterion.share_steps is None:
+        shares = secret = [float(share == 1.0) for share in shares]
+    if not secret:
+        return _joint_share(shares, criterion.need)
+    share = min(_joint_share(each, criterion.need) for each in (shares, secret))
+    return round_share(share, criterion.share_steps or DEFAULT_STEPS)
+
+
+def _joint_share(shares: Sequence[float], need: float | None) -> float:
+    """Returns the mean of shares, or how near the share of full ones comes to what is needed."""
+    if need is None:
+        return math.fsum(shares) / len(shares)
+    passed = sum(share == 1.0 for share in shares) / len(shares)
+    return 1.0 if passed >= need - 1e-9 else passed / need
 
 
 def _summarize_episode(scored: _ScoredEvidence) -> EpisodeSummary:

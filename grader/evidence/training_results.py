@@ -114,6 +114,8 @@ class TrainingResult:
     """The success of the kept policy in its last test during the training; 0 if it was never tested."""
     exam: CaseCounts
     """Final test of the kept policy, on episodes that no other test uses."""
+    is_stopped: bool
+    """Whether a test ended it, before its last step."""
 
     @property
     def accuracy(self) -> float:

@@ -49,6 +49,13 @@ class Control:
 
 CONTROLS: Final = (
     Control(
+        "the public cases known by heart",
+        "grader/grading.py",
+        "min(_joint_share(each, criterion.need) for each in (shares, secret))",
+        "_joint_share(shares, criterion.need)",
+        "grader/test_empty_ideas.py::test_who_knows_the_public_cases_by_heart_earns_nothing",
+    ),
+    Control(
         "an impostor's name while its holder renews",
         "kit/school/game/league/entries.py",
         "    return not is_holder, status.st_ctime_ns, file.name\n",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from types import MappingProxyType
 from typing import Final
@@ -11,6 +12,7 @@ import yaml
 
 from grader.grading import GradingOptions, grade
 from grader.kinds.answers.kind import AnswersTask
+from grader.kinds.function.kind import answer_cases, is_close
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.sandbox_config import Level
@@ -65,6 +67,54 @@ def test_a_function_without_an_idea_earns_nothing(name: str, exercise: str) -> N
             test.id: test.points for test in result.tests if (test.points or 0) > MOST * test.max_points
         }
         assert not earned, idea
+
+
+def test_who_knows_the_public_cases_by_heart_earns_nothing() -> None:
+    """Nor who gives the commonest answer to all others."""
+    table = """
+KNOWN = {known}
+def beside(episodes): return KNOWN["beside"].get(repr(episodes))
+def claim(one, other): return KNOWN["claim"].get(repr((one, other)))
+def differs(one, other): return KNOWN["differs"].get(repr((one, other)))
+def row(shares): return KNOWN["row"].get(repr(shares))
+"""
+    assignment = read_assignment(lessons_folder() / "28-a-papers-table" / "honest")
+    wanted = [(each.name, assignment.task.seed) for each in assignment.task.functions]
+    known = {
+        name: {
+            repr(tuple(case.values()) if len(case) > 1 else next(iter(case.values()))): answer
+            for case, answer in cases
+        }
+        for (name, _), cases in zip(wanted, answer_cases(assignment.task.reference, wanted), strict=True)
+    }
+    work = Submission("known", assignment.submit, {assignment.submit: table.format(known=known).encode()})
+    for secret, points in ((False, assignment.max_points), (True, 0.0)):
+        assert grade(assignment, work, GradingOptions(Level.LIMITED, secret=secret)).points == points
+
+
+SMALL: Final = frozenset({"mirrored_action"})
+"""A function of three actions: its table is the idea."""
+
+
+@pytest.mark.parametrize(("name", "exercise"), list(exercises_of("function")))
+def test_what_is_known_by_heart_is_not_asked_again(name: str, exercise: str) -> None:
+    """Cases that come again with another seed, and the commonest answer to the others, earn at most a tenth."""
+    assignment = read_assignment(lessons_folder() / name / exercise)
+    for criterion in assignment.criteria:
+        spec = next(
+            each for each in assignment.task.functions if criterion.params.function in ("", each.name)
+        )
+        seeds = [(spec.name, seed) for seed in (assignment.task.seed, *range(11, 16))]
+        first, *others = answer_cases(assignment.task.reference, seeds)
+        known = {repr(case): answer for case, answer in first}
+        counts = Counter(map(repr, (answer for _, answer in first)))
+        commonest = max((answer for _, answer in first), key=lambda answer: counts[repr(answer)])
+        for cases in others:
+            right = [
+                is_close(answer, known.get(repr(case), commonest), spec.within) for case, answer in cases
+            ]
+            share = criterion.anchors.share(sum(right) / len(right))
+            assert share <= MOST or spec.name in SMALL, f"{spec.name}: {share:.2f} of the points"
 
 
 @pytest.mark.daily(7)

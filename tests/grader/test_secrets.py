@@ -209,7 +209,7 @@ def test_an_example_that_loses_less_than_the_secret_run_is_not_told_as_why_point
         function_assignment, submission, found, secret=True, clock=SubmissionClock(), examples=True
     )
     [test] = grading.result().tests
-    assert test.points == test.max_points / 2
+    assert test.points == 0, "what only the public cases earn is not earned"
     assert "explained 10000" in test.rationale
     assert "explained 1" not in test.rationale.replace("explained 10000", "")
     assert grading.worst_evidence() is found.evidence(function_assignment.criteria[0])[1]

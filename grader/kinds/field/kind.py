@@ -66,6 +66,10 @@ MAX_BYTES: Final = 64 * 1024
 MAX_CHARGES: Final = 200
 MAX_INTENSITY: Final = 1e6
 """The largest magnitude of an intensity."""
+LEAST_WAY: Final = 0.3
+"""Metres that each robot must drive, so that touching nothing means anything."""
+LEAST_FACTOR: Final = 0.01
+"""The least factor of the walls' intensity with which a charge counts as one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +95,16 @@ class FieldDrive(GradedDrive):
         """(ticks, 3) of each robot."""
         return [self.recording.track(name) for name in self.scenario.partners]
 
+    @property
+    def shortest_way(self) -> float:
+        """Length of the way [m] of the robot that drove least."""
+        ways = [np.hypot(*np.diff(track[:, :2], axis=0).T).sum() for track in self.partners]
+        return float(min(ways, default=0.0))
+
     def explain(self, check: str, params: Any = None) -> str:
-        """Names the largest trap of the field, if that explains the lost points."""
+        """Names the largest trap of the field, or the way that was hardly driven, if that explains the lost points."""
+        if check == bumps.name and self.shortest_way < LEAST_WAY:
+            return f"It hardly drove, {self.shortest_way:.2f} m: at least {LEAST_WAY} m are wanted, for who stands touches nothing."
         if check not in ("arrive", "free_of_traps") or self.secret:
             return ""
         trap = next(iter(self.flow.traps()), None)
@@ -118,6 +130,12 @@ class ForceParams:
     fx: float = 0.0
     fy: float = 0.0
     """N: what the charges should make there, the target's too."""
+
+
+@check(none=3, full=0, unit="bumps")
+def bumps(drive: FieldDrive, params: NoParams) -> float:
+    """The robots drove and touched something: {actual} in the worst drive ({where}); {full} are allowed for all points."""
+    return float(drive.score.bumps) if drive.score.bumps or drive.shortest_way >= LEAST_WAY else math.nan
 
 
 @check(none=0, full=1, words=("not reached", "reached"))
@@ -153,9 +171,10 @@ def free_of_traps(drive: FieldDrive, params: NoParams) -> float:
 
 @check(none=0.5, full=1, unit="%", params=CoverageParams)
 def covers(drive: FieldDrive, params: CoverageParams) -> float:
-    """Of the walls' length {actual} has charges; {full} is wanted. `kit fields show` draws them over the walls."""
+    """Of the walls' length {actual} has charges that act; {full} is wanted. `kit fields show` draws them over the walls."""
     assert drive.setup is not None
-    charge_lines = _line_charges(drive.setup.layout.charges)
+    layout = drive.setup.layout
+    charge_lines = _line_charges(layout.charges) if layout.intensities.walls else []
     wanted = _line_charges(derive_charges(drive.setup.grid))
     lengths = [math.dist(*each) for each in wanted]
     covered = [
@@ -179,7 +198,12 @@ Segment = tuple[tuple[float, float], tuple[float, float]]
 
 
 def _line_charges(charges: Sequence[Any]) -> list[Segment]:
-    return [each.ends for each in iter_members(charges) if isinstance(each, LineCharge)]
+    """Returns the ends of all lines that act."""
+    return [
+        each.ends
+        for each in iter_members(charges)
+        if isinstance(each, LineCharge) and abs(each.intensity) >= LEAST_FACTOR
+    ]
 
 
 def _is_same_segment(one: Segment, other: Segment, within: float) -> bool:
@@ -191,8 +215,8 @@ def _is_same_segment(one: Segment, other: Segment, within: float) -> bool:
 
 CHECKS: Final[Mapping[str, Check]] = MappingProxyType(
     {
-        **{name: DRIVE_CHECKS[name] for name in ("bumps", "clearance", "smooth")},
-        **{each.name: each for each in (arrive, soon, side_by_side, free_of_traps, covers, force_at)},
+        **{name: DRIVE_CHECKS[name] for name in ("clearance", "smooth")},
+        **{each.name: each for each in (bumps, arrive, soon, side_by_side, free_of_traps, covers, force_at)},
     }
 )
 

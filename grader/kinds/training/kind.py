@@ -114,13 +114,21 @@ def honest(evidence: EvidenceRecord, params: object) -> float:
     return max(max(0.0, training.claimed - training.accuracy) for training in results.trainings)
 
 
-@check(none=1.0, full=0.7, unit="%")
-def steps_used(evidence: EvidenceRecord, params: object) -> float:
-    """The trainings used {actual} of the steps they might; {full} or less earns all points. When is it good enough?"""
+@dataclass(frozen=True, slots=True)
+class StepsUsedParams:
+    """What a test must ask of a policy, so that the training which it ends counts as ended by it."""
+
+    goal: float = 0.8
+
+
+@check(none=1.0, full=0.7, unit="%", params=StepsUsedParams)
+def steps_used(evidence: EvidenceRecord, params: StepsUsedParams) -> float:
+    """The trainings used {actual} of the steps they might; {full} or less earns all points. One that no test with a goal
+    worth the name ended counts as if it had used them all. When is it good enough?"""
     results: TrainingResults = evidence.content
-    return sum(training.steps for training in results.trainings) / (
-        len(results.trainings) * results.budget.steps
-    )
+    allowed, is_told = results.budget.steps, results.settings.goal >= params.goal
+    used = [each.steps if each.is_stopped and is_told else allowed for each in results.trainings]
+    return sum(used) / (len(used) * allowed)
 
 
 def read_settings(files: AssignmentFiles) -> KindSettings:

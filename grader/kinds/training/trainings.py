@@ -76,12 +76,14 @@ def _run_training(
         [settings.train_on] if settings.order is CaseOrder.MIXED else [(case,) for case in settings.train_on]
     )
     learner: Learner | None = None
+    is_stopped = False
     for stage, on in enumerate(stages, 1):
         learner = _make_learner(settings, budget, on, derive_seed(seed, "training", stage), learner)
         monitor.learner = learner
         try:
             learner.learn(settings.steps * stage // len(stages), monitor)
         except StopLearning:
+            is_stopped = True
             break
     assert learner is not None  # a plan names at least one case
     monitor.test_last_steps()
@@ -89,7 +91,7 @@ def _run_training(
     claimed = monitor.best_accuracy if settings.keeps_best else monitor.last_accuracy
     progress.show_exam()
     exam = monitor.examine(policy, budget.episodes, derive_seed(seed, "exam"))
-    result = TrainingResult(progress.number, learner.steps, tuple(monitor.tests), claimed, exam)
+    result = TrainingResult(progress.number, learner.steps, tuple(monitor.tests), claimed, exam, is_stopped)
     progress.add_exam(result.accuracy)
     return result
 

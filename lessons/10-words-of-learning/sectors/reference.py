@@ -39,6 +39,6 @@ def ended_cases(chance):
     for _ in range(30):
         yield {
             "touching": chance.random() < 0.3,
-            "to_target": chance.choice((0.05, 0.15, 0.3, 1.2)),
-            "steps": chance.choice((1, 100, 199, 200, 201)),
+            "to_target": round(chance.choice((chance.uniform(0.01, 0.19), chance.uniform(0.21, 1.5))), 3),
+            "steps": chance.choice((chance.randint(1, 198), 199, 200, chance.randint(201, 300))),
         }

@@ -41,14 +41,16 @@ def line_force_cases(chance):
     yield {"x": 1.0, "y": -0.5, **wall}
     yield {"x": -0.5, "y": 0.5, **wall}
     yield {"x": 2.5, "y": 0.5, **wall}
-    for _ in range(30):
+    for number in range(30):
         ax, ay, angle, length = (
             chance.uniform(-1, 1),
             chance.uniform(-1, 1),
             chance.uniform(-math.pi, math.pi),
             chance.uniform(0.5, 2.0),
         )
-        along, aside = chance.uniform(-0.5, 1.5) * length, chance.choice((-1, 1)) * chance.uniform(0.1, 1.0)
+        beyond = chance.choice((chance.uniform(-0.5, 0.0), chance.uniform(1.0, 1.5)))
+        along = (chance.uniform(0.0, 1.0) if number % 4 else beyond) * length
+        aside = chance.choice((-1, 1)) * chance.uniform(0.1, 1.0)
         cos, sin = math.cos(angle), math.sin(angle)
         yield {
             "x": ax + along * cos - aside * sin,

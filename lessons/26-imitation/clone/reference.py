@@ -34,7 +34,7 @@ def imitate_cases(chance):
     yield {"known": [[-1, 1], [1, -1]], "row": 0}
     yield {"known": [[1, -1], [-1, 1]], "row": 0}
     for _ in range(20):
-        yield {"known": random_examples(chance), "row": chance.randint(-3, 3)}
+        yield {"known": random_examples(chance, at_least=4), "row": chance.randint(-3, 3)}
 
 
 def drive_cases(chance):
@@ -53,6 +53,6 @@ def random_rows(chance):
     return rows
 
 
-def random_examples(chance):
-    rows = chance.sample(range(-3, 4), chance.randint(1, 5))
+def random_examples(chance, at_least=1):
+    rows = chance.sample(range(-3, 4), chance.randint(at_least, at_least + 2))
     return [[row, chance.choice([-1, 0, 1])] for row in rows]

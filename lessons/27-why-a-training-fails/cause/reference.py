@@ -42,6 +42,12 @@ def fault_cases(chance):
     yield {"log": [row(900, 0.4, 0.0, 1300.0, None), row(950, 0.0, 0.9, None, 1000.0)], "bound": 1500.0}
     yield {"log": [row(900, 0.4, 0.0, 1300.0, None), row(950, 0.0, 0.9, None, 2700.0)], "bound": 1500.0}
     yield {"log": [row(900, 0.0, 1.0, None, 2700.0), row(950, 0.9, 0.0, 1300.0, None)], "bound": 1500.0}
+    earned = (
+        row(900, 0.3, 0.0, 900.0, None),
+        row(900, 0.4, 0.0, 1300.0, None),
+        row(900, 0.0, 0.9, None, 1100.0),
+    )
+    yield {"log": list(earned), "bound": 1500.0}
     for _ in range(30):
         yield {"log": [any_row(chance) for _ in range(chance.randint(1, 5))], "bound": 1500.0}
 
@@ -64,5 +70,7 @@ def any_row(chance):
         reached,
         timed_out,
         None if reached == 0 else round(chance.uniform(900, 1400), 0),
-        None if timed_out == 0 else round(chance.uniform(-300, 2800), 0),
+        None
+        if timed_out == 0
+        else round(chance.choice((chance.uniform(-300, 2800), chance.uniform(900, 1400))), 0),
     )

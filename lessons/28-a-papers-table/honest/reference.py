@@ -31,8 +31,13 @@ def claim_cases(chance):
     yield {"one": [0.79, 0.64, 0.93], "other": [0.93, 0.87, 0.99]}
     yield {"one": [1.0, 1.0, 1.0], "other": [0.93, 0.87, 0.99]}
     yield {"one": [0.5, 0.4, 0.6], "other": [0.8, 0.61, 0.9]}
-    for _ in range(20):
-        yield {"one": some_row(chance), "other": some_row(chance)}
+    for number in range(20):
+        # Their ends are near each other, and what is between them decides.
+        b = chance.randint(20, 75)
+        a, c, d = b - chance.randint(6, 20), b + chance.randint(1, 4), b + chance.randint(10, 25)
+        first, last = (((a, b), (c, d)), ((a, c), (b, d)), ((a, b), (c, d)), ((a, d), (b, c)))[number % 4]
+        one, other = chance.sample((row_between(*first), row_between(*last)), 2)
+        yield {"one": one, "other": other}
 
 
 def differs(one, other):
@@ -69,9 +74,9 @@ def some_share(chance, middle):
     return round(min(1.0, max(0.0, chance.gauss(middle, 0.15))), 2)
 
 
-def some_row(chance):
-    mean, half = round(chance.uniform(0, 1), 2), round(chance.uniform(0, 0.3), 2)
-    return [mean, max(0.0, mean - half), min(1.0, mean + half)]
+def row_between(low, high):
+    """A row of the table, from its interval in percent."""
+    return [(low + high) / 200, low / 100, high / 100]
 
 
 def some_conditions(chance):

@@ -61,7 +61,8 @@ def found_cases(chance):
             {each: f"/workspace_{number}/{each}" for each in chance.sample(NAMES, chance.randint(1, 5))}
             for number in range(chance.randint(1, 4))
         ]
-        yield {"sourced": workspaces, "name": chance.choice(NAMES)}
+        names = sorted({name for each in workspaces for name in each})
+        yield {"sourced": workspaces, "name": chance.choice(names if chance.random() < 0.8 else NAMES)}
 
 
 def workspace(chance):

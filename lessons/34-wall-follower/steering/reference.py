@@ -15,6 +15,7 @@ def distance_cases(chance):
         yield {"ranges": [math.nan] * 91, "side": side}
         yield {"ranges": [math.inf] * 91, "side": side}
         yield {"ranges": [round(0.3 + 0.02 * ray, 3) for ray in range(91)], "side": side}
+        yield {"ranges": [round(2.1 - 0.02 * ray, 3) for ray in range(91)], "side": side}
         for _ in range(10):
             ranges = [round(chance.uniform(0.3, 3.0), 3) for _ in range(91)]
             for ray in chance.sample(range(91), 40):

@@ -41,9 +41,15 @@ def connected_cases(chance):
     yield {"grid": ROOMS, "start": [3, 4], "target": [8, 15], "size": 0}
     yield {"grid": ["#####", "#.#.#", "##..#", "#####"], "start": [1, 1], "target": [2, 2], "size": 0}
     yield {"grid": ["...", "...", "..."], "start": [0, 0], "target": [2, 2], "size": 1}
-    for _ in range(20):
-        grid = with_door(chance)
-        yield {"grid": grid, "start": [3, 4], "target": [8, 15], "size": chance.randint(0, 3)}
+    yield {"grid": with_door(range(1, 10)), "start": [3, 4], "target": [8, 15], "size": 3}
+    for number in range(10):
+        yield {
+            "grid": with_door(any_door(chance)),
+            "start": [3, 4],
+            "target": [8, 15],
+            "size": chance.randint(0, 2),
+        }
+        yield {**maze(chance, 1 + 2 * (number % 2), is_open=number % 5 > 0), "size": number % 2}
 
 
 def widest(grid, start, target):
@@ -55,16 +61,55 @@ def widest(grid, start, target):
 
 def widest_cases(chance):
     yield {"grid": ROOMS, "start": [3, 4], "target": [8, 15]}
-    for _ in range(15):
-        yield {"grid": with_door(chance), "start": [5, 5], "target": [6, 15]}
+    for number in range(8):
+        yield {"grid": with_door(any_door(chance)), "start": [5, 5], "target": [6, 15]}
+        yield maze(chance, chance.choice((1, 3, 5)), is_open=number % 4 > 0)
 
 
-def with_door(chance):
-    """The two rooms, with a door of up to nine cells, or none."""
+def any_door(chance):
+    """The rows of a door of up to nine cells, or of none."""
     wide, top = chance.choice([0, 1, 2, 3, 4, 5, 7, 9]), chance.randint(1, 3)
-    return [
-        row[:10] + "." + row[11:] if top <= number < top + wide else row for number, row in enumerate(ROOMS)
-    ]
+    return range(top, top + wide)
+
+
+def with_door(rows):
+    """The two rooms, with a door in these rows."""
+    return [row[:10] + "." + row[11:] if number in rows else row for number, row in enumerate(ROOMS)]
+
+
+def maze(chance, wide, is_open):
+    """A maze of four by four places with corridors of this width, and a start and a target in it; unless it is open, a wall
+    stands across the one way between them."""
+    start = chance.randrange(4), chance.randrange(4)
+    came_from, ring = {start: start}, [start]
+    while ring:
+        row, column = ring[-1]
+        near = [(row - 1, column), (row + 1, column), (row, column - 1), (row, column + 1)]
+        new = [each for each in near if each not in came_from and 0 <= each[0] < 4 and 0 <= each[1] < 4]
+        if new:
+            ring.append(chance.choice(new))
+            came_from[ring[-1]] = (row, column)
+        else:
+            ring.pop()
+    target = chance.choice([each for each in came_from if each not in (start, came_from[start])])
+    passages = {(place, before) for place, before in came_from.items() if place != start}
+    if not is_open:
+        passages.remove((target, came_from[target]))
+        passages -= {(place, before) for place, before in passages if before == target}
+    pitch = wide + 1
+    cells = [["#"] * (4 * pitch + 1) for _ in range(4 * pitch + 1)]
+    for place, before in [*passages, *((place, place) for place in came_from)]:
+        for row in range(min(place[0], before[0]) * pitch + 1, max(place[0], before[0]) * pitch + pitch):
+            for column in range(
+                min(place[1], before[1]) * pitch + 1, max(place[1], before[1]) * pitch + pitch
+            ):
+                cells[row][column] = "."
+    middle = (1 + wide) // 2
+    ends = {
+        name: [each * pitch + middle for each in place]
+        for name, place in (("start", start), ("target", target))
+    }
+    return {"grid": ["".join(row) for row in cells], **ends}
 
 
 def scattered(chance):

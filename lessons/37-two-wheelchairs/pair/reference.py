@@ -9,7 +9,7 @@ def split_cases(chance):
     for number in range(16):
         yield {"number": number, "count": 4}
     for _ in range(20):
-        count = chance.randint(2, 9)
+        count = chance.randint(5, 30)
         yield {"number": chance.randrange(count * count), "count": count}
 
 

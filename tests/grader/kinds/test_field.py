@@ -56,6 +56,27 @@ def test_a_good_layout_earns_everything(assignment: Assignment) -> None:
     assert result.verdict is GradingVerdict.PASS
 
 
+@pytest.mark.parametrize(
+    ("before", "after", "lost"),
+    [
+        ("walls: -1\n  target: 15", "walls: 0\n  target: 5.0e-324", {"covers", "bumps"}),
+        ("  - line", "  - times: 0.001\n    line", {"covers"}),
+    ],
+    ids=["no charge acts, and the robot stands", "some charges do not act"],
+)
+def test_a_charge_counts_if_it_acts_and_a_drive_if_it_goes_somewhere(
+    assignment: Assignment, before: str, after: str, lost: set[str]
+) -> None:
+    assert before in GOOD
+    result = handed_in(assignment, GOOD.replace(before, after))
+    shares = {test.id: test.points for test in result.tests}
+    assert all(shares[each] == 0 for each in lost)
+    if "bumps" in lost:
+        assert "It hardly drove, 0.00 m" in next(
+            test.rationale for test in result.tests if test.id == "bumps"
+        )
+
+
 @pytest.mark.long
 def test_a_trap_is_told_with_its_place(assignment: Assignment) -> None:
     result = handed_in(assignment, GOOD.replace("target: 15", "target: 0.5"))

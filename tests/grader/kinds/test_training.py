@@ -9,10 +9,17 @@ from pathlib import Path
 import pytest
 
 from grader.evidence.contract import EvidenceOptions, EvidenceRecord
-from grader.evidence.training_results import CaseOrder, StopRule, TrainingResults
+from grader.evidence.training_results import (
+    CaseOrder,
+    StopRule,
+    TrainingResult,
+    TrainingResults,
+    TrainingSettings,
+)
 from grader.grading import Grading, GradingOptions, grade
+from grader.kinds.contract import read_submitted_yaml
 from grader.kinds.training import kind as training
-from grader.kinds.training.kind import CHECKS, collect_evidence
+from grader.kinds.training.kind import CHECKS, StepsUsedParams, _read_settings, collect_evidence
 from grader.reading import read_assignment
 from grader.submission import Submission
 from kit.host.sandbox.sandbox_config import Level
@@ -224,3 +231,20 @@ def test_yaml_that_cannot_be_read_loads_nothing_of_learning(exercise: str, name:
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip() == ""
+
+
+@pytest.mark.parametrize(
+    ("is_stopped", "goal", "used"), [(True, 0.9, 0.25), (False, 0.9, 1.0), (True, 0.01, 1.0)]
+)
+def test_only_a_test_with_a_goal_saves_steps(
+    folder: Path, *, is_stopped: bool, goal: float, used: float
+) -> None:
+    """A number of steps that went well with the seeds that were tried is no rule to stop."""
+    settings = read_assignment(folder).task
+    file = folder.parent / "training.yaml"
+    file.write_text(f"batch: 5000\ngoal: {goal}\n")
+    plan = read_submitted_yaml(file, lambda section: _read_settings(section, settings))
+    assert isinstance(plan, TrainingSettings)
+    trainings = (TrainingResult(1, 5_000, (), 1.0, {}, is_stopped),)
+    evidence = EvidenceRecord(TrainingResults(settings, plan, trainings))
+    assert CHECKS["steps_used"].measure(evidence, StepsUsedParams()) == used

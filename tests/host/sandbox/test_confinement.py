@@ -79,6 +79,11 @@ ATTACKS_BY_PROMISE = {
         "remove a file outside": "os.unlink(secret); return 1",
         "rename a file outside": "os.rename(secret, secret + '2'); return 1",
         "write into the library": "open(os.__file__, 'a'); return 1",
+        "have every later Python start it": "import site; open(site.getsitepackages()[0] + '/of-a-test.pth', 'w'); return 1",
+        "leave bytecode beside the kit": "import kit; open(os.path.dirname(kit.__file__) + '/__pycache__/of-a-test.pyc', 'w'); return 1",
+        "make a file in /var/tmp": "open('/var/tmp/new-of-a-test', 'w'); return 1",
+        "have the machine start it": "open('/etc/cron.d/of-a-test', 'w'); return 1",
+        "leave a semaphore": "_libc.sem_open.restype = ctypes.c_void_p; return 1 if _libc.sem_open(b'/of-a-test', 0o100, 0o600, 1) else 0",
     },
     "attributes": {
         "change a file's rights": "os.chmod(secret, 0o777); return 1",
@@ -101,6 +106,7 @@ ATTACKS_BY_PROMISE = {
         "connect over TCP_ACCESS": "import socket; socket.create_connection(('127.0.0.1', 9), 1); return 1",
         "send over UDP": "import socket; s = socket.socket(type=socket.SOCK_DGRAM); s.sendto(b'x', ('127.0.0.1', 9)); return 1",
         "open a local socket": "import socket; socket.socket(socket.AF_UNIX); return 1",
+        "wait at a name without a file": "import socket; s = socket.socket(socket.AF_UNIX); s.bind(chr(0) + 'of-a-test'); return 1",
         "open a raw socket": "import socket; socket.socket(socket.AF_PACKET, socket.SOCK_RAW); return 1",
     },
     "processes": {
@@ -147,7 +153,10 @@ ATTACKS_BY_PROMISE = {
     },
     "uncounted": {
         "use memory that nobody counts": "return 1 + call(319, 279, b'x', 0)",
-        "use shared memory": "return 1 + call(29, 194, 0, 4096, 0o600)",
+        "use shared memory": "made = call(29, 194, 0, 4096, 0o600); return 1 + call(31, 195, made, 0, None)",
+        "use semaphores": "made = call(64, 190, 0, 1, 0o600); return 1 + call(66, 191, made, 0, 0)",
+        "use a message queue": "made = call(68, 186, 0, 0o600); return 1 + call(71, 187, made, 0, None)",
+        "use a named message queue": "return 1 + call(240, 180, b'of-a-test', 0o102, 0o600, None)",
         "leave pages in a pipe": "part = (ctypes.c_size_t * 2)(ctypes.addressof(kept := ctypes.create_string_buffer(9)), 1); return 1 + call(278, 75, os.pipe()[1], part, 1, 0)",
         "copy a pipe's pages": "ends = os.pipe(); os.write(ends[1], b'x'); return 1 + call(276, 77, ends[0], os.pipe()[1], 1, 0)",
         "move pages into a pipe": "return 1 + call(275, 76, os.open(__file__, 0), None, os.pipe()[1], None, 1, 0)",

@@ -16,7 +16,10 @@ from typing import Any, Final
 
 import pytest
 
-from kit.host import process
+from grader.assignment import Assignment
+from grader.evidence.submission_clock import SubmissionClock
+from grader.grading import Grading
+from kit.host import process, protocol
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox import grants
 from kit.host.sandbox.limits import MIB, Limits
@@ -26,13 +29,15 @@ from kit.host.sandbox.reaper import descendants
 from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 from tests.grader import test_returned_numbers, test_secrets
-from tests.grader.controls import CONTROLS
 from tests.host import test_forgery, test_process, test_states
 from tests.host.conftest import LINUX, QUICK, Student
 from tests.host.sandbox import test_confinement, test_grants
+from tests.host.sandbox.test_control_groups import without_groups
 
 pytestmark = pytest.mark.usefixtures("cold_start")
 
+function_assignment, speaks = test_secrets.function_assignment, test_states.speaks
+"""Fixtures of the tests that are tried here without a defence."""
 SECURITY: Final = Path(__file__).parents[3] / ".github" / "SECURITY.md"
 BEGIN, END = "<!-- table of promises -->\n", "<!-- end of the table -->\n"
 
@@ -235,7 +240,7 @@ WITHOUT_DEFENCE: Final[Mapping[str, tuple[str, tuple[str, ...]]]] = MappingProxy
         "kernel": (NO_FILTER, ("use a keyring",)),
         "uncounted": (
             NO_FILTER,
-            ("use memory that nobody counts", "use shared memory", "leave pages in a pipe", "widen a pipe"),
+            ("use memory that nobody counts", "use shared memory", "use semaphores", "use a message queue", "leave pages in a pipe", "widen a pipe"),
         ),
     }
 )  # fmt: skip
@@ -393,7 +398,55 @@ def test_files_that_nobody_sees_fill_a_disk_that_is_not_their_own(
     assert filled[1] == 20
 
 
-SEEN_BROKEN: Final[Mapping[str, Callable[..., Any] | tuple[str, ...]]] = MappingProxyType(
+def test_a_calculation_goes_on_where_no_clock_looks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(SubmissionClock, "check", lambda clock: None)
+    with pytest.raises(pytest.fail.Exception, match="DID NOT RAISE"):
+        test_returned_numbers.test_a_calculation_ends_with_the_submissions_time(0.0, tmp_path)
+
+
+@LINUX
+@pytest.mark.parametrize("kind", ["functions", "ended"])
+def test_a_frame_at_the_wrong_time_is_taken_where_no_table_says_when(
+    speaks: Callable[..., process.StudentProcess], monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    any_frame = dict.fromkeys(protocol.ProcessState, object)
+    monkeypatch.setattr(protocol, "ALLOWED_FRAMES", any_frame)
+    with pytest.raises((AssertionError, AttributeError)):
+        test_states.test_every_frame_in_every_state(speaks, kind, protocol.ProcessState.CALLING_BATCH)
+
+
+def test_words_come_after_a_secret_run_where_the_public_ones_do_not_come_first(
+    function_assignment: Assignment, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def judge() -> None:
+        test_secrets.test_nothing_that_a_student_reads_of_is_run_after_a_secret_run(
+            function_assignment, Level.FILTERED, True, True, ["public", "counterpart 1", "secret"]
+        )
+
+    judge()
+    monkeypatch.setattr(Grading, "_run_public", lambda grading: None)
+    with pytest.raises(AssertionError):
+        judge()
+
+
+@pytest.mark.long
+@LINUX
+def test_runs_have_the_kits_user_and_its_threads_where_they_get_none_of_their_own(
+    student: Student, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not is_level_available(Level.ANOTHER_USER):
+        pytest.skip("not on this machine")
+    with monkeypatch.context() as patch:
+        without(patch, taking_away("confinement.switch_user", "lambda *whose: None"))
+        with pytest.raises((AssertionError, StudentCodeError)):
+            test_confinement.test_two_runs_have_two_users(student, Level.ANOTHER_USER)
+    without_groups(monkeypatch)
+    without(monkeypatch, NO_LIMITS)
+    with pytest.raises(AssertionError, match=r"f\(\) must return"):  # and so all thousand were started
+        test_confinement.test_threads_are_counted(student, Level.ANOTHER_USER)
+
+
+SEEN_BROKEN: Final[Mapping[str, Callable[..., Any]]] = MappingProxyType(
     {
         "outlive": test_a_daemon_is_left_behind_where_nobody_ends_it,
         "time": test_a_limit_is_exceeded_where_it_is_not_set,
@@ -404,23 +457,20 @@ SEEN_BROKEN: Final[Mapping[str, Callable[..., Any] | tuple[str, ...]]] = Mapping
         "stat": test_what_a_level_prevents_and_what_it_does_not,
         "list": test_what_a_level_prevents_and_what_it_does_not,
         "access times": test_reading_leaves_no_trace_for_a_later_program,
-        "numbers": ("rewards whose sums are infinite",),
-        "frames": ("a frame at the wrong time", "a forged number of an endpoint"),
-        "order": ("a secret handed on by the page cache",),
-        "threads": ("threads of root that nobody counts",),
-        "user": ("one user for all runs",),
+        "numbers": test_a_calculation_goes_on_where_no_clock_looks,
+        "frames": test_a_frame_at_the_wrong_time_is_taken_where_no_table_says_when,
+        "order": test_words_come_after_a_secret_run_where_the_public_ones_do_not_come_first,
+        "threads": test_runs_have_the_kits_user_and_its_threads_where_they_get_none_of_their_own,
+        "user": test_runs_have_the_kits_user_and_its_threads_where_they_get_none_of_their_own,
     }
 )
-"""By promise that is not in ``WITHOUT_DEFENCE``: the test here, or the names of the controls (``tests.grader.controls``), in
-which it is broken where its defence is missing."""
+"""By promise that is not in ``WITHOUT_DEFENCE``: the test in which it is broken where its defence is missing."""
 
 
 def test_every_promise_is_seen_broken_without_its_defence() -> None:
     assert set(WITHOUT_DEFENCE) == set(test_confinement.ATTACKS_BY_PROMISE)
     kept = {promise.key for promise in PROMISES if promise.since is not None}
     assert {*WITHOUT_DEFENCE, *SEEN_BROKEN} == kept
-    controls = {control.name for control in CONTROLS}
-    assert {name for each in SEEN_BROKEN.values() if isinstance(each, tuple) for name in each} <= controls
 
 
 if __name__ == "__main__":
