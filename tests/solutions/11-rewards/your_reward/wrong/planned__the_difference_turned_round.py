@@ -1,0 +1,7 @@
+"""A reward."""
+
+# Lesson: pay the difference: after minus before, of a number that says how good a place is
+
+
+def reward(to_go, previous_to_go, reached, collided):
+    return to_go - previous_to_go - 0.01 + 2.0 * reached - 2.0 * collided
