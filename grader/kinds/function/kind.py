@@ -118,7 +118,7 @@ class FunctionComparison:
             why = (
                 "It prints: print only shows a value, return gives it to the caller."
                 if self.prints
-                else "Does every path through it end with a return?"
+                else "Does every path through it end with a return? append(), sort() and reverse() return nothing themselves."
             )
             return f"{self.name}({arguments}) returns nothing. {why}"
         return f"{self.name}({arguments}) {difference}"
