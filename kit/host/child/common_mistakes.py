@@ -45,7 +45,10 @@ MEANINGS: Final = (
         r"^(not enough|too many) values to unpack",
         "On the left of = stands another number of names than there are values on the right.",
     ),
-    (r"^(math domain error|expected a (nonnegative|positive) input)", "Such a root or logarithm takes no negative number."),
+    (
+        r"^(math domain error|expected a (nonnegative|positive) input)",
+        "Such a root or logarithm takes no negative number.",
+    ),
     (
         r"^cannot access local variable",
         "It gets its value further down, or in a branch that was not taken.",
