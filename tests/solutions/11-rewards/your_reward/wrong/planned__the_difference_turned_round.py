@@ -1,6 +1,6 @@
 """A reward."""
 
-# Lesson: pay the difference: after minus before, of a number that says how good a place is
+# Lesson: pay the difference: after minus before
 
 
 def reward(to_go, previous_to_go, reached, collided):
