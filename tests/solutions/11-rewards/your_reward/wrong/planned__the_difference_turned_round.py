@@ -4,4 +4,4 @@
 
 
 def reward(to_go, previous_to_go, reached, collided):
-    return to_go - previous_to_go - 0.01 + 2.0 * reached - 2.0 * collided
+    return to_go - previous_to_go + reached - collided
