@@ -13,6 +13,7 @@ import click
 from grader.cli import confinement, exits, loading, options
 from grader.submitted_files import SubmissionRefused
 from kit.cli.existing_path import ExistingPath
+from kit.kernels.compilation_progress import PROGRESS
 from kit.results.grading_result import GradingResult
 from kit.workspace import write_atomically
 
@@ -88,6 +89,7 @@ def check(
         exits.fail(f"There is no format {format_name}; use one of: {', '.join(FORMATS)}.")
     with (
         shown_progress(progress_descriptor) as show_progress,
+        PROGRESS.told_by(show_progress),
         _own_starts(file, level, for_student=for_student),
     ):
         show_progress("reading the exercise")

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -23,10 +24,13 @@ MAX_TIMEOUTS: Final = 2
 """Episodes that may take too long before no other is run."""
 SHORTEST_S: Final = 0.001
 """The shortest time limit that a process is given [s]."""
-SHOWN_TESTS: Final = 3
+SHOWN_TESTS: Final = 2
 """Number of the newest tests shown, so that the text fits into 80 characters."""
 DRIVE_KIND: Final = ", drive"
 """Ends the part before the first colon of a text that is to be drawn, and not to be read."""
+TRAINING: Final = "training "
+PUBLIC: Final = "public "
+"""Begins the title of a training that is made once more, with a seed that may be shown."""
 REPORTS: Final = 50
 """How often the steps of one training are shown, about."""
 
@@ -56,6 +60,16 @@ class SubmissionClock:
     def end_condition(self) -> EndCondition:
         """Ends an episode as soon as the time is used up."""
         return when(lambda: self.is_used_up)
+
+    @contextmanager
+    def public_again(self) -> Iterator[None]:
+        """In the block, trainings are shown as made once more with public seeds, after secret ones that lost points."""
+        show = self.show_progress
+        self.show_progress = lambda text: show(f"{PUBLIC}{text}" if text.startswith(TRAINING) else text)
+        try:
+            yield
+        finally:
+            self.show_progress = show
 
     def check(self) -> None:
         """Raises StudentCodeError if the time is used up."""
@@ -103,7 +117,7 @@ class TrainingProgressReport:
         """``number``: which training of ``count``, from 1. ``steps``: its most steps."""
         self.clock = clock
         self.number = number
-        self._count = count
+        self._title = f"{TRAINING}{number} of {count}"
         self._steps = steps
         self._next = 0
         self._tests: list[float] = []
@@ -139,10 +153,6 @@ class TrainingProgressReport:
     def add_exam(self, success: float) -> None:
         """Shows what the exam found, 0 to 1: the figure that is judged, which a lesson shows beside the curve of the tests."""
         self.clock.show_progress(f"{self._title}, exam: {100 * success:.0f} %")
-
-    @property
-    def _title(self) -> str:
-        return f"training {self.number} of {self._count}"
 
     @property
     def _curve(self) -> str:

@@ -132,9 +132,15 @@ def collect_once(
     ) -> AbstractContextManager[EvidenceCollector]:
         public = replace(options, secret=False)
         is_secret = options.secret and bool(assignment.secret_seeds)
-        counterpart = (lambda: collect_evidence(assignment, file, public)) if is_secret else None
+
+        def collect_counterpart() -> EvidenceRecord:
+            with options.clock.public_again():
+                return collect_evidence(assignment, file, public)
+
         collected = SingleEvidence(
-            lambda: collect_evidence(assignment, file, options), options.level, counterpart
+            lambda: collect_evidence(assignment, file, options),
+            options.level,
+            collect_counterpart if is_secret else None,
         )
         return nullcontext(collected)
 

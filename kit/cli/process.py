@@ -8,6 +8,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from contextlib import suppress
 from errno import EACCES, EDQUOT, EFBIG, EIO, EMFILE, ENAMETOOLONG, ENFILE, ENOSPC, EPERM, EROFS
 from typing import Final, NoReturn
@@ -16,6 +17,7 @@ import click
 
 from kit.installation import foreign_distributions, overwritten_text
 from kit.interruption import ended_by_signals, write_out
+from kit.kernels.compilation_progress import PROGRESS
 from kit.plain_text import escape_controls
 
 FAILED: Final = 1
@@ -39,6 +41,7 @@ def describe_no_room(error: OSError) -> str:
     )
 
 
+NOTICE_INTERVAL_S: Final = 2.0
 COLLECTED_FROM: Final = 50_000
 """New objects from which on unreachable ones are looked for. A command imports about a hundred thousand, of which none is
 unreachable: with Python's 700, looking for them is a sixth of a check's start."""
@@ -64,6 +67,18 @@ def _tell_other_kinds(name: str) -> None:
             click.echo(escape_controls(sentence), err=True)
 
 
+class _CompilationNotice:
+    """Says on a terminal what is compiled while a command seems to do nothing: at once, and then from time to time."""
+
+    def __init__(self) -> None:
+        self._due = 0.0
+
+    def tell(self, text: str) -> None:
+        if sys.stderr is not None and sys.stderr.isatty() and time.monotonic() >= self._due:
+            self._due = time.monotonic() + NOTICE_INTERVAL_S
+            click.echo(text, err=True)
+
+
 def run_as_process(command: click.Command, name: str) -> NoReturn:
     """Runs a command line as this process, to whose end belongs that what it has written is out.
 
@@ -79,7 +94,7 @@ def run_as_process(command: click.Command, name: str) -> NoReturn:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     refuse_if_written_over(name)
     try:
-        with ended_by_signals():
+        with ended_by_signals(), PROGRESS.told_by(_CompilationNotice().tell):
             try:
                 command(prog_name=name)
             except SystemExit as stop:

@@ -118,7 +118,7 @@ class FunctionComparison:
             why = (
                 "It prints: print only shows a value, return gives it to the caller."
                 if self.prints
-                else "Does every path through it end with a return?"
+                else "Does every path through it end with a return? append(), sort() and reverse() return nothing themselves."
             )
             return f"{self.name}({arguments}) returns nothing. {why}"
         return f"{self.name}({arguments}) {difference}"
@@ -219,7 +219,10 @@ def _answers_of(module: ModuleType, name: str, seed: int) -> Json:
 class FunctionCollector(CachingCollector):
     """Calls each function when a criterion first needs it: all of them in one process with the public cases, then in another
     with the secret ones. After a failure the next function gets a new one, so that an error in one costs no other; in a
-    student's own check the one that failed is not called with secret cases."""
+    student's own check the one that failed is not called with secret cases, nor anywhere one that took too long with the
+    public ones."""
+
+    stops_after_timeouts = False
 
     def __init__(self, assignment: Assignment, file: Path, options: EvidenceOptions) -> None:
         super().__init__(options)
@@ -297,7 +300,8 @@ class FunctionCollector(CachingCollector):
         seed = self._task.secret_seed if secret else self._task.seed
         assert seed is not None  # without one, no secret evidence is collected
         key = (spec.name, secret)
-        if secret and self._stops_at_death and (failure := self._record(spec, False).failure) is not None:
+        failure = self._record(spec, False).failure if secret else None
+        if failure is not None and (self._stops_at_death or failure.kind is FailureKind.TIMEOUT):
             return self._skip(key, failure, label, secret=True)
         run = partial(self._compare, spec, seed, EvidenceRecord(label=label, secret=secret))
         return self._collect(key, run, label, secret=secret)

@@ -49,6 +49,8 @@ class BehaviourComparison:
                 f"For {self.better} it pays {more:.3g} more than for {self.worse}: next to a reward of {self.margin / NOTICED:.3g}, "
                 "nobody learns from that."
             )
+        if self.better_return == self.worse_return:
+            return f"It pays {self.better_return:.3g} for {self.better}, and as much for {self.worse}."
         return f"It pays {self.better_return:.3g} for {self.better}, but {self.worse_return:.3g} for {self.worse}."
 
 

@@ -39,7 +39,7 @@ from kit.host.student_functions import StudentFunctions
 from kit.host.wire import printable
 from kit.learning.tasks.student_reward import REWARD_FUNCTION, RewardFileError, call_reward, reward_parameters
 from kit.learning.tasks.transition import Transition
-from kit.plain_text import suggestion
+from kit.plain_text import counted, suggestion
 
 MIRRORED_MOVES[[LEFT, RIGHT]] = RIGHT, LEFT
 
@@ -168,7 +168,19 @@ class RewardEvidence:
         if check == "loops":
             profitable = next((loop for loop in self.loops if loop.is_profitable), None)
             return "" if profitable is None else str(profitable)
-        return ""
+        return self._explain_exploit() if check == "planned" else ""
+
+    def _explain_exploit(self) -> str:
+        """Says how the optimal behaviour ends that misses the target."""
+        states = self._exploit
+        if states is None:
+            return ""
+        if self.model.hit[states[-2], states[-1] % LAST_MOVES]:
+            return (
+                f"It drives into a wall after {counted(len(states) - 1, 'move')}: with this reward, that ends an episode better "
+                "than driving on does."
+            )
+        return f"It drives until the {len(states) - 1} moves of an episode are used up: that pays more than arriving."
 
     def picture(self, check: str = "") -> str:
         """Draws the optimal behaviour under this reward, and says its return, if it misses the target."""

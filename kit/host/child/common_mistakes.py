@@ -36,6 +36,19 @@ MEANINGS: Final = (
         "A whole number is needed: // divides without a remainder, int(x) cuts off the decimals.",
     ),
     (r"list index out of range", "A list with n entries has the indices 0 to n - 1."),
+    (r"string index out of range", "A text with n characters has the indices 0 to n - 1."),
+    (
+        r"^(max|min)\(\) (arg|iterable argument) is (an )?empty",
+        "The list is empty here, and so has no largest or smallest entry.",
+    ),
+    (
+        r"^(not enough|too many) values to unpack",
+        "On the left of = stands another number of names than there are values on the right.",
+    ),
+    (
+        r"^(math domain error|expected a (nonnegative|positive) input)",
+        "Such a root or logarithm takes no negative number.",
+    ),
     (
         r"^cannot access local variable",
         "It gets its value further down, or in a branch that was not taken.",
@@ -49,7 +62,7 @@ TOO_MANY: Final = re.compile(
 
 def meaning(problem: BaseException) -> str:
     """Returns the end of the message about an exception; empty if its own text says enough."""
-    if not isinstance(problem, (TypeError, IndexError, AttributeError, UnboundLocalError)):
+    if not isinstance(problem, (TypeError, IndexError, AttributeError, UnboundLocalError, ValueError)):
         return ""
     text = str(problem)
     found = TOO_MANY.match(text)

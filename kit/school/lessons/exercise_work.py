@@ -237,13 +237,15 @@ class ExerciseAttempt:
             self._check, self._drive_loop = self.session.start_check(self.exercise), DriveLoop()
 
     def poll(self) -> bool:
-        """Starts a check where the file was saved, and takes in one that has ended; says whether one has.
+        """Starts a check where the file was saved, in place of one of an older file, and takes in one that has ended; says
+        whether one has.
 
         Raises ProgressError where the disk refuses to note it: the report is there all the same.
         """
+        if self._watch.has_changed():
+            self.close()
+            self.start()
         if self._check is None:
-            if self._watch.has_changed():
-                self.start()
             return False
         report = self._check.poll()
         if report is None:

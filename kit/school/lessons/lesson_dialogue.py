@@ -479,7 +479,7 @@ class LessonDialogue(Dialogue):
         if self.step.exercise is None:
             self.session.complete_step(self.step)
         if self.step.number < len(self.session.lesson.steps):
-            is_open = not self.session.lesson_progress.is_step_completed(self.step)
+            is_open = not (self.busy or self.session.lesson_progress.is_step_completed(self.step))
             self.enter(self.session.find_step(self.step.number + 1))
             return Remark("Not passed yet: b goes back to the exercise.", Tone.DIM) if is_open else None
         self.stage.close()
@@ -697,8 +697,15 @@ class LessonDialogue(Dialogue):
 
     # When
 
-    def can_predict(self) -> bool:
-        return self.is_waiting and not self.has_ended
+    def can_predict(self) -> bool | str:
+        if self.has_ended or not self.step.options:
+            return False
+        if self.chosen is None:
+            return True
+        return f"You have predicted {self.step.options.index(self.chosen) + 1}; only the first choice counts."
+
+    def can_ask_questions(self) -> bool | str:
+        return self.has_ended or f"The questions come after step {len(self.session.lesson.steps)}, the last."
 
     def can_go_on(self) -> bool | str:
         if self.has_ended:
@@ -842,7 +849,7 @@ class LessonDialogue(Dialogue):
         DialogueAction(ACTIONS["output"], show_output, can_show_output),
         DialogueAction(
             letter("questions", "k", "questions", "answer the lesson's questions, after its last step"),
-            ask_questions, lambda dialogue: dialogue.has_ended,
+            ask_questions, can_ask_questions,
         ),
         DialogueAction(ACTIONS["previous"], go_back, can_go_back, while_busy=True),
         DialogueAction(ACTIONS["restart"], restart, can_restart),

@@ -356,7 +356,7 @@ def test_in_a_students_own_check_a_function_that_failed_is_not_called_with_secre
     told: list[str] = []
     options = GradingOptions(Level.LIMITED, secret=True, examples=is_own_check, show_progress=told.append)
     result = graded(folder, f"def nearest(ranges):\n    {body}\n{HALVES}", options)
-    assert calls.count("nearest") == (1 if is_own_check else 2)
+    assert calls.count("nearest") == (1 if is_own_check or "while" in body else 2)
     assert calls.count("halves") >= 2
     assert "nearest" in result.tests[0].rationale
     assert "secret" not in result.tests[0].rationale
@@ -365,6 +365,26 @@ def test_in_a_students_own_check_a_function_that_failed_is_not_called_with_secre
         verdict = next(each for each in told if each.startswith(PUBLIC_CASES))
         assert told.index(verdict) < told.index("halves() on secret cases")
         assert "1 of 2" in verdict
+
+
+def test_functions_that_take_too_long_cost_no_other(folder: Path) -> None:
+    endless = "".join(f"def {name}(ranges):\n    while True: pass\n" for name in ("nearest", "third"))
+    sheet = folder / "assignment.yaml"
+    text = (
+        sheet.read_text()
+        .replace("  - {name: halves}\n", "  - {name: halves}\n  - {name: third}\n")
+        .replace("budget:", "  - {check: agrees, id: third, points: 1, with: {function: third}}\nbudget:")
+    )
+    sheet.write_text(text)
+    reference = folder / "reference.py"
+    reference.write_text(
+        reference.read_text()
+        + "\n\ndef third(ranges):\n    return nearest(ranges)\n\ndef third_cases(chance):\n    yield from nearest_cases(chance)\n"
+    )
+    result = graded(folder, endless + HALVES, GradingOptions(Level.LIMITED, secret=True, examples=True))
+    statuses = {each.id: each.status for each in result.tests}
+    assert statuses["halves"] is CriterionStatus.PASS, statuses
+    assert CriterionStatus.PASS not in (statuses["nearest"], statuses["third"])
 
 
 def test_a_mistake_that_only_a_secret_case_shows_is_shown_in_ones_own_check(folder: Path) -> None:

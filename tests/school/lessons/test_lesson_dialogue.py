@@ -155,3 +155,27 @@ def test_of_several_files_one_is_chosen_and_then_stays_the_one_that_is_shown(
     assert dialogue.work is not None
     assert dialogue.work.edited_file == opened.request.file
     dialogue.close()
+
+
+def test_a_file_saved_while_it_is_checked_is_checked_at_once_in_place_of_the_older_one(
+    dialogue: LessonDialogue,
+) -> None:
+    file = answer(dialogue, "red")
+    dialogue.check()
+    file.write_text("colour: green # mended\n")
+    polled(dialogue, lambda effect: dialogue.report is not None)
+    assert dialogue.report is not None
+    assert dialogue.report.is_passed, "the first report is that of the newer file"
+
+
+def test_a_key_that_came_too_late_or_too_early_says_so(dialogue: LessonDialogue) -> None:
+    turn = Turn(dialogue)
+    dialogue.go_to("1")
+    early = turn.press("k")
+    assert isinstance(early, Remark)
+    assert str(len(dialogue.session.lesson.steps)) in early.text, "the last step"
+    if dialogue.step.options:
+        turn.press("1")
+        late = turn.press("2")
+        assert isinstance(late, Remark)
+        assert "predicted 1" in late.text
