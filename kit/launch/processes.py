@@ -99,12 +99,12 @@ class NodeProgramProcess:
         self._is_interruptible = is_interruptible
         self._node_process = node_process
         self._on_loaded = on_loaded
-        self._has_joined = False
+        self._has_joined = self._is_closed = False
         self._failure: Failure | None = None
         self.pid = node_process.pid
 
     def poll(self) -> ProcessExit | None:
-        if not self._has_joined and self._failure is None:
+        if not (self._has_joined or self._is_closed) and self._failure is None:
             try:
                 if self._node_process.is_started():
                     self._join()
@@ -148,6 +148,7 @@ class NodeProgramProcess:
         return self._has_joined and self._node_process.exchange()
 
     def close(self) -> None:
+        self._is_closed = True
         try:
             if self._is_interruptible:
                 self._node_process.interrupt()

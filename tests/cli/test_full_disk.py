@@ -18,6 +18,23 @@ from tests.endings.endings import can_mount
 
 pytestmark = pytest.mark.long
 
+LAUNCH_TEST = """\
+import unittest
+
+import launch
+from launch_testing.actions import ReadyToTest
+from launch_testing.markers import keep_alive
+
+
+@keep_alive
+def generate_test_description():
+    return launch.LaunchDescription([ReadyToTest()])
+
+
+class TestNothing(unittest.TestCase):
+    def test_nothing(self):
+        pass
+"""
 DRAWING = "########\n#      #\n#      #\n#      #\n########\n"
 WRITERS = {
     "kit run --record": "kit run simple --steps 20 --record {out}",
@@ -33,6 +50,7 @@ WRITERS = {
     "kit study --html": "kit study 3.4 --html {out}.html",
     "kit study --json": "kit study 3.4 --json {out}",
     "kit train": "kit train turn --steps 100 --workspace {out}",
+    "kit ros launch_test --junit-xml": "kit ros launch_test {made}/test_nothing.launch.py --junit-xml {out}",
     "kit quiz": "kit quiz --workspace {out}",
     "kit lesson": "kit lesson 1 --plain --workspace {out}",
     "kit help --html": "kit help --html {out}",
@@ -45,6 +63,7 @@ ELSEWHERE = {
     "kit play --record": "as kit run; tests.endings",
     "kit drive --record": "as kit play",
     "kit ros pkg create --dest": "kit pkg create",
+    "kit ros test --junit-xml": "kit ros launch_test",
     "kit ros bag record --output": "needs a world; tests.endings",
     "kit evaluate --csv": "needs an agent; write_atomically",
     "kit evaluate --pictures": "needs an agent",
@@ -123,6 +142,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What the commands read."""
     folder = tmp_path_factory.mktemp("made")
     (folder / "drawing.txt").write_text(DRAWING)
+    (folder / "test_nothing.launch.py").write_text(LAUNCH_TEST)
     for words in (
         "kit run simple --steps 30 --record {made}/drive",
         "kit task new mine",

@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from kit.launch.processes import MAX_LINE_LENGTH, MAX_READ, CommandProcess
+from kit.host.node_process import NodeProcess
+from kit.launch.processes import MAX_LINE_LENGTH, MAX_READ, CommandProcess, NodeProgramProcess
+from kit.ros.graph.graph import Graph
 from tests.waiting import wait_until
 
 
@@ -41,3 +43,12 @@ def test_a_command_that_prints_without_end_is_read_a_part_at_a_time(monkeypatch:
         patch.setattr(os, "read", lambda descriptor, size: next(parts, b"")[:size])
         lines = process.take_lines()
     assert 2 * len(lines) <= 2 * MAX_READ  # two bytes a line, two streams
+
+
+def test_a_program_that_is_ended_before_it_has_begun_may_still_be_asked(tmp_path: Path) -> None:
+    file = tmp_path / "large.py"
+    file.write_text(f"TEXT = {'x' * 200_000!r}\n")  # larger than what the pipe to it takes at once
+    process = NodeProgramProcess(NodeProcess(Graph(log_sink=lambda record: None), file))
+    assert process.poll() is None
+    process.close()
+    assert process.poll() is None

@@ -73,7 +73,7 @@ def _passage(told: str) -> float:
 
 def photo_passage(words: str, step: LessonStep, folder: Path) -> str:
     width = _passage(told_of_the_photo("--width", "5"))
-    return f"At 5 m the way from start to target is {width:.2f} m wide at its narrowest place."
+    return f"If it is 5 m wide, the way from start to target is {width:.2f} m wide at its narrowest place."
 
 
 def needed_width(words: str, step: LessonStep, folder: Path) -> str:
