@@ -121,8 +121,8 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         return self._result
 
     def _unavailable_actions(self) -> list[str]:
-        """Actions that do nothing here."""
         return [
+            *super()._unavailable_actions(),
             *(["edit_file"] if self._file is None else []),
             *(["next"] if self._following is None else []),
         ]

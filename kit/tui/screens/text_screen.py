@@ -44,6 +44,8 @@ class TextScreen(ActivePaintScreen[None]):
         """The same on as many rows as the width asks for."""
         self._width = 0
         self._top = 0
+        self._scrolls = False
+        """Whether there is more than the screen shows."""
 
     def compose(self) -> ComposeResult:
         yield TextRows(id="heading")
@@ -59,6 +61,7 @@ class TextScreen(ActivePaintScreen[None]):
             self._width = self.size.width
             together = self._arranged(self._width, room)
             self._shown = [each for parts in together for each in broken(parts, self._width)]
+        self._scrolls = len(self._shown) > room
         self._top = max(0, min(self._top, len(self._shown) - room))
         last = min(len(self._shown), self._top + room)
         where = lines_shown(self._top, last - self._top, len(self._shown))
@@ -89,7 +92,11 @@ class TextScreen(ActivePaintScreen[None]):
         return 0
 
     def _keys(self) -> Row:
-        return footer(self.screen_actions, self.size.width)
+        return footer(self.screen_actions, self.size.width, without=self._unavailable_actions())
+
+    def _unavailable_actions(self) -> list[str]:
+        """Actions that do nothing now."""
+        return [] if self._scrolls else ["scroll"]
 
     def action_scroll(self, lines: int) -> None:
         self._top += lines

@@ -19,6 +19,10 @@ def test_a_long_row_goes_on_below_and_is_counted() -> None:
         await pilot.press("end")
         await seen(pilot, "the last")
         assert "lines 5 to 26 of 26" in rows(pilot)[0]
+        assert "scroll" in rows(pilot)[-1]
+        await pilot.resize_terminal(80, 40)
+        await seen(pilot, "/folder0")
+        assert "scroll" not in rows(pilot)[-1], "all is shown: the keys would do nothing"
 
     several = [row((long, "bold")), *(row("short") for _ in range(21)), row("the last")]
     stage(lambda theme: TextScreen("Printed", several), scene, size=(80, 24))
