@@ -13,6 +13,7 @@ import click
 from grader.cli import confinement, exits, loading, options
 from grader.submitted_files import SubmissionRefused
 from kit.cli.existing_path import ExistingPath
+from kit.cli.output_file import OutputFile
 from kit.kernels.compilation_progress import PROGRESS
 from kit.results.grading_result import GradingResult
 from kit.workspace import write_atomically
@@ -45,12 +46,10 @@ _format_option = click.option(
 )
 @_format_option
 @click.option("--json", "as_json", is_flag=True, help="Same as --format json.")
-@click.option(
-    "--output", type=click.Path(dir_okay=False, path_type=Path), help="Write the report to this file."
-)
+@click.option("--output", type=OutputFile(), help="Write the report to this file.")
 @click.option(
     "--replay",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=OutputFile(),
     help="Save the worst episode to this file, for `kit replay`; the first one if all pass.",
 )
 @click.option("--for-student", is_flag=True, help="Leave out what students may not see yet.")
@@ -188,9 +187,7 @@ def _save_replay(run: WatchableEvidence, replay: Path, grading: Grading) -> str:
 @click.command()
 @click.argument("file", type=ExistingPath(dir_okay=False, path_type=Path))
 @_format_option
-@click.option(
-    "--output", type=click.Path(dir_okay=False, path_type=Path), help="Write the report to this file."
-)
+@click.option("--output", type=OutputFile(), help="Write the report to this file.")
 @click.option("--for-student", is_flag=True, help="Leave out what students may not see yet.")
 @click.option(
     "--work", default="", help="For annotations: the graded file or folder, relative to the repository."

@@ -22,6 +22,7 @@ from grader.cohort.statistics import class_document
 from grader.cohort.submission_times import read_submission_times
 from kit.cli.existing_path import ExistingPath
 from kit.cli.messages import describe_error
+from kit.cli.output_file import OutputFile
 from kit.document.layout import document_lines, lines_of
 from kit.plain_text import counted
 from kit.workspace import write_atomically
@@ -70,7 +71,7 @@ FILE = ExistingPath(dir_okay=False, path_type=Path)
 )
 @click.option("--decimal-comma", is_flag=True, help="Write 2,5 instead of 2.5.")
 @click.option("--json", "as_json_text", is_flag=True, help="Print JSON instead of CSV.")
-@click.option("--output", type=click.Path(dir_okay=False, path_type=Path), help="Write to this file.")
+@click.option("--output", type=OutputFile(), help="Write to this file.")
 @click.option(
     "--feedback",
     type=click.Path(file_okay=False, path_type=Path),

@@ -11,6 +11,7 @@ from pathlib import Path
 import click
 
 from kit.cli import learning_options, messages, options
+from kit.cli.output_file import OutputFile
 from kit.document.layout import Page, lines_of
 from kit.learning.policies.episode_paths import record_paths
 from kit.learning.policies.evaluation import evaluate_on
@@ -47,7 +48,7 @@ from kit.workspace import open_workspace, write_atomically
 @click.option(
     "--csv",
     "csv_file",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=OutputFile(),
     help="With --sweep: write the table to this CSV file.",
 )
 @click.option("--newest", is_flag=True, help="Test the newest policy of the run instead of the best.")
@@ -59,7 +60,7 @@ from kit.workspace import open_workspace, write_atomically
 )
 @click.option(
     "--node",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=OutputFile(),
     help="Only write the policy to this file, as a ROS 2 node.",
 )
 @click.option("--package", metavar="NAME", help="Only create a ROS 2 package of the policy, with this name.")

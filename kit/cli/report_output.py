@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from kit.cli import messages, terminal_options
+from kit.cli.output_file import OutputFile
 from kit.document.data_files import document_to_json, table_to_csv
 from kit.document.glyphs import ASCII_GLYPHS, BLOCK_GLYPHS
 from kit.document.layout import document_lines
@@ -69,7 +70,7 @@ def output_options(function: Callable[..., Any]) -> Callable[..., Any]:
             "--json",
             "json_file",
             metavar="FILE",
-            type=click.Path(dir_okay=False, allow_dash=True, path_type=Path),
+            type=OutputFile(allow_dash=True),
             help="Write everything as JSON; - writes to standard output.",
         ),
         click.option(

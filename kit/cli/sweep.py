@@ -14,6 +14,7 @@ import click
 
 from kit.cli import learning_options, messages, options
 from kit.cli.executor_options import executor_options
+from kit.cli.output_file import OutputFile
 from kit.document.layout import lines_of
 from kit.host.job_executors import ExecutorUnavailable
 from kit.host.job_folder import JobExecutor
@@ -129,7 +130,7 @@ def _read_ranges(
 @click.option(
     "--csv",
     "csv_file",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=OutputFile(),
     help="Write a CSV file with one row per training.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")

@@ -11,6 +11,7 @@ import click
 
 from kit.cli import learning_options, messages, terminal_options
 from kit.cli.existing_path import ExistingPath
+from kit.cli.output_file import OutputFile
 from kit.document.blocks import Text, labelled_table
 from kit.document.layout import Page, lines_of
 from kit.host.sandbox.probe import highest_level_up_to
@@ -114,7 +115,7 @@ def check(task: str) -> None:
 @click.option(
     "--to",
     "archive",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=OutputFile(),
     help="File to write (default: NAME.zip here).",
 )
 def pack(task: str, archive: Path | None) -> None:

@@ -11,6 +11,7 @@ import click
 from kit.cli import messages, opening, options
 from kit.cli.existing_path import ExistingPath
 from kit.cli.launch import INTERRUPTED, parse_words, show_arguments
+from kit.cli.output_file import OutputFile
 from kit.host.failure import StudentCodeError
 from kit.inspection.sockets import sockets_folder, world_name
 from kit.world.problems import WorldError
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 @click.argument("words", nargs=-1, metavar="[NAME:=VALUE ...]")
 @click.option(
     "--junit-xml",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=OutputFile(),
     help="Write the results to this file as xUnit XML.",
 )
 @click.option(
