@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -187,7 +188,6 @@ def _run_plainly(
     from kit.inspection.server import open_inspection_server
     from kit.launch.launch_run import Launch
     from kit.launch.plain_launch import LaunchLimit, run_plain_launch
-    from kit.launch.processes import ProcessStartError
 
     name = target.name
     launch = Launch(
@@ -199,7 +199,7 @@ def _run_plainly(
         name=world_name(name),
         on_output=_print_line,
     )
-    try:
+    with launch_errors():
         run_plain_launch(
             launch,
             seed=seed,
@@ -210,6 +210,17 @@ def _run_plainly(
             ),
             log=lambda record: click.echo(str(record), err=True),
         )
+    if launch.failures:
+        raise SystemExit(1)
+
+
+@contextmanager
+def launch_errors() -> Iterator[None]:
+    """Ends the command with what has kept a launch from running."""
+    from kit.launch.processes import ProcessStartError
+
+    try:
+        yield
     except StudentCodeError as error:
         messages.fail(str(error.failure))
     except (ProcessStartError, WorldError) as problem:
@@ -218,8 +229,6 @@ def _run_plainly(
         messages.fail(messages.describe_os_error(problem))
     except KeyboardInterrupt:
         raise SystemExit(INTERRUPTED) from None
-    if launch.failures:
-        raise SystemExit(1)
 
 
 def _print_line(line: LaunchOutputLine) -> None:

@@ -10,11 +10,9 @@ import click
 
 from kit.cli import messages, opening, options
 from kit.cli.existing_path import ExistingPath
-from kit.cli.launch import INTERRUPTED, parse_words, show_arguments
+from kit.cli.launch import launch_errors, parse_words, show_arguments
 from kit.cli.output_file import OutputFile
-from kit.host.failure import StudentCodeError
 from kit.inspection.sockets import sockets_folder, world_name
-from kit.world.problems import WorldError
 
 if TYPE_CHECKING:
     from kit.launch.launch_run import LaunchOutputLine
@@ -68,7 +66,6 @@ def command(
     from kit.launch.launch_file_process import find_test_file
     from kit.launch.launch_test import run_launch_test
     from kit.launch.launch_test_report import write_xunit
-    from kit.launch.processes import ProcessStartError
 
     opened_workspace = opening.open_existing_workspace(workspace)
     rest, arguments = parse_words(words)
@@ -78,7 +75,7 @@ def command(
     if show_args:
         show_arguments(target, is_test=True)
         return
-    try:
+    with launch_errors():
         tested = run_launch_test(
             target,
             arguments,
@@ -93,14 +90,6 @@ def command(
         )
         if junit_xml is not None:
             write_xunit(junit_xml, package_name or target.name, target.name, tested)
-    except StudentCodeError as error:
-        messages.fail(str(error.failure))
-    except (ProcessStartError, WorldError) as problem:
-        messages.fail(str(problem))
-    except OSError as problem:
-        messages.fail(messages.describe_os_error(problem))
-    except KeyboardInterrupt:
-        raise SystemExit(INTERRUPTED) from None
     if any(each.is_failed for each in tested):
         raise SystemExit(1)
 

@@ -75,9 +75,7 @@ def read_test_runs(module: ModuleType) -> list[LaunchTestRun]:
     """The launches of a test file: one, or one for each value that it is to be launched with. Raises LaunchError."""
     generate = getattr(module, TEST_GENERATOR_FUNCTION, None)
     if not callable(generate):
-        raise LaunchError(
-            f"{module.__file__}: there is no {TEST_GENERATOR_FUNCTION}() in it: it is no test for launch_testing"
-        )
+        raise LaunchError(f"there is no {TEST_GENERATOR_FUNCTION}() in it: it is no test for launch_testing")
     sets = generate() if hasattr(generate, "__parametrized__") else [(generate, {})]
     return [LaunchTestRun(module, function, values) for function, values in sets]
 
