@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import secrets
 import shutil
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from grader.evidence_digest import ASSIGNMENT_FILE
+import yaml
+
+from grader.evidence_digest import ASSIGNMENT_FILE, YAML_LOADER
 from grader.kinds.contract import find_kind
-from grader.reading import read_assignment
+from grader.reading import SECRET_FILE, read_assignment
+from grader.seeds import GUESSABLE_BELOW, MAX_SEED
 from kit.plain_text import quoted, suggestion
 from kit.school.lessons.reading import find_lesson, lessons_folder, solutions_folder
 from kit.workspace import write_atomically
@@ -59,12 +64,40 @@ def example_of_exercise(name: str) -> AssignmentExample:
 
 
 def make_assignment(example: AssignmentExample, folder: Path) -> None:
-    """Copies the example into ``folder``, which is empty or does not exist yet. Raises OSError, WorldError."""
+    """Copies the example into ``folder``, which is empty or does not exist yet. Everybody has the secret seeds of an example, so
+    new ones are drawn. Raises OSError, WorldError."""
     ignored = shutil.ignore_patterns("__pycache__", "*.pyc")
     for each in example.folders:
         shutil.copytree(each, folder, dirs_exist_ok=True, ignore=ignored)
+    secret = folder / SECRET_FILE
+    if secret.exists():
+        write_atomically(secret.absolute(), _with_new_seeds(secret.read_text(encoding="utf-8")).encode())
     if not (folder / CARD).exists():
         write_atomically((folder / CARD).absolute(), _default_readme(folder).encode())
+
+
+def _with_new_seeds(text: str) -> str:
+    """The text of a secret file with another number in place of each seed.
+
+    >>> _with_new_seeds("seed: 7  # long\\n").endswith("  # long\\n")
+    True
+    """
+    for seed in reversed(list(_seed_nodes(yaml.compose(text, Loader=YAML_LOADER)))):
+        drawn = GUESSABLE_BELOW + secrets.randbelow(MAX_SEED - GUESSABLE_BELOW)
+        text = f"{text[: seed.start_mark.index]}{drawn}{text[seed.end_mark.index :]}"
+    return text
+
+
+def _seed_nodes(node: yaml.Node | None, is_seed: bool = False) -> Iterator[yaml.ScalarNode]:
+    """Yields the numbers under keys ``seed`` and ``seeds``, in their order in the text."""
+    if isinstance(node, yaml.MappingNode):
+        for key, value in node.value:
+            yield from _seed_nodes(value, is_seed or key.value in ("seed", "seeds"))
+    elif isinstance(node, yaml.SequenceNode):
+        for value in node.value:
+            yield from _seed_nodes(value, is_seed)
+    elif isinstance(node, yaml.ScalarNode) and is_seed:
+        yield node
 
 
 def _default_readme(folder: Path) -> str:

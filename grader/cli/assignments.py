@@ -79,7 +79,11 @@ def new(folder: Path, kind: str | None, exercise: str | None) -> None:
         exits.fail(f"Cannot create {folder}: {describe_os_error(error)}")
     shown = shlex.quote(str(folder))
     click.echo(f"{folder}: {assignment.kind}, ready. Try it: grader self-test {shown}")
-    if assignment.has_secrets:
+    if assignment.secret_seeds:
+        click.echo(
+            f"{folder}/{SECRET_FILE} has new seeds, which are on this machine alone. Keep it to yourself."
+        )
+    elif assignment.has_secrets:
         click.echo(
             f"{folder}/{SECRET_FILE} is that of the example, which everybody has who has the kit: write your own."
         )

@@ -15,6 +15,7 @@ from grader.__main__ import main
 from grader.kinds.contract import find_kind, kind_names
 from grader.new_assignment import example_of_exercise, example_of_kind, make_assignment
 from grader.reading import read_assignment
+from grader.seeds import short_seeds_warning
 from grader.sheet_keys import COMMON_KEYS
 from grader.sheet_reference import asked_keys
 from grader.student_version import ReleaseRefused, StudentVersion, student_version
@@ -64,6 +65,24 @@ def test_an_unknown_exercise_names_the_near_ones(tmp_path: Path) -> None:
     assert done.exit_code == 2
     assert "your_reward" in done.output
     assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize("name", [None, *EXERCISES])
+def test_a_new_assignment_has_secret_seeds_of_its_own(name: str | None, tmp_path: Path) -> None:
+    example = example_of_kind("controller") if name is None else example_of_exercise(name)
+    known = {
+        seed
+        for folder in example.folders
+        if (folder / "assignment.yaml").exists()
+        for seed in read_assignment(folder).secret_seeds
+    }
+    made = []
+    for each in ("first", "second"):
+        make_assignment(example, tmp_path / each)
+        made.append(read_assignment(tmp_path / each).secret_seeds)
+    assert not known.intersection(*made)
+    assert not set(made[0]) & set(made[1])
+    assert short_seeds_warning(made[0]) == ""
 
 
 @pytest.mark.parametrize("shape", ["folder", "zip", "repository"])
