@@ -16,6 +16,7 @@ from grader.budgets import budget_lines
 from grader.check import Check
 from grader.cli import confinement, exits, loading, options
 from grader.cli.progress import shown_progress
+from grader.driving.starts import start_problems
 from grader.evidence_digest import ASSIGNMENT_FILE
 from grader.grading import GradingOptions
 from grader.grading_level import LevelTooLow
@@ -173,9 +174,9 @@ def checks(kind: str, machine_readable: bool) -> None:
     help="Works that are graded at once.",
 )
 def self_test(folder: Path, solutions: Path | None, level: str | None, jobs: int) -> None:
-    """Test the assignment in FOLDER: the starter must run but not pass, the solution must earn all
-    points, and each wrong solution must lose the criterion in its file name. Then print how likely a good submission
-    is to fail by bad luck.
+    """Test the assignment in FOLDER: no seed may put the robot into a wall, the starter must run but not pass, the solution must
+    earn all points, and each wrong solution must lose the criterion in its file name. Then print how likely a good submission is
+    to fail by bad luck.
 
     A wrong solution is a whole file, or a .diff from the solution: diff -U1 solution.py wrong.py.
 
@@ -187,7 +188,10 @@ def self_test(folder: Path, solutions: Path | None, level: str | None, jobs: int
     click.echo(
         f"{assignment.title}: {counted(len(assignment.tests), 'criterion', 'criteria')}, {counted(len(works), 'work')} to grade"
     )
-    failed = False
+    problems = tuple(start_problems(assignment))
+    for problem in problems:
+        click.echo(f"[no] {problem}")
+    failed = bool(problems)
     try:
         with shown_progress(None) as show_progress:
             grading_options = GradingOptions(
