@@ -595,6 +595,13 @@ CONTROLS: Final = (
         "grader/cohort/test_queue.py::test_a_worker_with_another_version_of_the_grader_says_so",
     ),
     Control(
+        "a robot that sends faster than it is read",
+        "kit/bridge/channels.py",
+        "        for _ in range(len(arrived)):\n",
+        "        while arrived:\n",
+        "bridge/test_hostile_robot.py::test_a_robot_that_sends_faster_than_it_is_read_does_not_hold_the_world",
+    ),
+    Control(
         "a robot that announces endpoints without end",
         "kit/bridge/zenoh_wire.py",
         "                    if len(self._tokens) < MAX_ENDPOINTS:\n",
