@@ -29,6 +29,8 @@ def _field_types(record: type) -> dict[str, Any]:
 
 
 def _is_of_type(value: Any, declared: Any) -> bool:
+    if type(declared) is type and declared is not float:  # first, for a list may hold a million of them
+        return type(value) is declared
     origin, inner = get_origin(declared), get_args(declared)
     if origin in (Union, UnionType):
         return any(_is_of_type(value, each) for each in inner)

@@ -39,6 +39,7 @@ from kit.host.sandbox.sandbox_config import Level
 from kit.plain_text import counted
 from kit.school.game.levels import UnknownLevel, find_level
 from kit.workspace import write_atomically
+from kit.world.problems import WorldError
 
 
 @click.command()
@@ -118,7 +119,7 @@ def publish(queue: Queue, *, is_graded: bool) -> int:
         click.echo(" ".join(filter(None, ("Graded without --secret.", unjudged))))
     if attention := [*attention_blocks(table), *class_blocks(table)]:
         click.echo("\n".join(lines_of(attention)))
-    if told := passed_over_line(queue.passed_over(), "graded"):
+    if told := passed_over_line(queue.manifest().passed_over, "graded"):
         click.echo(
             f"{told} If one is a student's work, give it a name of its own without a dot at the beginning."
         )
@@ -146,26 +147,35 @@ def publish(queue: Queue, *, is_graded: bool) -> int:
     "--jobs", type=click.IntRange(1), default=os.cpu_count() or 1, show_default=True, help="Processes."
 )
 def work(folder: Path, shard: str, jobs: int) -> None:
-    """Grade the jobs in the queue FOLDER that have no result yet."""
+    """Grade the jobs in the queue FOLDER that have no result yet.
+
+    Exit code: 0 all have a result; 2 an argument is wrong; 3 some have none.
+    """
     share = read_shard(shard)
     if share is None:
         exits.fail(f"{shard}: give the share and the number of shares, counting from 0, such as 0/4.")
     queue = Queue(folder.absolute())
     try:
-        secret = queue.grading_options().secret
-        confinement.level_for_untrusted(queue.assignment(), str(int(queue.level())), secret=secret)
+        manifest = queue.manifest()
+        confinement.level_for_untrusted(queue.assignment(), str(manifest.level), secret=manifest.secret)
         keys = queue.waiting(share)
         JobExecutor(jobs=jobs).run(queue, keys, lambda key: None)
-    except (QueueError, OSError) as error:
+    except (QueueError, WorldError, OSError) as error:
         exits.fail(describe_error(error))
-    click.echo(f"{len(keys)} graded")
+    left = sum(map(queue.is_waiting, keys))
+    click.echo(f"{len(keys) - left} graded" + (f", {left} without a result" if left else ""))
+    if left:
+        raise SystemExit(exits.EXIT_BROKEN)
 
 
 @click.command(hidden=True)
 @click.argument("folder", type=ExistingPath(file_okay=False, path_type=Path))
 def worker(folder: Path) -> None:
     """Grade the jobs whose keys come on standard input."""
-    serve_keys(Queue(folder).run_job)
+    try:
+        serve_keys(Queue(folder).run_job)
+    except (QueueError, WorldError) as error:
+        exits.fail(describe_error(error))
 
 
 DEFAULT_LEVELS = ("left-turn", "right-turn", "parking", "roundabout", "about-turn")

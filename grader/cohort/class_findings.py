@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from grader.cohort.gradebook import MISSING, UNREADABLE, GradebookRow
+from grader.cohort.gradebook import MISSING, UNREADABLE, WAITING, GradebookRow
 from grader.reports.cleaning import clean_line
 from kit.document.blocks import Block, Text
 from kit.plain_text import counted, join_names
@@ -17,11 +17,11 @@ MAX_LISTED: Final = 40
 
 
 def attention_blocks(table: Sequence[GradebookRow]) -> list[Block]:
-    """Each submission that has no grade and why: first the unreadable ones, then the grader's faults."""
-    order = (UNREADABLE, GradingVerdict.BROKEN.value)
-    rows = sorted(
-        (row for row in table if row.verdict in order), key=lambda row: (order.index(row.verdict), row.name)
-    )
+    """Each submission that has no grade and why: first the unreadable ones, then the grader's faults, then those for which a
+    worker has left what is no result."""
+    order = (UNREADABLE, GradingVerdict.BROKEN.value, WAITING)
+    rows = [row for row in table if row.verdict in order and (row.verdict != WAITING or row.note)]
+    rows.sort(key=lambda row: (order.index(row.verdict), row.name))
     if not rows:
         return []
     verbs = ("has", "needs") if len(rows) == 1 else ("have", "need")

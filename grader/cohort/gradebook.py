@@ -143,7 +143,7 @@ def _gradebook_rows(
             UnreadableWork(entry.refused, entry.error) if entry.key is None else queue.unreadable(entry.key)
         )
         if unreadable is None:
-            yield blank
+            yield replace(blank, note=clean_line(queue.refused_result(entry.key or "")))
         else:
             note = clean_line(unreadable.unreadable)
             yield replace(blank, verdict=UNREADABLE, note=note, error=clean_line(unreadable.error))

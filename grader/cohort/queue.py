@@ -6,9 +6,12 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import os
+import re
 import shutil
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -29,6 +32,7 @@ from kit.host.job_executors import MAX_TRIES, read_result
 from kit.host.job_folder import JobFolder
 from kit.host.python_command import python_command
 from kit.host.sandbox.sandbox_config import Level
+from kit.plain_text import quoted
 from kit.results.grading_result import (
     PUBLIC_SEEDS,
     SCHEMA,
@@ -39,10 +43,12 @@ from kit.results.grading_result import (
     GradingVerdict,
 )
 from kit.workspace import draft_folder, make_private_folder, write_atomically
+from kit.world.problems import WorldError
 
 MANIFEST: Final = "manifest.json"
 GRACE_S: Final = 120.0
 """Wall clock that a worker gets for a job besides what the submission may take [s]: to start, to judge and to save."""
+_KEY: Final = re.compile(r"[0-9a-f]{32}")
 
 
 class QueueError(Exception):
@@ -62,6 +68,38 @@ class QueueEntry:
     """What was ignored of it."""
     error: str = ""
     """The internal error with which reading it ended; empty if it was refused for a known reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class QueueManifest:
+    """What a queue grades, and how."""
+
+    assignment: str
+    assignment_version: str
+    grader_version: str
+    secret: bool
+    examples: bool
+    level: int
+    """The confinement level of every program."""
+    passed_over: tuple[str, ...]
+    """The names in the folder of works that were not taken for works."""
+    entries: tuple[QueueEntry, ...]
+
+    @classmethod
+    def from_dict(cls, content: Mapping[str, Any]) -> QueueManifest:
+        """Reads what ``asdict`` gave. Raises KeyError, TypeError or ValueError for other data."""
+        entries = content["entries"]
+        check_field_types(cls, {**content, "entries": ()})
+        for each in entries:
+            check_field_types(QueueEntry, each)
+            if each["key"] is not None and not _KEY.fullmatch(each["key"]):
+                raise ValueError(f"{quoted(each['key'])} is no key")
+        Level(content["level"])
+        return cls(**{**content, "entries": tuple(QueueEntry(**each) for each in entries)})
+
+    def grading_options(self) -> GradingOptions:
+        """How every job is graded."""
+        return GradingOptions(Level(self.level), self.secret, self.examples, may_lower_level=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,32 +148,23 @@ class Queue(JobFolder):
         """Reads the assignment as it was when the queue was made. Raises WorldError."""
         return read_assignment(self.assignment_folder)
 
-    def manifest(self) -> dict[str, Any]:
+    def manifest(self) -> QueueManifest:
+        """Raises QueueError."""
         try:
-            content: dict[str, Any] = json.loads((self.folder / MANIFEST).read_bytes())
-        except (OSError, ValueError):
-            raise QueueError(
-                f"{self.folder}: not a queue of the grader; `grader cohort` creates one."
-            ) from None
-        return content
-
-    def level(self) -> Level:
-        """The confinement level of every program."""
-        return Level(self.manifest()["level"])
+            return QueueManifest.from_dict(read_result(self.folder / MANIFEST))
+        except FileNotFoundError:
+            problem = "not a queue of the grader; `grader cohort` creates one."
+            raise QueueError(f"{self.folder}: {problem}") from None
+        except (OSError, KeyError, TypeError, ValueError):
+            problem = "it cannot be read; `grader cohort` makes it again, and keeps all results."
+            raise QueueError(f"{self.folder / MANIFEST}: {problem}") from None
 
     def grading_options(self) -> GradingOptions:
         """How every job is graded."""
-        manifest = self.manifest()
-        return GradingOptions(
-            self.level(), bool(manifest["secret"]), bool(manifest["examples"]), may_lower_level=False
-        )
-
-    def passed_over(self) -> tuple[str, ...]:
-        """The names in the folder of works that were not taken for works."""
-        return tuple(self.manifest()["passed_over"])
+        return self.manifest().grading_options()
 
     def entries(self) -> tuple[QueueEntry, ...]:
-        return tuple(QueueEntry(**each) for each in self.manifest()["entries"])
+        return self.manifest().entries
 
     def result(self, key: str) -> GradingResult | None:
         """Returns a job's result; None if there is none that can be read and is this job's, so that it is graded again."""
@@ -176,11 +205,16 @@ class Queue(JobFolder):
     def is_waiting(self, key: str) -> bool:
         return self.result(key) is None and self.unreadable(key) is None
 
+    def refused_result(self, key: str) -> str:
+        """Names the file that a worker has left for a job that is waiting all the same; empty if there is none."""
+        file = self.result_file(key)
+        return f"{file}: it cannot be read, or is another job's" if os.path.lexists(file) else ""
+
     def keys(self) -> list[str]:
         return sorted({entry.key for entry in self.entries() if entry.key is not None})
 
     def run_job(self, key: str) -> GradingResult | None:
-        """Grades one job and saves its result. Returns None, and saves why, if the work cannot be read."""
+        """Grades one job and saves its result. Returns None, and saves why, if the work cannot be read. Raises QueueError."""
         try:
             return self._grade(key)
         except SubmissionRefused as refused:
@@ -189,7 +223,7 @@ class Queue(JobFolder):
 
     def _grade(self, key: str) -> GradingResult:
         manifest = self.manifest()
-        assignment = _assignment(self.folder, manifest["assignment_version"])
+        assignment = _assignment(self.folder, manifest.assignment_version)
         submission, options = self.submission(key), self.grading_options()
         result, findings = grade_and_keep(assignment, submission, options)
         for _ in range(MAX_TRIES - 1):  # a failure of the student's program is never retried
@@ -197,28 +231,50 @@ class Queue(JobFolder):
                 break
             result, findings = grade_and_keep(assignment, submission, options)
         if findings is not None:
-            file = self.findings_file(findings_key(submission, assignment, options))
-            write_atomically(file, (json.dumps(findings.as_dict()) + "\n").encode())
+            _write(self.findings_file(findings_key(submission, assignment, options)), findings.as_dict())
         self.save_result(key, result)
         return result
 
     def record_loss(self, key: str) -> None:
         """Saves for a job that it has no grade; unless its worker had saved the result before it died."""
         if self.is_waiting(key):
-            self.save_result(key, _incident_result(self, key))
+            with suppress(
+                QueueError
+            ):  # the job itself cannot be read: it stays waiting until it is written again
+                self.save_result(key, _incident_result(self, key))
 
     def submission(self, key: str) -> Submission:
-        content = json.loads(self.job(key).read_bytes())
-        files = {name: base64.b64decode(data) for name, data in content["files"].items()}
-        return Submission(content["name"], content["main"], files)
+        """Returns the work of a job. Raises QueueError if this machine cannot grade it as the queue means it."""
+        manifest = self.manifest()
+        if manifest.grader_version != grader_version():
+            raise QueueError(
+                f"{self.folder}: version {quoted(manifest.grader_version)} of the grader has made this queue, and this machine "
+                f"has {grader_version()}: install the same on all machines."
+            )
+        submission = self._read_job(key)
+        assignment = _assignment(self.folder, manifest.assignment_version)
+        if submission is None or job_key(submission, assignment, manifest.grading_options()) != key:
+            raise QueueError(f"{self.job(key)}: it is damaged; `grader cohort` writes it again.")
+        return submission
+
+    def has_job(self, key: str, submission: Submission) -> bool:
+        """Whether the file of a job holds this work."""
+        known = self._read_job(key)
+        return known is not None and known.digest == submission.digest
+
+    def _read_job(self, key: str) -> Submission | None:
+        try:
+            content = read_result(self.job(key))
+            files = {name: base64.b64decode(data) for name, data in content["files"].items()}
+            return Submission(content["name"], content["main"], files)
+        except (OSError, KeyError, TypeError, ValueError, AttributeError):
+            return None
 
     def save_result(self, key: str, result: GradingResult) -> None:
         """Saves a job's result. One without a grade never takes the place of a grade, however late it comes."""
         if result.verdict is GradingVerdict.BROKEN and self._has_grade(key):
             return
-        write_atomically(
-            self.result_file(key), (json.dumps(result.as_dict(), allow_nan=False) + "\n").encode()
-        )
+        _write(self.result_file(key), result.as_dict())
 
     def _has_grade(self, key: str) -> bool:
         known = self.result(key)
@@ -229,7 +285,12 @@ class Queue(JobFolder):
         work = UnreadableWork(
             str(refused), refused.error if isinstance(refused, SubmissionUnreadable) else ""
         )
-        write_atomically(self.result_file(key), (json.dumps(asdict(work)) + "\n").encode())
+        _write(self.result_file(key), asdict(work))
+
+
+def _write(file: Path, content: Mapping[str, Any]) -> None:
+    """Writes a file of a queue. What lies there and is no file is replaced, and nothing behind a link is touched."""
+    write_atomically(file, (json.dumps(content, allow_nan=False) + "\n").encode(), follows_links=False)
 
 
 def job_key(submission: Submission, assignment: Assignment, options: GradingOptions) -> str:
@@ -294,17 +355,17 @@ def prepare_queue(
     works, passed_over = works_in(cohort)
     entries = tuple(_queue_entries(queue, works, assignment, options))
     level = level_for_untrusted(assignment, options.level)
-    content = {
-        "assignment": assignment.id,
-        "assignment_version": assignment.version,
-        "grader_version": grader_version(),
-        "secret": options.secret,
-        "examples": options.examples,
-        "level": int(level),
-        "passed_over": passed_over,
-        "entries": [asdict(each) for each in entries],
-    }
-    write_atomically(queue.folder / MANIFEST, (json.dumps(content, indent=1) + "\n").encode())
+    manifest = QueueManifest(
+        assignment.id,
+        assignment.version,
+        grader_version(),
+        options.secret,
+        options.examples,
+        int(level),
+        tuple(passed_over),
+        entries,
+    )
+    _write(queue.folder / MANIFEST, asdict(manifest))
     return entries
 
 
@@ -335,10 +396,9 @@ def _queue_entries(
             yield QueueEntry(name, None, str(refused))
             continue
         key = job_key(submission, assignment, options)
-        if not queue.job(key).exists():
+        if not queue.has_job(key, submission):
             files = {each: base64.b64encode(data).decode() for each, data in sorted(submission.files.items())}
-            job = {"name": name, "main": submission.main, "files": files}
-            write_atomically(queue.job(key), json.dumps(job).encode())
+            _write(queue.job(key), {"name": name, "main": submission.main, "files": files})
         yield QueueEntry(name, key, note=submission.note)
 
 
@@ -346,8 +406,9 @@ def _copy_assignment(queue: Queue, assignment: Assignment) -> None:
     """Copies the present assignment beside the jobs, completely or not at all."""
     target = queue.assignment_folder
     if target.exists():
-        if read_assignment(target).version == assignment.version:
-            return
+        with suppress(WorldError):  # the copy is damaged
+            if read_assignment(target).version == assignment.version:
+                return
         shutil.rmtree(target)
     with draft_folder(queue.folder) as draft:
         shutil.copytree(assignment.folder, draft, dirs_exist_ok=True)

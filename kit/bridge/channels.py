@@ -116,7 +116,8 @@ class Channel(ABC):
 
     @abstractmethod
     def deliver(self) -> None:
-        """Passes on to the graph what has arrived from the wire."""
+        """Passes on to the graph what has arrived from the wire until now: what arrives meanwhile waits for the next call, so
+        that a robot that sends faster than it can be read does not hold the world."""
 
     def send_stop(self) -> None:
         """Tells the robot to stop."""
@@ -230,7 +231,7 @@ class ReceivedTopic(Channel):
             self._is_stop_due = False
             self._publisher.publish(self._cls())
         arrived = self._arrived  # ``send_stop`` may put another in its place meanwhile
-        while arrived:
+        for _ in range(len(arrived)):
             data, late_s = arrived.popleft()
             try:
                 message = self._context.codec.deserialize(data, self._cls)
@@ -275,7 +276,7 @@ class ServedService(Channel):
         self._arrived.append((data, reply))
 
     def deliver(self) -> None:
-        while self._arrived:
+        for _ in range(len(self._arrived)):
             data, reply = self._arrived.popleft()
             try:
                 request = self._context.codec.deserialize(data, self._cls.Request)
@@ -319,7 +320,7 @@ class CalledService(Channel):
         return await future
 
     def deliver(self) -> None:
-        while self._arrived:
+        for _ in range(len(self._arrived)):
             future, data = self._arrived.popleft()
             if data is None:
                 self._drop(

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from kit.extensions import folders
 from kit.geometry import Pose
+from kit.plain_files import is_file_there
 from kit.plain_text import quoted, suggestion
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.documents import open_document
@@ -152,7 +153,7 @@ def own_map_folder(name: str) -> Path | None:
         folder = open_workspace(make=False).worlds / name
     except WorkspaceError:
         return None
-    return folder if (folder / WORLD_FILE).is_file() else None
+    return folder if is_file_there(folder / WORLD_FILE) else None
 
 
 def map_names(folder: Path | None = None) -> tuple[str, ...]:

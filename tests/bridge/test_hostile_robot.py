@@ -7,6 +7,7 @@ import random
 import struct
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -176,6 +177,36 @@ def test_what_is_too_large_does_not_wait_in_memory(monkeypatch: pytest.MonkeyPat
     world.graph.run_due()
     assert [len(each.data) for each in world.heard] == [900]
     assert len(world.lines) == 1
+
+
+class Endless:
+    """Sends another message whenever one is read."""
+
+    def __init__(self, send: Callable[[], None]) -> None:
+        self._send = send
+        self.count = 0
+
+    def deserialize(self, data: bytes, cls: type[Message]) -> Any:
+        self.count += 1
+        assert self.count < 1000, "the world stands still"
+        self._send()
+        return CODEC.deserialize(data, cls)
+
+
+def test_a_robot_that_sends_faster_than_it_is_read_does_not_hold_the_world() -> None:
+    world = World()
+    topic, service = world.received(String), served(world, lambda request, response: response)
+    message, request = CODEC.serialize(String(data="x")), CODEC.serialize(SetBool.Request(data=True))
+    for channel, send in (
+        (topic, lambda: world.wire.receive(message, 0.0)),
+        (service, lambda: world.wire.request(request, lambda data: None)),
+    ):
+        send()
+        endless = Endless(send)
+        channel._context = replace(channel._context, codec=endless)  # type: ignore[arg-type]
+        channel.deliver()
+        channel.deliver()
+        assert endless.count == 2
 
 
 def served(world: World, answer: Callable[..., Any] | None) -> ServedService:

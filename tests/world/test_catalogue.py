@@ -113,6 +113,8 @@ def test_an_unknown_name_is_refused(name: str) -> None:
 
 
 def test_the_nearest_name_is_offered() -> None:
+    with pytest.raises(UnknownMap):
+        find_map("x" * 1000)  # longer than a file's name can be
     with pytest.raises(UnknownMap, match='"maze"'):
         find_map("mzae")
 

@@ -89,16 +89,17 @@ def read_torch_weights(packed: bytes) -> Mapping[str, Float32Array]:
         tensors = _named_tensors(pickled)
         if 4 * sum(math.prod(tensor.shape) for tensor in tensors.values()) > MAX_UNPACKED_BYTES:
             raise ValueError(f"its tensors are larger than {MAX_UNPACKED_BYTES >> 20} MiB")
-        return {name: _array_of(tensor, archive, root, order) for name, tensor in tensors.items()}
+        # Each once: thousands of tensors may be views of the same numbers.
+        keys = {tensor.storage.key for tensor in tensors.values()}
+        stored = {key: archive.read(f"{root}data/{key}") for key in keys}
+    return {name: _array_of(tensor, stored[tensor.storage.key], order) for name, tensor in tensors.items()}
 
 
-def _array_of(tensor: _Tensor, archive: zipfile.ZipFile, root: str, order: str) -> Float32Array:
+def _array_of(tensor: _Tensor, numbers: bytes, order: str) -> Float32Array:
     kind = STORAGE_TYPES.get(tensor.storage.type_name)
     if kind is None:
         raise ValueError(f"numbers of the type {tensor.storage.type_name[:60]}")
-    stored: NDArray[Any] = np.frombuffer(
-        archive.read(f"{root}data/{tensor.storage.key}"), np.dtype(order + kind)
-    )
+    stored: NDArray[Any] = np.frombuffer(numbers, np.dtype(order + kind))
     count = math.prod(tensor.shape)
     last = tensor.offset + sum((n - 1) * step for n, step in zip(tensor.shape, tensor.strides, strict=True))
     if count > len(stored) or (count and last >= len(stored)):

@@ -117,7 +117,9 @@ class TrainingSweep(JobFolder):
 
     def _read_manifest(self) -> dict[str, Any]:
         try:
-            content: dict[str, Any] = json.loads((self.folder / "manifest.json").read_bytes())
+            content = read_result(self.folder / "manifest.json")
+            if not {"episodes", "runs"} <= content.keys():
+                raise ValueError
         except (OSError, ValueError):
             raise RunError(f"{self.folder}: not a sweep; `kit sweep` creates one.") from None
         return content

@@ -37,6 +37,7 @@ from kit.school.game.shared_drives import (
     judge_shared_drives,
     read_shared_drives,
     share_drives,
+    unpacked_size,
 )
 from kit.workspace import open_common_folder, write_atomically
 
@@ -60,6 +61,9 @@ MAX_TICKS_OF_ONE_USER: Final = 100_000
 beyond them is passed over, so that nobody makes others wait for hours."""
 TICKS_OF_A_FILE: Final = 500
 """What reading a file costs, at least."""
+BYTES_OF_A_TICK: Final = 300
+"""So many bytes of a file, unpacked, take as long to read and to run as a tick: of a small file of one letter, unpacked to
+megabytes, they are nearly all that it costs."""
 
 
 class LeaderboardError(Exception):
@@ -303,7 +307,9 @@ class _Judge:
             content, since_ns = read_own(file, self._user, MAX_FILE_BYTES), file.lstat().st_ctime_ns
             if (digest := hashlib.sha256(content).digest()) not in self._seen:
                 self._seen.add(digest)
-                self._ticks_left -= TICKS_OF_A_FILE
+                self._ticks_left -= TICKS_OF_A_FILE + unpacked_size(content) // BYTES_OF_A_TICK
+                if self._ticks_left <= 0:
+                    return None
                 ticks = [each.ticks for each in read_shared_drives(content).recordings]
                 if lengths is not None and not _is_as_long(ticks, lengths):
                     return None

@@ -12,6 +12,7 @@ import io
 import json
 import os
 import platform
+import zipfile
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -205,6 +206,15 @@ def read_shared_drives(data: bytes) -> SharedDrives:
     recordings = tuple(_stripped_recording(each) for each in content["drives"])
     remarks = tuple(map(str, content["remarks"]))
     return SharedDrives(content["platform"] == platform_key(), recordings, digests, remarks)
+
+
+def unpacked_size(data: bytes) -> int:
+    """The bytes to which a file of ``share_drives`` unpacks, by what it says itself. Raises DriveRefused."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            return sum(each.file_size for each in archive.infolist())
+    except READ_ERRORS as error:
+        raise DriveRefused(f"it is damaged ({error})") from None
 
 
 def _read_drives_archive(data: bytes) -> dict[str, Any]:

@@ -36,9 +36,13 @@ def ended_cases(chance):
     yield {"touching": True, "to_target": 1.5, "steps": 31}
     yield {"touching": False, "to_target": 0.1, "steps": 87}
     yield {"touching": False, "to_target": 1.5, "steps": 200}
-    for _ in range(30):
+    for _ in range(30):  # near both bounds too: the answer to a case is not that to the nearest one
+        low, high = (0.01, 0.15, 0.201, 0.25), (0.15, 0.199, 0.25, 1.5)
+        side = chance.randrange(4)
         yield {
-            "touching": chance.random() < 0.3,
-            "to_target": round(chance.choice((chance.uniform(0.01, 0.19), chance.uniform(0.21, 1.5))), 3),
-            "steps": chance.choice((chance.randint(1, 198), 199, 200, chance.randint(201, 300))),
+            "touching": chance.random() < 0.25,
+            "to_target": round(chance.uniform(low[side], high[side]), 3),
+            "steps": chance.choice(
+                (chance.randint(1, 189), chance.randint(190, 199), 199, 200, chance.randint(200, 300))
+            ),
         }

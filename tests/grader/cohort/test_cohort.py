@@ -540,7 +540,7 @@ def test_a_class_is_not_graded_at_level_0_by_silence(tmp_path: Path) -> None:
     queue = Queue(tmp_path / "queue")
     highest = int(probe.highest_level_up_to(Level.ANOTHER_USER))
     assert highest >= 1
-    assert (code, queue.manifest()["level"], gradebook_rows(queue)[0].level) == (0, highest, highest)
+    assert (code, queue.manifest().level, gradebook_rows(queue)[0].level) == (0, highest, highest)
     assert f"1 fail, at confinement level {highest}: " in told
     assert json.loads(next((queue.folder / "results").iterdir()).read_bytes())["level"] == highest
     code, told = verb("cohort", *asked, "--level", "1")

@@ -199,6 +199,19 @@ def test_what_torch_writes_of_a_view_is_read() -> None:
     assert found["turned"].tolist() == [[0.0, 3.0], [1.0, 4.0], [2.0, 5.0]]
 
 
+def test_numbers_of_which_many_tensors_are_views_are_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    torch = pytest.importorskip("torch")
+    numbers, buffer, read = torch.arange(100.0), io.BytesIO(), list[str]()
+    torch.save({f"w{at}": numbers[at : at + 1] for at in range(100)}, buffer)
+    whole = zipfile.ZipFile.read
+    monkeypatch.setattr(
+        zipfile.ZipFile, "read", lambda archive, name: (read.append(name), whole(archive, name))[1]
+    )
+    found = read_torch_weights(buffer.getvalue())
+    assert [found[f"w{at}"].item() for at in range(100)] == list(range(100))
+    assert len(read) == len(set(read))
+
+
 def test_a_pickle_of_python_runs_nothing(tmp_path: Path) -> None:
     class Spy:
         def __reduce__(self) -> tuple[Any, ...]:

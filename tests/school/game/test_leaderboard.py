@@ -34,9 +34,11 @@ from kit.school.game.references import drive_reference
 from kit.school.game.shared_drives import (
     MAX_FILE_BYTES,
     JudgedDrive,
+    SharedDrives,
     digest_of,
     judge_shared_drives,
     platform_key,
+    read_shared_drives,
     share_drives,
 )
 from kit.school.game.starts import OWN_SEED
@@ -316,6 +318,26 @@ def test_many_files_of_one_user_make_nobody_wait(
     monkeypatch.setattr(leaderboard, "MAX_TICKS_OF_ONE_USER", 4 * by_hand().ticks)
     assert len(read_entries(board, [FIRST])) == 1
     assert len(run_again_here) <= 5
+
+
+def test_files_that_unpack_to_megabytes_make_nobody_wait(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    board = join(tmp_path / "board", by_hand())
+    for number in range(10):
+        file = board / f"{OWN}.{FIRST.id}.keys.{number:016x}.npz"
+        shutil.copy(own_file(board), file)
+        change(file, partial(add_remark, f"{number}" * 1_000_000))
+    read = list[bytes]()
+
+    def noted(data: bytes) -> SharedDrives:
+        read.append(data)
+        return read_shared_drives(data)
+
+    monkeypatch.setattr(leaderboard, "read_shared_drives", noted)
+    monkeypatch.setattr(leaderboard, "MAX_TICKS_OF_ONE_USER", 10_000)
+    assert len(read_entries(board, [FIRST])) == 1
+    assert len(read) <= 1 + 10_000 * leaderboard.BYTES_OF_A_TICK // 1_000_000, "by their ticks it would be nine"
 
 
 def add_remark(remark: str, content: dict[str, Any]) -> None:
