@@ -30,7 +30,7 @@ from kit.msg.message import type_name
 from kit.ros.graph.graph import Graph
 
 FOLDER: Final = Path(__file__).parent
-SETS: Final = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+SETS: Final = tuple("first second third fourth fifth sixth seventh eighth ninth tenth eleventh".split())
 """Folders of programs, in the order in which they were written."""
 LIMIT_S: Final = 200.0
 """How long one program may take, by the wall clock [s]."""
