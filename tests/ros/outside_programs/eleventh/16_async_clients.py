@@ -73,6 +73,7 @@ def main():
     failing = executor.create_task(too_much, 3)
     try:
         executor.spin_until_future_complete(failing, timeout_sec=1.0)
+        executor.spin_once(timeout_sec=0.1)
     except ValueError:
         pass
     error = failing.exception()

@@ -13,7 +13,7 @@ class PatrolClient(Node):
     def __init__(self):
         super().__init__('patrol_client')
         self.client = ActionClient(self, Patrol, 'patrol')
-        self.handle: ClientGoalHandle = None
+        self.goal_handle: ClientGoalHandle = None
         self.current = None
         self.cancelled = False
 
@@ -27,11 +27,11 @@ class PatrolClient(Node):
         self.client.send_goal_async(goal, feedback_callback=self.on_feedback).add_done_callback(self.on_response)
 
     def on_response(self, future):
-        self.handle = future.result()
-        if not self.handle.accepted:
+        self.goal_handle = future.result()
+        if not self.goal_handle.accepted:
             raise SystemExit('rejected')
         print('goal accepted')
-        self.handle.get_result_async().add_done_callback(self.on_result)
+        self.goal_handle.get_result_async().add_done_callback(self.on_result)
 
     def on_feedback(self, message):
         feedback = message.feedback
@@ -41,7 +41,7 @@ class PatrolClient(Node):
             print(f'towards {self.current}{word}')
         if self.current == 2 and not self.cancelled and feedback.distance_remaining < 1.0:
             self.cancelled = True
-            self.handle.cancel_goal_async()
+            self.goal_handle.cancel_goal_async()
 
     def on_result(self, future):
         answer = future.result()
