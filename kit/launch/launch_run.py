@@ -275,10 +275,12 @@ class Launch:
             self._seen_ns = now
             self._poll_processes()
         had_sent, self._has_sent = self._has_sent, False
-        if self._launch_file.exchange():
-            self._has_sent = True
-            with self._launch_file_failures():
-                self._carry_out(self._launch_file.take_requests())
+        with self._launch_file_failures():
+            requests = self._launch_file.exchange()
+            if requests is not None:
+                self._has_sent = True
+                self._carry_out(requests)
+        if self._has_sent:
             self._start_requested()
         for running in list(self._running.values()):
             self._has_sent |= running.process.exchange()
@@ -447,7 +449,7 @@ class Launch:
         self._running.clear()
         self._waiting.clear()
         events, self._events = self._events, []
-        if tells and not had_ended and self._launch_file.is_told_of_the_end:
+        if tells and not had_ended:
             with self._launch_file_failures():
                 self._launch_file.end(events)
             self._pass_on_file_output()
