@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 INTERRUPT: Final = "interrupt"
 """The event by which the parent asks a program to end, as Ctrl-C does."""
+INTERRUPTED: Final = "interrupted"
+"""The event by which a program tells that it has ended by that, without catching KeyboardInterrupt."""
 
 
 SHORTEST_STEP_NS: Final = 100_000
@@ -371,8 +373,10 @@ class ChildBridge(GraphBridge):
             self._apply_tick()
             self.next_tick(self.graph.now_ns + 1)
 
-    def end(self) -> None:
-        """Answers that the program has ended."""
+    def end(self, *, by_interrupt: bool = False) -> None:
+        """Answers that the program has ended. ``by_interrupt``: by the KeyboardInterrupt of a request to end."""
+        if by_interrupt:
+            self._add(INTERRUPTED)
         with self._uninterrupted():
             self._commands.answer("ended", self._flush())
 
