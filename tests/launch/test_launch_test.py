@@ -131,8 +131,8 @@ def test_a_program_that_lets_the_ctrl_c_of_the_shutdown_through_ends_by_its_sign
             return launch.LaunchDescription([*programs, ReadyToTest()]), {{'plain': programs[0], 'counter': programs[1]}}
 
         class TestActive(unittest.TestCase):
-            def test_nothing(self):
-                pass
+            def test_output(self, proc_output, counter):
+                proc_output.assertWaitFor('counting begins', process=counter)
 
         @launch_testing.post_shutdown_test()
         class TestAfter(unittest.TestCase):
