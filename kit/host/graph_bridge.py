@@ -33,7 +33,14 @@ if TYPE_CHECKING:
 
 INTERRUPT: Final = "interrupt"
 """The event by which the parent asks a program to end, as Ctrl-C does."""
+INTERRUPTED: Final = "interrupted"
+"""The event by which a program tells that it has ended by that, without catching KeyboardInterrupt."""
 
+
+SHORTEST_STEP_NS: Final = 100_000
+"""The least by which a child's time advances within a tick [ns]."""
+MAX_OVERDUE_NS: Final = 100_000_000
+"""Who was to wake longer ago than that, because the program was too slow for real time, wakes at the tick's time [ns]."""
 
 LAUNCH_CHANNEL: Final = "launch"
 """The kind of event by which a test for launch_testing requests what a launch file does, and hears what happens."""
@@ -314,6 +321,8 @@ class ChildBridge(GraphBridge):
         """Whether the program has ever had a node."""
         self.has_ticked = False
         """Whether a tick has come since the start."""
+        self._upcoming: tuple[int, list[Json]] | None = None
+        """The time [ns] and the events of a tick whose time the program has not reached yet."""
         self.graph.add_message_listener(self._record_message)
         self._handlers["excess"] = self._apply_excess
         self._handlers["limits"] = self._apply_limits
@@ -322,29 +331,52 @@ class ChildBridge(GraphBridge):
         """Called when the parent asks the program to end, as Ctrl-C does."""
 
     def next_tick(self, wake_ns: int | None) -> None:
-        """Answers that the program waits, until ``wake_ns`` at the latest, and applies the next tick."""
-        self._next_tick("reply", wake_ns)
+        """Answers that the program waits, until ``wake_ns`` at the latest, and applies the next tick.
+
+        If that is earlier than the tick, only the time advances, and only so far: who waits for less than a tick, or for
+        what is no multiple of it, goes on at the time for which it waits.
+        """
+        tick_ns, _ = self._upcoming or self._exchange("reply", wake_ns)
+        now_ns = self.graph.now_ns
+        if wake_ns is not None and now_ns + 1 < wake_ns and tick_ns - wake_ns <= MAX_OVERDUE_NS:
+            next_ns = max(wake_ns, now_ns + SHORTEST_STEP_NS)
+            if next_ns < tick_ns:
+                self.graph.advance(next_ns)
+                return
+        self._apply_tick()
 
     def next_held_tick(self) -> None:
         """Likewise, at once; simulated time is to stand still from that tick until the next answer."""
-        self._next_tick("held")
+        self._apply_tick()
+        self._exchange("held")
+        self._apply_tick()
 
-    def _next_tick(self, kind: str, *wake_ns: int | None) -> None:
+    def _exchange(self, kind: str, *wake_ns: int | None) -> tuple[int, list[Json]]:
         with self._uninterrupted():
             self._commands.answer(kind, *wake_ns, self._flush())
             _, now_ns, events = self._commands.next_command()
+            self._upcoming = now_ns, events
             self.has_ticked = True
-            with self.graph.lock:
+            return self._upcoming
+
+    def _apply_tick(self) -> None:
+        if self._upcoming is not None:
+            with self._uninterrupted(), self.graph.lock:
+                now_ns, events = self._upcoming
+                self._upcoming = None
                 self.graph.advance(now_ns)
                 self.apply_events(events)
 
     def send_last_messages(self) -> None:
         """Sends what a program has published before it failed: in an answer of its own, since a failure has no events."""
         if self.has_ticked and self.pending and not self.graph.is_waiter_running:
+            self._apply_tick()
             self.next_tick(self.graph.now_ns + 1)
 
-    def end(self) -> None:
-        """Answers that the program has ended."""
+    def end(self, *, by_interrupt: bool = False) -> None:
+        """Answers that the program has ended. ``by_interrupt``: by the KeyboardInterrupt of a request to end."""
+        if by_interrupt:
+            self._add(INTERRUPTED)
         with self._uninterrupted():
             self._commands.answer("ended", self._flush())
 

@@ -6,6 +6,7 @@ So a key that reaches a student's node in one tick moves the wheels in the same 
 
 from __future__ import annotations
 
+import signal
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -20,7 +21,7 @@ from kit.host.failure import (
     too_many_messages,
     too_much_kept,
 )
-from kit.host.graph_bridge import INTERRUPT, KeptLimitError, MessageLimitError, ParentBridge
+from kit.host.graph_bridge import INTERRUPT, INTERRUPTED, KeptLimitError, MessageLimitError, ParentBridge
 from kit.host.process import HostedFile, PackageProgram, StudentProcess
 from kit.host.program_terminal import ProgramStreams
 from kit.host.protocol import HOLD_NS, Ended, Frame, Reply
@@ -82,6 +83,8 @@ class NodeProcess(HostedFile):
         self._bridge = ParentBridge(graph, limits.messages, limits.kept, scope=scope)
         self._now_ns = graph.now_ns
         self._wake_ns: int | None = None
+        self._is_interrupted = False
+        self._bridge.open_channel(INTERRUPTED, self._note_interrupted)
         self._first_answer: Frame | None = None
         self._is_joined = False
         self._is_tick_requested = False
@@ -101,6 +104,14 @@ class NodeProcess(HostedFile):
         super().__init__(
             StudentProcess("node", file, start, limits=limits, level=level, package=package, streams=streams)
         )
+
+    @property
+    def exit_code(self) -> int:
+        """Of a program that has ended without a failure: that of SIGINT if it did not catch KeyboardInterrupt."""
+        return -signal.SIGINT if self._is_interrupted else 0
+
+    def _note_interrupted(self, fields: list[Json]) -> None:
+        self._is_interrupted = True
 
     @property
     def node_names(self) -> frozenset[str]:

@@ -6,6 +6,7 @@ arrives at them is passed on instead of being queued for a callback. Both sides 
     node id name namespace                       a node of the sender's
     publisher | subscription id node topic type qos
     service | client id node name type
+    alive id whether                             of a publisher of MANUAL_BY_TOPIC
     gone id
     interface name lines                         of a workspace's definition, before the endpoints that need it; where both sides share them
     message id data                              from or for an endpoint of the child's
@@ -147,6 +148,9 @@ class ProxyPublisher(Publisher[Any]):
         self._others = others
         super().__init__(*args)
 
+    def _make_lease(self) -> None:
+        """Has none: the other side says when it is alive."""
+
     def send_history_to(self, subscription: TopicSubscription) -> None:
         if subscription.handle not in self._others:
             super().send_history_to(subscription)
@@ -233,6 +237,10 @@ class ProxyNodes:
         """Applies a change among the other side's nodes: ``node``, one of the endpoints, or ``gone``."""
         if name == "interface" and self._interfaces is not None:
             self._add_interface(self._interfaces, *items(fields, 2))
+            return
+        if name == "alive":
+            identity, is_alive = items(fields, 2)
+            self.endpoint(identity, ProxyPublisher).set_alive(bool(is_alive))
             return
         if name == "gone":
             (identity,) = items(fields, 1)
@@ -399,6 +407,8 @@ class GraphDiff:
         """Publishers by node, topic and type: a node may publish two types on one topic."""
         self.endpoints: dict[int, AnyEndpoint] = {}
         """This side's own endpoints by number."""
+        self._liveliness: dict[int, bool | None] = {}
+        """Whether publishers with a lease are alive, as the other side knows it."""
 
     @property
     def has_changed(self) -> bool:
@@ -430,6 +440,10 @@ class GraphDiff:
                         self.endpoints[endpoint.number] = endpoint
                         events += self._interface_events(endpoint)
                         events.append([kind, endpoint.number, node, *_describe(endpoint)])
+            for publisher in handle.publishers:
+                if publisher.has_lease and publisher.is_alive is not self._liveliness.get(publisher.number):
+                    self._liveliness[publisher.number] = publisher.is_alive
+                    events.append(["alive", publisher.number, publisher.is_alive])
         lost = [number for number in (*self.endpoints, *self._nodes.values()) if number not in present]
         # Where a node of the same name has come, the other one went before it.
         names = {handle.full_name for handle, number in self._nodes.items() if number in present}
@@ -485,16 +499,14 @@ def _endpoints_by_kind(handle: NodeEntry) -> list[tuple[str, Sequence[Any]]]:
 
 def _describe(endpoint: AnyEndpoint) -> list[Json]:
     if isinstance(endpoint, (Publisher, Subscription)):
-        profile = endpoint.qos_profile
-        qos = [profile.history, profile.depth, profile.reliability, profile.durability]
-        return [endpoint.topic_name, type_name(endpoint.msg_type), [int(value) for value in qos]]
+        return [endpoint.topic_name, type_name(endpoint.msg_type), endpoint.qos_profile.numbers]
     return [endpoint.service_name, type_name(endpoint.srv_type)]
 
 
 def _read_qos(content: Json) -> QoSProfile:
-    history, depth, reliability, durability = (integer(value, 0, 10**6) for value in items(content, 4))
+    numbers = [integer(value, 0, 2**63 - 1) for value in items(content, len(QoSProfile.WIRED))]
     try:
-        return QoSProfile(history=history, depth=depth, reliability=reliability, durability=durability)
+        return QoSProfile.from_numbers(numbers)
     except ValueError:
         raise ProtocolError(f"not a quality of service: {content}") from None
 

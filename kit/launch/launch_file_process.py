@@ -44,8 +44,6 @@ def declared_arguments(
 class LaunchFile(Protocol):
     """What a launch needs of the process that runs its file. All failures are raised as StudentCodeError."""
 
-    is_told_of_the_end: bool
-    """Whether it hears of the end of every process, and may go on after that."""
     wake_ns: int | None
     """When its next timer is due [ns of the launch's time]; None without timers."""
 
@@ -62,11 +60,9 @@ class LaunchFile(Protocol):
     def end(self, events: list[Json]) -> None:
         """Sends the last events: every process has ended."""
 
-    def exchange(self) -> bool:
-        """Exchanges messages, as a participant of the lock-step."""
-
-    def take_requests(self) -> list[Request]:
-        """Removes and returns the requests that have come of its own accord."""
+    def exchange(self) -> list[Request] | None:
+        """Exchanges messages, as a participant of the lock-step, and returns the requests that have come of its own accord; None
+        if there was nothing to exchange."""
 
     def take_output(self) -> ProgramOutput:
         """Removes and returns what the file has printed."""
@@ -77,8 +73,6 @@ class LaunchFile(Protocol):
 
 class LaunchFileProcess(HostedFile):
     """One run of a launch file; the process starts with the constructor. All failures are raised as StudentCodeError."""
-
-    is_told_of_the_end = False
 
     def __init__(
         self,
@@ -105,15 +99,10 @@ class LaunchFileProcess(HostedFile):
         return self._read_requests(self._process.request("tick", now_ns, events))
 
     def end(self, events: list[Json]) -> None:
-        """No-op: it acts only while its processes run."""
+        """Does nothing: it acts only while its processes run."""
 
-    def exchange(self) -> bool:
-        """False: it has no nodes."""
-        return False
-
-    def take_requests(self) -> list[Request]:
-        """None: it requests nothing but in its answers."""
-        return []
+    def exchange(self) -> None:
+        """Nothing: it has no nodes."""
 
     def _read_requests(self, frame: Frame | None) -> list[Request]:
         requests = _parse_requests(self._process, frame, Reply)

@@ -275,10 +275,12 @@ class Launch:
             self._seen_ns = now
             self._poll_processes()
         had_sent, self._has_sent = self._has_sent, False
-        if self._launch_file.exchange():
-            self._has_sent = True
-            with self._launch_file_failures():
-                self._carry_out(self._launch_file.take_requests())
+        with self._launch_file_failures():
+            requests = self._launch_file.exchange()
+            if requests is not None:
+                self._has_sent = True
+                self._carry_out(requests)
+        if self._has_sent:
             self._start_requested()
         for running in list(self._running.values()):
             self._has_sent |= running.process.exchange()
@@ -406,7 +408,10 @@ class Launch:
             self._log(f"process started with pid [{process.pid}]", name=request.name)
         return started
 
-    def _record_exit(self, number: int, running: _RunningProcess, ended: ProcessExit) -> None:
+    def _record_exit(
+        self, number: int, running: _RunningProcess, ended: ProcessExit, *, was_asked: bool = False
+    ) -> None:
+        """``was_asked``: it was asked to end, so that it is no failure of the launch."""
         pid, name = running.process.pid, running.request.name
         running.process.close()
         del self._running[number]
@@ -415,6 +420,8 @@ class Launch:
             self._log(f"process has finished cleanly [pid {pid}]", name=name)
             return
         self._log(f"process has died [pid {pid}, exit code {ended.code}]", "ERROR", name=name)
+        if was_asked:
+            return
         reason = ended.reason or f"exit code {ended.code}"
         self.failures.append(f"{name}: {reason}")
         if ended.reason:
@@ -425,7 +432,7 @@ class Launch:
         if running is not None:
             running.process.close()
             self._pass_on_output(running)
-            self._record_exit(number, running, ProcessExit(0))
+            self._record_exit(number, running, _exit_of(running.process), was_asked=True)
         self._waiting = [request for request in self._waiting if request.number != number]
 
     def _end_all_processes(self, *, tells: bool = True) -> None:
@@ -435,19 +442,11 @@ class Launch:
             self._pass_on_output(running)
             running.process.close()
             self._pass_on_output(running)
-            ended = running.process.poll()
-            code = (
-                KILLED
-                if ended is None and not running.process.is_builtin
-                else 0
-                if ended is None
-                else ended.code
-            )
-            self._events.append(["exited", number, running.process.pid, code])
+            self._events.append(["exited", number, running.process.pid, _exit_of(running.process).code])
         self._running.clear()
         self._waiting.clear()
         events, self._events = self._events, []
-        if tells and not had_ended and self._launch_file.is_told_of_the_end:
+        if tells and not had_ended:
             with self._launch_file_failures():
                 self._launch_file.end(events)
             self._pass_on_file_output()
@@ -490,6 +489,11 @@ class Launch:
 
     def _request_view(self) -> None:
         self.wants_view = True
+
+
+def _exit_of(process: Process) -> ProcessExit:
+    """How a closed process has ended; one that was asked to end and did not is killed, and what the kit itself runs just ends."""
+    return process.poll() or ProcessExit(0 if process.is_builtin else KILLED)
 
 
 class GraphOnlyRun:

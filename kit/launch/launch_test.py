@@ -64,8 +64,6 @@ class TestedLaunch:
 class LaunchTestFile:
     """One launch of a test file: what a ``Launch`` needs of its launch file. All failures are raised as StudentCodeError."""
 
-    is_told_of_the_end = True
-
     def __init__(
         self,
         target: LaunchTarget,
@@ -101,25 +99,25 @@ class LaunchTestFile:
         """Waits until the file is loaded; returns its first requests."""
         self._node.wait_until_started()
         self._node.join()
-        return self.take_requests()
+        return self._take_requests()
 
     def advance(self, now_ns: int, events: list[Json]) -> list[Request]:
         """Sends events, now; returns the requests that follow."""
         for event in events:
             self._send(event)
         self._node.exchange()
-        return self.take_requests()
+        return self._take_requests()
 
     def end(self, events: list[Json]) -> None:
         """Sends the last events: every process has ended. The tests that come after the end begin."""
         self.advance(0, [*events, [LAUNCH_OVER]])
 
-    def exchange(self) -> bool:
-        """Exchanges messages, as a participant of the lock-step."""
-        return self._node.exchange()
+    def exchange(self) -> list[Request] | None:
+        """Exchanges messages, as a participant of the lock-step, and returns the requests that have come; None if there was
+        nothing to exchange."""
+        return self._take_requests() if self._node.exchange() else None
 
-    def take_requests(self) -> list[Request]:
-        """Removes and returns the requests that have come."""
+    def _take_requests(self) -> list[Request]:
         if self._node.failure is not None:
             raise StudentCodeError(self._node.failure)
         requests, self._requests = self._requests, []

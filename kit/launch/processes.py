@@ -113,7 +113,7 @@ class NodeProgramProcess:
         failure = self._failure or self._node_process.failure
         if failure is not None:
             return ProcessExit(failure.status, str(failure))
-        return ProcessExit(0) if self._node_process.has_ended else None
+        return ProcessExit(self._node_process.exit_code) if self._node_process.has_ended else None
 
     def wait_until_started(self) -> None:
         if not self._has_joined and self._failure is None:

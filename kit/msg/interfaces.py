@@ -281,12 +281,26 @@ def package_attribute(module: str, package: str, parts: tuple[str, ...], name: s
     if name == "__all__":
         return sorted(full.split("/")[2] for full in _registry.names(package) if full.split("/")[1] in parts)
     if not name.startswith("_"):
+        is_generated = module.rpartition(".")[2].startswith("_")
+        whole, *inner = name.split("_") if is_generated else [name]
         for part in parts:
-            found = _registry.find(f"{package}/{part}/{name}")
+            found = _inner_class(_registry.find(f"{package}/{part}/{whole}"), inner)
             if found is not None:
                 setattr(sys.modules[module], name, found)
                 return found
     raise AttributeError(f"module '{module}' has no attribute '{name}'", name=name, obj=sys.modules[module])
+
+
+def _inner_class(interface: Any, words: list[str]) -> Any:
+    """What a module that rosidl makes has besides its interface, by the words of its name: ``Spawn_Request`` in
+    ``turtlesim.srv._spawn``. None if there is none of this name."""
+    for word in words:
+        if word == EVENT_SUFFIX[1:] and isinstance(interface, type) and issubclass(interface, Service):
+            return service_event_class(interface)
+        part = _ACTION_PARTS.get(f"_{word}")
+        whole = interface if part is None else getattr(interface, "Impl", None)
+        interface = getattr(whole, part or word, None)
+    return interface
 
 
 def definition_source(name: str) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from kit.msg.builtin_interfaces import Time as TimeMessage
 from kit.msg.geometry_msgs import Quaternion, Transform, TransformStamped, Vector3
 from kit.msg.tf2_msgs import TFMessage
 from kit.ros.execution.callback_groups import ReentrantCallbackGroup
@@ -171,9 +172,15 @@ class Buffer(BufferInterface):
         self._frames.clear()
 
     def lookup_transform(
-        self, target_frame: str, source_frame: str, time: Time = _NOW, timeout: Duration = _NO_WAIT
+        self,
+        target_frame: str,
+        source_frame: str,
+        time: Time | TimeMessage = _NOW,
+        timeout: Duration = _NO_WAIT,
     ) -> TransformStamped:
         """The transform of ``source_frame`` in ``target_frame``; time zero means the newest common time.
+
+        A message's stamp will do as the time, here as in the methods below.
 
         Waits up to ``timeout`` for it; in a callback that the transforms have to wait for, in vain. Raises
         LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException.
@@ -186,7 +193,7 @@ class Buffer(BufferInterface):
         self,
         target_frame: str,
         source_frame: str,
-        time: Time = _NOW,
+        time: Time | TimeMessage = _NOW,
         timeout: Duration = _NO_WAIT,
         return_debug_tuple: bool = False,
     ) -> bool | tuple[bool, str]:
@@ -202,9 +209,9 @@ class Buffer(BufferInterface):
     def lookup_transform_full(
         self,
         target_frame: str,
-        target_time: Time,
+        target_time: Time | TimeMessage,
         source_frame: str,
-        source_time: Time,
+        source_time: Time | TimeMessage,
         fixed_frame: str,
         timeout: Duration = _NO_WAIT,
     ) -> TransformStamped:
@@ -219,9 +226,9 @@ class Buffer(BufferInterface):
     def can_transform_full(
         self,
         target_frame: str,
-        target_time: Time,
+        target_time: Time | TimeMessage,
         source_frame: str,
-        source_time: Time,
+        source_time: Time | TimeMessage,
         fixed_frame: str,
         timeout: Duration = _NO_WAIT,
         return_debug_tuple: bool = False,
@@ -235,7 +242,9 @@ class Buffer(BufferInterface):
             return (False, str(problem)) if return_debug_tuple else False
         return (True, "") if return_debug_tuple else True
 
-    def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Time) -> Future[bool]:
+    def wait_for_transform_async(
+        self, target_frame: str, source_frame: str, time: Time | TimeMessage
+    ) -> Future[bool]:
         """A future that is done as soon as the transform can be looked up."""
         future: Future[bool] = Future()
 
@@ -249,7 +258,7 @@ class Buffer(BufferInterface):
         return future
 
     async def lookup_transform_async(
-        self, target_frame: str, source_frame: str, time: Time
+        self, target_frame: str, source_frame: str, time: Time | TimeMessage
     ) -> TransformStamped:
         """Awaits the transform, in a coroutine callback."""
         await self.wait_for_transform_async(target_frame, source_frame, time)
@@ -293,7 +302,7 @@ class Buffer(BufferInterface):
         for future in ready:
             future.set_result(True)
 
-    def _wait_for(self, target: str, source: str, time: Time, timeout: Duration) -> None:
+    def _wait_for(self, target: str, source: str, time: Time | TimeMessage, timeout: Duration) -> None:
         graph = get_default_context().graph if self._node is None else self._node.handle.graph
         work = graph.thread_state.work
         if work is not None and work[0].is_exclusive and graph.waiter is None:
@@ -302,13 +311,13 @@ class Buffer(BufferInterface):
         self._waited_in = graph
         graph.wait(lambda: self.can_transform(target, source, time) is True, until, what="lookup_transform()")
 
-    def _lookup(self, target: str, source: str, time: Time) -> TransformStamped:
+    def _lookup(self, target: str, source: str, time: Time | TimeMessage) -> TransformStamped:
         with self._lock:
             return self._combined(target, source, time)
 
-    def _combined(self, target: str, source: str, time: Time) -> TransformStamped:
+    def _combined(self, target: str, source: str, time: Time | TimeMessage) -> TransformStamped:
         up, down = self._paths(target, source)
-        wanted = time.nanoseconds
+        wanted = (Time.from_msg(time) if isinstance(time, TimeMessage) else time).nanoseconds
         if wanted == 0:
             newest = [
                 self._frames[name].times[-1] for name in (*up, *down) if not self._frames[name].is_static

@@ -96,16 +96,16 @@ class BufferInterface:
         self.registration = TransformRegistration()
 
     def lookup_transform(
-        self, target_frame: str, source_frame: str, time: Time, timeout: Duration = _NO_WAIT
+        self, target_frame: str, source_frame: str, time: Time | TimeMessage, timeout: Duration = _NO_WAIT
     ) -> TransformStamped:
         raise NotImplementedException
 
     def lookup_transform_full(
         self,
         target_frame: str,
-        target_time: Time,
+        target_time: Time | TimeMessage,
         source_frame: str,
-        source_time: Time,
+        source_time: Time | TimeMessage,
         fixed_frame: str,
         timeout: Duration = _NO_WAIT,
     ) -> TransformStamped:
@@ -124,7 +124,7 @@ class BufferInterface:
         """
         do_transform = self.registration.get(type(object_stamped))
         header = object_stamped.header
-        found = self.lookup_transform(target_frame, header.frame_id, _as_time(header.stamp), timeout)
+        found = self.lookup_transform(target_frame, header.frame_id, header.stamp, timeout)
         result = do_transform(object_stamped, found)
         return result if new_type is None else convert(result, new_type)
 
@@ -132,7 +132,7 @@ class BufferInterface:
         self,
         object_stamped: Any,
         target_frame: str,
-        target_time: Time,
+        target_time: Time | TimeMessage,
         fixed_frame: str,
         timeout: Duration = _NO_WAIT,
         new_type: type[Any] | None = None,
@@ -141,11 +141,7 @@ class BufferInterface:
         do_transform = self.registration.get(type(object_stamped))
         header = object_stamped.header
         found = self.lookup_transform_full(
-            target_frame, target_time, header.frame_id, _as_time(header.stamp), fixed_frame, timeout
+            target_frame, target_time, header.frame_id, header.stamp, fixed_frame, timeout
         )
         result = do_transform(object_stamped, found)
         return result if new_type is None else convert(result, new_type)
-
-
-def _as_time(stamp: TimeMessage) -> Time:
-    return Time.from_msg(stamp)

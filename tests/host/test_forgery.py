@@ -16,6 +16,7 @@ from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level
 from kit.host.student_functions import StudentFunctions
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
+from kit.ros.node.qos import QoSProfile
 from tests.host.conftest import LINUX, QUICK, Speaker, Student
 
 FORGER = """
@@ -38,7 +39,7 @@ while True: os.sched_yield()
 """
 
 NODE = ["node", 1, "evil", "/"]
-OUT = ["publisher", 2, 1, "/cmd_vel", "geometry_msgs/msg/Twist", [1, 10, 1, 2]]
+OUT = ["publisher", 2, 1, "/cmd_vel", "geometry_msgs/msg/Twist", QoSProfile(depth=10).numbers]
 SERVICE = ["service", 3, 1, "/trigger", "std_srvs/srv/Trigger"]
 
 

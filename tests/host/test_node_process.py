@@ -270,7 +270,7 @@ def test_timers_keep_the_worlds_time(harness: GraphHarness, student: Student) ->
         harness.graph.advance(harness.graph.now_ns + TICK_NS)
         exchanges += process.exchange()
         harness.run_until_idle()
-    assert texts(ticks) == ["300", "500", "800", "1000"]
+    assert texts(ticks) == ["250", "500", "750", "1000"]
     assert exchanges == 4, "asked although nothing was due"
 
 

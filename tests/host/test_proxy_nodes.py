@@ -11,6 +11,7 @@ from kit.host.proxy_nodes import GraphDiff, ProxyNodes
 from kit.host.wire import MAX_NAME, ProtocolError
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import create_graph_node
+from kit.ros.node.qos import QoSProfile
 
 
 class NobodyListens:
@@ -31,7 +32,9 @@ def proxies() -> ProxyNodes:
 
 
 def add_publisher(proxies: ProxyNodes, number: int) -> None:
-    proxies.apply_event("publisher", [number, 1, f"/topic{number}", "std_msgs/msg/String", [1, 10, 1, 2]])
+    proxies.apply_event(
+        "publisher", [number, 1, f"/topic{number}", "std_msgs/msg/String", QoSProfile(depth=10).numbers]
+    )
 
 
 def test_too_many_at_once_are_refused(proxies: ProxyNodes, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -159,6 +159,42 @@ def test_a_loop_takes_as_many_readings_on_every_machine(student: Student, name: 
     assert counts[0] <= (most if name not in GUARDED else most / LOCK_WEIGHT)
 
 
+def test_what_waits_for_less_than_a_tick_or_for_no_multiple_of_it_waits_no_longer(student: Student) -> None:
+    file = student(
+        """
+        import threading, time
+        import rclpy
+        from std_msgs.msg import String
+
+        rclpy.init()
+        node = rclpy.create_node("quick")
+        says = node.create_publisher(String, "said", 10)
+        calls = []
+        node.create_timer(0.004, lambda: calls.append(node.get_clock().now().nanoseconds))
+        threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+        began = node.get_clock().now()
+
+        def say(*words):
+            passed = (node.get_clock().now() - began).nanoseconds / 1e6
+            says.publish(String(data=" ".join(map(str, (*words, passed)))))
+
+        for _ in range(7):
+            time.sleep(0.003)
+        say("slept")
+        for _ in range(2):
+            time.sleep(0.025)
+        say("slept")
+        rate = node.create_rate(250)
+        for _ in range(5):
+            rate.sleep()
+        say("looped")
+        say(len(calls), {later - early for early, later in zip(calls, calls[1:])})
+        time.sleep(1)
+        """
+    )
+    assert run(file, 0.3) == ["slept 21.0", "slept 71.0", "looped 91.0", "22 {4000000} 91.0"]
+
+
 def test_a_few_readings_let_no_time_pass(student: Student) -> None:
     body = f"for _ in range({MAX_READS // 2 - 2}): node.get_clock().now(); time.time()"
     file = student(PROGRAM.format(wait=f"    {body}", use=USES["in a callback"]))

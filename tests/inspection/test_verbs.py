@@ -199,9 +199,9 @@ def test_what_is_published_is_heard(kit_ros: Kit, stage: Stage) -> None:
     out, err, code = kit_ros("topic", "pub", "--once", "/demo/orders", "std_msgs/msg/String", "data: go")
     assert out == ("publisher: beginning loop\npublishing #1: std_msgs.msg.String(data='go')\n\n")
     assert (err, code) == ("", 0)
-    assert stage.talker.heard[-1] == "go"
+    wait_until(lambda: stage.talker.heard[-1:] == ["go"])
     kit_ros("topic", "pub", "-t", "3", "-r", "20", "/demo/orders", "std_msgs/msg/String", "{data: again}")
-    assert stage.talker.heard[-3:] == ["again"] * 3
+    wait_until(lambda: stage.talker.heard[-3:] == ["again"] * 3)
 
 
 def test_stamps_are_filled_in_when_a_message_is_published(kit_ros: Kit, stage: Stage) -> None:

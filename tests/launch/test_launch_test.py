@@ -117,6 +117,32 @@ def test_a_launch_is_tested_while_it_runs_and_after_it(launch_test: Tested, tmp_
     assert ("mine.TestAfter", "test_ends") in named
 
 
+def test_a_program_that_lets_the_ctrl_c_of_the_shutdown_through_ends_by_its_signal(
+    launch_test: Tested, tmp_path: Path
+) -> None:
+    (tmp_path / "plain.py").write_text("import rclpy\nrclpy.init()\nrclpy.spin(rclpy.create_node('plain'))\n")
+    printed, code = launch_test(
+        f"""
+        def generate_test_description():
+            programs = [
+                ExecuteProcess(cmd=[sys.executable, {f"{tmp_path}/"!r} + name + '.py'], name=name)
+                for name in ('plain', 'counter')
+            ]
+            return launch.LaunchDescription([*programs, ReadyToTest()]), {{'plain': programs[0], 'counter': programs[1]}}
+
+        class TestActive(unittest.TestCase):
+            def test_output(self, proc_output, counter):
+                proc_output.assertWaitFor('counting begins', process=counter)
+
+        @launch_testing.post_shutdown_test()
+        class TestAfter(unittest.TestCase):
+            def test_ends(self, proc_info, plain, counter):
+                self.assertEqual([proc_info[plain].returncode, proc_info[counter].returncode], [-2, 0])
+        """
+    )
+    assert code == 0, printed
+
+
 def test_each_value_is_a_launch_of_its_own(launch_test: Tested, tmp_path: Path) -> None:
     printed, code = launch_test(
         """

@@ -113,6 +113,35 @@ def test_a_name_that_a_module_offers_too_is_the_same_class(module: str, name: st
     assert not is_absent_name(found)
 
 
+@pytest.mark.usefixtures("import_names")
+@every_case(
+    ("module", "name", "of"),
+    [
+        ("std_srvs.srv._set_bool", "SetBool_Request", "SetBool.Request"),
+        ("example_interfaces.action._fibonacci", "Fibonacci_Goal", "Fibonacci.Goal"),
+        ("example_interfaces.action._fibonacci", "Fibonacci_SendGoal", "Fibonacci.Impl.SendGoalService"),
+        (
+            "example_interfaces.action._fibonacci",
+            "Fibonacci_GetResult_Response",
+            "Fibonacci.Impl.GetResultService.Response",
+        ),
+        (
+            "example_interfaces.action._fibonacci",
+            "Fibonacci_FeedbackMessage",
+            "Fibonacci.Impl.FeedbackMessage",
+        ),
+    ],
+)
+def test_what_generated_modules_have_besides_the_interface(module: str, name: str, of: str) -> None:
+    generated = importlib.import_module(module)
+    first, *inner = of.split(".")
+    expected = getattr(generated, first)
+    for word in inner:
+        expected = getattr(expected, word)
+    assert getattr(generated, name) is expected
+    assert not hasattr(generated, f"{name}x")
+
+
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     "submodule", ["node", "qos", "time", "duration", "logging", "executors", "clock", "task"]

@@ -118,7 +118,7 @@ def at(seconds: float) -> Time:
     return Time(seconds=seconds, clock_type=ClockType.ROS_TIME)
 
 
-def where(buffer: Buffer, target: str, source: str, time: Time) -> tuple[float, float, float]:
+def where(buffer: Buffer, target: str, source: str, time: Time | Stamp) -> tuple[float, float, float]:
     """x, y and yaw of a frame in another one."""
     found = buffer.lookup_transform(target, source, time).transform
     q = found.rotation
@@ -146,6 +146,7 @@ class TestFrames:
 
     def test_between_two_times_and_the_newest(self, buffer: Buffer) -> None:
         assert where(buffer, "odom", "base", at(1.25)) == pytest.approx((1.25, 0, 0))
+        assert where(buffer, "odom", "base", at(1.25).to_msg()) == pytest.approx((1.25, 0, 0))
         newest = buffer.lookup_transform("odom", "laser", Time())
         assert newest.transform.translation.x == pytest.approx(3.5)
         assert newest.header.stamp == Stamp(sec=3)

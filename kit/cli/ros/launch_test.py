@@ -52,8 +52,7 @@ def command(
 
     The file's generate_test_description() says what is launched; its unittest classes run beside it in the same simulated
     time, and those marked with launch_testing.post_shutdown_test() when every process has ended. All goes as fast as it can,
-    and alike on every machine. `pytest FILE` does not launch anything here. A program that does not
-    catch the Ctrl-C of the shutdown has exit code 0 here, and -2 in ROS 2.
+    and alike on every machine. `pytest FILE` does not launch anything here.
 
     \b
     kit ros launch_test test_talker.launch.py

@@ -83,7 +83,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
             bridge.send_last_messages()
             raise
         _end_program(waits, session)
-        bridge.end()
+        bridge.end(by_interrupt=True)
     except BaseException:
         bridge.send_last_messages()
         raise

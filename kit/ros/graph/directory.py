@@ -18,6 +18,7 @@ from kit.ros.node.qos import (
     ReliabilityPolicy,
     first_incompatibility,
 )
+from kit.ros.node.time import Duration
 
 if TYPE_CHECKING:
     from kit.ros.log import LoggerSettings, RcutilsLogger
@@ -96,6 +97,8 @@ class EndpointEventReporter(Protocol):
 
     def set_matched_count(self, count: int) -> None: ...
 
+    def set_alive_counts(self, alive: int, not_alive: int) -> None: ...
+
 
 class GraphEndpoint(Protocol):
     """A publisher or a subscription."""
@@ -125,6 +128,8 @@ class TopicSubscription(GraphEndpoint, Protocol):
 
 class TopicPublisher(GraphEndpoint, Protocol):
     routes: tuple[TopicSubscription, ...]
+    is_alive: bool | None
+    has_lease: bool
 
     def send_history_to(self, subscription: TopicSubscription) -> None: ...
 
@@ -220,6 +225,15 @@ class Topic:
             publisher.events.set_matched_count(len(publisher.routes))
         for subscription in self.subscriptions:
             subscription.events.set_matched_count(received[subscription.number])
+        self.count_alive()
+
+    def count_alive(self) -> None:
+        """Tells every subscription how many of its publishers are alive, and how many no longer."""
+        states = Counter(
+            (sub.number, publisher.is_alive) for publisher in self.publishers for sub in publisher.routes
+        )
+        for sub in self.subscriptions:
+            sub.events.set_alive_counts(states[sub.number, True], states[sub.number, False])
 
 
 def _mismatch(publisher: TopicPublisher, subscription: TopicSubscription) -> QoSPolicyKind | str | None:
@@ -279,6 +293,8 @@ def _report_mismatch(publisher: TopicPublisher, subscription: TopicSubscription)
 def _setting(endpoint: GraphEndpoint, policy: QoSPolicyKind) -> str:
     """The endpoint's setting of a policy, as text."""
     setting = getattr(endpoint.qos_profile, policy.name.lower())
+    if isinstance(setting, Duration):
+        return f"{setting.nanoseconds / 1e9:g} s" if setting.nanoseconds else "none"
     return str(getattr(setting, "name", setting))
 
 
@@ -355,6 +371,12 @@ class Directory:
         topic.remove(endpoint)
         if not topic.publishers and not topic.subscriptions:
             del self.topics[endpoint.topic_name]
+
+    def note_liveliness(self, publisher: TopicPublisher) -> None:
+        """Is told that a publisher has come to life, or that its lease has run out."""
+        self.version += 1
+        self.topics[publisher.topic_name].count_alive()
+        self._notify()
 
     def add_service(self, service: ServiceServer) -> None:
         self.version += 1

@@ -50,21 +50,20 @@ class LaunchDescriptionSource:
         module = ModuleType(Path(path).name.partition(".")[0])
         module.__file__ = path
         exec(compile(Path(path).read_bytes(), path, "exec", dont_inherit=True), module.__dict__)
-        return description_of(module)
+        return description_of(module, f"{path}: ")
 
 
-def description_of(module: ModuleType) -> LaunchDescription:
-    """Calls the module's ``generate_launch_description``. Raises LaunchError."""
+def description_of(module: ModuleType, where: str = "") -> LaunchDescription:
+    """Calls the module's ``generate_launch_description``. Raises LaunchError, whose message begins with ``where``."""
     generate = getattr(module, GENERATOR_FUNCTION, None)
     if not callable(generate):
         hint = ""
         if hasattr(module, TEST_GENERATOR_FUNCTION):
             hint = f", but {TEST_GENERATOR_FUNCTION}(): it is a test, which `kit ros launch_test` runs"
-        raise LaunchError(f"{module.__file__}: there is no {GENERATOR_FUNCTION}() in it{hint}")
+        raise LaunchError(f"{where}there is no {GENERATOR_FUNCTION}() in it{hint}")
     description = generate()
     if not isinstance(description, LaunchDescription):
         raise LaunchError(
-            f"{module.__file__}: {GENERATOR_FUNCTION}() must return a LaunchDescription, "
-            f"not {type(description).__name__}"
+            f"{where}{GENERATOR_FUNCTION}() must return a LaunchDescription, not {type(description).__name__}"
         )
     return description

@@ -3,8 +3,8 @@
 An event becomes an item of its node's ready queue and runs in the callback group of its publisher or subscription.
 Events that come before the callback runs are counted together, as a middleware does.
 
-A simulation loses no message and no node's sign of life: ``message_lost`` never happens, nor does a lease of
-``MANUAL_BY_TOPIC`` run out. A subscription's ``liveliness`` follows the publishers that come and go.
+A simulation loses no message: ``message_lost`` never happens. A subscription's ``liveliness`` follows the publishers that
+come and go, and those of ``MANUAL_BY_TOPIC`` whose lease runs out.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 from kit.ros.execution.callback_groups import NO_WORK, CallbackGroup, ReentrantCallbackGroup
 from kit.ros.node.endpoint import CallbackEntity, EntityOwner, accepted_argument_count
 from kit.ros.node.qos import QoSPolicyKind, QoSProfile
+from kit.ros.node.time import Duration
 
 EventCallback = Callable[[Any], Any]
 
@@ -179,19 +180,28 @@ class EventHandler(CallbackEntity):
 
 
 class DeadlineWatch(CallbackEntity):
-    """Counts the deadlines in which no message came. Begins with the first message."""
+    """Calls a function for each deadline in which no message came. Begins with the first message."""
 
-    def __init__(self, handler: EventHandler, handle: EntityOwner, period_ns: int) -> None:
-        self._handler = handler
+    def __init__(
+        self,
+        on_missed: Callable[[], object],
+        callback_group: CallbackGroup,
+        handle: EntityOwner,
+        period_ns: int,
+        what: str,
+    ) -> None:
+        """``on_missed`` is called with the graph's lock held."""
+        self._on_missed = on_missed
         self._handle = handle
-        self.callback_group = handler.callback_group
+        self.callback_group = callback_group
         self.number = handle.graph.next_number()
         self._period_ns = period_ns
+        self._what = what
         self.due_ns = -1
         """When the next deadline ends [ns]; -1 before the first message and when it is destroyed."""
 
     def __str__(self) -> str:
-        return f"deadline of {self._handler}"
+        return self._what
 
     def restart(self) -> None:
         """Begins a deadline now: a message has come. With the graph's lock held."""
@@ -207,7 +217,7 @@ class DeadlineWatch(CallbackEntity):
 
     def run(self, taken: Any) -> None:
         with self._handle.graph.lock:
-            self._handler.count()
+            self._on_missed()
 
     def rewind(self) -> None:
         """Begins a new deadline after a jump back in time."""
@@ -231,12 +241,14 @@ class EndpointEvents:
     ) -> None:
         self._handle = handle
         self._warns = callbacks is None or callbacks.use_default_callbacks
-        self._matched_count = 0
+        self._matched_count = self._alive_count = self._not_alive_count = 0
         self.handlers: list[EventHandler] = []
         self.deadline: DeadlineWatch | None = None
         """Restarted with every message; None without a callback for missed deadlines."""
+        self.watches: list[DeadlineWatch] = []
+        """This one, and a publisher's lease."""
         is_subscription = isinstance(callbacks, SubscriptionEventCallbacks)
-        group = callback_group if callback_group is not None else ReentrantCallbackGroup()
+        self._group = group = callback_group if callback_group is not None else ReentrantCallbackGroup()
 
         def handler(name: str, status: Any) -> EventHandler | None:
             callback = getattr(callbacks, name, None)
@@ -256,7 +268,13 @@ class EndpointEvents:
         self._follows_liveliness = is_subscription and self._liveliness is not None
         missed = handler("deadline", CountStatus())
         if missed is not None and qos_profile.deadline.nanoseconds > 0:
-            self.deadline = DeadlineWatch(missed, handle, qos_profile.deadline.nanoseconds)
+            self.deadline = self.watch(missed.count, qos_profile.deadline, f"deadline of {what}")
+
+    def watch(self, on_missed: Callable[[], object], period: Duration, what: str) -> DeadlineWatch:
+        """Makes a watch that ends with these events."""
+        made = DeadlineWatch(on_missed, self._group, self._handle, period.nanoseconds, what)
+        self.watches.append(made)
+        return made
 
     def report_incompatible_qos(self, policy: QoSPolicyKind, warning: str) -> None:
         """Calls the event callback; without one, warns. With the graph's lock held, as the others."""
@@ -272,12 +290,27 @@ class EndpointEvents:
         elif self._warns:
             self._handle.logger.warning(warning)
 
+    def count_lost_liveliness(self) -> None:
+        """Counts that a publisher's lease has run out."""
+        if self._liveliness is not None:
+            self._liveliness.count()
+
+    def set_alive_counts(self, alive: int, not_alive: int) -> None:
+        """Records how many of a subscription's publishers are alive, and of how many the lease has run out."""
+        changes = (alive - self._alive_count, not_alive - self._not_alive_count)
+        self._alive_count, self._not_alive_count = alive, not_alive
+        if any(changes) and self._liveliness is not None and self._follows_liveliness:
+            self._liveliness.update(
+                alive_count=alive,
+                alive_count_change=changes[0],
+                not_alive_count=not_alive,
+                not_alive_count_change=changes[1],
+            )
+
     def set_matched_count(self, count: int) -> None:
         """Records how many endpoints match now."""
         change, self._matched_count = count - self._matched_count, count
-        if not change:
-            return
-        if self._matched is not None:
+        if change and self._matched is not None:
             new = max(change, 0)
             self._matched.update(
                 total_count=self._matched.status.total_count + new,
@@ -285,12 +318,10 @@ class EndpointEvents:
                 current_count=count,
                 current_count_change=change,
             )
-        if self._liveliness is not None and self._follows_liveliness:
-            self._liveliness.update(alive_count=count, alive_count_change=change)
 
     def destroy(self) -> None:
         """Ends all events. With the graph's lock held."""
         for handler in self.handlers:
             handler.destroy()
-        if self.deadline is not None:
-            self.deadline.destroy()
+        for watch in self.watches:
+            watch.destroy()

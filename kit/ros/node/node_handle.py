@@ -131,8 +131,8 @@ class NodeHandle:
         for events in [entity.events for entity in self.publishers] + [
             entity.events for entity in self.subscriptions
         ]:
-            if events.deadline is not None:
-                events.deadline.rewind()
+            for watch in events.watches:
+                watch.rewind()
 
     def discard_queues(self) -> None:
         """Drops all queued messages, requests and responses. With the graph's lock held."""

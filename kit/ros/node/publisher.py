@@ -9,8 +9,8 @@ from kit.msg.message import Message, check_message
 from kit.ros.execution.callback_groups import CallbackGroup
 from kit.ros.graph.directory import TopicSubscription
 from kit.ros.node.endpoint import Destroyable, EntityOwner
-from kit.ros.node.events import EndpointEvents, EventHandler, PublisherEventCallbacks
-from kit.ros.node.qos import QoSProfile
+from kit.ros.node.events import DeadlineWatch, EndpointEvents, EventHandler, PublisherEventCallbacks
+from kit.ros.node.qos import LivelinessPolicy, QoSProfile
 from kit.ros.node.time import Duration
 
 M = TypeVar("M", bound=Message)
@@ -44,13 +44,26 @@ class Publisher(Destroyable, Generic[M]):
         )
         self._deadline = self.events.deadline
         # A transient-local publisher keeps messages for subscriptions that are made later.
-        self._history: deque[M] | None = None
+        self._history: deque[tuple[int, M]] | None = None
+        """Each with the time at which it was published [ns]."""
         if qos_profile.is_transient_local:
             self._history = deque(maxlen=qos_profile.queue_length)
-        self._is_observed = self._history is not None or self._deadline is not None
+        self.has_lease = (
+            qos_profile.liveliness == LivelinessPolicy.MANUAL_BY_TOPIC
+            and qos_profile.liveliness_lease_duration.nanoseconds > 0
+        )
+        """Whether it must show again and again that it is alive."""
+        self.is_alive: bool | None = None if self.has_lease else True
+        """False if its lease has run out; None before it has ever shown that it is alive."""
+        self._lease = self._make_lease() if self.has_lease else None
+        self._is_observed = any(each is not None for each in (self._history, self._deadline, self._lease))
         """True if a message matters even when nobody receives it."""
         with self._graph.lock:
             self._graph.directory.get_or_create_topic(topic).add_publisher(self)
+
+    def _make_lease(self) -> DeadlineWatch | None:
+        period = self.qos_profile.liveliness_lease_duration
+        return self.events.watch(self._lose_lease, period, f"liveliness of {self}")
 
     def __repr__(self) -> str:
         return f"publisher of {self.topic_name}"
@@ -86,11 +99,13 @@ class Publisher(Destroyable, Generic[M]):
         with graph.lock:
             if self._deadline is not None:
                 self._deadline.restart()
+            if self._lease is not None:
+                self._renew_lease(self._lease)
             if graph.message_listeners:
                 graph.notify_message_listeners(self._handle.node, self.topic_name, msg)
             try:
                 if self._history is not None:
-                    self._history.append(msg.__deepcopy__(None))
+                    self._history.append((graph.now_ns, msg.__deepcopy__(None)))
                 for subscription in self.routes[first:]:
                     subscription.enqueue(msg.__deepcopy__(None))
             except AttributeError:
@@ -112,13 +127,33 @@ class Publisher(Destroyable, Generic[M]):
         return True
 
     def assert_liveliness(self) -> None:
-        """No-op: liveliness is not modelled."""
+        """Shows that it is alive, as each message does."""
         self._check_not_destroyed()
+        if self._lease is not None:
+            with self._graph.lock:
+                self._renew_lease(self._lease)
+
+    def _renew_lease(self, lease: DeadlineWatch) -> None:
+        lease.restart()
+        self.set_alive(True)
+
+    def _lose_lease(self) -> None:
+        if self.is_alive:
+            self.events.count_lost_liveliness()
+            self.set_alive(False)
+
+    def set_alive(self, is_alive: bool) -> None:
+        """Tells the subscriptions whether it is alive. With the graph's lock held."""
+        if self.is_alive is not is_alive:
+            self.is_alive = is_alive
+            self._graph.directory.note_liveliness(self)
 
     def send_history_to(self, subscription: TopicSubscription) -> None:
-        """Sends the kept messages to a new transient-local subscription."""
+        """Sends the kept messages to a new transient-local subscription, but for those that are too old."""
         if self._history is not None and subscription.qos_profile.is_transient_local:
-            for msg in self._history:
+            lifespan = self.qos_profile.lifespan.nanoseconds
+            oldest_ns = self._graph.now_ns - lifespan if lifespan else 0
+            for msg in [msg for sent_ns, msg in self._history if sent_ns >= oldest_ns]:
                 subscription.enqueue(msg.__deepcopy__(None))
 
     def _deserialize(self, data: bytes) -> M:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from enum import Enum, IntEnum
 from typing import Any, ClassVar, Self
 
@@ -87,8 +87,8 @@ QoSLivelinessPolicy = LivelinessPolicy
 class QoSProfile:
     """A complete set of policies. ``QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)``.
 
-    Needs a ``history`` or a ``depth``; KEEP_LAST needs a depth. Deadline, lifespan and liveliness are kept,
-    compared and shown, but nothing expires: a simulation loses no message and no publisher on its way.
+    Needs a ``history`` or a ``depth``; KEEP_LAST needs a depth. Of a publisher that keeps messages for
+    later subscriptions, ``lifespan`` limits how old they may be; a simulation is late with no other message.
     """
 
     __slots__ = (
@@ -114,6 +114,9 @@ class QoSProfile:
         "liveliness_lease_duration": Duration,
         "avoid_ros_namespace_conventions": bool,
     }
+
+    WIRED: ClassVar[tuple[str, ...]] = tuple(name for name, kind in _TYPES.items() if kind is not bool)
+    """The settings that another process is told."""
 
     history: HistoryPolicy
     depth: int
@@ -174,6 +177,22 @@ class QoSProfile:
     def copy(self) -> QoSProfile:
         """A profile with the same settings."""
         return QoSProfile(**{name: getattr(self, name) for name in self._TYPES})
+
+    @property
+    def numbers(self) -> list[int]:
+        """The settings of ``WIRED``, durations in nanoseconds."""
+        values = (getattr(self, name) for name in self.WIRED)
+        return [value.nanoseconds if isinstance(value, Duration) else int(value) for value in values]
+
+    @classmethod
+    def from_numbers(cls, numbers: Iterable[int]) -> QoSProfile:
+        """Raises ValueError."""
+        return cls(
+            **{
+                name: Duration(nanoseconds=value) if cls._TYPES[name] is Duration else value
+                for name, value in zip(cls.WIRED, numbers, strict=True)
+            }
+        )
 
     @property
     def is_best_effort(self) -> bool:

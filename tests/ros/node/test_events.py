@@ -11,7 +11,13 @@ from kit.ros.graph.graph import Graph
 from kit.ros.log import LogRecord
 from kit.ros.node.events import PublisherEventCallbacks, SubscriptionEventCallbacks
 from kit.ros.node.node import Node, create_graph_node
-from kit.ros.node.qos import QoSPolicyKind, QoSProfile, qos_profile_sensor_data
+from kit.ros.node.qos import (
+    DurabilityPolicy,
+    LivelinessPolicy,
+    QoSPolicyKind,
+    QoSProfile,
+    qos_profile_sensor_data,
+)
 from kit.ros.node.time import Duration
 
 MS = 1_000_000
@@ -133,6 +139,53 @@ class TestDeadline:
         graph.advance(0)
         self.run(graph, 100)
         assert len(missed) == 1
+
+
+class TestLiveliness:
+    QOS = QoSProfile(
+        depth=1,
+        liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
+        liveliness_lease_duration=Duration(nanoseconds=100 * MS),
+    )
+
+    def test_a_publisher_is_alive_while_it_shows_so(self, graph: Graph, node: Node) -> None:
+        lost: list[Any] = []
+        seen: list[Any] = []
+        publisher = node.create_publisher(
+            Int32, "x", self.QOS, event_callbacks=PublisherEventCallbacks(liveliness=lost.append)
+        )
+        node.create_subscription(
+            Int32,
+            "x",
+            ignore,
+            self.QOS,
+            event_callbacks=SubscriptionEventCallbacks(
+                liveliness=lambda event: seen.append((graph.now_ns // MS, *event))
+            ),
+        )
+        for now in range(0, 700, 10):
+            graph.advance(now * MS)
+            if now == 50:
+                publisher.publish(Int32())
+            if now in (120, 400):
+                publisher.assert_liveliness()
+            graph.run_due()
+        assert seen == [(50, 1, 0, 1, 0), (220, 0, 1, -1, 1), (400, 1, 0, 1, -1), (500, 0, 1, -1, 1)]
+        assert [event.total_count for event in lost] == [1, 2]
+
+
+def test_a_later_subscription_gets_no_message_whose_lifespan_has_passed(graph: Graph, node: Node) -> None:
+    kept = QoSProfile(
+        depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=Duration(nanoseconds=100 * MS)
+    )
+    publisher = node.create_publisher(Int32, "x", kept)
+    heard: list[int] = []
+    for number in range(4):
+        graph.advance(number * 40 * MS)
+        publisher.publish(Int32(data=number))
+    node.create_subscription(Int32, "x", lambda message: heard.append(message.data), kept)
+    graph.run_due()
+    assert heard == [1, 2, 3]
 
 
 def test_a_raw_subscription_gets_bytes_which_can_be_published(graph: Graph, node: Node) -> None:
