@@ -39,7 +39,7 @@ with _hide_packages(UNUSED), chdir("/") if NUMBA_SETTINGS.exists() else nullcont
     from numba.core import ccallback as ccallback
     from numba.core import config, event
     from numba.core.registry import cpu_target
-    from numba.core.runtime import rtsys
+    from numba.core.runtime.nrt import rtsys
 
 config._config_fname = ""  # no file has this name
 

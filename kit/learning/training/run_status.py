@@ -18,6 +18,7 @@ from kit.learning.training.events import (
     Evaluated,
     TrainingEnded,
     TrainingEvent,
+    TrainingNote,
     TrainingProgress,
     TrainingStarted,
 )
