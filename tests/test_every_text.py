@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import re
 import shlex
+import tokenize
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 import click
 import pytest
@@ -27,6 +29,8 @@ from tests.cli.verbs import run_main
 from tests.kit_content import kit_lesson
 
 WIDTH = 80
+EDITOR_WIDTH = 74
+"""Columns of a file beside its line numbers, in the kit's own editor and on the page of its exercise."""
 WIDTHS = (36, 60, 76)
 """Columns of a text on a small screen, in a panel and on a screen of 80 columns."""
 PARTS = re.compile(r"[^/,]*[/,]+|[^/,]+")
@@ -183,3 +187,29 @@ def test_what_commands_print(words: Sequence[str]) -> None:
     assert [line for line in lines if re.search(r"\w-$", line)] == [], (
         "an option or a word is broken at its hyphen"
     )
+
+
+def _explained_lines(file: Path) -> Iterator[tuple[int, str]]:
+    """The lines of comments and of texts in a starter, counted from 1: code may be wider."""
+    lines = file.read_text().splitlines()
+    if file.suffix == ".yaml":
+        yield from ((number, line) for number, line in enumerate(lines, 1) if "#" in line)
+        return
+    with file.open("rb") as source:
+        for token in tokenize.tokenize(source.readline):
+            is_text = token.type == tokenize.STRING and token.string.endswith('"""')
+            if is_text or token.type == tokenize.COMMENT:
+                yield from ((number, lines[number - 1]) for number in range(token.start[0], token.end[0] + 1))
+
+
+@every_case("name", lesson_names())
+def test_what_a_starter_explains_is_whole_in_the_kits_own_editor(name: str) -> None:
+    files = [file for file in kit_lesson(name).folder.rglob("*") if file.suffix in (".py", ".yaml")]
+    starters = [file for file in files if any(part.startswith("starter") for part in file.parts)]
+    wide = [
+        f"{file.relative_to(kit_lesson(name).folder)}:{number}"
+        for file in starters
+        for number, line in _explained_lines(file)
+        if len(line) > EDITOR_WIDTH
+    ]
+    assert wide == []

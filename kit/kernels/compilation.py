@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from typing import Any, TypeVar, cast
 
 from kit.kernels.kernel_cache import SOURCE_STAMP, KernelCache
-from kit.kernels.numba_import import UNTYPED, ccallback, numba
+from kit.kernels.numba_import import UNTYPED, ccallback, numba, prepare_compiling
 
 FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 
@@ -19,9 +18,11 @@ def _compile_on_use(function: FunctionT, **options: bool) -> FunctionT:
     """Compiles on first use and remembers it on disk; where nothing may be written, compiles at each start."""
     njit: Any = numba.njit  # its types leave out options
     compiled = njit(error_model="numpy", **options)(function)
-    with suppress(RuntimeError):  # neither beside this file nor in the user's cache
+    try:
         # By itself numba looks at the function's own file alone, and not at those that it calls.
         compiled._cache = KernelCache(function, SOURCE_STAMP)
+    except RuntimeError:  # neither beside this file nor in the user's cache
+        prepare_compiling()
     return cast(FunctionT, compiled)
 
 
@@ -98,8 +99,10 @@ def c_function(function: Callable[..., Any], signature: str) -> int:
         locals={},
         options={"error_model": "numpy"},
     )
-    with suppress(RuntimeError):  # neither beside its file nor in the user's cache may be written
+    try:
         compiled._cache = KernelCache(function)
+    except RuntimeError:  # neither beside its file nor in the user's cache may be written
+        prepare_compiling()
     compiled.compile()
     _KEPT.append(compiled)
     return int(compiled.address)

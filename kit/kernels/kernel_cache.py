@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from kit.kernels.numba_import import UNTYPED, caching
+from kit.kernels.numba_import import UNTYPED, caching, prepare_compiling, prepare_loading
 from kit.kernels.shared_cache import unshared_reason
 
 SOURCE_STAMP = tuple(
@@ -93,3 +93,12 @@ class KernelCache(UNTYPED.caching.FunctionCache):  # type: ignore[misc]
             stamp = self._impl.locator.get_source_stamp()
         shared = Path(function.__code__.co_filename).parent / "__pycache__"
         self._cache_file = _KernelFiles(self.cache_path, shared, self._impl.filename_base, stamp)
+
+    def load_overload(self, sig: object, target_context: Any) -> Any:
+        """As numba's, which gets ready to compile before it has looked: most drives find all their kernels here."""
+        prepare_loading()
+        with self._guard_against_spurious_io_errors():
+            if (found := self._load_overload(sig, target_context)) is not None:
+                return found
+        prepare_compiling()
+        return None

@@ -39,13 +39,23 @@ with _hide_packages(UNUSED), chdir("/") if NUMBA_SETTINGS.exists() else nullcont
     from numba.core import ccallback as ccallback
     from numba.core import config, event
     from numba.core.registry import cpu_target
-
-    cpu_target.target_context.refresh()  # imports the rest, which the first kernel would do
+    from numba.core.runtime.nrt import rtsys
 
 config._config_fname = ""  # no file has this name
 
 UNTYPED: Any = numba.core
 """numba's own modules, which have no types."""
+
+
+def prepare_loading() -> None:
+    """What machine code from the disk needs: the counters of references to its arrays."""
+    rtsys.initialize(cpu_target.target_context)
+
+
+def prepare_compiling() -> None:
+    """Imports what only a compiler needs, which takes as long as the rest of numba."""
+    with _hide_packages(UNUSED):
+        cpu_target.target_context.refresh()
 
 
 class _ProgressListener(event.Listener):

@@ -41,6 +41,7 @@ class Painter:
         self._walls: FloatArray | None = None
         self._view: tuple[Camera, float] | None = None
         self._wall_grid = raster.empty_grid(0, 0)
+        self._wall_cells: BoolArray = np.empty((0, 0), dtype=bool)
         self._rings: dict[Disc, raster.Dots] = {}
         """The rings of targets on these walls."""
 
@@ -69,7 +70,8 @@ class Painter:
         for number, robot in enumerate(scene.robots):
             canvas.draw_robot(robot, ROBOT_ROLES[number % len(ROBOT_ROLES)])
         frame = self.encoder.encode(canvas.grid, coarse=self._is_coarse(scene, camera))
-        SpriteLayer(frame, camera, self.encoder.symbols).draw_scene(scene)
+        sprites = SpriteLayer(frame, camera, self.encoder.symbols, scene.walls, self._wall_cells)
+        sprites.draw_scene(scene)
         if self.shaded:
             lit = lit_cells(scene.beams, camera, frame.fg == Role.WALL_HIT)
             shades = shade_roles(floor, lit)
@@ -98,10 +100,11 @@ class Painter:
             grid[self._floor_map.solid_dots(camera, across, down)] = Role.WALL
             self._wall_grid, self._walls, self._view = grid, scene.walls, view
             self._rings.clear()
+            walled = grid.reshape(camera.rows, down, camera.columns, across) == Role.WALL
+            self._wall_cells = walled.any(axis=(1, 3))
             if self.shaded:
                 self._floor = self._floor_map.cells(camera, grid, across, down)
-                dots = grid.reshape(camera.rows, down, camera.columns, across)
-                self._solid = (dots == Role.WALL).mean(axis=(1, 3)) >= 0.5
+                self._solid = walled.mean(axis=(1, 3)) >= 0.5
         return self._wall_grid
 
 

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from kit.arrays import FloatArray
+from kit.arrays import BoolArray, FloatArray
 from kit.render.camera import Camera
 from kit.render.encode import Frame, GlyphSet
 from kit.render.roles import ROBOT_ROLES, Role
 from kit.render.scene import Scene, SceneBody
+from kit.segments import nearest_on_segments
 
 MIN_OUTLINE_ROWS = 1.5
 """A robot shorter than this many rows is drawn as an arrow; from there on with its outline too."""
@@ -35,10 +36,15 @@ def size_in_rows(body: SceneBody, camera: Camera) -> float:
 class SpriteLayer:
     """Puts characters on one frame."""
 
-    def __init__(self, frame: Frame, camera: Camera, symbols: GlyphSet) -> None:
+    def __init__(
+        self, frame: Frame, camera: Camera, symbols: GlyphSet, walls: FloatArray, wall_cells: BoolArray
+    ) -> None:
+        """``walls``: ``x1 y1 x2 y2`` [m]. ``wall_cells``: the cells in which there is some."""
         self._frame = frame
         self._camera = camera
         self._symbols = symbols
+        self._walls = walls
+        self._wall_cells = wall_cells
 
     def draw_scene(self, scene: Scene) -> None:
         """Draws every part of the scene, the least important first."""
@@ -52,7 +58,7 @@ class SpriteLayer:
         for x, y in scene.contacts.tolist():
             self._put_contact(x, y, middles)
         for number, (robot, middle) in enumerate(zip(robots, middles, strict=True)):
-            self._put_robot(robot, self._cell_at(*middle), number, named=len(robots) > 1)
+            self._put_robot(robot, middle, number, named=len(robots) > 1)
 
     def _put_field(self, arrows: FloatArray) -> None:
         """Arrows where nothing else is."""
@@ -72,7 +78,7 @@ class SpriteLayer:
         """Draws a contact at its place, or beside it if a robot's arrow would cover it."""
         cell = self._cell_at(x, y)
         for middle_x, middle_y in middles:
-            if cell is not None and cell == self._cell_at(middle_x, middle_y):
+            if cell is not None and cell == self._robot_cell(middle_x, middle_y):
                 right = (x - middle_x) / self._camera.cell_width
                 down = (middle_y - y) / self._camera.cell_height
                 row, column = cell
@@ -82,9 +88,12 @@ class SpriteLayer:
                     cell = row + (1 if down > 0 else -1), column
         self._put_text(cell, self._symbols.contact, Role.CONTACT)
 
-    def _put_robot(self, robot: SceneBody, cell: SpriteCell | None, number: int, named: bool) -> None:
-        if cell is None:
+    def _put_robot(self, robot: SceneBody, middle: tuple[float, float], number: int, named: bool) -> None:
+        at, cell = self._cell_at(*middle), self._robot_cell(*middle)
+        if at is None or cell is None:
             return
+        if at != cell:
+            self._frame.fg[at] = Role.WALL
         theta, extent = robot.pose.theta, robot.extent
         role, arrows = (
             ROBOT_ROLES[number % len(ROBOT_ROLES)],
@@ -97,7 +106,8 @@ class SpriteLayer:
             base = self._cell_at(*robot.pose.transform_point(front, extent.middle[1]))
             if base is not None:
                 eighth = round(theta / math.tau * 8) * math.tau / 8
-                ahead = base[0] - round(math.sin(eighth)), base[1] + round(math.cos(eighth))
+                row, column = base[0] + cell[0] - at[0], base[1] + cell[1] - at[1]
+                ahead = row - round(math.sin(eighth)), column + round(math.cos(eighth))
                 self._put_text(
                     ahead, _arrow_glyph(self._symbols.heading_strokes, theta), role, over=Role.ROBOT
                 )
@@ -106,6 +116,31 @@ class SpriteLayer:
             # Below, or above if it would cover the heading line there.
             row = cell[0] + (1 if math.sin(theta) > -0.5 else -1)
             self._put_text((row, cell[1]), str(number + 1), role)
+
+    def _robot_cell(self, x: float, y: float) -> SpriteCell | None:
+        """The cell of a robot's arrow: beside a wall that it stands at, not in it, where a cell holds both."""
+        cell = self._cell_at(x, y)
+        if cell is None or not self._is_wall(cell):
+            return cell
+        distances, nearest = nearest_on_segments(np.array(((x, y),)), self._walls)
+        wall_x, wall_y = nearest[0, distances[0].argmin()].tolist()
+        right, down = (x - wall_x) / self._camera.cell_width, (wall_y - y) / self._camera.cell_height
+        row, column = cell
+        ways = (
+            (abs(right), (row, column + (1 if right > 0 else -1))),
+            (abs(down), (row + (1 if down > 0 else -1), column)),
+        )
+        return next((each for _, each in sorted(ways, reverse=True) if self._is_floor(each)), cell)
+
+    def _is_wall(self, cell: SpriteCell) -> bool:
+        return self._is_shown(cell) and bool(self._wall_cells[cell])
+
+    def _is_floor(self, cell: SpriteCell) -> bool:
+        return self._is_shown(cell) and not self._wall_cells[cell]
+
+    def _is_shown(self, cell: SpriteCell) -> bool:
+        rows, columns = self._frame.shape
+        return 0 <= cell[0] < rows and 0 <= cell[1] < columns
 
     def _cell_at(self, x: float, y: float) -> SpriteCell | None:
         """Returns the cell of a point [m], on the picture or off; None if it is not finite."""

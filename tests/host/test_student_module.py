@@ -25,6 +25,12 @@ def failure_of(source: bytes, folder: Path) -> Failure | None:
 
 MISTAKES = {
     "an attribute": (b"import math\nmath.sqroot(2)\n", 2, "Did you mean 'sqrt'?"),
+    "an attribute that is set": (
+        b"class Twist:\n    __slots__ = ('linear',)\ncommand = Twist()\ncommand.linear_x = 1\n",
+        4,
+        "Did you mean 'linear'?",
+    ),
+    "a parameter of another name": (b"def f(row):\n    return row\nf(line=1)\n", 3, "keep the names"),
     "a local name": (b"def f():\n    speed = 1\n    return sped\nf()\n", 3, "Did you mean 'speed'?"),
     "a global name": (b"distance = 1\nprint(distanc)\n", 2, "Did you mean 'distance'?"),
     "a builtin": (b"print(lenn([]))\n", 1, "Did you mean 'len'?"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import math
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -430,3 +431,18 @@ print(scipy.linalg.det([[2.0]]), cffi.FFI().typeof("int").cname)
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
     assert run.stdout.split() == ["set()", "2.0", "int"]
+
+
+def test_kernels_from_the_disk_import_nothing_that_compiles(tmp_path: Path) -> None:
+    kernel = tmp_path / "kernel.py"
+    kernel.write_text("from kit.kernels.compilation import jit\n@jit\ndef more(x):\n    return x + 1.0\n")
+    code = "import sys, kernel; print(kernel.more(1.0), 'numba.np.arraymath' in sys.modules)"
+    for said in (["2.0", "True"], ["2.0", "False"]):  # compiled, then read
+        run = subprocess.run(
+            [sys.executable, "-c", code],
+            env={**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *filter(None, sys.path)])},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert run.stdout.split() == said, run.stderr

@@ -159,6 +159,24 @@ def test_a_contact_is_seen_even_where_the_robots_arrow_is(
 
 
 @every_encoder
+@pytest.mark.parametrize("side", [-1, 1])
+@pytest.mark.parametrize("is_upright", [False, True])
+def test_a_robot_at_a_wall_stands_beside_it_on_its_own_side(
+    encoder: Encoder, side: int, is_upright: bool
+) -> None:
+    along, off = (0.5, 0.5 + 0.1 * side)
+    wall = np.array(((0.5, -9.0, 0.5, 9.0) if is_upright else (-9.0, 0.5, 9.0, 0.5),))
+    place = (off, along) if is_upright else (along, off)
+    camera = Camera(0, 0, 21, 21, 21)  # a cell is a metre: wall and robot are in one
+    empty = Painter(encoder).paint(Scene(walls=wall), camera)
+    frame = Painter(encoder).paint(Scene(walls=wall, bodies=(robot(Pose(*place, 0.0)),)), camera)
+    arrows = [ord(glyph) for glyph in encoder.symbols.robot_arrows[0]]
+    ((row, column),) = np.argwhere((frame.fg == Role.ROBOT) & np.isin(frame.glyphs, arrows)).tolist()
+    wall_row, wall_column = np.argwhere(empty.fg == Role.WALL)[0].tolist()
+    assert (column - wall_column if is_upright else wall_row - row) == side
+
+
+@every_encoder
 def test_a_wall_is_seen_where_it_is(encoder: Encoder) -> None:
     camera = Camera(0.0, 0.0, 0.1, 40, 20)
     generator = np.random.default_rng(5)

@@ -197,7 +197,7 @@ def _explain_wire(record: LaunchRecord, params: EndpointParams) -> str:
     if missing is None:
         return ""
     of_node = [each for each in wires if each.startswith(missing.split()[0] + " ")]
-    return f"{missing}: not so. {'; '.join(of_node) or 'That node is not there'}."
+    return f"{missing}: missing. {'; '.join(of_node) or 'That node is not there'}."
 
 
 def _explain_distance(record: LaunchRecord, params: DistanceParams) -> str:

@@ -69,7 +69,7 @@ class SubmittedPlan:
         """Yields the pairs of the proof that one layer could serve; they prove nothing."""
         for one, other in combinations(self.proof, 2):
             if layer_conflict(self.case, one, other) is None:
-                yield f"one layer could serve both “{one}” and “{other}”"
+                yield f"One layer could serve both “{_line(one)}” and “{_line(other)}”"
 
 
 @check(none=1, full=0, words=("all of them", "not all"))
@@ -177,6 +177,13 @@ def _known_names(
     return names
 
 
+def _line(requirement: Requirement) -> str:
+    """A requirement as a proof has it."""
+    if isinstance(requirement, SightRequirement):
+        return f"{requirement.laser}{SIGHT_SEPARATOR}{requirement.entity}"
+    return f"{requirement.a}{CONTACT_SEPARATOR}{requirement.b}"
+
+
 def _requirement(section: Section, number: int, line: str, case: LayerCase) -> Requirement | None:
     """Reads a line of the proof, counted from 0, as a requirement of the case; notes an error for any other line."""
     split = SIGHT_SEPARATOR if SIGHT_SEPARATOR in line else CONTACT_SEPARATOR
@@ -187,7 +194,7 @@ def _requirement(section: Section, number: int, line: str, case: LayerCase) -> R
     if plan in case.requirements:
         return plan
     section.error(
-        f"{quoted(line)} is nothing that must happen here: write `A - B`, or `LASER sees A`",
+        f"{quoted(line)} is not among what must happen here: {suggestion(line, tuple(map(_line, case.requirements)))}",
         "proof",
         item=number,
     )

@@ -35,6 +35,10 @@ MEANINGS: Final = (
         r"'float' object cannot be interpreted as an integer",
         "A whole number is needed: // divides without a remainder, int(x) cuts off the decimals.",
     ),
+    (
+        r"got an unexpected keyword argument",
+        "It has no parameter of this name; parameters keep the names that they have in the starter.",
+    ),
     (r"list index out of range", "A list with n entries has the indices 0 to n - 1."),
     (r"string index out of range", "A text with n characters has the indices 0 to n - 1."),
     (

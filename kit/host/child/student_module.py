@@ -7,9 +7,11 @@ import errno
 import os
 import re
 import sys
+from collections.abc import Mapping
 from contextlib import suppress
 from itertools import islice
 from types import ModuleType, TracebackType
+from typing import Any
 
 from kit.host.child.common_mistakes import meaning
 from kit.host.child.missing_imports import import_way_out, nearest
@@ -23,6 +25,7 @@ MAX_MESSAGE = 600
 MAX_REPR = 60
 """Characters of a value that is shown."""
 ADDRESS = re.compile(r" at 0x[0-9a-f]+")
+UNSET_ATTRIBUTE = re.compile(r"'(\w+)' object has no attribute '(\w+)'$")
 
 
 class StudentProgram:
@@ -190,12 +193,16 @@ def _way_out(problem: BaseException, program: StudentProgram) -> str:
     if isinstance(problem, ImportError):
         return import_way_out(problem, program.file)
     name = getattr(problem, "name", None)
+    unset = UNSET_ATTRIBUTE.match(str(problem.args[0])) if name is None and problem.args else None
+    if unset is not None and isinstance(problem, AttributeError):  # Python tells of what was read alone
+        name = unset[2]
     if not isinstance(name, str):
         return ""
     known: set[str] = set()
     with suppress(BaseException):  # a student's class may have a broken __dir__
         if isinstance(problem, AttributeError):
-            known.update(word for word in dir(problem.obj) if name.startswith("_") or word[:1] != "_")
+            owner = problem.obj if unset is None else _local_of_type(problem.__traceback__, unset[1])
+            known.update(word for word in dir(owner) if name.startswith("_") or word[:1] != "_")
         elif isinstance(problem, NameError):
             if name in sys.stdlib_module_names:
                 return f". Did you forget `import {name}`?"
@@ -223,13 +230,19 @@ def _innermost_call(trace: TracebackType | None) -> str:
     return f"{called}()" if called else f"What {code.co_name}() calls"
 
 
-def _innermost_names(trace: TracebackType | None) -> tuple[set[str], set[str]]:
-    """Returns the local and the global names where an exception was raised."""
+def _innermost_names(trace: TracebackType | None) -> tuple[Mapping[str, Any], Mapping[str, Any]]:
+    """Returns the local and the global names where an exception was raised, with their values."""
     if trace is None:
-        return set(), set()
+        return {}, {}
     while trace.tb_next is not None:
         trace = trace.tb_next
-    return set(trace.tb_frame.f_locals), set(trace.tb_frame.f_globals)
+    return trace.tb_frame.f_locals, trace.tb_frame.f_globals
+
+
+def _local_of_type(trace: TracebackType | None, type_name: str) -> object:
+    """Returns a local object of a type where an exception was raised; None if there is none."""
+    values = _innermost_names(trace)[0].values()
+    return next((each for each in values if type(each).__name__ == type_name), None)
 
 
 def _make_failure(

@@ -76,6 +76,8 @@ class TrainingNote:
     """Something a reader of the run should know."""
 
     text: str
+    until_progress: bool = False
+    """Whether it is over once the learner makes steps."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,6 +18,7 @@ from kit.learning.training.events import (
     Evaluated,
     TrainingEnded,
     TrainingEvent,
+    TrainingNote,
     TrainingProgress,
     TrainingStarted,
 )
@@ -145,6 +146,8 @@ class RunTracker:
         self._recent: deque[TrainingProgress] = deque(maxlen=RECENT_REPORTS)
         self._tested: dict[str, OutcomeCounts] = {}
         self._note = ""
+        self._is_note_over = False
+        """Whether the next progress ends it."""
 
     def add(self, event: TrainingEvent) -> None:
         """Takes the next event."""
@@ -174,6 +177,9 @@ class RunTracker:
                 pass
         if not isinstance(event, TrainingProgress):
             self._note = _event_note(event)
+        elif self._is_note_over:
+            self._note = ""
+        self._is_note_over = isinstance(event, TrainingNote) and event.until_progress
 
     def status(self, *, alive: bool, order: TrainingCommand) -> RunStatus:
         """Returns the status of the run, given whether a process trains it and which command it was sent."""

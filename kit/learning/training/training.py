@@ -21,6 +21,7 @@ import numpy as np
 
 from kit.arrays import FloatArray
 from kit.host.failure import StudentCodeError
+from kit.kernels.compilation_progress import PROGRESS
 from kit.learning.environment.batch import BatchEnv, RewardError
 from kit.learning.environment.episode_stats import EpisodeOutcome, EpisodeStats
 from kit.learning.maps.batch_map import UnsupportedWorld
@@ -123,7 +124,7 @@ def train(run: TrainingRun, *, interrupted: Callable[[], bool] = lambda: False) 
         require_learn_extra()
     with run.lock(), _full_disk_as_run_error(run), EventWriter(run.events_file) as events:
         try:
-            with _student_reward(run, config) as reward:
+            with _student_reward(run, config) as reward, PROGRESS.told_by(_CompilationNotes(events).tell):
                 training = _TrainingLoop(run, config, events, reward, interrupted)
                 ended = training.run()
         except (
@@ -139,6 +140,19 @@ def train(run: TrainingRun, *, interrupted: Callable[[], bool] = lambda: False) 
             ended = _ended_by_failure(run, str(error))
         events.write(ended)
     return ended
+
+
+class _CompilationNotes:
+    """Says what is compiled, before the first step on a machine."""
+
+    def __init__(self, events: EventWriter) -> None:
+        self._events = events
+        self._told_at = -math.inf
+
+    def tell(self, text: str) -> None:
+        if time.monotonic() - self._told_at >= PROGRESS_S:
+            self._events.write(TrainingNote(text, until_progress=True))
+            self._told_at = time.monotonic()
 
 
 def _ended_by_failure(run: TrainingRun, message: str) -> TrainingEnded:

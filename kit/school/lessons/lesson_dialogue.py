@@ -769,7 +769,11 @@ class LessonDialogue(Dialogue):
         if self.work is None:
             return False
         has_run = self.work.recorded_run is not None or bool(self.work.picture_lines)
-        return has_run or "No run was recorded yet: c checks the exercise."
+        if has_run:
+            return True
+        if self.report is not None and self.report.criteria:
+            return "This check recorded no run."
+        return "No run was recorded yet: c checks the exercise."
 
     def can_show_output(self) -> bool | str:
         if self.work is None or self.work.by_hand:
@@ -806,10 +810,11 @@ class LessonDialogue(Dialogue):
     def can_defend(self) -> bool | str:
         if self.work is None or not self.work.exercise.is_program:
             return False
-        return (
-            self.session.can_defend(self.work.exercise)
-            or "First pass the exercise with a program that drives."
-        )
+        if self.session.can_defend(self.work.exercise):
+            return True
+        if self.session.can_see_solution(self.work.exercise):
+            return "There are no questions about this program: its check recorded no drive."
+        return "First pass the exercise with a program that drives."
 
     def has_work(self) -> bool:
         return self.work is not None

@@ -1,6 +1,8 @@
-"""Conduz um quadrado: um metro em frente, um quarto de volta para a esquerda, e assim por diante, quatro vezes.
+"""Conduz um quadrado: um metro em frente, um quarto de volta para a
+esquerda, e assim por diante, quatro vezes.
 
-Já anda, mas não faz um quadrado. Dois dos quatro números abaixo estão errados.
+Já anda, mas não faz um quadrado. Dois dos quatro números abaixo estão
+errados.
 """
 
 import math  # math.pi é meia volta
@@ -13,7 +15,8 @@ SPEED = 0.4  # m/s, num lado
 TURN_RATE = 0.8  # rad/s para a esquerda, num canto
 
 SIDE_TIME = 1.0  # s. TODO: quanto tempo demora um metro a SPEED?
-CORNER_TIME = 1.0  # s. TODO: quanto tempo demora um quarto de volta a TURN_RATE?
+# s. TODO: quanto tempo demora um quarto de volta a TURN_RATE?
+CORNER_TIME = 1.0
 
 
 class Square(Node):
@@ -24,7 +27,8 @@ class Square(Node):
         self.timer = self.create_timer(0.1, self.go_on)
 
     def go_on(self):
-        """Começa o lado ou o canto seguinte, e volta aqui quando acabar."""
+        """Começa o lado ou o canto seguinte, e volta aqui quando acabar.
+        """
         self.timer.cancel()
         command = Twist()
         if self.done < 8:

@@ -1,6 +1,8 @@
-"""Drive a square: one metre ahead, a quarter turn to the left, and so on, four times.
+"""Drive a square: one metre ahead, a quarter turn to the left, and so
+on, four times.
 
-It drives already, but no square. Two of the four numbers below are wrong.
+It drives already, but no square. Two of the four numbers below are
+wrong.
 """
 
 import math  # math.pi is half a turn
@@ -13,7 +15,8 @@ SPEED = 0.4  # m/s, on a side
 TURN_RATE = 0.8  # rad/s to the left, in a corner
 
 SIDE_TIME = 1.0  # s. TODO: how long does one metre take at SPEED?
-CORNER_TIME = 1.0  # s. TODO: how long does a quarter turn take at TURN_RATE?
+# s. TODO: how long does a quarter turn take at TURN_RATE?
+CORNER_TIME = 1.0
 
 
 class Square(Node):
@@ -24,7 +27,8 @@ class Square(Node):
         self.timer = self.create_timer(0.1, self.go_on)
 
     def go_on(self):
-        """Begin the next side or corner, and come back here when it is over."""
+        """Begin the next side or corner, and come back here when it is
+        over."""
         self.timer.cancel()
         command = Twist()
         if self.done < 8:

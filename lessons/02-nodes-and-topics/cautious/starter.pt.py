@@ -1,4 +1,5 @@
-"""Anda em frente, com cautela: 0.6 m/s; metade com uma parede a menos de 1.2 m; parado com uma a menos de 0.5 m."""
+"""Anda em frente, com cautela: 0.6 m/s; metade com uma parede a menos de
+1.2 m; parado com uma a menos de 0.5 m."""
 
 import rclpy
 from geometry_msgs.msg import Twist
@@ -13,9 +14,11 @@ class Cautious(Node):
         self.create_subscription(LaserScan, "static_laser", self.on_scan, 10)
 
     def on_scan(self, scan):
-        """Chamada com cada mensagem do laser. scan.ranges[45] é a distância mesmo em frente, em metros."""
+        """Chamada com cada mensagem do laser. scan.ranges[45] é a
+        distância mesmo em frente, em metros."""
         command = Twist()
-        command.linear.x = 0.0  # TODO: 0.6, 0.3 ou 0.0, conforme scan.ranges[45]
+        # TODO: 0.6, 0.3 ou 0.0, conforme scan.ranges[45]
+        command.linear.x = 0.0
         self.drive.publish(command)
 
 

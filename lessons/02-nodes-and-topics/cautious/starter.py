@@ -1,4 +1,5 @@
-"""Drive ahead, with care: 0.6 m/s; half of it with a wall within 1.2 m ahead; stop when it is within 0.5 m."""
+"""Drive ahead, with care: 0.6 m/s; half of it with a wall within 1.2 m
+ahead; stop when it is within 0.5 m."""
 
 import rclpy
 from geometry_msgs.msg import Twist
@@ -13,9 +14,11 @@ class Cautious(Node):
         self.create_subscription(LaserScan, "static_laser", self.on_scan, 10)
 
     def on_scan(self, scan):
-        """Called with every message of the laser. scan.ranges[45] is the distance straight ahead, in metres."""
+        """Called with every message of the laser. scan.ranges[45] is the
+        distance straight ahead, in metres."""
         command = Twist()
-        command.linear.x = 0.0  # TODO: 0.6, or 0.3, or 0.0, as scan.ranges[45] says
+        # TODO: 0.6, or 0.3, or 0.0, as scan.ranges[45] says
+        command.linear.x = 0.0
         self.drive.publish(command)
 
 

@@ -6,7 +6,8 @@ from rclpy.node import Node
 
 class Heartbeat(Node):
     def __init__(self):
-        super().__init__("nameless")  # TODO: o nó deve chamar-se heartbeat
+        # TODO: o nó deve chamar-se heartbeat
+        super().__init__("nameless")
         # TODO: fazer com que self.beat seja chamado uma vez por segundo
 
     def beat(self):

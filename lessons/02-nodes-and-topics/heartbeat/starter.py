@@ -6,7 +6,8 @@ from rclpy.node import Node
 
 class Heartbeat(Node):
     def __init__(self):
-        super().__init__("nameless")  # TODO: the node is to be called heartbeat
+        # TODO: the node is to be called heartbeat
+        super().__init__("nameless")
         # TODO: have self.beat called once a second
 
     def beat(self):

@@ -1,7 +1,10 @@
-"""Dois nós: um watcher que olha, e um driver que conduz. Só os liga o tópico wall_ahead.
+"""Dois nós: um watcher que olha, e um driver que conduz. Só os liga o
+tópico wall_ahead.
 
-watcher: ouve o laser (static_laser, LaserScan), diz em wall_ahead (Bool) se há uma parede a menos de 0.5 m em frente
-driver:  ouve wall_ahead, comanda as rodas (cmd_vel, Twist): 0.4 m/s em frente, ou 1.0 rad/s à esquerda se há parede
+watcher: ouve o laser (static_laser, LaserScan), diz em wall_ahead (Bool)
+         se há uma parede a menos de 0.5 m em frente
+driver:  ouve wall_ahead, comanda as rodas (cmd_vel, Twist): 0.4 m/s em
+         frente, ou 1.0 rad/s à esquerda se há parede
 """
 
 import rclpy
@@ -26,7 +29,8 @@ class Driver(Node):
 
 def main(args=None):
     rclpy.init(args=args)
-    executor = SingleThreadedExecutor()  # rclpy.spin faz correr um só nó; um executor, vários
+    # rclpy.spin faz correr um só nó; um executor, vários
+    executor = SingleThreadedExecutor()
     executor.add_node(Watcher())
     # TODO: o driver também
     executor.spin()

@@ -1,7 +1,10 @@
-"""Two nodes: a watcher that looks, and a driver that drives. All that connects them is the topic wall_ahead.
+"""Two nodes: a watcher that looks, and a driver that drives. All that
+connects them is the topic wall_ahead.
 
-watcher: hears the laser (static_laser, LaserScan), says on wall_ahead (Bool) whether a wall is within 0.5 m ahead
-driver:  hears wall_ahead, tells the wheels (cmd_vel, Twist): 0.4 m/s ahead, or 1.0 rad/s to the left at a wall
+watcher: subscribes to the laser (static_laser, LaserScan), publishes on
+         wall_ahead (Bool) whether a wall is within 0.5 m ahead
+driver:  subscribes to wall_ahead, commands the wheels (cmd_vel, Twist):
+         0.4 m/s ahead, or 1.0 rad/s to the left at a wall
 """
 
 import rclpy
@@ -26,7 +29,8 @@ class Driver(Node):
 
 def main(args=None):
     rclpy.init(args=args)
-    executor = SingleThreadedExecutor()  # one spins a single node; an executor spins several
+    # one spins a single node; an executor spins several
+    executor = SingleThreadedExecutor()
     executor.add_node(Watcher())
     # TODO: the driver too
     executor.spin()

@@ -1,6 +1,7 @@
 """Anda em frente até bater, e deve então ser mandado para casa.
 
-O mundo tem um serviço para isso: /move_model, do tipo MoveModel, põe um modelo numa pose.
+O mundo tem um serviço para isso: /move_model, do tipo MoveModel, põe um
+modelo numa pose.
 """
 
 import rclpy
@@ -13,8 +14,10 @@ from rclpy.node import Node
 class Home(Node):
     def __init__(self):
         super().__init__("home")
-        self.home = self.declare_parameter("home", [0.0, 0.0, 0.0]).value  # x, y, theta
-        self.model = self.declare_parameter("model", "serp").value  # o nome do robô no mundo
+        # x, y, theta
+        self.home = self.declare_parameter("home", [0.0, 0.0, 0.0]).value
+        # o nome do robô no mundo
+        self.model = self.declare_parameter("model", "serp").value
         self.drive = self.create_publisher(Twist, "cmd_vel", 10)
         self.create_subscription(Collisions, "collisions", self.on_collisions, 10)
         self.create_timer(0.1, self.go)
@@ -26,7 +29,8 @@ class Home(Node):
         self.drive.publish(command)
 
     def on_collisions(self, message):
-        """Chamada dez vezes por segundo; message.collisions diz o que toca no robô."""
+        """Chamada dez vezes por segundo; message.collisions diz o que
+        toca no robô."""
         if not message.collisions:
             return
         # TODO: pedir que self.model seja posto em self.home

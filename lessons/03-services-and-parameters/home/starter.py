@@ -1,6 +1,7 @@
 """Drives ahead until it bumps, and is to be sent home then.
 
-The world has a service for it: /move_model, of the type MoveModel, puts a model at a pose.
+The world has a service for it: /move_model, of the type MoveModel, puts
+a model at a pose.
 """
 
 import rclpy
@@ -13,8 +14,10 @@ from rclpy.node import Node
 class Home(Node):
     def __init__(self):
         super().__init__("home")
-        self.home = self.declare_parameter("home", [0.0, 0.0, 0.0]).value  # x, y, theta
-        self.model = self.declare_parameter("model", "serp").value  # the robot's name in the world
+        # x, y, theta
+        self.home = self.declare_parameter("home", [0.0, 0.0, 0.0]).value
+        # the robot's name in the world
+        self.model = self.declare_parameter("model", "serp").value
         self.drive = self.create_publisher(Twist, "cmd_vel", 10)
         self.create_subscription(Collisions, "collisions", self.on_collisions, 10)
         self.create_timer(0.1, self.go)
@@ -26,7 +29,8 @@ class Home(Node):
         self.drive.publish(command)
 
     def on_collisions(self, message):
-        """Called ten times a second; message.collisions lists what touches the robot."""
+        """Called ten times a second; message.collisions lists what
+        touches the robot."""
         if not message.collisions:
             return
         # TODO: ask for self.model to be put at self.home

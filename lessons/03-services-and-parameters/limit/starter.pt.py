@@ -1,4 +1,5 @@
-"""Anda em frente, a uma velocidade que outros podem mudar; e para quando lho pedem."""
+"""Anda em frente, a uma velocidade que outros podem mudar; e para quando
+lho pedem."""
 
 import rclpy
 from geometry_msgs.msg import Twist
@@ -12,8 +13,8 @@ class Limited(Node):
         super().__init__("limited")
         self.drive = self.create_publisher(Twist, "cmd_vel", 10)
         self.create_timer(0.1, self.go)
-        # TODO: um parâmetro, limit, em m/s, 0.3 por omissão; os negativos são recusados
-        # TODO: um serviço, halt, do tipo Trigger
+        # TODO: um parâmetro, limit, em m/s, 0.3 por omissão; os
+        # negativos são recusados TODO: um serviço, halt, do tipo Trigger
 
     def go(self):
         command = Twist()

@@ -1,4 +1,5 @@
-"""Drives ahead, at a speed that others may set; and halts when it is asked to."""
+"""Drives ahead, at a speed that others may set; and halts when it is
+asked to."""
 
 import rclpy
 from geometry_msgs.msg import Twist
@@ -12,8 +13,8 @@ class Limited(Node):
         super().__init__("limited")
         self.drive = self.create_publisher(Twist, "cmd_vel", 10)
         self.create_timer(0.1, self.go)
-        # TODO: a parameter, limit, in m/s, 0.3 by default; negative ones are refused
-        # TODO: a service, halt, of the type Trigger
+        # TODO: a parameter, limit, in m/s, 0.3 by default; negative ones
+        # are refused TODO: a service, halt, of the type Trigger
 
     def go(self):
         command = Twist()

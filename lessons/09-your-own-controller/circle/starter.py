@@ -1,4 +1,5 @@
-"""A robot that moves in a circle. Change it, so that the circle has a radius of 0.3 m."""
+"""A robot that moves in a circle. Change it, so that the circle has a
+radius of 0.3 m."""
 
 import rclpy
 from geometry_msgs.msg import Twist

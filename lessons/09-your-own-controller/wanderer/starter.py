@@ -1,6 +1,7 @@
 """Keep going, and touch nothing.
 
-Save this file and watch the robot: kit play maze --controller (this file).
+Save this file and watch the robot: kit play maze --controller (this
+file).
 """
 
 import math
@@ -23,12 +24,15 @@ class Wanderer(Node):
         self.create_subscription(LaserScan, "static_laser", self.on_scan, 10)
 
     def on_scan(self, scan):
-        """Ten times a second: 91 ranges, ranges[45] straight ahead, [22] to the right, [68] to the left."""
+        """Ten times a second: 91 ranges, ranges[45] straight ahead, [22]
+        to the right, [68] to the left."""
         command = Twist()
         ahead = nearest(scan.ranges[38:53])
-        # 1. If there is room ahead, drive forward:  command.linear.x = 0.3
-        # 2. Else turn, to the side with more room:  command.angular.z = 1.5 or -1.5
-        # 3. Which side? Choose once for each wall, and remember it in self.
+        # 1. If there is room ahead, drive: command.linear.x = 0.3
+        # 2. Else turn, to the side with more room:
+        #    command.angular.z = 1.5 or -1.5
+        # 3. Which side? Choose once for each wall, and remember the
+        #    side in self.
         self.drive.publish(command)
 
 

@@ -1,4 +1,5 @@
-"""A hallway as a Gymnasium environment: a robot and its sensors become something an agent can learn from."""
+"""A hallway as a Gymnasium environment: a robot and its sensors become
+something an agent can learn from."""
 
 import math
 
@@ -11,7 +12,8 @@ from geometry_msgs.msg import Pose2D, Twist
 from rclpy.node import Node
 from sensor_msgs.msg import LaserScan
 
-MOVES = ((0.5, 0.0), (0.0, 1.57), (0.0, -1.57))  # action 0 forward, 1 left, 2 right: m/s, rad/s
+# action 0 forward, 1 left, 2 right: m/s, rad/s
+MOVES = ((0.5, 0.0), (0.0, 1.57), (0.0, -1.57))
 MAX_STEPS = 200
 ARRIVED = 0.2  # m from the beacon
 FAR = 2.0  # m: farther than this the agent does not see
@@ -30,31 +32,38 @@ class HallwayEnv(gymnasium.Env):
         return np.zeros(9, dtype=np.float32)  # from self.robot.ranges
 
     def reset(self, *, seed=None, options=None):
-        """Begins an episode: the robot at its home, but for a little chance."""
+        """Begins an episode: the robot at its home, but for a little
+        chance."""
         super().reset(seed=seed)
-        # dx and dy within 0.05 m, the turn within 0.2 rad, all drawn from self.np_random, then:
+        # dx and dy within 0.05 m, the turn within 0.2 rad, all drawn
+        # from self.np_random, then:
         # self.robot.put(dx, dy, turn)
         return self.observation(), {}
 
     def step(self, action):
         """One action, a tenth of a second."""
-        # self.robot.drive(*MOVES[action]) drives. Then self.robot knows has_bumped and to_beacon [m].
+        # self.robot.drive(*MOVES[action]) drives. Then self.robot knows
+        # has_bumped and to_beacon [m].
         return self.observation(), 0.0, False, False, {}
 
 
-# ---- Below: the robot. Finished; nothing to change. -----------------------------------------------------------
+# ---- Below: the robot. Finished; nothing to change. ----
 
 
 class Robot(Node):
-    """A robot that drives for a tenth of a second at a time: until every sensor has spoken again."""
+    """A robot that drives for a tenth of a second at a time: until every
+    sensor has spoken again."""
 
     def __init__(self):
         super().__init__("hallway")
         self.home = self.declare_parameter("home", [0.0, 0.0, math.pi / 2]).value
         self.model = self.declare_parameter("model", "serp").value
-        self.ranges = None  # 91 distances [m] from the newest scan; nan: nothing within reach
+        # 91 distances [m] from the newest scan; nan: nothing within
+        # reach
+        self.ranges = None
         self.has_bumped = None  # whether anything touches it
-        self.to_beacon = None  # m from the hull to the beacon in the target
+        # m from the hull to the beacon in the target
+        self.to_beacon = None
         self.commands = self.create_publisher(Twist, "cmd_vel", 10)
         self.move_model = self.create_client(MoveModel, "/move_model")
         self.create_subscription(LaserScan, "static_laser", self.on_scan, 10)
@@ -62,7 +71,8 @@ class Robot(Node):
         self.create_subscription(LaserScan, "/beacon_laser", self.on_beacon, 10)
 
     def put(self, dx, dy, turn):
-        """Puts the robot beside its home, and waits for what it sees from there."""
+        """Puts the robot beside its home, and waits for what it sees
+        from there."""
         self.commands.publish(Twist())
         x, y, theta = self.home
         pose = Pose2D(x=x + dx, y=y + dy, theta=theta + turn)
@@ -95,7 +105,8 @@ class Robot(Node):
 
 
 def main(args=None):
-    """Three episodes with an agent that has learnt nothing yet: it draws its actions."""
+    """Three episodes with an agent that has learnt nothing yet: it draws
+    its actions."""
     rclpy.init(args=args)
     env = HallwayEnv()
     for episode in range(3):

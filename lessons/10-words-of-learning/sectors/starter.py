@@ -8,13 +8,16 @@ MAX_STEPS = 200
 
 
 def sectors(ranges):
-    """91 ranges [m] -> a list of nine: the nearest range of each sector, at most FAR.
+    """91 ranges [m] -> a list of nine: the nearest range of each sector,
+    at most FAR.
 
-    Sectors 0 to 7 have ten rays each, the last one has the eleven that are left. A ray that met nothing is nan.
+    Sectors 0 to 7 have ten rays each, the last one has the eleven that
+    are left. A ray that met nothing is nan.
     """
     return [FAR] * 9  # write this
 
 
 def ended(touching, to_target, steps):
-    """Whether anything touches the robot, metres to the target, steps so far -> [terminated, truncated]."""
+    """Whether anything touches the robot, metres to the target, steps so
+    far -> [terminated, truncated]."""
     return [False, False]  # write this

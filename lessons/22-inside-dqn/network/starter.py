@@ -7,8 +7,10 @@ def value(inputs, weights):
 
 
 def descend(inputs, weights, target, rate):
-    """The weights after one step of gradient descent on (value - target) squared.
+    """The weights after one step of gradient descent on (value - target)
+    squared.
 
-    The slope of the squared error at a weight is 2 * error * its input, where error is value minus target.
+    The slope of the squared error at a weight is 2 * error * its input,
+    where error is value minus target.
     """
     return weights  # write this

@@ -2,7 +2,8 @@
 
 
 def mirrored_scan(distances):
-    """The distances as they are in a mirror; they are given from right to left."""
+    """The distances as they are in a mirror; they are given from right
+    to left."""
     return distances  # write this
 
 
@@ -12,5 +13,6 @@ def mirrored_action(action):
 
 
 def doubled(steps):
-    """All steps, each [distances, action, reward, next distances], and after them all of them in the mirror."""
+    """All steps, each [distances, action, reward, next distances], and
+    after them all of them in the mirror."""
     return steps  # write this

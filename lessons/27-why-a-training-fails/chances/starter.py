@@ -1,10 +1,12 @@
-"""Draw moves by their values: in proportion to exp(value / temperature)."""
+"""Draw moves by their values: in proportion to exp(value / temperature).
+"""
 
 import math
 
 
 def chances(values, temperature):
-    """The chance of each move; together they are 1. The values may be of any size, also in the thousands."""
+    """The chance of each move; together they are 1. The values may be of
+    any size, also in the thousands."""
     return [0.0 for value in values]  # write this
 
 
@@ -14,5 +16,6 @@ def limited(values, temperature, limit):
 
 
 def blind(rows, limit):
-    """The share of the rows whose two best values are both at the limit or above it. A row has at least two values."""
+    """The share of the rows whose two best values are both at the limit
+    or above it. A row has at least two values."""
     return 0.0  # write this

@@ -1,4 +1,5 @@
-"""The office says once how fast one may drive; the driver comes later and drives that fast."""
+"""The office says once how fast one may drive; the driver comes later
+and drives that fast."""
 
 import rclpy
 from geometry_msgs.msg import Twist
@@ -10,7 +11,8 @@ from std_msgs.msg import Float32
 class Office(Node):
     def __init__(self):
         super().__init__("office")
-        self.limit = self.create_publisher(Float32, "speed_limit", 10)  # TODO: kept for latecomers
+        # TODO: kept for latecomers
+        self.limit = self.create_publisher(Float32, "speed_limit", 10)
         self.limit.publish(Float32(data=self.declare_parameter("limit", 0.4).value))
 
 
@@ -19,7 +21,8 @@ class Driver(Node):
         super().__init__("driver")
         self.speed = 0.0
         self.drive = self.create_publisher(Twist, "cmd_vel", 10)
-        self.create_subscription(Float32, "speed_limit", self.on_limit, 10)  # TODO: hears nothing
+        # TODO: this hears nothing
+        self.create_subscription(Float32, "speed_limit", self.on_limit, 10)
         self.create_timer(0.1, self.go)
 
     def on_limit(self, message):

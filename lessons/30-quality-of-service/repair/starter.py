@@ -1,4 +1,5 @@
-"""A scout that looks for walls, and a driver that hears nothing of it. Repair it."""
+"""A scout that looks for walls, and a driver that hears nothing of it.
+Repair it."""
 
 import rclpy
 from geometry_msgs.msg import Twist
@@ -29,7 +30,8 @@ class Driver(Node):
     def __init__(self):
         super().__init__("driver")
         self.drive = self.create_publisher(Twist, "cmd_vel", 10)
-        self.create_subscription(Bool, "wall_ahead", self.on_wall, 10)  # TODO: this hears nothing
+        # TODO: this hears nothing
+        self.create_subscription(Bool, "wall_ahead", self.on_wall, 10)
 
     def on_wall(self, message):
         command = Twist()

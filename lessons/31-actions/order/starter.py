@@ -1,4 +1,5 @@
-"""A turner that turns the robot when it is asked to, and a captain that asks, waits, and then drives."""
+"""A turner that turns the robot when it is asked to, and a captain that
+asks, waits, and then drives."""
 
 import math
 import time
@@ -16,7 +17,8 @@ from turtlesim.action import RotateAbsolute
 
 
 class Captain(Node):
-    """Asks for a turn to the west, and drives when it is done. Your work is here."""
+    """Asks for a turn to the west, and drives when it is done. Your work
+    is here."""
 
     def __init__(self):
         super().__init__("captain")
@@ -30,12 +32,14 @@ class Captain(Node):
         """Called once, after 0.2 s."""
         self.start.cancel()
         goal = RotateAbsolute.Goal(theta=math.pi)
-        # TODO: send the goal, and have on_answer called when the server has answered
+        # TODO: send the goal, and have on_answer called when the server
+        # has answered
 
     def on_answer(self, future):
         """The server has said yes or no."""
         handle = future.result()
-        # TODO: if it said yes, ask for the result, and have on_result called when it is there
+        # TODO: if it said yes, ask for the result, and have on_result
+        # called when it is there
 
     def on_result(self, future):
         """The turn has ended, well or not."""
@@ -49,7 +53,8 @@ class Captain(Node):
 
 
 class Turner(Node):
-    """The server of the action turn_to. It is complete: leave it as it is."""
+    """The server of the action turn_to. It is complete: leave it as it
+    is."""
 
     def __init__(self):
         super().__init__("turner")

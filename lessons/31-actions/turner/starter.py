@@ -1,4 +1,5 @@
-"""The server of the action turn_to: it turns the robot to a heading, and says on the way how far it is."""
+"""The server of the action turn_to: it turns the robot to a heading, and
+says on the way how far it is."""
 
 import math
 import time
@@ -40,15 +41,19 @@ class Turner(Node):
         self.drive.publish(command)
 
     def left_to(self, theta):
-        """How far it still is to this heading, the short way round: positive to the left [rad]."""
+        """How far it still is to this heading, the short way round:
+        positive to the left [rad]."""
         return math.remainder(theta - self.heading, 2 * math.pi)
 
     def execute(self, handle):
-        """Called with each accepted goal: handle.request.theta is the heading that is wanted [rad]."""
+        """Called with each accepted goal: handle.request.theta is the
+        heading that is wanted [rad]."""
         left = self.left_to(handle.request.theta)
-        # TODO: as long as abs(left) > 0.05: turn at 0.5 rad/s to the right side,
-        #       publish how far it still is as feedback, sleep for 0.05 s, look again;
-        #       and if handle.is_cancel_requested, stop turning and end the goal as canceled
+        # TODO: as long as abs(left) > 0.05: turn at 0.5 rad/s to the
+        #       right side, publish how far it still is as feedback,
+        #       sleep for 0.05 s, look again; and if
+        #       handle.is_cancel_requested, stop turning and end the goal
+        #       as canceled
         handle.succeed()
         return RotateAbsolute.Result(delta=0.0)
 

@@ -1,6 +1,7 @@
 """Follow a wall at a set distance, on the side that the parameter says.
 
-Save this file and watch the robot: kit play office --controller (this file).
+Save this file and watch the robot: kit play office --controller (this
+file).
 """
 
 import math
@@ -17,7 +18,8 @@ SECONDS = 0.1  # from one scan to the next
 
 
 def nearest(ranges, first, last):
-    """The nearest range [m] of the rays first to last; 10.0 if none of them met anything."""
+    """The nearest range [m] of the rays first to last; 10.0 if none of
+    them met anything."""
     return min((each for each in ranges[first : last + 1] if math.isfinite(each)), default=10.0)
 
 
@@ -30,10 +32,13 @@ class Follower(Node):
         self.before = None  # the error at the last scan
 
     def on_scan(self, scan):
-        ranges = list(scan.ranges)  # reversed, they are those of a mirror
+        # reversed, they are those of a mirror
+        ranges = list(scan.ranges)
         command = Twist()
-        # 1. The wall ahead (rays 40 to 50) within 0.5 m: turn on the spot, away from the wall that you follow.
-        # 2. Else drive at SPEED, and steer by the error and by its change, within LIMIT.
+        # 1. The wall ahead (rays 40 to 50) within 0.5 m: turn on the
+        #    spot, away from the wall that you follow.
+        # 2. Else drive at SPEED, and steer by the error and by its
+        #    change, within LIMIT.
         # 3. With the wall on the left, all this in a mirror.
         self.drive.publish(command)
 

@@ -6,16 +6,20 @@ LIMIT = 1.2  # rad/s
 
 
 def distance(ranges, side):
-    """The nearest range [m] on a side, "right" or "left"; 10.0 if no ray there met anything.
+    """The nearest range [m] on a side, "right" or "left"; 10.0 if no ray
+    there met anything.
 
-    There are 91 rays, from straight behind over the right (ray 22), ahead (ray 45) and the left to straight behind.
+    There are 91 rays, from straight behind over the right (ray 22),
+    ahead (ray 45) and the left to straight behind.
     """
     return 10.0  # write this
 
 
 def rate(error, error_before, side):
-    """The rate of turning [rad/s], positive to the left, of a robot that follows a wall on a side.
+    """The rate of turning [rad/s], positive to the left, of a robot that
+    follows a wall on a side.
 
-    error: DISTANCE less the distance [m]; error_before: that of the scan before, None at the first.
+    error: DISTANCE less the distance [m]; error_before: that of the scan
+    before, None at the first.
     """
     return 0.0  # write this

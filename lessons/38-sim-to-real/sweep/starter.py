@@ -2,7 +2,8 @@
 
 
 def endured(table, part):
-    """The largest value up to which the share never falls below `part` times the share at 0.
+    """The largest value up to which the share never falls below `part`
+    times the share at 0.
 
     `table` is a list of [value, share], values from 0 upwards.
     """
@@ -10,10 +11,12 @@ def endured(table, part):
 
 
 def delayed(commands, steps):
-    """What the wheels carry out in each step, when every command comes `steps` steps later; 0.0 before the first."""
+    """What the wheels carry out in each step, when every command comes
+    `steps` steps later; 0.0 before the first."""
     return []  # write this
 
 
 def carried_out(speed, rate, radius_error, drift):
-    """[speed, rate] that a robot really has whose wheels have that error and that drift [rad for each metre]."""
+    """[speed, rate] that a robot really has whose wheels have that error
+    and that drift [rad for each metre]."""
     return []  # write this

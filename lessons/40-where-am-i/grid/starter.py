@@ -11,7 +11,8 @@ def updated(grid, free, hit):
     """A grid of log odds, as a list of rows -> a new one, after one ray.
 
     free: the cells that the ray passed, each as [row, column]
-    hit:  the cell in which it ended, as [row, column]; None if it met nothing
+    hit:  the cell in which it ended, as [row, column]; None if it met
+          nothing
     """
     return grid  # write this
 

@@ -1,6 +1,8 @@
-"""Monte Carlo localisation: a robot that was put somewhere in a room finds out where it is.
+"""Monte Carlo localisation: a robot that was put somewhere in a room
+finds out where it is.
 
-Write `weigh` and `resample`; the rest is complete. Then: kit run simple --controller FILE --steps 2000
+Write `weigh` and `resample`; the rest is complete. Then:
+kit run simple --controller FILE --steps 2000
 """
 
 import math
@@ -15,20 +17,26 @@ from tf_transformations import euler_from_quaternion
 
 
 def weigh(expected, measured, spread):
-    """One weight for each particle, from what it would measure; the weights' sum is 1.
+    """One weight for each particle, from what it would measure; the
+    weights' sum is 1.
 
-    expected: for each particle the list of distances that the laser would measure there [m]
-    measured: the distances that the laser did measure, as many [m]; nan where a ray met nothing
+    expected: for each particle the list of distances that the laser would
+              measure there [m]
+    measured: the distances that the laser did measure, as many [m]; nan
+              where a ray met nothing
     spread:   by how much a measurement is usually off [m]
     """
     return [1 / len(expected)] * len(expected)  # write this
 
 
 def resample(weights, first):
-    """The numbers of the particles that live on, as many as there are weights: the heavier, the more often.
+    """The numbers of the particles that live on, as many as there are
+    weights: the heavier, the more often.
 
-    Think of the weights as pieces of a stick of length 1, in their order. n marks stand on the stick, 1/n apart, the first
-    one at `first`, which is below 1/n. Each mark chooses the piece that it stands on.
+    Think of the weights as pieces of a stick of length 1, in their
+    order. n marks stand on the stick, 1/n apart, the first one at
+    `first`, which is below 1/n. Each mark chooses the piece that it
+    stands on.
     """
     return list(range(len(weights)))  # write this
 
@@ -54,7 +62,8 @@ def walls():
 
 
 def look(particles, angles, sides):
-    """(particles, rays) what the laser would measure at each particle [m]."""
+    """(particles, rays) what the laser would measure at each particle
+    [m]."""
     heading = particles[:, 2:3] + angles
     dx, dy = np.cos(heading)[..., None], np.sin(heading)[..., None]
     x, y = particles[:, 0, None, None], particles[:, 1, None, None]
@@ -72,13 +81,15 @@ class Localiser(Node):
         super().__init__("localiser")
         self.chance = np.random.default_rng(1)
         low, high = (-4.4, -2.5, -math.pi), (3.65, 2.48, math.pi)
-        self.particles = self.chance.uniform(low, high, (PARTICLES, 3))  # anywhere, any heading
+        # anywhere, any heading
+        self.particles = self.chance.uniform(low, high, (PARTICLES, 3))
         self.sides = walls()
         self.pose = self.seen_from = self.truth = None
         self.scans = 0
         self.drive = self.create_publisher(Twist, "cmd_vel", 10)
         self.create_subscription(Odometry, "odom", self.on_odom, 10)
-        self.create_subscription(Odometry, "odometry/ground_truth", self.on_truth, 10)  # for the log alone
+        # for the log alone
+        self.create_subscription(Odometry, "odometry/ground_truth", self.on_truth, 10)
         self.create_subscription(LaserScan, "static_laser", self.on_scan, 10)
         self.create_timer(2.0, self.tell)
 
@@ -98,7 +109,8 @@ class Localiser(Node):
         command.linear.x, command.angular.z = (0.4, 0.1) if ahead > 0.7 else (0.0, 0.8)
         self.drive.publish(command)
         self.scans += 1
-        if self.pose is None or self.scans % 5:  # twice a second is enough
+        # twice a second is enough
+        if self.pose is None or self.scans % 5:
             return
         self.move()
         angles = np.array([scan.angle_min + k * scan.angle_increment for k in RAYS])
@@ -108,7 +120,8 @@ class Localiser(Node):
         self.particles = self.particles[chosen]
 
     def move(self):
-        """Moves every particle as the odometry says that the robot moved, and a little more by chance."""
+        """Moves every particle as the odometry says that the robot
+        moved, and a little more by chance."""
         if self.seen_from is not None:
             before, now = self.seen_from, self.pose
             way = math.hypot(*(now[:2] - before[:2]))

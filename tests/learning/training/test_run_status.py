@@ -95,6 +95,8 @@ def test_the_newest_word_is_told() -> None:
     assert stands(BATCH).note == ""
     assert "worst 0.500" in stands(TEST, batch(2000)).note
     assert stands(TEST, TrainingNote("on we go")).note == "on we go"
+    assert stands(TrainingNote("compiling", until_progress=True)).note == "compiling"
+    assert stands(TrainingNote("compiling", until_progress=True), BATCH).note == ""
     ended = stands(BATCH, TrainingEnded("stopped", 1000, 1.0, "as asked"), alive=False)
     assert (ended.note, ended.summary.state) == ("stopped: as asked", "stopped")
 

@@ -6,7 +6,8 @@ setup(
     name="convoy",
     version="0.1.0",
     packages=["convoy"],
-    # What is installed besides the code. A file that is not listed is not found once the package is built.
+    # What is installed besides the code. A file that is not listed is
+    # not found once the package is built.
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/convoy"]),
         ("share/convoy", ["package.xml"]),

@@ -1,4 +1,5 @@
-"""Starts the world with one robot. The program that drives it is missing."""
+"""Starts the world with one robot. The program that drives it is
+missing."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
@@ -23,6 +24,7 @@ def generate_launch_description():
             }],
         ),
 
-        # TODO: the program cruise of the package convoy, as a node called driver. It speaks on command; the robot
-        # listens to cmd_vel. Its speed is the argument's.
+        # TODO: the program cruise of the package convoy, as a node
+        # called driver. It publishes on command; the robot listens
+        # on cmd_vel. Its speed is the argument's.
     ])

@@ -1,4 +1,5 @@
-"""Drives ahead at a steady speed. Its parameter is `speed` [m/s]; it speaks on the topic `command`."""
+"""Drives ahead at a steady speed. Its parameter is `speed` [m/s]; it
+publishes on the topic `command`."""
 
 import rclpy
 from geometry_msgs.msg import Twist
