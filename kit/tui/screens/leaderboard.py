@@ -22,7 +22,7 @@ from kit.school.game.player_progress import LevelProgress, level_progress
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.leaderboard_rows import leaderboard_standings, leaderboard_times, times_to_beat
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
@@ -107,5 +107,5 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
             else:
                 await to_thread(join_leaderboard, self._progress, self._workspace, self._player_name)
         except (leaderboard.LeaderboardError, ProgressError) as error:
-            self.app.push_screen(MessageDialog("Leaderboard", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("Leaderboard", str(error)))
         self._read()

@@ -33,7 +33,7 @@ from kit.school.game.league.tag_game import tag_scenario
 from kit.school.game.race import DriverKind
 from kit.school.game.starts import film_scenario
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.lesson_drive import ReplayScreen
 from kit.tui.screens.level_pictures import ghost_marks, ghost_paths, pictures_of
 from kit.tui.screens.picker import Picker, PickerItem
@@ -235,7 +235,7 @@ class LeagueScreen(RowsScreen[None]):
                 )
             await to_thread(submit, self._league.folder, name, driver, program)
         except (LeagueError, OSError) as error:
-            self.app.push_screen(MessageDialog("Not entered", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("Not entered", str(error)))
             return
         await self._read_now(f"{name} is entered.")
 
@@ -262,7 +262,7 @@ class LeagueScreen(RowsScreen[None]):
                 executor = JobExecutor(jobs=os.cpu_count() or 1)
                 await to_thread(executor.run, self._league, keys, count)
         except (LeagueError, OSError) as error:
-            self.app.push_screen(MessageDialog("The league cannot be run", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("The league cannot be run", str(error)))
         finally:
             self._is_running = False
         await self._read_now("All matches are driven." if not keys else f"{len(keys)} were driven.")

@@ -16,7 +16,7 @@ from textual.binding import BindingType
 from textual.screen import ModalScreen
 
 from kit.dialogue.actions import ScreenActions
-from kit.document.rows import Row, row
+from kit.document.rows import Row, broken, row
 from kit.render.role_looks import PEN_ROLES
 from kit.render.roles import Role
 from kit.render.scene import PenStroke, Scene, ScenePath
@@ -37,7 +37,7 @@ from kit.tui.rows import drive_end_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.ladder_rows import ladder_of_drive
 from kit.tui.rows.medal_rows import medal_drawing
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.lesson_drive import RecordingScreen
 from kit.tui.screens.level_pictures import ghost_paths, scene_of
 from kit.tui.theme import Theme
@@ -119,7 +119,7 @@ class DriveResultScreen(ModalScreen[Wish]):
         finish, record = result.finish, result.record
         self._fixed = [
             row((f" {result.level.title}, {result.driver.phrase}", "bold")),
-            *wrapped(f" {drive_end_rows.finish_sentence(finish)}"),
+            *broken(row(f" {drive_end_rows.finish_sentence(finish)}"), WIDTH),
             row(),
         ]
         self._ladder = [
@@ -280,7 +280,7 @@ class DriveResultScreen(ModalScreen[Wish]):
             said = f"It could not be saved: {error}"
         self._note = ()
         self._show()
-        shown = [*(row(each) for each in rows), row(), *wrapped(said)]
+        shown = [*(row(each) for each in rows), row(), *map(row, said.splitlines())]
         self.app.push_screen(MessageDialog("A card to share", shown))
 
 

@@ -48,7 +48,7 @@ from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_card_rows import COLUMN, best_splits, stars_and_sectors
 from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.rows.progress_marks import share_bar
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_pictures import ghost_paths, picture_of, scene_of
 from kit.tui.screens.picker import Picker, PickerItem
@@ -429,7 +429,7 @@ class LevelsScreen(RowsScreen[None]):
                 kind = PuzzleScreen if is_played else ChallengeScreen
                 screen = kind(self._theme, challenge, self._progress, self._workspace, title)
             except (ProgressError, OSError) as error:
-                self.app.push_screen(MessageDialog("The challenge could not start", wrapped(str(error))))
+                self.app.push_screen(MessageDialog("The challenge could not start", str(error)))
                 return
             await self.app.push_screen_wait(screen)
             self._read()
@@ -476,7 +476,7 @@ class LevelsScreen(RowsScreen[None]):
         if not runs:
             from kit.tui.screens.challenge import NO_RUNS  # of no use to the first frame
 
-            self.app.push_screen(MessageDialog("Agents", wrapped(NO_RUNS)))
+            self.app.push_screen(MessageDialog("Agents", NO_RUNS))
             return
         choices = [PickerItem(name, name, "") for name in runs]
         picked = await self.app.push_screen_wait(Picker("Which agent drives?", choices))
@@ -493,7 +493,7 @@ class LevelsScreen(RowsScreen[None]):
                 program = stack.enter_context(agent_controller(policy))
                 facts = DriverFacts(training_steps=run.summary().steps)
             except (PolicyError, RunError, LookupError, ValueError, OSError) as error:
-                self.app.push_screen(MessageDialog("The drive could not start", wrapped(str(error))))
+                self.app.push_screen(MessageDialog("The drive could not start", str(error)))
                 return
             await self._drive(self.chosen.level, DriverKind.AGENT, program, facts, (run.name, policy))
 
@@ -558,7 +558,7 @@ class LevelsScreen(RowsScreen[None]):
             recordings["reference"] = reference
         if not recordings:
             text = "Drive this level first, then its best drive and the reference can be replayed."
-            self.app.push_screen(MessageDialog("Nothing to replay yet", wrapped(text)))
+            self.app.push_screen(MessageDialog("Nothing to replay yet", text))
             return
         choices = [PickerItem(name, name, "") for name in recordings]
         picked = await self.app.push_screen_wait(Picker("Replay whose drive?", choices))
@@ -571,7 +571,7 @@ class LevelsScreen(RowsScreen[None]):
         try:
             recording = await to_thread(load_recording, source) if isinstance(source, Path) else source
         except (RecordingError, OSError) as error:
-            self.app.push_screen(MessageDialog("This drive cannot be replayed", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("This drive cannot be replayed", str(error)))
             return
         await self.app.push_screen_wait(
             RecordingScreen(self._theme, film_scenario(level, recording.seed), recording, who)
@@ -590,7 +590,7 @@ class LevelsScreen(RowsScreen[None]):
         if not self.chosen.is_open:
             level = self.chosen.level
             text = f"{level.title} {level_rows.opens_after(level)}."
-            self.app.push_screen(MessageDialog("Not open yet", wrapped(text)))
+            self.app.push_screen(MessageDialog("Not open yet", text))
             return False
         return True
 

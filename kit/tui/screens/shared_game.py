@@ -35,7 +35,7 @@ from kit.sim.simulation import Simulation
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.shared_game_rows import HOST, players_card, shared_heading, shared_message
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_drive import LETTER_NOTES
 from kit.tui.screens.level_pictures import ghost_marks, ghost_paths
 from kit.tui.screens.watch import WatchScreen
@@ -262,7 +262,7 @@ class SharedGuestScreen(SharedScreen, inherit_bindings=False):
         self.ended = event.reason
         self.stop_driving()
         if self.state is None or self.state.phase is not SharedPhase.OVER:
-            self.app.push_screen(MessageDialog("The game has ended", wrapped(f"It ended: {event.reason}.")))
+            self.app.push_screen(MessageDialog("The game has ended", f"It ended: {event.reason}."))
         self._rows("messages").show([row((f" It ended: {event.reason}.", "warn"))])
 
     def is_drive_key(self, key: str) -> bool:
