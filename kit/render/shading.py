@@ -90,7 +90,8 @@ class FloorMap:
         below[:, :-1] |= cells[:, 1:]
         below[1:] |= cells[:-1]
         below[:-1] |= cells[1:]
-        return cells | ((floor + outside == 0) & below)
+        cells |= (floor + outside == 0) & below
+        return cells
 
     def _sample_dots(self, camera: Camera, across: int, down: int) -> Grid:
         """Returns the value at the middle of each dot of a picture."""

@@ -320,3 +320,22 @@ def test_a_bump_is_no_way_home() -> None:
         assert not referee.finish.reached
         assert referee.objective.progress == "0 of 2 targets"
         assert referee.finish.splits == ()
+
+
+def test_a_pair_that_is_not_side_by_side_reaches_no_target() -> None:
+    """One after the other both come to the first target: it counts only on a level that does not ask them to stay abreast."""
+    pair = next(level for level in LEVELS if level.id == "two-chairs")
+    for level, counted in ((pair, 0), (replace(pair, abreast=0.0), 1)):
+        scenario = level.find_scenario()
+        with Session(scenario) as session:
+            referee = RaceReferee(level, scenario)
+            session.runner.observers.append(referee)
+            for robot in scenario.partners:
+                for topic in session.command_topics(robot):
+                    session.runner.accept(topic, Twist(linear=Vector3(x=0.5)))
+                run_until(session.runner, ticks=380)
+                for topic in session.command_topics(robot):
+                    session.runner.accept(topic, Twist())
+            assert len(referee.finish.splits) == counted
+            assert ("side by side" in referee.objective.progress) is (level is pair)
+            assert referee.objective.share_abreast < pair.abreast or level is not pair
