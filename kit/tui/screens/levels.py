@@ -17,7 +17,7 @@ from textual.containers import Horizontal
 from kit.controllers import ControllerFile, kit_controllers, user_controllers
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
-from kit.document.rows import Row, at_both_edges, row, side_by_side
+from kit.document.rows import Row, at_both_edges, fitted, row, side_by_side
 from kit.plain_text import counted
 from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
@@ -231,20 +231,27 @@ class LevelsScreen(RowsScreen[None]):
         """The rows above a world's list, ROWS_ABOVE_LEVELS with the columns' names. ``best``: the best medal of each entry."""
         number = self._worlds.index(self._world) + 1
         heading = level_rows.world_heading(self._world, number, len(self._worlds), belt_of(best))
-        return [row((f" {self._news}", "good")), *heading, row()]
+        width = self._rows("map").size.width
+        return [fitted(each, width) for each in (row((f" {self._news}", "good")), *heading, row())]
 
     def _level_rows(self) -> tuple[list[Row], list[Row]]:
         """The list of the chosen world with its map, and what is said of the chosen level."""
         level, levels = self.chosen.level, self._in_world(self.chosen.level.world)
+        names, *listed = level_rows.world_levels(
+            levels, level.id, self._references, self._rows("map").size.width
+        )
+        top, room = self._top_level, self._list_room
         listed = [
             *self._world_heading([each.best_medal for each in levels]),
-            *level_rows.world_levels(levels, level.id, self._references),
+            names,
+            *listed[top : top + room],
             row(),
             *self._card_below(),
             *map_rows(levels, self._map_places(), self._pictures, level.id),
         ]
         ghosts = self._known.get(level.id, ())
-        about = level_rows.about(self.chosen, ghosts, self._references[level.id])
+        about = level_rows.about(self.chosen, ghosts, self._references[level.id], self.size.width)
+        about = [fitted(each, self.size.width) for each in about]
         if self.size.width >= ABOUT_COLUMN + COLUMN:
             about = side_by_side(about, self._card_rows(self.size.width - ABOUT_COLUMN - 1), ABOUT_COLUMN)
         return listed, about
@@ -283,7 +290,7 @@ class LevelsScreen(RowsScreen[None]):
         is_beside = has_picture and len(self._challenges) + len(about) + 2 <= height
         self.set_class(is_beside, "-about-beside")
         listed = challenge_rows.challenge_list(
-            self._challenges, medals, chosen.id, height if is_beside else self._challenge_room, column - 1
+            self._challenges, medals, chosen.id, height if is_beside else self._list_room, column - 1
         )
         if has_picture:
             height = height if is_beside else self._rows("map").size.height - len(heading)
@@ -294,9 +301,15 @@ class LevelsScreen(RowsScreen[None]):
         return listed, challenge_rows.about_challenge(chosen, medal, width)
 
     @property
-    def _challenge_room(self) -> int:
-        """Rows for the list of challenges."""
+    def _list_room(self) -> int:
+        """Rows for the list of levels or challenges."""
         return max(1, self._rows("map").size.height - ROWS_ABOVE_LEVELS)
+
+    @property
+    def _top_level(self) -> int:
+        """The number of the level of the chosen world that the list begins with."""
+        levels = self._in_world(self.chosen.level.world)
+        return challenge_rows.first_shown(len(levels), levels.index(self.chosen), self._list_room)
 
     def _doing_row(self) -> Row:
         share = self._prepared.get(self._doing_level, 0.0)
@@ -371,13 +384,13 @@ class LevelsScreen(RowsScreen[None]):
             return
         if self.chosen_challenge is not None:
             chosen, count = self._at - len(self._found), len(self._challenges)
-            number += challenge_rows.first_shown(count, chosen, self._challenge_room)
+            number += challenge_rows.first_shown(count, chosen, self._list_room)
             if number < count:
                 self._choose_or_open(len(self._found) + number)
             return
         levels = self._in_world(self.chosen.level.world)
-        if number < len(levels):
-            clicked = levels[number]
+        if number + self._top_level < len(levels):
+            clicked = levels[number + self._top_level]
         else:
             name = level_at(
                 self._map_places(), event.column, number - len(levels) - 1 - len(self._card_below())

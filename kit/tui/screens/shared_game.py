@@ -20,6 +20,7 @@ from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Scenario
 from kit.run.scene_bodies import scene_bodies
 from kit.run.session import Session
+from kit.run.view import View
 from kit.school.game.ghosts import Ghost, level_ghosts
 from kit.school.game.levels import GameLevel, find_level
 from kit.school.game.shared_server import SharedGameClient, SharedGameServer
@@ -200,6 +201,15 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
     def _show(self) -> None:
         super()._show()
         self._show_state()
+
+    def _panel_rows(self, view: View) -> tuple[Row, ...]:
+        """The players, and the robot's figures where there is room for both; tag has no target."""
+        if self._mode is SharedMode.TAG:
+            metrics = replace(view.metrics, target_m=None, reached_s=None)
+            view = replace(view, metrics=metrics, scene=replace(view.scene, targets=()))
+        panel = self._rows("panel").content_size
+        rows, card = super()._panel_rows(view), self._card(panel.width - 1, panel.height)
+        return rows if not card or rows[-len(card) :] == tuple(card) else tuple(card)
 
     def _card(self, width: int, room: int) -> list[Row]:
         if self.state is None:
