@@ -185,7 +185,7 @@ class GameLevel:
     leader: str = ""
     """The model that is the target, where that moves."""
     abreast: float = 0.0
-    """Of the drive so far two robots must have been side by side for this share, so that a target counts; 0: it does not matter."""
+    """The share of a drive for which two robots must be side by side to earn more than bronze; 0: it does not matter."""
     measured_to: Literal["hull", "axle"] = "hull"
     """What of a robot must be in the target."""
     reference: str = ""

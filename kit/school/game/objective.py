@@ -74,8 +74,6 @@ class Objective:
         if self._least_abreast:
             self._ticks_abreast += bool(adjacency_score(poses[0, 0], poses[0, 1]) >= ABREAST)
         arrived = next((disc for disc in self.discs if self._is_inside(simulation, disc, poses)), None)
-        if self.share_abreast < self._least_abreast:
-            arrived = None
         if self.discs:
             self.target_m = min(
                 max(simulation.hull_distance(name, (disc.x, disc.y)) for name in self._robots)
@@ -112,6 +110,11 @@ class Objective:
         counted = self._goal.progress(float(self._state.count[0]), self._needed)
         abreast = f"side by side {self.share_abreast:.0%}" if self._least_abreast else ""
         return "  ".join(filter(None, (counted, abreast)))
+
+    @property
+    def is_apart(self) -> bool:
+        """Whether two robots have been side by side for less of the drive than the level asks."""
+        return self.share_abreast < self._least_abreast
 
     @property
     def share_abreast(self) -> float:

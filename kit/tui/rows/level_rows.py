@@ -63,9 +63,9 @@ def game_progress(summary: GameSummary) -> list[Row]:
     return [row(f"  {medal_counts(summary)}"), row(), *rows_of([table], Page(margin=2))]
 
 
-def still_in_reach(driver: DriverKind, reference: float, seconds: float, collisions: int) -> str:
+def still_in_reach(driver: DriverKind, reference: float, seconds: float, is_flawed: bool) -> str:
     """The medal that is still in reach while one drives, and until when."""
-    medal = rung_in_reach(driver, reference, seconds, collisions)
+    medal = rung_in_reach(driver, reference, seconds, is_flawed)
     if medal is None:
         return "no medal any more"
     return f"{medal.title} until {medal_time(medal, reference, driver):.2f} s"

@@ -120,9 +120,10 @@ class LessonsScreen(RowsScreen[None]):
         if is_wide:
             self._show_beside()
         else:
-            self._rows("about").show(
-                [row(), *(lesson_list_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
+            about = (
+                () if chosen is None else lesson_list_rows.summary(chosen, SUMMARY_ROWS - 1, self.size.width)
             )
+            self._rows("about").show([row(), *about])
         self._rows("keys").show([footer(self.screen_actions, self.size.width, keys={"choose": "↑↓"})])
 
     @work(exclusive=True, group="beside")

@@ -290,7 +290,7 @@ class LevelDrive(WatchScreen):
             right.append(f"bumps {referee.finish.collisions}  ")
             reference = reference_seconds(self._level) if self._level.has_medals else None
             if reference is not None and not self._is_over:
-                reach = level_rows.still_in_reach(self._driver, reference, time_s, referee.finish.collisions)
+                reach = level_rows.still_in_reach(self._driver, reference, time_s, referee.finish.is_flawed)
                 left.append((f"  {reach}", "dim"))
         return at_both_edges(row(*left), row(*right, (format_clock(time_s), "bold")), self.size.width)
 

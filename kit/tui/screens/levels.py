@@ -72,6 +72,7 @@ NOTES: Final = (
     ("", "touched nothing, never stood still, one sensor, few lines,"),
     ("", "few training steps"),
     ("bump", "back to the start, and all targets are to be reached again"),
+    ("side by side", "a pair that is apart for longer gets bronze at best"),
     ("---", "not open yet: finish the level before it, or its lesson"),
 )
 

@@ -79,8 +79,6 @@ def task_text(level: GameLevel) -> str:
     elif isinstance(level.goal, CoverGoal):
         where, sees, terms = "", ", own_pose: true, achieved: true, frames: 2", "achieving: 6.0, "
         goal = f"{{kind: cover, share: {level.goal.share:g}, radius: {level.goal.radius:g}}}"
-    if level.abreast:
-        terms += "abreast: 0.01, "
     return (
         f"summary: The level {level.title}\nmaps: [{level.map_name}]\n"
         f"cases:\n  - {{name: {level.case}, start: {_pose(starts[0])}{others}{where}}}\n"
