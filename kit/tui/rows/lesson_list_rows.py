@@ -68,7 +68,7 @@ def details(entry: LessonEntry, levels: Sequence[GameLevel], width: int) -> list
         return [
             row((f"{entry.number}  {entry.name}", "bold")),
             row(),
-            *summary(entry, len(entry.problem, width)),
+            *summary(entry, len(entry.problem), width),
         ]
     room = min(width, TEXT_WIDTH)
     done = f"{progress.completed_count} of {len(lesson.steps)} steps done"
