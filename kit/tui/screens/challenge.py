@@ -23,7 +23,7 @@ from kit.school.game.medal import Medal
 from kit.school.game.shared_answers import share_answer
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.challenge_rows import answers_needed_rows, beside_others, challenge_page, judged
-from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.lesson_rows import checking
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.picker import Picker, PickerItem
@@ -126,9 +126,6 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             *(["edit_file"] if self._file is None else []),
             *(["next"] if self._following is None else []),
         ]
-
-    def _keys(self) -> Row:
-        return footer(self.screen_actions, self.size.width, without=self._unavailable_actions())
 
     # The check
 

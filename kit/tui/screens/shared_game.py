@@ -91,7 +91,8 @@ class SharedScreen(WatchScreen):
         """The scene, and in it the targets that are next, and where each ghost was at this time of its drive."""
         state, case = self.state, self._scenario.case
         if state is None or self._mode is SharedMode.TAG or case is None:
-            return replace(scene, targets=())
+            standing = tuple(body for body in scene.bodies if not body.is_target)
+            return replace(scene, targets=(), bodies=standing)
         places = state.next_targets(self._scenario.targets or (case.target,), self.player)
         scene = replace(scene, targets=tuple(Disc(x, y, case.target_radius) for x, y in places))
         if not self.ghosts or not self._with_ghosts:
