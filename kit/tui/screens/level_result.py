@@ -119,11 +119,6 @@ class DriveResultScreen(ModalScreen[Wish]):
         self._result = result
         self._workspace = workspace
         finish, record = result.finish, result.record
-        self._fixed = [
-            row((f" {result.level.title}, {result.driver.phrase}", "bold")),
-            *broken(row(f" {drive_end_rows.finish_sentence(finish)}"), WIDTH),
-            row(),
-        ]
         self._ladder = [
             *ladder_of_drive(finish, record, result.driver, result.reference),
             *level_rows.starts_rows(result.finishes, record.counts),
@@ -142,6 +137,17 @@ class DriveResultScreen(ModalScreen[Wish]):
         self._note: Row = ()
         self._spark = SPARKS if self._is_joyful and not theme.terminal.reduce_motion.value else 0
         self._world = WorldView(lambda: theme.encoder, theme.palette)
+
+    @property
+    def _fixed(self) -> list[Row]:
+        """The rows above those that appear: who drove, and how it ended."""
+        result, width = self._result, min(WIDTH, self.app.size.width)
+        sentence = row(f" {drive_end_rows.finish_sentence(result.finish)}")
+        return [
+            row((f" {result.level.title}, {result.driver.phrase}", "bold")),
+            *broken(sentence, width),
+            row(),
+        ]
 
     @property
     def _is_joyful(self) -> bool:
