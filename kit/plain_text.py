@@ -210,6 +210,20 @@ def wrap(text: str, width: int, first: str = "", rest: str = "", *, most: int | 
     return [line.replace(_HELD, " ") for line in lines] or [first.rstrip()]
 
 
+def line_end(text: str, most: int, least: int = 0) -> int:
+    """Returns how many of the first ``most`` characters stand on a first line of the text, which ends where ``wrap`` would end it,
+    behind more than ``least``.
+
+    >>> line_end("it kept it for 70 % of its time", 17), line_end("runs/turn-1/log.csv", 14)
+    (14, 12)
+    """
+    for pattern in (_WORD, _PART):
+        ends = [match.end() for match in pattern.finditer(text) if least < match.end() <= most]
+        if ends:
+            return ends[-1]
+    return max(most, 1)
+
+
 def longest_part(text: str) -> int:
     """Returns how many columns a text needs at least, so that no word of it is broken but behind a sign that ends a part."""
     return max((len(part) for word in text.split() for part in _PART.findall(word)), default=0)

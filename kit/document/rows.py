@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from itertools import zip_longest
 from typing import Final
 
 from rich.cells import cell_len
 
-from kit.plain_text import wrap
+from kit.plain_text import line_end, wrap
 
 MARGIN: Final = 2
 """Columns that are left free beside a text."""
@@ -54,8 +55,20 @@ def fitted(parts: Row, width: int) -> Row:
     if row_width(parts) <= width:
         return parts
     has_sign = width > 2 * len(CUT)
-    fitting = broken(parts, width - len(CUT) if has_sign else width)[0] if width > 1 else ()
+    fitting = _beginning(parts, width - len(CUT) if has_sign else width)
     return (*fitting, (CUT, PLAIN)) if has_sign else fitting
+
+
+def _beginning(parts: Row, width: int) -> Row:
+    """As many characters of a row as have room."""
+    width, made = max(0, width), []
+    for text, style in parts:
+        fitting = next(count for count in range(len(text), -1, -1) if cell_len(text[:count]) <= width)
+        made += [(text[:fitting], style)] if fitting else []
+        if fitting < len(text):
+            break
+        width -= cell_len(text)
+    return tuple(made)
 
 
 def row_width(parts: Row) -> int:
@@ -91,22 +104,40 @@ def entry_rows(mark: str, key: str, text: str, style: str, columns: int) -> list
 
 
 def broken(parts: Row, width: int) -> list[Row]:
-    """Wraps a row to rows of at most ``width`` columns.
+    """Wraps a row to rows of at most ``width`` columns, at blanks where it has them. What goes on begins below the row's text: that
+    is what comes after the first two blanks beside each other, such as a key's meaning.
 
-    >>> broken(row("a long ", ("line", "bold")), 9)
-    [(('a long ', ''), ('li', 'bold')), (('ne', 'bold'),)]
+    >>> [row_text(each) for each in broken(row(" Esc  ", ("go back to the start", "bold")), 16)]
+    [' Esc  go back to', '      the start']
     """
-    made: list[list[StyledText]] = [[]]
-    room = width = max(2, width)  # some characters take two columns
+    width = max(2, width)  # some characters take two columns
+    if row_width(parts) <= width:
+        return [parts]
+    hanging = _HANGING.match(row_text(parts))
+    assert hanging is not None  # it matches the empty text
+    indent = hanging.end() if 2 * hanging.end() <= width > 2 else 0
+    made = []
+    while row_width(parts) > width:
+        fitting = len(row_text(_beginning(parts, width)))
+        text = "".join(text for text, _ in parts)
+        at = max(line_end(text, fitting, indent), indent + 1)
+        made.append(_part(parts, 0, at))
+        rest = at + len(text[at:]) - len(text[at:].lstrip())
+        parts = (*row(*([" " * indent] if indent else [])), *_part(parts, rest, len(text)))
+    return [*made, parts] if row_text(parts) else made
+
+
+_HANGING: Final = re.compile(r" *(?:\S+(?: \S+)*  +(?=\S))?")
+"""What stands before the text of a row: blanks, and a first word or words apart from the rest."""
+
+
+def _part(parts: Row, start: int, stop: int) -> Row:
+    """The characters of a row from ``start`` up to ``stop``."""
+    made = []
     for text, style in parts:
-        while cell_len(text) > room:
-            fitting = next(count for count in range(room, -1, -1) if cell_len(text[:count]) <= room)
-            made[-1] += [(text[:fitting], style)] if fitting else []
-            made.append([])
-            text, room = text[fitting:], width
-        made[-1].append((text, style))
-        room -= cell_len(text)
-    return [tuple(each) for each in made]
+        made.append((text[max(start, 0) : max(stop, 0)], style))
+        start, stop = start - len(text), stop - len(text)
+    return tuple(each for each in made if each[0])
 
 
 def lines_shown(first: int, count: int, total: int) -> str:

@@ -82,9 +82,15 @@ class FloorMap:
         covered = _quarter_blocks(walls > 0, across, down)
         floor = _count_of_four((sampled == _FLOOR) & ~covered)
         outside = _count_of_four((sampled == _OUTSIDE) & ~covered)
-        # Where walls cover all of a character, what is below them tells: a narrow way may lead through.
-        below = _count_of_four(sampled == _FLOOR)
-        cells: BoolArray = (floor > outside) | ((floor + outside == 0) & (below > 0))
+        cells: BoolArray = floor > outside
+        # Where walls cover all of a character, what is below them tells: a narrow way may lead through. Where what is left of it
+        # is a rim of the wall, what lies beside it does.
+        below = _count_of_four(sampled == _FLOOR) > 0
+        below[:, 1:] |= cells[:, :-1]
+        below[:, :-1] |= cells[:, 1:]
+        below[1:] |= cells[:-1]
+        below[:-1] |= cells[1:]
+        cells |= (floor + outside == 0) & below
         return cells
 
     def _sample_dots(self, camera: Camera, across: int, down: int) -> Grid:

@@ -91,7 +91,7 @@ class FormDialogue(Dialogue):
 
     @property
     def note(self) -> Text | None:
-        said = "Saved as you go on. Nobody sees it until you hand in your progress."
+        said = "Saved as you go on; nobody sees it before you hand it in."
         return None if self.is_over else Text(said, Tone.DIM)
 
     def opening(self) -> Sequence[Block]:

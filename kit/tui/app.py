@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any, ClassVar, Final
 
-from textual import work
+from textual import events, work
 from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.filter import DimFilter, LineFilter
@@ -14,7 +15,7 @@ from textual.screen import Screen
 from kit.render.palettes import COLOR_SCHEMES
 from kit.tui.input.driver import KeyDriver
 from kit.tui.late_timers import fire_late_timers
-from kit.tui.terminal import TerminalDecision
+from kit.tui.terminal import LEAST_SIZE, TerminalDecision
 from kit.tui.theme import Theme, text_colors, textual_theme
 from kit.tui.widgets.text_rows import ASCII_ONLY
 
@@ -37,6 +38,8 @@ class KitApp(App[None]):
     KitApp.-themed Screen { background: $background; color: $foreground; }
     KitApp.-themed Dialog { background: $background 55%; }
     KitApp.-themed Dialog > Vertical { background: $background; }
+    ToastRack { align: center middle; }
+    Toast, Toast.-information { width: auto; max-width: 100%; margin: 0; padding: 0 1; border: none; background: $background; }
     KitApp.-ascii MessageDialog > Vertical, KitApp.-ascii Picker > Vertical { border: ascii $foreground; }
     """
 
@@ -51,6 +54,14 @@ class KitApp(App[None]):
             self.switch_theme(terminal.theme_name.value)
         self.set_class(terminal.glyphs.value == "ascii", ASCII_ONLY)
         self._first: Screen[Any] | None = None
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Says so as long as the terminal is too small for what is shown."""
+        self.clear_notifications()
+        width, height = event.size
+        if width < LEAST_SIZE[0] or height < LEAST_SIZE[1]:
+            least = f"{LEAST_SIZE[0]}x{LEAST_SIZE[1]}"
+            self.notify(f"{width}x{height} is too small: the kit needs {least}.", timeout=math.inf)
 
     def switch_theme(self, name: str) -> None:
         """Shows everything in the colours of this theme of ``COLOR_SCHEMES``."""

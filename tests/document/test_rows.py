@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kit.document.rows import CUT, at_both_edges, row, row_text, row_width, side_by_side
+from kit.document.rows import CUT, at_both_edges, broken, row, row_text, row_width, side_by_side
 
 WORDS = st.text(st.sampled_from("ab 漢é"), max_size=12)
 
@@ -33,3 +33,21 @@ def test_what_is_cut_says_so() -> None:
     assert row_text(whole) == "Lesson seed 0 2 of 5"
     beside = side_by_side([row("a long entry of a list")], [row("b")], 10)
     assert row_text(beside[0]) == "a long …  b"
+
+
+@given(st.lists(WORDS, max_size=6), st.integers(2, 24))
+def test_what_is_broken_fits_and_loses_nothing(parts: list[str], width: int) -> None:
+    whole = row(*((part, f"style {number}") for number, part in enumerate(parts)))
+    made = broken(whole, width)
+    assert all(row_width(each) <= width for each in made)
+    kept = [(sign, style) for each in made for text, style in each for sign in text if sign != " "]
+    assert kept == [(sign, style) for text, style in whole for sign in text if sign != " "]
+
+
+def test_a_row_is_broken_between_its_words_and_goes_on_below_its_text() -> None:
+    made = broken(row((" Ctrl-P      ", "bold"), "list all commands; type to find one 0.25 m away"), 36)
+    assert [row_text(each) for each in made] == [
+        " Ctrl-P      list all commands; type",
+        "             to find one 0.25 m away",
+    ]
+    assert made[0][0] == (" Ctrl-P      ", "bold")

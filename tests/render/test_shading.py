@@ -40,6 +40,15 @@ def test_the_floor_is_where_the_robot_can_go_and_what_is_enclosed_is_solid() -> 
     assert frame.fg[cell(3.0, 3.0)] == Role.WALL
 
 
+def test_beside_a_thin_wall_there_is_floor_wherever_it_stands() -> None:
+    for shift in np.arange(0.0, 0.2, 0.013):
+        walls = box_walls(((0.0, 0.0, 4.0, 4.0), (1.5 + shift, 1.0, 1.56 + shift, 3.0)))
+        frame = Painter(BrailleEncoder(), shaded=True).paint(Scene(walls, (robot(1.0, 1.0),)), CAMERA)
+        row, left = cell(1.2, 2.0)
+        _, right = cell(2.2, 2.0)
+        assert (frame.bg[row, left : right + 1] == Role.FLOOR).all(), shift
+
+
 def test_a_robot_outside_stands_on_the_floor_outside() -> None:
     frame = Painter(BrailleEncoder(), shaded=True).paint(Scene(ROOM, (robot(-0.5, -0.5),)), CAMERA)
     assert frame.bg[cell(-0.5, 2.0)] == Role.FLOOR

@@ -32,6 +32,8 @@ class Board(ABC):
 
     keys: ClassVar[str]
     """What the keys do, in one sentence."""
+    mark_word: ClassVar[str] = "mark"
+    """What the space bar does, in one word."""
 
     @classmethod
     def marks(cls) -> bool:

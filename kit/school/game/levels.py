@@ -184,6 +184,8 @@ class GameLevel:
     """Whether the targets may be reached in any order."""
     leader: str = ""
     """The model that is the target, where that moves."""
+    abreast: float = 0.0
+    """The share of a drive for which two robots must be side by side to earn more than bronze; 0: it does not matter."""
     measured_to: Literal["hull", "axle"] = "hull"
     """What of a robot must be in the target."""
     reference: str = ""
@@ -318,12 +320,16 @@ def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) 
     targets = each.points("targets", at_least=1) if each.has("targets") else ()
     leader, goal = each.text("leader", ""), read_goal(each.section("goal", None))
     _check_goal(each, goal, targets, leader)
+    abreast = each.number("abreast", 0.0, minimum=0, maximum=1)
+    hint = each.text("hint")
+    if abreast:
+        hint = f"{hint.removesuffix('.')}; side by side {100.0 * abreast:g} % of the time."
     return GameLevel(
         id=identity,
         title=each.name("title"),
         map_name=each.name("place"),
         case=each.name("case"),
-        hint=each.text("hint"),
+        hint=hint,
         opened_by=after,
         row=row,
         world=each.name("world"),
@@ -335,6 +341,7 @@ def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) 
         targets=targets,
         any_order=each.flag("any_order", False),
         leader=leader,
+        abreast=abreast,
         conditions=_read_conditions(each),
         rules=ExtraRules(
             each.integer("max_lines", MAX_LINES, minimum=1, maximum=1000),

@@ -45,13 +45,13 @@ SHARES: Final[Mapping[DriverKind, Mapping[Medal, float]]] = MappingProxyType(
 
 
 def medal_of(finish: RaceFinish, reference_s: float | None, driver: DriverKind = DriverKind.KEYS) -> Medal:
-    """The medal of a finish. ``reference_s``: the reference drive's time [s]; None: there are no medals. Who has touched
-    something gets bronze at best."""
+    """The medal of a finish. ``reference_s``: the reference drive's time [s]; None: there are no medals. A
+    flawed one gets bronze at best."""
     if not finish.reached or reference_s is None:
         return Medal.NONE
     earned = [medal for medal in RUNGS if finish.seconds <= medal_time(medal, reference_s, driver)]
     best = max(earned, default=Medal.NONE)
-    return min(best, Medal.BRONZE) if finish.collisions else best
+    return min(best, Medal.BRONZE) if finish.is_flawed else best
 
 
 def medal_time(medal: Medal, reference_s: float, driver: DriverKind = DriverKind.KEYS) -> float:
@@ -60,9 +60,9 @@ def medal_time(medal: Medal, reference_s: float, driver: DriverKind = DriverKind
     return (hundredths - (medal is Medal.RECORD)) / 100.0
 
 
-def rung_in_reach(driver: DriverKind, reference_s: float, seconds: float, collisions: int) -> Medal | None:
+def rung_in_reach(driver: DriverKind, reference_s: float, seconds: float, is_flawed: bool) -> Medal | None:
     """The highest medal that a drive still earns which is at the goal at once; None: no medal any more."""
-    most = Medal.BRONZE if collisions else Medal.RECORD
+    most = Medal.BRONZE if is_flawed else Medal.RECORD
     left = [medal for medal in RUNGS if medal <= most and seconds <= medal_time(medal, reference_s, driver)]
     return max(left, default=None)
 

@@ -44,7 +44,7 @@ def read_moves(answer: str, most: int) -> str:
 class MovesBoard(Board):
     """An answer of moves, which begins empty, or with the moves that its file holds beside the naive ones."""
 
-    keys = "Arrows walk, u takes the last move back."
+    keys = "Arrows walk, u undoes the last move."
 
     def __init__(self, task: ChallengeTask, answer: str, most: int) -> None:
         self._task, self._most = task, most

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from kit.arrays import FloatArray
+from kit.fields.adjacency import adjacency_score
 from kit.learning.maps.ray_directions import RAY_COUNT, ranges_in_directions, ray_direction
 from kit.learning.tasks.goals.goal import KNOWN_IN_RACE, GoalCase
 from kit.learning.tasks.transition import FAR, EpisodeState, Transition
@@ -19,6 +20,8 @@ from kit.sim.simulation import Simulation
 
 USUAL_RADIUS = 0.25
 """Of targets on levels whose map has no case [m]."""
+ABREAST = 0.5
+"""From this score on two robots stand side by side: as far as 6 cm ahead of each other, or 19 degrees apart."""
 DIRECTIONS = np.array([ray_direction(ray) for ray in range(RAY_COUNT)])
 
 
@@ -31,6 +34,8 @@ class Objective:
         self._is_by_axle = level.measured_to == "axle"
         self._target_heading = np.array([scenario.target_heading or 0.0])
         self._robots = scenario.partners
+        self._least_abreast = level.abreast
+        self._ticks = self._ticks_abreast = 0
         self._obstacles = [
             model.name
             for model in scenario.world.models
@@ -65,6 +70,9 @@ class Objective:
             x, y, _ = simulation.pose(self._leader)
             self._left = [Disc(x, y, disc.radius) for disc in self._left]
         poses = np.array([[simulation.pose(name) for name in self._robots]], dtype=np.float64)
+        self._ticks += 1
+        if self._least_abreast:
+            self._ticks_abreast += bool(adjacency_score(poses[0, 0], poses[0, 1]) >= ABREAST)
         arrived = next((disc for disc in self.discs if self._is_inside(simulation, disc, poses)), None)
         if self.discs:
             self.target_m = min(
@@ -99,7 +107,19 @@ class Objective:
     @property
     def progress(self) -> str:
         """How much of it is achieved, in a few words; empty where there is nothing to count."""
-        return self._goal.progress(float(self._state.count[0]), self._needed)
+        counted = self._goal.progress(float(self._state.count[0]), self._needed)
+        abreast = f"side by side {self.share_abreast:.0%}" if self._least_abreast else ""
+        return "  ".join(filter(None, (counted, abreast)))
+
+    @property
+    def is_apart(self) -> bool:
+        """Whether two robots have been side by side for less of the drive than the level asks."""
+        return self.share_abreast < self._least_abreast
+
+    @property
+    def share_abreast(self) -> float:
+        """The share of the drive so far in which two robots were side by side; 1 where the level does not ask for it."""
+        return self._ticks_abreast / self._ticks if self._least_abreast and self._ticks else 1.0
 
     @property
     def discs(self) -> tuple[Disc, ...]:

@@ -107,6 +107,13 @@ class RaceFinish:
     """Topics of the robots that the program listened to; None for a drive by hand."""
     has_stopped: bool = False
     """Whether a robot stood still between its first move and the end."""
+    is_apart: bool = False
+    """Whether two robots were side by side for less of it than the level asks."""
+
+    @property
+    def is_flawed(self) -> bool:
+        """Whether it earns bronze at best: something was touched, or a pair was apart for too long."""
+        return self.collisions > 0 or self.is_apart
 
     def as_event(self, driver: DriverKind, recording: str | None) -> dict[str, Any]:
         """The content of the journal's event."""
@@ -150,6 +157,7 @@ class RaceReferee(Observer):
             foul=self._foul,
             splits=self.objective.splits,
             has_stopped=self._has_stopped,
+            is_apart=self.objective.is_apart,
         )
 
     @property
@@ -231,8 +239,8 @@ def race_from_all_starts(
 
 
 def finish_order(finish: RaceFinish) -> tuple[bool, bool, float]:
-    """Smaller is better: at the goal, without a bump, soon."""
-    return not finish.reached, finish.collisions > 0, finish.seconds
+    """Smaller is better: at the goal, without a flaw, soon."""
+    return not finish.reached, finish.is_flawed, finish.seconds
 
 
 def middle_drive(finishes: Sequence[RaceFinish]) -> int:

@@ -10,6 +10,8 @@ from typing import Final
 from kit.document.rows import Row, row
 
 CHART_ROWS: Final = 5
+CHART_LABEL: Final = 6
+"""Columns of the scale before the bars."""
 
 _EIGHTHS: Final = " ▁▂▃▄▅▆▇█"
 
@@ -17,7 +19,7 @@ _EIGHTHS: Final = " ▁▂▃▄▅▆▇█"
 def laser_chart(laser: Sequence[float], width: int) -> list[Row]:
     """Bars of the distance [m] by direction, from behind on the left over ahead in the middle to behind on the right."""
     ranges = laser[::-1]
-    bars = width - 6
+    bars = width - CHART_LABEL
     columns = (bar * len(ranges) // bars for bar in range(bars + 1))
     heights = []
     for start, stop in pairwise(columns):
@@ -28,7 +30,7 @@ def laser_chart(laser: Sequence[float], width: int) -> list[Row]:
 
 def time_chart(values: Sequence[float], width: int, least: float) -> list[Row]:
     """The newest values on the right, from the middle row up and down where some are negative."""
-    room, rows = width - 6, CHART_ROWS
+    room, rows = width - CHART_LABEL, CHART_ROWS
     shown = list(values)[-room * 2 :]
     # Two samples to a character where there are many.
     paired = [max(shown[i : i + 2], key=abs) for i in range(0, len(shown), 2)] if len(shown) > room else shown
@@ -41,7 +43,7 @@ def time_chart(values: Sequence[float], width: int, least: float) -> list[Row]:
     upper = _bar_rows([max(value, 0.0) for value in paired], top, middle, "", has_zero=False)
     lower = [
         row(
-            (f"{-top:4.1f}  " if number == rows - middle - 2 else " " * 6, "dim"),
+            (f"{-top:4.1f}  " if number == rows - middle - 2 else " " * CHART_LABEL, "dim"),
             (
                 "".join(_downward_block(-value / top * (rows - middle - 1) - number) for value in paired),
                 "code",
@@ -71,7 +73,7 @@ def _bar_rows(
 ) -> list[Row]:
     lines = []
     for number, glyphs in enumerate(column_chart([value / top for value in values], rows)):
-        label = " " * 6
+        label = " " * CHART_LABEL
         if number == 0:
             label = f"{top:4.1f}{unit:<2}"
         elif number == rows - 1 and has_zero:

@@ -5,17 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from kit.document.rows import Row, row
+from kit.document.rows import MARGIN, Row, row
 from kit.plain_text import counted, wrap
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.levels import GameLevel, all_worlds
 from kit.school.game.players_histogram import HistogramBin
 from kit.school.game.race import DriverKind, RaceFinish
+from kit.tui.rows.chart_rows import CHART_LABEL, time_chart
 from kit.tui.rows.level_rows import BAR
 from kit.tui.rows.medal_rows import medal_row
 from kit.tui.rows.medal_signs import NO_STAR, STAR
+from kit.tui.rows.ruled_title import ruled_title
 
+LEAST_LEAD: Final = 0.5
+"""Of a chart's scale [s]."""
 MARK: Final = 5
 """Columns of a star before what it is for."""
 
@@ -27,9 +31,9 @@ def finish_sentence(finish: RaceFinish) -> str:
     if finish.failure is not None:
         return f"The program stopped: {finish.failure}"
     if finish.reached:
-        return (
-            f"The goal was reached after {finish.seconds:.2f} s, with {counted(finish.collisions, 'bump')}."
-        )
+        apart = ", too long not side by side" if finish.is_apart else ""
+        bumps = counted(finish.collisions, "bump")
+        return f"The goal was reached after {finish.seconds:.2f} s, with {bumps}{apart}."
     return f"The goal was not reached in {finish.seconds:.0f} s."
 
 
@@ -84,6 +88,16 @@ def sector_rows(splits: Sequence[Split]) -> list[Row]:
         )
         for number, each in enumerate(splits, 1)
     ]
+
+
+def lead_rows(leads: Sequence[float], width: int) -> list[Row]:
+    """A chart of how far ahead of the reference a drive was [s], from its beginning to its end."""
+    bars = width - CHART_LABEL
+    if len(leads) < 2:
+        return []
+    shown = [leads[min(len(leads) - 1, bar * len(leads) // bars)] for bar in range(bars)]
+    title = ruled_title("ahead of the reference", width - MARGIN, "s, down is behind")
+    return [row(" ", *each) for each in (title, *time_chart(shown, width, LEAST_LEAD))]
 
 
 def needed_rows(bins: Sequence[HistogramBin], unit: str = "s", decimals: int = 2) -> list[Row]:

@@ -67,11 +67,12 @@ def ladder_of_drive(
     finish: RaceFinish, record: DriveRecord, driver: DriverKind, reference: float | None
 ) -> list[Row]:
     """The ladder of a drive that has ended; none where it earns nothing."""
-    if reference is None or record.is_shipped or not finish.reached:
+    if reference is None or record.is_shipped:
         return []
-    rows = ladder_rows(driver, reference, finish.seconds)
-    unharmed = medal_of(replace(finish, collisions=0), reference, driver)
+    rows = ladder_rows(driver, reference, finish.seconds if finish.reached else None)
+    unharmed = medal_of(replace(finish, collisions=0, is_apart=False), reference, driver)
     if unharmed > record.medal:
-        bumps = "the bump" if finish.collisions == 1 else "the bumps"
-        rows[2:] = [row((f"   without {bumps} it would have been {unharmed.title}", "dim"))]
+        bumps = "without the bump" if finish.collisions == 1 else "without the bumps"
+        flaw = bumps if finish.collisions else "side by side"
+        rows[2:] = [row((f"   {flaw} it would have been {unharmed.title}", "dim"))]
     return rows

@@ -9,7 +9,7 @@ from kit.plain_text import counted
 from kit.school.game.daily import DAILY_PREFIX, daily_level, today
 from kit.school.game.leaderboard import LeaderboardEntry, PlayerStanding
 from kit.school.game.levels import all_levels
-from kit.school.game.medal import RUNGS
+from kit.school.game.medal import RUNGS, Medal, medal_time
 from kit.school.game.player_progress import LevelProgress
 from kit.school.game.race import DriverKind
 from kit.school.game.references import reference_seconds
@@ -71,13 +71,14 @@ def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
     return Table("times", "", columns, rows, grouped=True)
 
 
-def times_to_beat(found: Sequence[LevelProgress]) -> Table:
-    """The reference drive's time of each level and the player's best ones by every driver that has arrived somewhere, for a board
-    on which nobody stands yet."""
+def times_to_beat(found: Sequence[LevelProgress], medals: Sequence[Medal]) -> Table:
+    """The times of each level that earn these medals by hand, the reference drive's, and the player's best ones by every driver
+    that has arrived somewhere, for a board on which nobody stands yet."""
     drivers = [driver for driver in DriverKind if any(driver in each.best_times for each in found)]
     rows = tuple(
         (
             each.level.title,
+            *(f"{medal_time(medal, reference):.2f} s" for medal in medals),
             f"{reference:.2f} s",
             *(
                 f"{each.best_times[driver]:.2f} s" if driver in each.best_times else ToneText("-", Tone.DIM)
@@ -88,4 +89,5 @@ def times_to_beat(found: Sequence[LevelProgress]) -> Table:
         if (reference := reference_seconds(each.level)) is not None
     )
     yours = (Column(f"you {driver.phrase}") for driver in drivers)
-    return Table("to-beat", "", (Column("level", CellStyle.TEXT), Column("the kit"), *yours), rows)
+    asked = (Column(medal.title) for medal in medals)
+    return Table("to-beat", "", (Column("level", CellStyle.TEXT), *asked, Column("reference"), *yours), rows)

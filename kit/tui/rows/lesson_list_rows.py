@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from kit.document.rows import TEXT_WIDTH, Row, row
+from kit.document.rows import TEXT_WIDTH, Row, row, text_width
 from kit.plain_text import wrap
 from kit.school.game.levels import GameLevel
 from kit.school.lessons.catalogue import LessonEntry
@@ -44,18 +44,20 @@ def line(entry: LessonEntry, chosen: bool) -> Row:
     return (*head, (f" {progress.lesson.minutes:>3} min  ", style or "dim"), (progress_bar(progress), ""))
 
 
-def summary(entry: LessonEntry, rows: int) -> list[Row]:
-    """What the chosen lesson is about, and what one can do after it; at most this many rows."""
+def summary(entry: LessonEntry, rows: int, width: int) -> list[Row]:
+    """What the chosen lesson is about, and what one can do after it; at most this many rows on a screen of
+    ``width``."""
+    room = text_width(width)
     lesson = entry.lesson
     if lesson is None:
-        lines = [each for part in entry.problem.splitlines() for each in wrap(part, TEXT_WIDTH)]
+        lines = [each for part in entry.problem.splitlines() for each in wrap(part, room)]
         return [row("  ", (each, "bad")) for each in lines[:rows]]
     made = []
     if entry.opened_unit is not None:
-        made += [row("  ", (each, "dim")) for each in wrap(entry.opened_unit.opener, TEXT_WIDTH)]
-    made += [row("  ", each) for each in wrap(lesson.summary, TEXT_WIDTH)]
+        made += [row("  ", (each, "dim")) for each in wrap(entry.opened_unit.opener, room)]
+    made += [row("  ", each) for each in wrap(lesson.summary, room)]
     for outcome in lesson.outcomes:
-        made += [row("  ", (each, "dim")) for each in wrap(f"- {outcome}", TEXT_WIDTH, "", "  ")]
+        made += [row("  ", (each, "dim")) for each in wrap(f"- {outcome}", room, "", "  ")]
     return made[:rows]
 
 
@@ -63,7 +65,11 @@ def details(entry: LessonEntry, levels: Sequence[GameLevel], width: int) -> list
     """All of the chosen lesson, for a screen with room beside the list. ``levels``: those that it opens."""
     lesson, progress = entry.lesson, entry.progress
     if lesson is None or progress is None:
-        return [row((f"{entry.number}  {entry.name}", "bold")), row(), *summary(entry, len(entry.problem))]
+        return [
+            row((f"{entry.number}  {entry.name}", "bold")),
+            row(),
+            *summary(entry, len(entry.problem), width),
+        ]
     room = min(width, TEXT_WIDTH)
     done = f"{progress.completed_count} of {len(lesson.steps)} steps done"
     opener = entry.opened_unit.opener if entry.opened_unit is not None else ""

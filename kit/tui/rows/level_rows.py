@@ -18,7 +18,12 @@ from kit.tui.rows.ladder_rows import ABOUT_BAR, LIST_BAR, ladder_bar, ladder_wor
 from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, SHUT, STAR
 
 TITLE_WIDTH: Final = 24
-HEADER: Final = "  level" + " " * (TITLE_WIDTH - 4) + "hand  program  agent  stars    best   ladder"
+NARROW_TITLE: Final = 17
+COLUMNS: Final = "hand  program  agent  stars    best"
+WHOLE: Final = 79
+"""Columns of the list with its ladders."""
+LADDER_WORDS: Final = 38
+"""Columns around a ladder below the list: whose it is, one's time and what the next rung asks for."""
 BAR: Final = 12
 """Columns of the longest sector's bar."""
 
@@ -58,19 +63,22 @@ def game_progress(summary: GameSummary) -> list[Row]:
     return [row(f"  {medal_counts(summary)}"), row(), *rows_of([table], Page(margin=2))]
 
 
-def still_in_reach(driver: DriverKind, reference: float, seconds: float, collisions: int) -> str:
+def still_in_reach(driver: DriverKind, reference: float, seconds: float, is_flawed: bool) -> str:
     """The medal that is still in reach while one drives, and until when."""
-    medal = rung_in_reach(driver, reference, seconds, collisions)
+    medal = rung_in_reach(driver, reference, seconds, is_flawed)
     if medal is None:
         return "no medal any more"
     return f"{medal.title} until {medal_time(medal, reference, driver):.2f} s"
 
 
 def world_levels(
-    standings: Sequence[LevelProgress], chosen: str, references: dict[str, float | None]
+    standings: Sequence[LevelProgress], chosen: str, references: dict[str, float | None], width: int
 ) -> list[Row]:
-    """One row for each level of a world. ``references``: the reference drive's time of each level [s]."""
-    rows = [row((HEADER, "dim"))]
+    """One row for each level of a world. ``references``: the reference drive's time of each level [s]. The ladders are left out
+    where they do not fit ``width``."""
+    is_whole = width >= WHOLE
+    title_width = TITLE_WIDTH if is_whole else NARROW_TITLE
+    rows = [row((f"  {'level':<{title_width}} {COLUMNS}" + "   ladder" * is_whole, "dim"))]
     for each in standings:
         level, is_chosen = each.level, each.level.id == chosen
         style = "chosen" if is_chosen else "" if each.is_open else "dim"
@@ -83,12 +91,14 @@ def world_levels(
         reference = references.get(level.id)
         driver = max(DriverKind, key=lambda kind: (each.medals.get(kind, -1), kind in each.best_times))
         bar = (
-            () if reference is None else ladder_bar(driver, reference, each.best_times.get(driver), LIST_BAR)
+            ()
+            if reference is None or not is_whole
+            else ladder_bar(driver, reference, each.best_times.get(driver), LIST_BAR)
         )
         rows.append(
             row(
                 ("> " if is_chosen else "  ", "bold"),
-                (f"{level.title:<{TITLE_WIDTH}.{TITLE_WIDTH}} ", style),
+                (f"{level.title:<{title_width}.{title_width}} ", style),
                 *medals,
                 (f"{STAR * each.star_count:{NO_STAR}<{len(ExtraRule)}}", "warn" if each.rules else "dim"),
                 f"{best:8.2f} s  " if best is not None else " " * 12,
@@ -98,8 +108,8 @@ def world_levels(
     return rows
 
 
-def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | None) -> list[Row]:
-    """What the chosen level asks for, and how it was driven."""
+def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | None, width: int) -> list[Row]:
+    """What the chosen level asks for, and how it was driven. ``width``: of the screen, which the ladders are fitted to."""
     level = progress.level
     rows = [
         row((level.title, "bold"), f"  {level.story}"),
@@ -120,7 +130,7 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
         rows.append(
             row(
                 (f"{driver.phrase:<11}", "dim"),
-                *ladder_bar(driver, reference, best, ABOUT_BAR),
+                *ladder_bar(driver, reference, best, max(LIST_BAR, min(ABOUT_BAR, width - LADDER_WORDS))),
                 ladder_words(driver, reference, best),
             )
         )

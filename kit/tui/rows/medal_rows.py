@@ -15,28 +15,31 @@ def medal_row(medal: Medal, *, is_new: bool) -> Row:
     return row((f"   {MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]), (f"{medal.title}{better}", "bold"))
 
 
-MEDAL_PICTURE: Final = (
-    r"  \ \   / /",
-    r"   \ \ / /",
-    r"   .-'-'-.",
-    r"  /       \ ",
-    r" |    {}    |",
-    r"  \       /",
-    r"   '-----'",
+RIBBON: Final = (
+    "  ▀██▄     ▄██▀",
+    "    ▀██▄ ▄██▀",
+)
+DISC: Final = (
+    "    ▄▄█████▄▄",
+    "  ▄███████████▄",
+    "  █████ {} █████",
+    "  ▀███████████▀",
+    "    ▀▀█████▀▀",
 )
 SPARK_SIGNS: Final = "*.+'"
 
 
 def medal_drawing(medal: Medal, spark: int) -> list[Row]:
     """A medal with its letter. ``spark``: the number of a picture of joy around it, 0 for none."""
+    drawn = [(line, "code") for line in RIBBON]
+    drawn += [(line.format(MEDAL_SIGNS[medal]), MEDAL_STYLES[medal]) for line in DISC]
     rows = []
-    for number, line in enumerate(MEDAL_PICTURE):
+    for number, (line, style) in enumerate(drawn):
         sparks = "".join(
             SPARK_SIGNS[(number + column) % len(SPARK_SIGNS)]
             if (7 * column + 5 * number + 3 * spark) % 11 < 2
             else " "
             for column in range(30 if spark else 0)
         )
-        drawn = f"   {line.format(MEDAL_SIGNS[medal]):<14}"
-        rows.append(row((drawn, MEDAL_STYLES[medal]), (sparks, "warn")))
+        rows.append(row((f"   {line:<18}", style), (sparks, "warn")))
     return [*rows, row()]

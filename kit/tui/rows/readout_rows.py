@@ -75,7 +75,7 @@ def readout(view: View, drive: str | None) -> tuple[Row, ...]:
         # Before the first tick nothing is measured; the row has its place all the same.
         rows.append(_figure_row("to target", "-" if score.target_m is None else f"{score.target_m:.2f}", "m"))
     if drive is not None:
-        rows += [_title_row("keys"), row(f" {drive}")]
+        rows += [_title_row("key mode (z)"), row(f" {drive}")]
     return tuple(rows)
 
 

@@ -13,7 +13,7 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 
 from kit.dialogue.actions import ScreenActions
-from kit.document.rows import Row, row
+from kit.document.rows import Row, broken, row
 from kit.host.file_watcher import FileWatcher
 from kit.learning.training.run_folders import list_runs
 from kit.school.game.challenge import AnswerError, AnswerSubmission, Challenge
@@ -23,9 +23,9 @@ from kit.school.game.medal import Medal
 from kit.school.game.shared_answers import share_answer
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.challenge_rows import answers_needed_rows, beside_others, challenge_page, judged
-from kit.tui.rows.key_rows import bindings, footer
+from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.lesson_rows import checking
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.suspend import edit_aside
@@ -118,7 +118,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
     def _result_rows(self) -> list[Row]:
         if self._started_at is not None:
             return [checking(time.monotonic() - self._started_at, self._doing, self.size.width)]
-        return self._result
+        return [each for parts in self._result for each in broken(parts, self.size.width)]
 
     def _unavailable_actions(self) -> list[str]:
         return [
@@ -126,9 +126,6 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             *(["edit_file"] if self._file is None else []),
             *(["next"] if self._following is None else []),
         ]
-
-    def _keys(self) -> Row:
-        return footer(self.screen_actions, self.size.width, without=self._unavailable_actions())
 
     # The check
 
@@ -162,7 +159,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             beside = self._beside_others(judgement)
             self._result = [*judged(judgement, previous, self._following, beside), *self._needed]
         except (AnswerError, WorldError, ProgressError, OSError) as error:
-            self._result = [row((" No medal", "bold")), *wrapped(f" {error}")]
+            self._result = [row((" No medal", "bold")), row(f" {error}")]
         finally:
             self._started_at = None
         self._renew()
@@ -198,7 +195,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
 
         runs = [run.name for run in await to_thread(list_runs, self._workspace.runs)]
         if not runs:
-            self.app.push_screen(MessageDialog("Agents", wrapped(NO_RUNS)))
+            self.app.push_screen(MessageDialog("Agents", NO_RUNS))
             return None
         items = [PickerItem(name, name) for name in runs]
         return await self.app.push_screen_wait(Picker("Which run is handed in?", items))
@@ -210,7 +207,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         if self._file is None or self._started_at is not None:
             return
         if problem := edit_aside(self.app, self._file, 1, self._theme.terminal):
-            self.app.push_screen(MessageDialog("No editor opened", wrapped(problem)))
+            self.app.push_screen(MessageDialog("No editor opened", problem))
 
     def action_next(self) -> None:
         if self._following is not None:

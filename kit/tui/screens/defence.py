@@ -7,7 +7,7 @@ from textual.app import ComposeResult
 from kit.document.layout import Page, rows_of
 from kit.document.rows import MARGIN, Row, at_both_edges, row, text_width
 from kit.school.lessons.defence_dialogue import DefenceDialogue
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.tui.theme import Theme
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
@@ -53,4 +53,4 @@ class DefenceScreen(DialogueScreen):
         self.show()
 
     def on_error_event(self, event: ErrorEvent) -> None:
-        self.app.push_screen(MessageDialog("The run cannot be shown", wrapped(event.text)))
+        self.app.push_screen(MessageDialog("The run cannot be shown", event.text))

@@ -13,7 +13,6 @@ from textual.widgets import Input
 
 from kit.dialogue.actions import ScreenActions
 from kit.document.rows import Row, broken, row
-from kit.plain_text import wrap
 from kit.tui.input.drive_keys import base_key
 from kit.tui.rows.key_rows import help_page
 from kit.tui.screens.dialog import Dialog
@@ -35,19 +34,8 @@ MOUSE_NOTE: Final = (
 """What the mouse does, on every help page."""
 
 
-def wrapped(text: str) -> list[Row]:
-    """The lines of a text as rows of a dialog; long ones go on in the next row, indented where there are several."""
-    lines = text.splitlines()
-    hanging = "    " if len(lines) > 1 else ""
-    rows = []
-    for line in lines:
-        indent = " " * (len(line) - len(line.lstrip()))
-        rows += [row(part) for part in wrap(line, WIDTH - 4, indent, indent + hanging)]
-    return rows
-
-
 class MessageDialog(Dialog[None]):
-    """Shows rows; where they are more than the terminal holds, the arrow keys scroll them."""
+    """Shows a text, or rows; where they are more than the terminal holds, the arrow keys scroll them."""
 
     DEFAULT_CSS = f"""
     MessageDialog > Vertical {{ width: {WIDTH}; max-width: 100%; height: auto; max-height: 100%; border: solid $foreground; padding: 0 1; }}
@@ -55,10 +43,10 @@ class MessageDialog(Dialog[None]):
     """
     CLOSES: Final = "any key closes"
 
-    def __init__(self, title: str, rows: Sequence[Row]) -> None:
+    def __init__(self, title: str, told: str | Sequence[Row]) -> None:
         super().__init__()
         self._title = title
-        self._shown_rows = tuple(rows)
+        self._shown_rows = tuple(map(row, told.splitlines())) if isinstance(told, str) else tuple(told)
         self._top = 0
 
     def compose(self) -> ComposeResult:

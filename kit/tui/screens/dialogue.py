@@ -17,7 +17,7 @@ from kit.dialogue.dialogue import Dialogue, Panel, Turn
 from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show, StartTyping, Tell, Work
 from kit.document.blocks import Tone
 from kit.document.layout import Page, place, rows_of
-from kit.document.rows import MARGIN, Row, at_both_edges, row, text_width, window
+from kit.document.rows import MARGIN, Row, at_both_edges, fitted, row, text_width, window
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.ruled_title import ruled_title
 from kit.tui.screens.dialogs import HelpDialog
@@ -155,7 +155,7 @@ class DialogueScreen(RowsScreen[None]):
         self._show_body()
         self._show_place()
         self._rows("heading").show([self._heading()])
-        self._rows("remark").show([self._remark()])
+        self._rows("remark").show([fitted(self._remark(), self.room.width)])
         self._rows("keys").show([self._keys()])
 
     def _show_body(self) -> None:

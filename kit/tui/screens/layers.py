@@ -28,7 +28,7 @@ from kit.layers.planning import LayerPlan
 from kit.layers.requirements import LayerCase
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.layer_rows import layer_grid, picture, words_width
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.layer_case_editor import CaseEditor
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.theme import Theme
@@ -276,7 +276,7 @@ class LayersScreen(RowsScreen[None]):
         try:
             self.open(open_task(name), name)
         except (WorldError, UnknownPlanningTask) as error:
-            self.app.push_screen(MessageDialog("That did not work", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("That did not work", str(error)))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         # Before all others, so that letters that come with it reach the field; in the field it is a letter itself.

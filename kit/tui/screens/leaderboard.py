@@ -13,16 +13,17 @@ from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
 from kit.document.blocks import Block, Table, Text, Tone
 from kit.document.layout import Page, rows_of
-from kit.document.rows import MARGIN, Row, row
+from kit.document.rows import MARGIN, Row, row, row_width
 from kit.document.tables import table_columns
 from kit.school.game import leaderboard
 from kit.school.game.drive_records import join_leaderboard
 from kit.school.game.levels import all_levels
+from kit.school.game.medal import RUNGS
 from kit.school.game.player_progress import LevelProgress, level_progress
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.leaderboard_rows import leaderboard_standings, leaderboard_times, times_to_beat
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
@@ -50,7 +51,8 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         self._player_name = journal.student_name or getpass.getuser()
         self._has_joined = False
         self._standings: list[Block] = [Text("Running the drives again ...", Tone.DIM)]
-        self._times: Table | None = None
+        self._times: tuple[Table, ...] = ()
+        """The same times, the table that tells most first."""
 
     def on_mount(self) -> None:
         self._read()
@@ -62,10 +64,11 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         """The standings, and below them the times, in as many columns as there is room for."""
         page = Page(width=width - 2 * MARGIN, margin=MARGIN)
         rows = [row(), *rows_of(self._standings, page)]
-        if self._times is not None:
-            times = table_columns(self._times, page.width, max(1, height - len(rows) - 1))
-            rows += [row(), *(row(" " * MARGIN) + each for each in times)]
-        return rows
+        room = max(1, height - len(rows) - 1)
+        placed = [table_columns(table, page.width, room) for table in self._times]
+        fitting = [each for each in placed if max(map(row_width, each), default=0) <= page.width]
+        times = min(fitting or placed[-1:], key=lambda each: max(len(each), room), default=[])
+        return [*rows, row(), *(row(" " * MARGIN) + each for each in times)]
 
     @work(exclusive=True, group="read")
     async def _read(self) -> None:
@@ -74,7 +77,8 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         entries = await to_thread(leaderboard.read_entries, self._folder)
         own = () if entries else await to_thread(self._own_progress)
         self._standings = leaderboard_standings(leaderboard.standings(entries), self._offer)
-        self._times = leaderboard_times(entries) if entries else times_to_beat(own)
+        to_beat = (times_to_beat(own, medals) for medals in (RUNGS[:-1], RUNGS[1:3], RUNGS[2:3], ()))
+        self._times = (leaderboard_times(entries),) if entries else tuple(to_beat)
         self._width = 0
         if self.query(TextRows):  # not where the screen was left meanwhile
             self._show()
@@ -107,5 +111,5 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
             else:
                 await to_thread(join_leaderboard, self._progress, self._workspace, self._player_name)
         except (leaderboard.LeaderboardError, ProgressError) as error:
-            self.app.push_screen(MessageDialog("Leaderboard", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("Leaderboard", str(error)))
         self._read()

@@ -33,7 +33,7 @@ from kit.school.game.league.tag_game import tag_scenario
 from kit.school.game.race import DriverKind
 from kit.school.game.starts import film_scenario
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.lesson_drive import ReplayScreen
 from kit.tui.screens.level_pictures import ghost_marks, ghost_paths, pictures_of
 from kit.tui.screens.picker import Picker, PickerItem
@@ -44,6 +44,8 @@ from kit.workspace import Workspace
 WIDE: Final = 110
 """Columns from which the matches stand beside the standings."""
 STANDINGS_WIDTH: Final = 68
+LEAST_MAP_ROWS: Final = 12
+"""Rows without which the levels' maps are not shown."""
 
 
 class LeagueScreen(RowsScreen[None]):
@@ -89,8 +91,7 @@ class LeagueScreen(RowsScreen[None]):
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show)
-        if self._maps:
-            self._draw_maps()
+        self._draw_maps()
 
     @work(exclusive=True, group="read")
     async def _read(self) -> None:
@@ -107,16 +108,19 @@ class LeagueScreen(RowsScreen[None]):
             self._match = min(self._match, len(self._matches) - 1) if self._matches else None
         if self.is_attached:
             self._show()
-            if self._standings is not None and not self._standings.places:
-                self._draw_maps()
+            self._draw_maps()
 
     @work(exclusive=True, group="maps")
     async def _draw_maps(self) -> None:
         if self._standings is None or self.size.width < WIDE:
             return
         levels = (*self._standings.programme.races, *self._standings.programme.tag)
-        room = self.size.width - STANDINGS_WIDTH, self.size.height - 5
-        self._maps = await to_thread(pictures_of, levels, *room, self._theme.terminal.glyphs.value)
+        width, height = self.size.width - STANDINGS_WIDTH, self.size.height - 5
+        if self._standings.places:
+            width, height = self.size.width - 3, height - len(self._tables(self._standings, *self._room))
+        glyphs = self._theme.terminal.glyphs.value
+        is_there = height >= LEAST_MAP_ROWS
+        self._maps = await to_thread(pictures_of, levels, width, height, glyphs) if is_there else []
         self._show()
 
     # What is shown
@@ -135,22 +139,29 @@ class LeagueScreen(RowsScreen[None]):
     def _show(self) -> None:
         if not self.is_attached:
             return
-        width, height = self.size.width, self.size.height - 3
-        standings = self._standings
+        width, standings = self.size.width, self._standings
         title = "League" if standings is None else standings.title
         place = f"{self._league.folder}".replace(str(Path.home()), "~", 1)
         has_room = len(title) + len(place) + 2 <= width
         self._rows("heading").show(
             [at_both_edges(row((title, "bold")), row((place if has_room else "", "dim")), width)]
         )
-        body = [] if standings is None else self._body(standings, width, height)
-        self._rows("body").show(body)
+        tables = [] if standings is None else self._tables(standings, *self._room)
+        below = [row(), *(row("   ", *each) for each in self._maps)] if self._entrants and self._maps else []
+        has_room = width >= WIDE and len(tables) + len(below) <= self._room[1]
+        self._rows("body").show([*tables, *below] if has_room else tables)
         self._rows("note").show([row((f"  {self._note}", "dim"))])
         labels = {"open": "matches" if self._match is None else "replay"}
         idle = () if self._entrants else ("choose", "open", "run_matches")
         self._rows("keys").show([footer(self.screen_actions, width, labels=labels, without=idle)])
 
-    def _body(self, standings: Standings, width: int, height: int) -> list[Row]:
+    @property
+    def _room(self) -> tuple[int, int]:
+        """Columns and rows between the heading and the note."""
+        return self.size.width, self.size.height - 3
+
+    def _tables(self, standings: Standings, width: int, height: int) -> list[Row]:
+        """Standings and matches, beside each other where there is room, or what a league is where nobody is entered."""
         is_wide = width >= WIDE
         left_width = STANDINGS_WIDTH if is_wide else width
         head = [row(), *rows_of(summary_blocks(standings), Page(left_width - 4, margin=2)), row()]
@@ -235,7 +246,7 @@ class LeagueScreen(RowsScreen[None]):
                 )
             await to_thread(submit, self._league.folder, name, driver, program)
         except (LeagueError, OSError) as error:
-            self.app.push_screen(MessageDialog("Not entered", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("Not entered", str(error)))
             return
         await self._read_now(f"{name} is entered.")
 
@@ -262,7 +273,7 @@ class LeagueScreen(RowsScreen[None]):
                 executor = JobExecutor(jobs=os.cpu_count() or 1)
                 await to_thread(executor.run, self._league, keys, count)
         except (LeagueError, OSError) as error:
-            self.app.push_screen(MessageDialog("The league cannot be run", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("The league cannot be run", str(error)))
         finally:
             self._is_running = False
         await self._read_now("All matches are driven." if not keys else f"{len(keys)} were driven.")

@@ -35,7 +35,7 @@ from kit.tui.input.screen import DriveScreen
 from kit.tui.rows import lesson_rows
 from kit.tui.rows.key_rows import key_row
 from kit.tui.screens.defence import DefenceScreen
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.tui.suspend import edit_aside, run_aside
 from kit.tui.theme import Theme
@@ -372,7 +372,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
         self._show_title()
 
     def on_error_event(self, event: ErrorEvent) -> None:
-        self.app.push_screen(MessageDialog("The scene cannot be shown", wrapped(event.text)))
+        self.app.push_screen(MessageDialog("The scene cannot be shown", event.text))
         if self.dialogue.on_scene_end():
             self.show_all()
 

@@ -20,7 +20,7 @@ from kit.school.news import take_news
 from kit.school.progress import ProgressError
 from kit.tui.rows import lesson_list_rows
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowClicked, RowsScreen, TextRows
@@ -120,9 +120,10 @@ class LessonsScreen(RowsScreen[None]):
         if is_wide:
             self._show_beside()
         else:
-            self._rows("about").show(
-                [row(), *(lesson_list_rows.summary(chosen, SUMMARY_ROWS - 1) if chosen is not None else [])]
+            about = (
+                () if chosen is None else lesson_list_rows.summary(chosen, SUMMARY_ROWS - 1, self.size.width)
             )
+            self._rows("about").show([row(), *about])
         self._rows("keys").show([footer(self.screen_actions, self.size.width, keys={"choose": "↑↓"})])
 
     @work(exclusive=True, group="beside")
@@ -169,14 +170,14 @@ class LessonsScreen(RowsScreen[None]):
         if entry is None or not self.is_active:
             return
         if entry.lesson is None:
-            self.app.push_screen(MessageDialog("This lesson cannot be read", wrapped(entry.problem)))
+            self.app.push_screen(MessageDialog("This lesson cannot be read", entry.problem))
             return
         from kit.tui.screens.lesson import LessonScreen  # of no use to the first frame
 
         try:
             session = self._store.open_lesson(entry.lesson)
         except ProgressError as error:
-            self.app.push_screen(MessageDialog("Progress cannot be saved", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("Progress cannot be saved", str(error)))
             return
         await self.app.push_screen_wait(LessonScreen(self._theme, session, self._store.workspace))
         self._overview = await to_thread(self._store.read_overview)

@@ -45,7 +45,7 @@ from kit.tui.rows import level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_card_rows import level_card
 from kit.tui.rows.medal_signs import MEDAL_STYLES
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_pictures import ghost_driver, ghost_look, ghost_marks, ghost_paths
 from kit.tui.screens.level_result import DriveResult, DriveResultScreen, Wish
 from kit.tui.screens.watch import WatchScreen
@@ -290,7 +290,7 @@ class LevelDrive(WatchScreen):
             right.append(f"bumps {referee.finish.collisions}  ")
             reference = reference_seconds(self._level) if self._level.has_medals else None
             if reference is not None and not self._is_over:
-                reach = level_rows.still_in_reach(self._driver, reference, time_s, referee.finish.collisions)
+                reach = level_rows.still_in_reach(self._driver, reference, time_s, referee.finish.is_flawed)
                 left.append((f"  {reach}", "dim"))
         return at_both_edges(row(*left), row(*right, (format_clock(time_s), "bold")), self.size.width)
 
@@ -332,7 +332,7 @@ class LevelDrive(WatchScreen):
     def on_drive_ended(self, event: DriveEnded) -> None:
         record, recording, finish = event.record, event.recording, event.finish
         if record is None or recording is None:
-            self.app.push_screen(MessageDialog("The drive could not be saved", wrapped(event.problem)))
+            self.app.push_screen(MessageDialog("The drive could not be saved", event.problem))
             return
         reference = reference_seconds(self._level)
         if finish.reached and reference is not None:

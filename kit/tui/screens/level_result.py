@@ -15,8 +15,9 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.screen import ModalScreen
 
+from kit.arrays import FloatArray
 from kit.dialogue.actions import ScreenActions
-from kit.document.rows import Row, row
+from kit.document.rows import MARGIN, Row, broken, row
 from kit.render.role_looks import PEN_ROLES
 from kit.render.roles import Role
 from kit.render.scene import PenStroke, Scene, ScenePath
@@ -37,7 +38,7 @@ from kit.tui.rows import drive_end_rows, level_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.ladder_rows import ladder_of_drive
 from kit.tui.rows.medal_rows import medal_drawing
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.lesson_drive import RecordingScreen
 from kit.tui.screens.level_pictures import ghost_paths, scene_of
 from kit.tui.theme import Theme
@@ -61,7 +62,7 @@ WIDE: Final = 110
 """Columns from which on the map stands beside the result."""
 LEFT: Final = 46
 """Columns of medal, times and sectors where a small map stands beside these alone."""
-LEAST_BESIDE_ROWS: Final = 9
+LEAST_BESIDE_ROWS, MOST_BESIDE_ROWS = 9, 12
 """Of that map."""
 LEAST_MAP_ROWS: Final = 7
 """Of the map below the result; where there are fewer it is left out."""
@@ -101,13 +102,14 @@ class DriveResultScreen(ModalScreen[Wish]):
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = f"""
     DriveResultScreen {{ layout: vertical; layers: text map; }}
-    DriveResultScreen > TextRows {{ width: 1fr; height: 1fr; }}
+    DriveResultScreen > #text {{ width: 1fr; height: 1fr; }}
+    DriveResultScreen > #keys {{ dock: bottom; height: 1; }}
     DriveResultScreen > WorldView {{ display: none; }}
     DriveResultScreen.-beside > WorldView {{ display: block; layer: map; dock: right; width: {NARROW - LEFT}; }}
     DriveResultScreen.-wide {{ layout: horizontal; }}
-    DriveResultScreen.-wide > TextRows {{ width: {WIDTH}; }}
+    DriveResultScreen.-wide > #text {{ width: {WIDTH}; }}
     DriveResultScreen.-wide > WorldView {{ display: block; width: 1fr; }}
-    DriveResultScreen.-high > TextRows {{ height: auto; }}
+    DriveResultScreen.-high > #text {{ height: auto; }}
     DriveResultScreen.-high > WorldView {{ display: block; height: 1fr; }}
     """
 
@@ -117,11 +119,6 @@ class DriveResultScreen(ModalScreen[Wish]):
         self._result = result
         self._workspace = workspace
         finish, record = result.finish, result.record
-        self._fixed = [
-            row((f" {result.level.title}, {result.driver.phrase}", "bold")),
-            *wrapped(f" {drive_end_rows.finish_sentence(finish)}"),
-            row(),
-        ]
         self._ladder = [
             *ladder_of_drive(finish, record, result.driver, result.reference),
             *level_rows.starts_rows(result.finishes, record.counts),
@@ -131,6 +128,8 @@ class DriveResultScreen(ModalScreen[Wish]):
             *drive_end_rows.sector_rows(result.splits),
         ]
         self._photo_finish = photo_finish(result)
+        self._lead: list[Row] = []
+        """How far ahead of the reference it was on its way, once that is known."""
         self._after_finish = drive_end_rows.won_besides(result.level, record)
         self._needed: list[Row] = []
         """What all players needed, once that is known."""
@@ -140,14 +139,26 @@ class DriveResultScreen(ModalScreen[Wish]):
         self._world = WorldView(lambda: theme.encoder, theme.palette)
 
     @property
+    def _fixed(self) -> list[Row]:
+        """The rows above those that appear: who drove, and how it ended."""
+        result, width = self._result, min(WIDTH, self.app.size.width)
+        sentence = row(f" {drive_end_rows.finish_sentence(result.finish)}")
+        return [
+            row((f" {result.level.title}, {result.driver.phrase}", "bold")),
+            *broken(sentence, width),
+            row(),
+        ]
+
+    @property
     def _is_joyful(self) -> bool:
         """Whether this is the first gold of its driver here, or better."""
         record = self._result.record
         return record.medal >= Medal.GOLD > record.previous_medal
 
     def compose(self) -> ComposeResult:
-        yield TextRows()
+        yield TextRows(id="text")
         yield self._world
+        yield TextRows(id="keys")
 
     def on_mount(self) -> None:
         self._show()
@@ -168,6 +179,7 @@ class DriveResultScreen(ModalScreen[Wish]):
         seconds = await to_thread(seconds_needed, result.level, result.driver)
         was_all_shown = self._shown >= len(self._revealed)
         self._needed = drive_end_rows.needed_rows(histogram(seconds, result.finish.seconds))
+        self._lead = await to_thread(lead_over_reference, result)
         if was_all_shown:
             self._shown = len(self._revealed)
         self._show()
@@ -213,7 +225,11 @@ class DriveResultScreen(ModalScreen[Wish]):
     def _beside_map(self) -> list[Row]:
         """The rows that a small map stands beside."""
         rows = [*self._earned, *self._times]
-        return [*rows, *[row()] * (LEAST_BESIDE_ROWS - len(rows))]
+        below = len(self._ladder) + len(self._after_finish)
+        room = self._room - below
+        if room - len(self._photo_finish) >= max(LEAST_BESIDE_ROWS, len(rows)):
+            room -= len(self._photo_finish)
+        return [*rows, *[row()] * (min(max(LEAST_BESIDE_ROWS, room), MOST_BESIDE_ROWS) - len(rows))]
 
     @property
     def _before_finish(self) -> list[Row]:
@@ -225,21 +241,26 @@ class DriveResultScreen(ModalScreen[Wish]):
     def _revealed(self) -> list[Row]:
         """The rows that appear one after the other; without the photo finish, and then what others needed, where they would
         push others off the screen."""
-        room = self.app.size.height - len(self._fixed) - len(self._medal) - ROWS_AROUND
-        for photo_finish, needed in ((self._photo_finish, self._needed), ([], self._needed)):
-            rows = [*self._before_finish, *photo_finish, *self._after_finish, *needed]
-            if len(rows) <= room:
-                return rows
-        return [*self._before_finish, *self._after_finish]
+        finish, needed, lead = self._photo_finish, self._needed, self._lead
+        for more in ([*finish, *self._after_finish, *needed, *lead], [*finish, *self._after_finish, *needed]):
+            if len(self._before_finish) + len(more) <= self._room:
+                return [*self._before_finish, *more]
+        rows = [*self._before_finish, *self._after_finish, *needed]
+        return rows if len(rows) <= self._room else [*self._before_finish, *self._after_finish]
+
+    @property
+    def _room(self) -> int:
+        """Rows for what appears."""
+        return self.app.size.height - len(self._fixed) - len(self._medal) - ROWS_AROUND
 
     def _show(self) -> None:
         without = () if self._result.finish.reached else ("next",)
-        keys = footer(self.screen_actions, WIDTH - 4, without=without, keys={"next": "Enter"})
+        keys = footer(self.screen_actions, self.app.size.width, without=without, keys={"next": "Enter"})
         revealed = self._revealed
         hidden = [row()] * max(0, len(revealed) - self._shown)  # what is below keeps its place
-        rows = [*self._fixed, *self._medal, *revealed[: self._shown], *hidden, self._note or row(), keys]
+        rows = [*self._fixed, *self._medal, *revealed[: self._shown], *hidden, self._note]
         for text in self.query(TextRows):  # none where the kit is left meanwhile
-            text.show(rows)
+            text.show([keys] if text.id == "keys" else rows)
 
     # Keys
 
@@ -280,15 +301,15 @@ class DriveResultScreen(ModalScreen[Wish]):
             said = f"It could not be saved: {error}"
         self._note = ()
         self._show()
-        shown = [*(row(each) for each in rows), row(), *wrapped(said)]
+        shown = [*(row(each) for each in rows), row(), *map(row, said.splitlines())]
         self.app.push_screen(MessageDialog("A card to share", shown))
 
 
 def scene_of_drive(result: DriveResult) -> Scene:
     """The level with the way of a drive, each part of it coloured by what it gained on the reference; without one plain."""
     scene = scene_of(result.level)
-    reference = next((each for each in result.ghosts if each.name == "reference"), None)
-    track = result.recording.track(result.level.find_scenario().partners[0])
+    reference = _reference_of(result)
+    track = _own_track(result)
     if reference is None or len(track) < 2:
         return replace(scene, paths=(ScenePath(track[::5, :2]),) if len(track) > 1 else ())
     strokes = tuple(
@@ -296,6 +317,23 @@ def scene_of_drive(result: DriveResult) -> Scene:
         for x, y, to_x, to_y, gain in gains_along(track, result.recording.step_size, reference)
     )
     return replace(scene, paths=tuple(ghost_paths(reference)), strokes=strokes)
+
+
+def lead_over_reference(result: DriveResult) -> list[Row]:
+    """A chart of how far ahead of the reference a drive was on its way; none without a reference."""
+    reference = _reference_of(result)
+    if reference is None:
+        return []
+    gains = gains_along(_own_track(result), result.recording.step_size, reference)[:, 4]
+    return drive_end_rows.lead_rows(np.nancumsum(gains).tolist(), WIDTH - MARGIN)
+
+
+def _reference_of(result: DriveResult) -> Ghost | None:
+    return next((each for each in result.ghosts if each.name == "reference"), None)
+
+
+def _own_track(result: DriveResult) -> FloatArray:
+    return result.recording.track(result.level.find_scenario().partners[0])
 
 
 def gain_color(gain: float) -> tuple[int, int, int]:

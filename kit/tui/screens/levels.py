@@ -17,7 +17,7 @@ from textual.containers import Horizontal
 from kit.controllers import ControllerFile, kit_controllers, user_controllers
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
-from kit.document.rows import Row, at_both_edges, row, side_by_side
+from kit.document.rows import Row, at_both_edges, fitted, row, side_by_side
 from kit.plain_text import counted
 from kit.render.scene import Scene
 from kit.run.recording import Recording, RecordingError, load_recording
@@ -48,7 +48,7 @@ from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.level_card_rows import COLUMN, best_splits, stars_and_sectors
 from kit.tui.rows.level_map_rows import LevelPlace, level_at, map_places, map_rows
 from kit.tui.rows.progress_marks import share_bar
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.leaderboard import LeaderboardScreen
 from kit.tui.screens.level_pictures import ghost_paths, picture_of, scene_of
 from kit.tui.screens.picker import Picker, PickerItem
@@ -72,6 +72,7 @@ NOTES: Final = (
     ("", "touched nothing, never stood still, one sensor, few lines,"),
     ("", "few training steps"),
     ("bump", "back to the start, and all targets are to be reached again"),
+    ("side by side", "a pair that is apart for longer gets bronze at best"),
     ("---", "not open yet: finish the level before it, or its lesson"),
 )
 
@@ -231,20 +232,27 @@ class LevelsScreen(RowsScreen[None]):
         """The rows above a world's list, ROWS_ABOVE_LEVELS with the columns' names. ``best``: the best medal of each entry."""
         number = self._worlds.index(self._world) + 1
         heading = level_rows.world_heading(self._world, number, len(self._worlds), belt_of(best))
-        return [row((f" {self._news}", "good")), *heading, row()]
+        width = self._rows("map").size.width
+        return [fitted(each, width) for each in (row((f" {self._news}", "good")), *heading, row())]
 
     def _level_rows(self) -> tuple[list[Row], list[Row]]:
         """The list of the chosen world with its map, and what is said of the chosen level."""
         level, levels = self.chosen.level, self._in_world(self.chosen.level.world)
+        names, *listed = level_rows.world_levels(
+            levels, level.id, self._references, self._rows("map").size.width
+        )
+        top, room = self._top_level, self._list_room
         listed = [
             *self._world_heading([each.best_medal for each in levels]),
-            *level_rows.world_levels(levels, level.id, self._references),
+            names,
+            *listed[top : top + room],
             row(),
             *self._card_below(),
             *map_rows(levels, self._map_places(), self._pictures, level.id),
         ]
         ghosts = self._known.get(level.id, ())
-        about = level_rows.about(self.chosen, ghosts, self._references[level.id])
+        about = level_rows.about(self.chosen, ghosts, self._references[level.id], self.size.width)
+        about = [fitted(each, self.size.width) for each in about]
         if self.size.width >= ABOUT_COLUMN + COLUMN:
             about = side_by_side(about, self._card_rows(self.size.width - ABOUT_COLUMN - 1), ABOUT_COLUMN)
         return listed, about
@@ -283,7 +291,7 @@ class LevelsScreen(RowsScreen[None]):
         is_beside = has_picture and len(self._challenges) + len(about) + 2 <= height
         self.set_class(is_beside, "-about-beside")
         listed = challenge_rows.challenge_list(
-            self._challenges, medals, chosen.id, height if is_beside else self._challenge_room, column - 1
+            self._challenges, medals, chosen.id, height if is_beside else self._list_room, column - 1
         )
         if has_picture:
             height = height if is_beside else self._rows("map").size.height - len(heading)
@@ -294,9 +302,15 @@ class LevelsScreen(RowsScreen[None]):
         return listed, challenge_rows.about_challenge(chosen, medal, width)
 
     @property
-    def _challenge_room(self) -> int:
-        """Rows for the list of challenges."""
+    def _list_room(self) -> int:
+        """Rows for the list of levels or challenges."""
         return max(1, self._rows("map").size.height - ROWS_ABOVE_LEVELS)
+
+    @property
+    def _top_level(self) -> int:
+        """The number of the level of the chosen world that the list begins with."""
+        levels = self._in_world(self.chosen.level.world)
+        return challenge_rows.first_shown(len(levels), levels.index(self.chosen), self._list_room)
 
     def _doing_row(self) -> Row:
         share = self._prepared.get(self._doing_level, 0.0)
@@ -371,13 +385,13 @@ class LevelsScreen(RowsScreen[None]):
             return
         if self.chosen_challenge is not None:
             chosen, count = self._at - len(self._found), len(self._challenges)
-            number += challenge_rows.first_shown(count, chosen, self._challenge_room)
+            number += challenge_rows.first_shown(count, chosen, self._list_room)
             if number < count:
                 self._choose_or_open(len(self._found) + number)
             return
         levels = self._in_world(self.chosen.level.world)
-        if number < len(levels):
-            clicked = levels[number]
+        if number + self._top_level < len(levels):
+            clicked = levels[number + self._top_level]
         else:
             name = level_at(
                 self._map_places(), event.column, number - len(levels) - 1 - len(self._card_below())
@@ -429,7 +443,7 @@ class LevelsScreen(RowsScreen[None]):
                 kind = PuzzleScreen if is_played else ChallengeScreen
                 screen = kind(self._theme, challenge, self._progress, self._workspace, title)
             except (ProgressError, OSError) as error:
-                self.app.push_screen(MessageDialog("The challenge could not start", wrapped(str(error))))
+                self.app.push_screen(MessageDialog("The challenge could not start", str(error)))
                 return
             await self.app.push_screen_wait(screen)
             self._read()
@@ -476,7 +490,7 @@ class LevelsScreen(RowsScreen[None]):
         if not runs:
             from kit.tui.screens.challenge import NO_RUNS  # of no use to the first frame
 
-            self.app.push_screen(MessageDialog("Agents", wrapped(NO_RUNS)))
+            self.app.push_screen(MessageDialog("Agents", NO_RUNS))
             return
         choices = [PickerItem(name, name, "") for name in runs]
         picked = await self.app.push_screen_wait(Picker("Which agent drives?", choices))
@@ -493,7 +507,7 @@ class LevelsScreen(RowsScreen[None]):
                 program = stack.enter_context(agent_controller(policy))
                 facts = DriverFacts(training_steps=run.summary().steps)
             except (PolicyError, RunError, LookupError, ValueError, OSError) as error:
-                self.app.push_screen(MessageDialog("The drive could not start", wrapped(str(error))))
+                self.app.push_screen(MessageDialog("The drive could not start", str(error)))
                 return
             await self._drive(self.chosen.level, DriverKind.AGENT, program, facts, (run.name, policy))
 
@@ -558,7 +572,7 @@ class LevelsScreen(RowsScreen[None]):
             recordings["reference"] = reference
         if not recordings:
             text = "Drive this level first, then its best drive and the reference can be replayed."
-            self.app.push_screen(MessageDialog("Nothing to replay yet", wrapped(text)))
+            self.app.push_screen(MessageDialog("Nothing to replay yet", text))
             return
         choices = [PickerItem(name, name, "") for name in recordings]
         picked = await self.app.push_screen_wait(Picker("Replay whose drive?", choices))
@@ -571,7 +585,7 @@ class LevelsScreen(RowsScreen[None]):
         try:
             recording = await to_thread(load_recording, source) if isinstance(source, Path) else source
         except (RecordingError, OSError) as error:
-            self.app.push_screen(MessageDialog("This drive cannot be replayed", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("This drive cannot be replayed", str(error)))
             return
         await self.app.push_screen_wait(
             RecordingScreen(self._theme, film_scenario(level, recording.seed), recording, who)
@@ -590,7 +604,7 @@ class LevelsScreen(RowsScreen[None]):
         if not self.chosen.is_open:
             level = self.chosen.level
             text = f"{level.title} {level_rows.opens_after(level)}."
-            self.app.push_screen(MessageDialog("Not open yet", wrapped(text)))
+            self.app.push_screen(MessageDialog("Not open yet", text))
             return False
         return True
 

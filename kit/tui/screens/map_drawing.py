@@ -20,7 +20,7 @@ from kit.mapmaking.new_map import NewMap
 from kit.render.encode import Frame
 from kit.render.roles import Role
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.frame_view import FrameView
@@ -295,7 +295,7 @@ class MapDrawingScreen(ActivePaintScreen["NewMap | None"]):
             self._saved = await to_thread(self._save, self.sketch)
         except (ValueError, OSError) as error:
             self._show()
-            self.app.push_screen(MessageDialog("Not saved", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("Not saved", str(error)))
             return
         self._leave()
 

@@ -20,7 +20,7 @@ from kit.dialogue.screen_action import ScreenAction
 from kit.document.rows import at_both_edges, lines_shown, row
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.setting_rows import settings
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.task_preview import TaskPreview
@@ -184,7 +184,7 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
         try:
             await getattr(self, f"_choose_{name}")()
         except Exception as error:  # noqa: BLE001 - a damaged task file, a folder that is away: all of it is told
-            self.app.push_screen(MessageDialog("That did not work", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("That did not work", str(error)))
         self._show()
 
     async def _pick(self, title: str, items: list[PickerItem], chosen: str) -> str | None:
@@ -259,7 +259,7 @@ class NewTrainingScreen(ActivePaintScreen["TrainingRun | TrainingSweep | None"])
             self._note = ""
             if not self.is_current:
                 return
-            self.app.push_screen(MessageDialog("This cannot be trained", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("This cannot be trained", str(error)))
             self._show()
             return
         if self.is_current:  # else it was left meanwhile: the training is in the list

@@ -18,7 +18,7 @@ from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import named
 from kit.tui.input.driver import key_driver
 from kit.tui.rows.key_rows import bindings, key_row
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.watch import WatchScreen
 from kit.tui.theme import Theme
@@ -174,7 +174,7 @@ class PlayScreen(WatchScreen):
                 else:
                     self._editor.edit(program)
         except ProgramFileError as error:
-            self.app.push_screen(MessageDialog("This program cannot be edited here", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("This program cannot be edited here", str(error)))
             return
         if controller.file != driving.file:
             self.follow_agent("", None)
@@ -294,7 +294,7 @@ class PlayScreen(WatchScreen):
         try:
             controller, policy = await to_thread(_write_agent, self._runs, name)
         except Exception as error:  # noqa: BLE001 - no policy yet, a damaged one, one that no node can be: all of it is told
-            self.app.push_screen(MessageDialog("This agent cannot drive here", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("This agent cannot drive here", str(error)))
             return
         self._drive_with(controller)
         self.follow_agent(name, policy)

@@ -14,7 +14,7 @@ from kit.school.lessons.catalogue import LessonEntry
 from kit.school.progress import EventKind
 from kit.school.quiz.items import read_bank
 from kit.tui.rows.progress_rows import lesson_rows, short_lesson_rows, summary_rows
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.text_screen import TextScreen
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.world.problems import WorldError
@@ -37,7 +37,7 @@ async def show_progress(screen: Screen[Any], store: StudentStore) -> None:
     """Opens the page, and comes back when it is left. To be called in a worker."""
     found = await to_thread(_read, store)
     if isinstance(found, str):
-        screen.app.push_screen(MessageDialog("Progress cannot be read", wrapped(found)))
+        screen.app.push_screen(MessageDialog("Progress cannot be read", found))
     else:
         overview, summary = found
         await screen.app.push_screen_wait(ProgressScreen(summary, overview.shelf))

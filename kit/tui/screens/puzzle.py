@@ -14,7 +14,7 @@ from kit.school.game.challenge import AnswerError, Challenge, as_comments
 from kit.school.game.judgement import Judgement
 from kit.school.progress import ProgressJournal
 from kit.tui.rows.challenge_rows import puzzle_beside, puzzle_page
-from kit.tui.rows.key_rows import bindings
+from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.challenge import ChallengeScreen
 from kit.tui.screens.dialogs import HelpDialog
 from kit.workspace import Workspace, write_atomically
@@ -82,6 +82,12 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
             *([] if board.marks() else ["mark_cell"]),
             *([] if board.switches() else ["switch_robot"]),
         ]
+
+    def _keys(self) -> Row:
+        labels = {"mark_cell": self._board.mark_word}
+        return footer(
+            self.screen_actions, self.size.width, labels=labels, without=self._unavailable_actions()
+        )
 
     def _changed(self) -> None:
         self._result = []

@@ -25,7 +25,7 @@ from kit.school.quiz.quiz_session import (
 )
 from kit.school.quiz.quiz_text import scores_blocks, today_line
 from kit.school.quiz.schedule import build_schedule
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.text_screen import TextScreen
@@ -42,7 +42,7 @@ async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> Non
     try:
         events = journal.events()
     except ProgressError as error:
-        screen.app.push_screen(MessageDialog("Progress cannot be read", wrapped(str(error))))
+        screen.app.push_screen(MessageDialog("Progress cannot be read", str(error)))
         return
     schedule = build_schedule(bank, events, local_now())
     plans: dict[str, QuestionPlan] = {TODAY: PracticePlan(bank), TWELVE: quiz_plan(bank)}
@@ -76,7 +76,7 @@ async def _bank(screen: Screen[Any]) -> QuestionBank | None:
     try:
         return await to_thread(read_bank)
     except (WorldError, FileNotFoundError) as error:
-        screen.app.push_screen(MessageDialog("The questions cannot be read", wrapped(str(error))))
+        screen.app.push_screen(MessageDialog("The questions cannot be read", str(error)))
         return None
 
 
@@ -86,11 +86,11 @@ async def _ask(screen: Screen[Any], journal: ProgressJournal, bank: QuestionBank
         if session.current_item is None:  # all were asked: once more, for practice
             session = QuizSession(journal, bank, plan, seed=student_seed(journal), restart=True)
     except ProgressError as error:
-        screen.app.push_screen(MessageDialog("Progress cannot be saved", wrapped(str(error))))
+        screen.app.push_screen(MessageDialog("Progress cannot be saved", str(error)))
         return
     if session.current_item is None:
         screen.app.push_screen(
-            MessageDialog(plan.title, wrapped("There is nothing to ask now. Come back another day."))
+            MessageDialog(plan.title, "There is nothing to ask now. Come back another day.")
         )
         return
     await screen.app.push_screen_wait(DialogueScreen(QuizDialogue(session)))

@@ -20,6 +20,7 @@ from kit.run.recording import Recorder, Recording
 from kit.run.scenario import Scenario
 from kit.run.scene_bodies import scene_bodies
 from kit.run.session import Session
+from kit.run.view import View
 from kit.school.game.ghosts import Ghost, level_ghosts
 from kit.school.game.levels import GameLevel, find_level
 from kit.school.game.shared_server import SharedGameClient, SharedGameServer
@@ -35,7 +36,7 @@ from kit.sim.simulation import Simulation
 from kit.tui.input.drive import DriveState
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.shared_game_rows import HOST, players_card, shared_heading, shared_message
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.level_drive import LETTER_NOTES
 from kit.tui.screens.level_pictures import ghost_marks, ghost_paths
 from kit.tui.screens.watch import WatchScreen
@@ -90,7 +91,8 @@ class SharedScreen(WatchScreen):
         """The scene, and in it the targets that are next, and where each ghost was at this time of its drive."""
         state, case = self.state, self._scenario.case
         if state is None or self._mode is SharedMode.TAG or case is None:
-            return replace(scene, targets=())
+            standing = tuple(body for body in scene.bodies if not body.is_target)
+            return replace(scene, targets=(), bodies=standing)
         places = state.next_targets(self._scenario.targets or (case.target,), self.player)
         scene = replace(scene, targets=tuple(Disc(x, y, case.target_radius) for x, y in places))
         if not self.ghosts or not self._with_ghosts:
@@ -201,6 +203,15 @@ class SharedHostScreen(SharedScreen, inherit_bindings=False):
         super()._show()
         self._show_state()
 
+    def _panel_rows(self, view: View) -> tuple[Row, ...]:
+        """The players, and the robot's figures where there is room for both; tag has no target."""
+        if self._mode is SharedMode.TAG:
+            metrics = replace(view.metrics, target_m=None, reached_s=None)
+            view = replace(view, metrics=metrics, scene=replace(view.scene, targets=()))
+        panel = self._rows("panel").content_size
+        rows, card = super()._panel_rows(view), self._card(panel.width - 1, panel.height)
+        return rows if not card or rows[-len(card) :] == tuple(card) else tuple(card)
+
     def _card(self, width: int, room: int) -> list[Row]:
         if self.state is None:
             return []
@@ -262,7 +273,7 @@ class SharedGuestScreen(SharedScreen, inherit_bindings=False):
         self.ended = event.reason
         self.stop_driving()
         if self.state is None or self.state.phase is not SharedPhase.OVER:
-            self.app.push_screen(MessageDialog("The game has ended", wrapped(f"It ended: {event.reason}.")))
+            self.app.push_screen(MessageDialog("The game has ended", f"It ended: {event.reason}."))
         self._rows("messages").show([row((f" It ended: {event.reason}.", "warn"))])
 
     def is_drive_key(self, key: str) -> bool:

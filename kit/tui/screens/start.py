@@ -28,7 +28,7 @@ from kit.tui.rows.menu_rows import (
     WIDE_PANEL,
     menu,
 )
-from kit.tui.screens.dialogs import MessageDialog, wrapped
+from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.palette import PaletteCommand
 from kit.tui.screens.play import TELEOP, PlayScreen
 from kit.tui.screens.watch import BREAKPOINTS
@@ -177,7 +177,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
                 self._reading, _picture_of, overview.next_level, self._theme.terminal.glyphs.value
             )
         if notice := self._store.take_notice():
-            self.app.push_screen(MessageDialog("Your progress", wrapped(notice)))
+            self.app.push_screen(MessageDialog("Your progress", notice))
         self._show()
         return overview
 
@@ -281,7 +281,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     async def _open_next_lesson(self) -> None:
         overview = self._overview or await self._refresh_overview()
         if overview.problem:
-            self.app.push_screen(MessageDialog("Progress cannot be read", wrapped(overview.problem)))
+            self.app.push_screen(MessageDialog("Progress cannot be read", overview.problem))
             return
         entry = overview.going_on
         if entry is None or entry.lesson is None:
@@ -296,7 +296,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         try:
             session = self._store.open_lesson(lesson)
         except ProgressError as error:
-            self.app.push_screen(MessageDialog("Progress cannot be saved", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("Progress cannot be saved", str(error)))
             return
         await self._open_then_return(LessonScreen(self._theme, session, self._store.workspace))
 
@@ -305,7 +305,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
         overview = self._overview or await self._refresh_overview()
         if overview.problem:
-            self.app.push_screen(MessageDialog("Progress cannot be read", wrapped(overview.problem)))
+            self.app.push_screen(MessageDialog("Progress cannot be read", overview.problem))
         else:
             await self._open_then_return(LessonsScreen(self._theme, self._store, overview))
 
@@ -330,7 +330,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
             journal = await to_thread(self._store.progress)
             screen = LevelsScreen(self._theme, journal, self._store.workspace, level)
         except (ProgressError, FileNotFoundError) as error:
-            self.app.push_screen(MessageDialog("The levels cannot be opened", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("The levels cannot be opened", str(error)))
             return
         await self._open_then_return(screen)
 
@@ -356,7 +356,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         try:
             league = await to_thread(own_league, workspace)
         except LeagueError as error:
-            self.app.push_screen(MessageDialog("The league cannot be opened", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("The league cannot be opened", str(error)))
             return
         await self._open_then_return(LeagueScreen(self._theme, league, workspace))
 
@@ -379,7 +379,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         try:
             journal = await to_thread(self._store.progress)
         except ProgressError as error:
-            self.app.push_screen(MessageDialog("Progress cannot be read", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("Progress cannot be read", str(error)))
             return
         self._close_own_world()
         await open_it(self, journal)

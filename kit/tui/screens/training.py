@@ -18,7 +18,7 @@ from kit.render.scene import Scene
 from kit.tui.rows import training_rows
 from kit.tui.rows.agent_rows import AGENT_WIDTH
 from kit.tui.rows.key_rows import bindings
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.theme import Theme
 from kit.tui.training_follower import TrainingFollower
@@ -191,7 +191,7 @@ class TrainingScreen(RowsScreen[None]):
         self._show_moment()
 
     def on_error_event(self, event: ErrorEvent) -> None:
-        self.app.push_screen(MessageDialog("That did not work", wrapped(event.text)))
+        self.app.push_screen(MessageDialog("That did not work", event.text))
 
     def on_resize(self) -> None:
         self.call_after_refresh(self._show)  # when everything has its new size

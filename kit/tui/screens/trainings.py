@@ -21,7 +21,7 @@ from kit.plain_text import counted, format_size
 from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.rows.training_list_rows import about_run, no_trainings, training_list
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, NameDialog, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog, NameDialog
 from kit.tui.screens.new_training import SWEEPS, NewTrainingScreen, TrainingChoices
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.text_screen import TextScreen
@@ -256,7 +256,7 @@ class TrainingsScreen(RowsScreen[None]):
         items = await to_thread(_sweep_items, self._runs.parent / SWEEPS)
         if not items:
             text = "No sweeps yet: the same training with several seeds, in one table. Press t to start one."
-            self.app.push_screen(MessageDialog("Sweeps", wrapped(text)))
+            self.app.push_screen(MessageDialog("Sweeps", text))
             return
         chosen = await self.app.push_screen_wait(Picker("Sweeps", items))
         if chosen is not None:
@@ -300,7 +300,7 @@ class TrainingsScreen(RowsScreen[None]):
         try:
             rows = await to_thread(make, self.size.width - 2)
         except Exception as error:  # noqa: BLE001 - no policy yet, a damaged one, a task that is gone: all of it is told
-            self.app.push_screen(MessageDialog("That did not work", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("That did not work", str(error)))
         else:
             if self.is_attached:
                 self.app.push_screen(TextScreen(title, [row(f" {line}") for line in rows]))
@@ -341,7 +341,7 @@ class TrainingsScreen(RowsScreen[None]):
             await to_thread(change)
         except (RunError, OSError) as error:
             self._wanted = None
-            self.app.push_screen(MessageDialog("That did not work", wrapped(str(error))))
+            self.app.push_screen(MessageDialog("That did not work", str(error)))
         self._read()
 
     def action_help(self) -> None:

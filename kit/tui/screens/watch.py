@@ -14,7 +14,7 @@ from textual.message import Message
 
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.shared_actions import ACTIONS
-from kit.document.rows import Row, row
+from kit.document.rows import Row, broken, row
 from kit.kernels.compilation_progress import PROGRESS
 from kit.run.pacing import MAXIMUM, REAL_TIME
 from kit.tui.input.screen import DriveScreen
@@ -22,7 +22,7 @@ from kit.tui.rows.agent_rows import AGENT_WIDTH, agent_panel
 from kit.tui.rows.instrument_rows import SpeedHistory, figure_rows, instruments, panel_width
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import PANEL_WIDTH, failure_or_messages, heading, readout
-from kit.tui.screens.dialogs import HelpDialog, MessageDialog, wrapped
+from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.session_host import SessionHost
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
@@ -255,7 +255,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         cells, view = self.laser_cells, self.view
         if cells is None or view is None:
             text = f"There is no map yet: {ACTIONS['laser_map'].keys} has the robot draw one."
-            self.app.push_screen(MessageDialog("The robot's map", wrapped(text)))
+            self.app.push_screen(MessageDialog("The robot's map", text))
             return
         scene = self.as_the_robot_knows_it(Scene(walls=view.scene.walls, trails=view.scene.trails), cells)
         try:
@@ -266,9 +266,9 @@ class WatchScreen(RowsScreen[None], DriveScreen):
             )
         except OSError as error:
             text = f"It could not be saved: {error.strerror}."
-        told = wrapped(text)
-        rows_left = self.size.height - len(told) - 3  # the dialog's frame and a blank row
         columns = max(1, min(MAP_COLUMNS, self.size.width - 4))
+        told = broken(row(text), columns)
+        rows_left = self.size.height - len(told) - 3  # the dialog's frame and a blank row
         picture = scene_rows(scene, columns, max(1, min(MAP_ROWS, rows_left)), self.world.encoder)
         self.app.push_screen(
             MessageDialog("The robot's map", [*(row(each) for each in picture), row(), *told])
@@ -311,7 +311,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         return messages if self._notice is None else (self._notice,)
 
     def on_error_event(self, event: ErrorEvent) -> None:
-        self.app.push_screen(MessageDialog("That did not work", wrapped(event.text)))
+        self.app.push_screen(MessageDialog("That did not work", event.text))
         if self.view is None:
             self._rows("heading").show([row(("nothing is open", "dim"))])
 

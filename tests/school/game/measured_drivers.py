@@ -48,6 +48,9 @@ DRIVERS: Final = {
 LONGEST: Final = 3.0
 """So many times as long as the reference drive a measured drive may take: later, it has not arrived."""
 
+APART: Final = "apart"
+"""The remark on a pair that was not side by side for as long as the level asks."""
+
 Install = Callable[[Session], None]
 Drive = tuple[RaceFinish, Recording]
 
@@ -66,7 +69,7 @@ class MeasuredDrive:
 
     @property
     def finish(self) -> RaceFinish:
-        return RaceFinish(self.reached, self.seconds, self.collisions)
+        return RaceFinish(self.reached, self.seconds, self.collisions, is_apart=self.remark == APART)
 
     def medal(self, level: GameLevel) -> Medal:
         """What it earns by the bars as they are."""
@@ -122,7 +125,10 @@ def measure(level: GameLevel, driver: str) -> MeasuredDrive:
             if 2 * sum(not each.reached for each in finishes) > len(seeds):
                 break
         middle = finishes[middle_drive(finishes)]
-        return MeasuredDrive(level.id, driver, middle.reached, round(middle.seconds, 2), middle.collisions)
+        remark = APART if middle.is_apart else ""
+        return MeasuredDrive(
+            level.id, driver, middle.reached, round(middle.seconds, 2), middle.collisions, remark
+        )
 
 
 @contextmanager

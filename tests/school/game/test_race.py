@@ -21,7 +21,7 @@ from kit.school.game.daily import daily_level, today
 from kit.school.game.drive_records import join_leaderboard, record_drive
 from kit.school.game.ghosts import classmate_ghosts, load_ghosts, load_reference_ghost
 from kit.school.game.levels import GameLevel, UnknownLevel, all_levels, find_level
-from kit.school.game.medal import Medal
+from kit.school.game.medal import Medal, medal_of
 from kit.school.game.player_progress import (
     BY_HAND,
     DriverFacts,
@@ -30,7 +30,7 @@ from kit.school.game.player_progress import (
     facts_of_program,
     level_progress,
 )
-from kit.school.game.race import DriverKind, RaceFinish, RaceReferee, race_controller
+from kit.school.game.race import DriverKind, RaceFinish, RaceReferee, finish_order, race_controller
 from kit.school.game.references import drive_reference
 from kit.school.game.starts import OWN_SEED
 from kit.school.lessons.reading import find_lesson, lesson_names
@@ -320,3 +320,26 @@ def test_a_bump_is_no_way_home() -> None:
         assert not referee.finish.reached
         assert referee.objective.progress == "0 of 2 targets"
         assert referee.finish.splits == ()
+
+
+def test_a_pair_that_is_apart_gets_bronze_at_best() -> None:
+    """One after the other both come to the target: as quick as it may be, on a level that asks them to stay side by side."""
+    pair = next(level for level in LEVELS if level.id == "two-chairs")
+    here = replace(pair, goal=REACH_TARGET, targets=())
+    for level, medal in ((here, Medal.BRONZE), (replace(here, abreast=0.0), Medal.RECORD)):
+        scenario = level.find_scenario()
+        with Session(scenario) as session:
+            referee = RaceReferee(level, scenario)
+            session.runner.observers.append(referee)
+            for robot in scenario.partners:
+                for topic in session.command_topics(robot):
+                    session.runner.accept(topic, Twist(linear=Vector3(x=0.5)))
+                run_until(session.runner, ticks=380)
+                for topic in session.command_topics(robot):
+                    session.runner.accept(topic, Twist())
+        finish = referee.finish
+        assert finish.reached
+        assert finish.is_apart is finish.is_flawed is (level is here)
+        assert ("side by side" in referee.objective.progress) is (level is here)
+        assert medal_of(finish, 2.0 * finish.seconds) is medal
+        assert finish_order(finish) > finish_order(replace(finish, is_apart=False)) or level is not here

@@ -46,7 +46,7 @@ from kit.tui.screens.level_result import (
     scene_of_drive,
 )
 from kit.tui.screens.levels import LevelsScreen
-from kit.tui.terminal import TerminalFacts, TerminalOptions, decide_terminal
+from kit.tui.terminal import LEAST_SIZE, TerminalFacts, TerminalOptions, decide_terminal
 from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
 from tests.kit_content import kit_levels
@@ -80,7 +80,7 @@ def play(
             {"TERM": "xterm-256color", "LANG": "C.UTF-8"}, TerminalFacts.here(), TerminalOptions()
         )
         app: App[None] = KitApp(terminal)
-        async with app.run_test(size=size) as pilot:
+        async with app.run_test(size=size, notifications=True) as pilot:
             assert isinstance(app, KitApp)
             screen = LevelsScreen(app.kit_theme, progress, prepare_workspace(folder), level)
             screen._levels = (ONE_WAY, *LEVELS[1:])
@@ -94,6 +94,21 @@ def play(
 def flat(app: App[None]) -> str:
     rows = ("".join(segment.text for segment in strip) for strip in app.screen._compositor.render_strips())
     return " ".join(" ".join(rows).split())
+
+
+def test_a_small_terminal_shows_the_chosen_level_and_one_that_is_too_small_says_so(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        for level in (each for each in LEVELS if each.world == "hall"):
+            await wait_until_shown(pilot, lambda title=level.title: f"> {title}" in flat(pilot.app))
+            await pilot.press("down")
+        await pilot.resize_terminal(40, 12)
+        await wait_until_shown(pilot, lambda: "40x12 is too small" in flat(pilot.app))
+        await pilot.resize_terminal(*LEAST_SIZE)
+        await wait_until_shown(pilot, lambda: "too small" not in flat(pilot.app))
+
+    play(scene, progress, tmp_path / "desk", LEAST_SIZE)
 
 
 @pytest.mark.long

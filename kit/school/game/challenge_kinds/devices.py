@@ -87,6 +87,7 @@ class DevicesBoard(Board):
     """A cursor that mounts lasers; what they see is lit, and letters that are seen become capitals."""
 
     keys = "Arrows move the cursor, Space mounts a laser or takes it away, u undoes it."
+    mark_word = "mount"
 
     def __init__(self, task: DevicesTask, answer: str) -> None:
         self._task = task

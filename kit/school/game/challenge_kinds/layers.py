@@ -73,6 +73,7 @@ class LayersBoard(Board):
     """A table of entities and lasers by layers: Space puts one into a layer, and what is still wrong is counted."""
 
     keys = "Arrows move the cursor, Space puts into a layer or out of it, u undoes it. o: a laser, which sees its layers."
+    mark_word = "put"
 
     def __init__(self, task: LayersTask, answer: str) -> None:
         self._task = task

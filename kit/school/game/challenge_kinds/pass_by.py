@@ -119,7 +119,8 @@ def _moves_of_both(
 class PassByBoard(Board):
     """Arrows plan one robot's way, the other one moves along by its own plan; Space lets it wait."""
 
-    keys = "Arrows move a robot, Space lets it wait, Tab changes to the other one, u takes back."
+    keys = "Arrows move a robot, Space lets it wait, Tab changes to the other one, u undoes the last move."
+    mark_word = "wait"
 
     def __init__(self, task: PassByTask, answer: str) -> None:
         self._task = task

@@ -264,6 +264,7 @@ class PolicyBoard(Board):
     """Arrows move the cursor, and Space turns the arrow under it."""
 
     keys = "Arrows move the cursor, Space turns the arrow there, u undoes it."
+    mark_word = "turn"
 
     def __init__(self, task: PolicyTask, answer: str) -> None:
         self._task = task
