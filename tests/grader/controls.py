@@ -595,6 +595,13 @@ CONTROLS: Final = (
         "grader/cohort/test_queue.py::test_a_worker_with_another_version_of_the_grader_says_so",
     ),
     Control(
+        "files of a board that unpack to megabytes",
+        "kit/school/game/leaderboard.py",
+        " + unpacked_size(content) // BYTES_OF_A_TICK",
+        "",
+        "school/game/test_leaderboard.py::test_files_that_unpack_to_megabytes_make_nobody_wait",
+    ),
+    Control(
         "a robot that sends faster than it is read",
         "kit/bridge/channels.py",
         "        for _ in range(len(arrived)):\n",

@@ -308,7 +308,7 @@ class _Judge:
             if (digest := hashlib.sha256(content).digest()) not in self._seen:
                 self._seen.add(digest)
                 self._ticks_left -= TICKS_OF_A_FILE + unpacked_size(content) // BYTES_OF_A_TICK
-                if self._ticks_left <= 0:
+                if self._ticks_left < 0:
                     return None
                 ticks = [each.ticks for each in read_shared_drives(content).recordings]
                 if lengths is not None and not _is_as_long(ticks, lengths):

@@ -337,7 +337,9 @@ def test_files_that_unpack_to_megabytes_make_nobody_wait(
     monkeypatch.setattr(leaderboard, "read_shared_drives", noted)
     monkeypatch.setattr(leaderboard, "MAX_TICKS_OF_ONE_USER", 10_000)
     assert len(read_entries(board, [FIRST])) == 1
-    assert len(read) <= 1 + 10_000 * leaderboard.BYTES_OF_A_TICK // 1_000_000, "by their ticks it would be nine"
+    assert len(read) <= 1 + 10_000 * leaderboard.BYTES_OF_A_TICK // 1_000_000, (
+        "by their ticks it would be nine"
+    )
 
 
 def add_remark(remark: str, content: dict[str, Any]) -> None:
