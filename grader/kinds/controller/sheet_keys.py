@@ -16,7 +16,7 @@ SHEET_KEYS: Final[Mapping[str, str]] = MappingProxyType(
         "trials.target_radius": "How near counts as reached [m]",
         "trials.time": "The time limit in simulated seconds",
         "trials.seeds": "Seeds for practice; those for the grade stand in secret.yaml",
-        "trials.shift": "The most that a seed moves the start to either side: m, m, rad",
+        "trials.shift": "The most that a seed moves the start to either side, along the x and y of the world: m, m, rad",
         "trials.noise": "Standard deviation of every laser's readings [m], by default the world's",
         "trials.range": "Range of every laser [m], by default the world's",
         "trials.until_reached": "Whether the episode ends when the target is reached",

@@ -209,9 +209,9 @@ KIT_PPO_WHEELCHAIRS = Preset(
         test_interval=460_800,
         goal=0.95,
         screening_episodes=40,
-        confirming_episodes=300,
+        confirming_episodes=1500,  # with 300, a policy of 0.985 in its worst case passed for one of 0.994
         use_all_steps=True,
-        sufficient_share=0.955,
+        sufficient_share=0.987,  # 0.992 measured
     ),
     steps=12_000_000,  # being side by side goes on getting better long after every target is reached
     worlds=225,  # twenty-five of each case

@@ -192,7 +192,7 @@ class TrainUntilSure:
     is shared out among the cases and among all such attempts (attempt k gets 1 / (k (k + 1)) of what may go wrong), so that
     trying often does not help.
     Where the longer test leaves it open, it goes on to four times as many episodes, up to the most. It is made in parts, and
-    stops as soon as not even success in all the episodes that are left could make it sure.
+    stops as soon as not even success in all the episodes that are left could make it sure, or, where all steps are used, the best.
     """
 
     test_interval: int
@@ -223,7 +223,7 @@ class TrainUntilSure:
         first = memory.confirmations + 1
         for number in range(len(looks)):
             attempts = dict(enumerate(looks[number:], first + number))
-            counts = self._tested_further(test, counts if number else {}, attempts)
+            counts = self._tested_further(test, counts if number else {}, attempts, memory)
             memory = replace(memory, confirmations=first + number)
             low = self._confident_share(counts, first + number)
             if low >= self.goal and not self.use_all_steps:
@@ -235,7 +235,7 @@ class TrainUntilSure:
                     stop=True,
                     reason=f"every case reaches {low:.3f} or more with confidence",
                 )
-            if worst_share(counts) < self.goal or self._is_lost(counts, attempts):
+            if worst_share(counts) < self.goal or self._is_lost(counts, attempts, memory):
                 break
         remembered, keep = _with_best(counts, steps, memory, self.sufficient_share)
         if not keep and self._has_forgotten(counts, memory):
@@ -265,7 +265,7 @@ class TrainUntilSure:
         return tuple(looks)
 
     def _tested_further(
-        self, test: PolicyTest, counts: CaseCounts, attempts: Mapping[int, int]
+        self, test: PolicyTest, counts: CaseCounts, attempts: Mapping[int, int], memory: StoppingMemory
     ) -> CaseCounts:
         """The long test with the parts up to the first of the ``attempts``, if it is not lost before: episodes of each case, by the
         attempt's number."""
@@ -273,15 +273,16 @@ class TrainUntilSure:
         while not counts or min(count.episodes for count in counts.values()) < min(attempts.values()):
             tested = test(part)
             counts = {name: count.plus(counts.get(name, NO_EPISODES)) for name, count in tested.items()}
-            if self._is_lost(counts, attempts):
+            if self._is_lost(counts, attempts, memory):
                 break
         return counts
 
-    def _is_lost(self, counts: CaseCounts, attempts: Mapping[int, int]) -> bool:
-        """Whether none of the attempts can be sure any more. Where all steps are used, a long test ranks policies, and is made whole."""
-        if self.use_all_steps:
-            return False
+    def _is_lost(self, counts: CaseCounts, attempts: Mapping[int, int], memory: StoppingMemory) -> bool:
+        """Whether none of the attempts can be sure any more; where all steps are used, whether the policy cannot become the best."""
         failed = max(count.episodes - count.reached for count in counts.values())
+        if self.use_all_steps:
+            most = max(lower_bound(max(0, episodes - failed), episodes) for episodes in attempts.values())
+            return memory.best is not None and min(most, self.sufficient_share) < memory.best[0]
         return all(
             lower_bound(max(0, episodes - failed), episodes, self._confidence_of(attempt, len(counts)))
             < self.goal

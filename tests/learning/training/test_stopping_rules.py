@@ -137,14 +137,21 @@ def test_a_long_test_ends_when_it_is_lost() -> None:
     assert not SURE.evaluate(10, StoppingMemory(), lost).stop
     assert lost.sizes == [40, 250]
     pair = replace(SURE, use_all_steps=True)  # there a long test ranks policies
-    whole = Tries((1.0, 1.0), (0.9, 1.0))
-    pair.evaluate(10, StoppingMemory(), whole)
+    whole = Tries((1.0, 1.0), (0.97, 1.0))
+    memory = pair.evaluate(10, StoppingMemory(), whole).memory
     assert whole.sizes == [40, 250, 250]
+    worse = Tries((1.0, 1.0), (0.9, 1.0))  # it cannot become the best
+    decision = pair.evaluate(20, memory, worse)
+    assert worse.sizes == [40, 250]
+    assert not decision.is_best
+    better = Tries((1.0, 1.0), (0.99, 1.0))
+    assert pair.evaluate(20, memory, better).is_best
+    assert better.sizes == [40, 250, 250]
 
 
 def test_a_test_that_ends_early_decides_as_a_whole_one() -> None:
     class Whole(TrainUntilSure):
-        def _is_lost(self, counts: CaseCounts, attempts: Mapping[int, int]) -> bool:
+        def _is_lost(self, counts: CaseCounts, attempts: Mapping[int, int], memory: StoppingMemory) -> bool:
             return False
 
     stops = []
