@@ -66,7 +66,7 @@ def test_what_is_said_of_a_level_and_its_world_fits_80_columns() -> None:
         assert all(len(row_text(each)) <= 80 for each in world_heading(world, 1, 8, "yellow"))
     for each in level_progress(kit_levels(), ()):
         for is_open in (True, False):
-            rows = about(replace(each, is_open=is_open), (), 99.0)
+            rows = about(replace(each, is_open=is_open), (), 99.0, 80)
             assert [row_text(row) for row in rows if len(row_text(row)) > 80] == []
         names = [
             "the reference (R) 6.0 s",
