@@ -224,7 +224,7 @@ class Queue(JobFolder):
     def _grade(self, key: str) -> GradingResult:
         manifest = self.manifest()
         assignment = _assignment(self.folder, manifest.assignment_version)
-        submission, options = self.submission(key), self.grading_options()
+        submission, options = self.submission(key), manifest.grading_options()
         result, findings = grade_and_keep(assignment, submission, options)
         for _ in range(MAX_TRIES - 1):  # a failure of the student's program is never retried
             if result.verdict is not GradingVerdict.BROKEN:
@@ -238,9 +238,8 @@ class Queue(JobFolder):
     def record_loss(self, key: str) -> None:
         """Saves for a job that it has no grade; unless its worker had saved the result before it died."""
         if self.is_waiting(key):
-            with suppress(
-                QueueError
-            ):  # the job itself cannot be read: it stays waiting until it is written again
+            # A job that cannot be read itself stays waiting until it is written again.
+            with suppress(QueueError):
                 self.save_result(key, _incident_result(self, key))
 
     def submission(self, key: str) -> Submission:

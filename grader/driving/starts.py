@@ -12,7 +12,8 @@ from kit.geometry import Pose
 from kit.plain_text import quoted
 from kit.sim.simulation import Simulation
 
-SEEDS_TRIED: Final = 50
+SEEDS_TRIED: Final = range(50)
+"""Besides those of the assignment."""
 STEP_M: Final = 0.05
 """A robot is farther across, so a wall between two places that lie so near to one another touches it at one of them."""
 
@@ -23,22 +24,27 @@ def start_problems(assignment: Assignment) -> Iterator[str]:
         blocked = blocked_seeds(trial)
         if blocked:
             yield (
-                f"trial {quoted(trial.name)}: {len(blocked)} of {SEEDS_TRIED} seeds put the robot into something or behind a "
+                f"trial {quoted(trial.name)}: {len(blocked)} of {len(_seeds_tried(trial))} seeds put the robot into something or behind a "
                 f"wall (such as seed {blocked[0]}): make `shift` smaller. It is along x and y of the world, not along the robot."
             )
 
 
 def blocked_seeds(trial: Trial) -> tuple[int, ...]:
-    """Returns those of the seeds 0 to 49 whose start the robot cannot reach from its home in a straight line."""
+    """Returns those of the trial's seeds, and of the seeds 0 to 49, whose start the robot cannot reach from its home in a
+    straight line."""
     robot = trial.scenario.robot
     if robot is None or trial.shift == Shift():
         return ()
     simulation = Simulation(trial.scenario.world, seed=0, has_subscribers=lambda topic: False)
     return tuple(
         seed
-        for seed in range(SEEDS_TRIED)
+        for seed in _seeds_tried(trial)
         if any(_touches_at(simulation, robot, pose) for pose in _way_to_start(trial, seed))
     )
+
+
+def _seeds_tried(trial: Trial) -> tuple[int, ...]:
+    return tuple(dict.fromkeys((*SEEDS_TRIED, *trial.seeds, *trial.secret_seeds)))
 
 
 def _way_to_start(trial: Trial, seed: int) -> Iterator[Pose]:

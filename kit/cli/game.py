@@ -97,9 +97,9 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
 
     A level can be driven once a level before it is finished or the lesson that opens it too is completed; the level of
     the day is always open. Driving by hand, your program and your agent win separate medals, by ladders
-    of their own: bronze, silver, gold, master and, quicker than the reference drive, the record; who touches something,
-    or with a pair does not stay side by side, gets bronze at best. A program or an agent drives from five starts (shifted, with noise, other traffic), and the
-    middle drive counts. Each extra rule earns a star: no collisions, never standing still, one sensor, few lines of
+    of their own: bronze, silver, gold, master and, quicker than the reference drive, the record. A drive that touches
+    something, or in which a pair is apart for too long, gets bronze at best. A program or an agent drives from five
+    starts (shifted, with noise, other traffic), and the middle drive counts. Each extra rule earns a star: no collisions, never standing still, one sensor, few lines of
     code, few training steps. The kit's own controllers demonstrate and earn nothing. A task used as a level (its first
     case) has no reference drive and so no medals; it has your time, your best time and its ghost. KIT_BELL=1 rings
     the bell for a new medal.

@@ -35,8 +35,6 @@ INTERRUPT: Final = "interrupt"
 """The event by which the parent asks a program to end, as Ctrl-C does."""
 INTERRUPTED: Final = "interrupted"
 """The event by which a program tells that it has ended by that, without catching KeyboardInterrupt."""
-
-
 SHORTEST_STEP_NS: Final = 100_000
 """The least by which a child's time advances within a tick [ns]."""
 MAX_OVERDUE_NS: Final = 100_000_000

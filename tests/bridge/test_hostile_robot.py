@@ -203,7 +203,7 @@ def test_a_robot_that_sends_faster_than_it_is_read_does_not_hold_the_world() -> 
     ):
         send()
         endless = Endless(send)
-        channel._context = replace(channel._context, codec=endless)  # type: ignore[arg-type]
+        channel._context = replace(channel._context, codec=endless)  # type: ignore[arg-type]  # has the one method called
         channel.deliver()
         channel.deliver()
         assert endless.count == 2

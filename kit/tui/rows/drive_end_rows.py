@@ -31,7 +31,7 @@ def finish_sentence(finish: RaceFinish) -> str:
     if finish.failure is not None:
         return f"The program stopped: {finish.failure}"
     if finish.reached:
-        apart = ", too long not side by side" if finish.is_apart else ""
+        apart = ", and the pair was apart for too long" if finish.is_apart else ""
         bumps = counted(finish.collisions, "bump")
         return f"The goal was reached after {finish.seconds:.2f} s, with {bumps}{apart}."
     return f"The goal was not reached in {finish.seconds:.0f} s."
