@@ -72,14 +72,19 @@ class RunConfig:
     def as_dict(self) -> dict[str, Any]:
         """JSON-able."""
         values = {name: getattr(self, name) for name in self.__dataclass_fields__ if name != "choice"}
-        return {"choice": self.choice.as_dict(), **values, "settings": dict(self.settings)}
+        # JSON has no infinity.
+        settings = {name: NO_LIMIT if math.isinf(number) else number for name, number in self.settings}
+        return {"choice": self.choice.as_dict(), **values, "settings": settings}
 
     @classmethod
     def from_dict(cls, data: Any) -> RunConfig:
         """Reads what ``as_dict`` returned. Raises ValueError for anything else."""
         try:
             plain = {name: value for name, value in data.items() if name not in ("choice", "settings")}
-            settings = tuple((str(name), number) for name, number in data["settings"].items())
+            settings = tuple(
+                (str(name), math.inf if number == NO_LIMIT else number)
+                for name, number in data["settings"].items()
+            )
             check_field_types(cls, plain)
             if not all(type(number) in (int, float) for _, number in settings):
                 raise ValueError("settings are numbers")

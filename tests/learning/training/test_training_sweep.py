@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 import os
 import signal
 import subprocess
@@ -52,6 +53,13 @@ def test_every_combination_is_trained_once(tmp_path: Path) -> None:
         TrainingSweep.prepare(tmp_path / "sweep", configs[1:], 10)
     with pytest.raises(RunError, match="kit sweep"):
         TrainingSweep(tmp_path).entries()
+
+
+def test_a_setting_without_limit_is_a_json_value_and_comes_back(tmp_path: Path) -> None:
+    configs = combine(["turn"], algorithms=["boltzmann-dqn"], settings={"value_limit": (math.inf,)})
+    sweep = TrainingSweep.prepare(tmp_path / "sweep", configs, 10)
+    assert [entry.config for entry in sweep.entries()] == list(configs)
+    json.dumps(configs[0].as_dict(), allow_nan=False)
 
 
 def test_a_row_tells_how_many_seeds_have_learned(tmp_path: Path) -> None:
