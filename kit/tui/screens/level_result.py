@@ -254,9 +254,12 @@ class DriveResultScreen(ModalScreen[Wish]):
         return self.app.size.height - len(self._fixed) - len(self._medal) - ROWS_AROUND
 
     def _show(self) -> None:
-        without = () if self._result.finish.reached else ("next",)
-        keys = footer(self.screen_actions, self.app.size.width, without=without, keys={"next": "Enter"})
         revealed = self._revealed
+        without = [
+            *([] if self._result.finish.reached else ["next"]),
+            *(["replay"] if self._shown < len(revealed) else []),
+        ]
+        keys = footer(self.screen_actions, self.app.size.width, without=without, keys={"next": "Enter"})
         hidden = [row()] * max(0, len(revealed) - self._shown)  # what is below keeps its place
         rows = [*self._fixed, *self._medal, *revealed[: self._shown], *hidden, self._note]
         for text in self.query(TextRows):  # none where the kit is left meanwhile
@@ -280,7 +283,9 @@ class DriveResultScreen(ModalScreen[Wish]):
         self.dismiss("back")
 
     def action_replay(self) -> None:
-        """The film of this drive."""
+        """The film of this drive; not while its rows appear, when the key may still be held from driving."""
+        if self._shown < len(self._revealed):
+            return
         result = self._result
         scenario = film_scenario(result.level, result.recording.seed)
         self.app.push_screen(RecordingScreen(self._theme, scenario, result.recording, result.driver.phrase))
