@@ -315,7 +315,7 @@ def _read_levels(section: Section, worlds: Mapping[str, GameWorld]) -> Iterator[
         except (LookupError, WorldError) as error:
             each.error(str(error), "place")
             continue
-        yield replace(level, untrained=_untrained_part(level, scenario))
+        yield replace(level, untrained=level.untrained or _untrained_part(level, scenario))
 
 
 def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) -> GameLevel:
@@ -349,6 +349,7 @@ def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) 
             each.integer("max_lines", MAX_LINES, minimum=1, maximum=1000),
             each.integer("max_training_steps", MAX_TRAINING_STEPS, minimum=1, maximum=10**9),
         ),
+        untrained=each.text("untrained", ""),
     )
 
 

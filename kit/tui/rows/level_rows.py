@@ -144,7 +144,7 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
 def not_for_agents(level: GameLevel) -> str:
     """Why a level is not meant for agents; empty where it is."""
     part = level.untrained
-    return f"No training has {part}: the level is for hands and programs." if part else ""
+    return f"For hands and programs: training has no {part}." if part else ""
 
 
 def other_start(number: int, seconds: float) -> Row:
