@@ -66,8 +66,6 @@ LEAST_BESIDE_ROWS, MOST_BESIDE_ROWS = 9, 12
 """Of that map."""
 LEAST_MAP_ROWS: Final = 7
 """Of the map below the result; where there are fewer it is left out."""
-HIGH: Final = 30
-"""Rows from which on the medal is drawn."""
 SPARKS: Final = 10
 """Pictures of a first gold's second of joy."""
 SPARK_INTERVAL: Final = 0.1
@@ -213,8 +211,7 @@ class DriveResultScreen(ModalScreen[Wish]):
     @property
     def _medal(self) -> list[Row]:
         """The medal as a drawing, where there is room for it."""
-        has_room = self.app.size.height >= HIGH and self._result.record.medal is not Medal.NONE
-        return medal_drawing(self._result.record.medal, self._spark) if has_room else []
+        return medal_drawing(self._result.record.medal, self.app.size.height, self._spark)
 
     @property
     def _earned(self) -> list[Row]:
