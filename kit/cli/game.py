@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from kit.tui.app import KitApp
     from kit.tui.screens.lesson_drive import ReplayScreen
 
-STAR, NO_STAR = "*", "."
+STAR, NO_STAR, NOT_MEANT = "*", ".", "-"
 
 
 @contextmanager
@@ -144,7 +144,8 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
 
     A program gets the same parameters as with `kit run`: home, model, models, world,
     target [x, y] and target_radius. On a level with several targets, target is the
-    first, and targets [x1, y1, x2, y2, ...] lists all in order, lap by lap.
+    first, and targets [x1, y1, x2, y2, ...] lists all in order, lap by lap. Where a
+    leader is followed, leader_frame is its frame on /tf.
     """
     from kit.learning.policies.policy import PolicyError
     from kit.learning.training.run_config import RunError
@@ -401,8 +402,9 @@ def _print_levels(summary: GameSummary) -> None:
 
     blocks: list[Block] = [
         Text(
-            "Of each level: its number; the medals by hand, by your program and by your agent (B, S, G, M, R); the stars of five "
-            "extra rules; its name; your best times, or what opens it."
+            "Of each level: its number; the medals by hand, by your program and by your agent (B, S, G, M, R; - for agents "
+            "where no training has what the level asks for); the stars of five extra rules; its name; your best times, or what "
+            "opens it."
         )
     ]
     found = summary.levels
@@ -413,6 +415,8 @@ def _print_levels(summary: GameSummary) -> None:
                 continue
             level = each.level
             medals = "".join(_medal_letter(each.medals.get(driver, Medal.NONE)) for driver in DriverKind)
+            if level.untrained and medals.endswith(NO_STAR):
+                medals = medals[:-1] + NOT_MEANT
             stars = f"{STAR * each.star_count:{NO_STAR}<{len(ExtraRule)}}"
             times = ", ".join(f"{driver.phrase} {time:.2f} s" for driver, time in each.best_times.items())
             lesson = f", or after lesson {level.lesson_number}" if level.lesson_number else ""

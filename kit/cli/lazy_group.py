@@ -11,7 +11,7 @@ import click
 from click.shell_completion import CompletionItem
 from click.types import StringParamType
 
-from kit.cli.process import BAD_INPUT
+from kit.cli.process import BAD_INPUT, INTERRUPTED
 from kit.extensions import Extension, ExtensionError, extensions, load
 from kit.plain_text import nearest_name
 
@@ -103,6 +103,13 @@ class LazyGroup(click.Group):
         if not self._has_others:
             return {}
         return {**extensions("dialogues", list(self._verbs)), **extensions("verbs", list(self._verbs))}
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except (KeyboardInterrupt, click.Abort):  # of which click says "Aborted!"
+            click.echo(f"\n{ctx.info_name}: interrupted before it was done.", err=True)
+            raise SystemExit(INTERRUPTED) from None
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return [*self._verbs, *self._extension_commands()]

@@ -1,7 +1,7 @@
 """Teleop for two: the arrow keys drive two robots side by side as if they were one; or one robot alone.
 
 Listens to the same keystroke messages as ``teleop``. What is steered is the point between the two: the outer robot of
-a bend drives faster, the inner one slower, and both turn at the same rate, so that they stay abreast.
+a bend keeps its speed, the inner one is slower, and both turn at the same rate, so that they stay abreast.
 """
 
 import math
@@ -16,7 +16,7 @@ from std_msgs.msg import Float32, String
 class TeleopPair(Node):
     def __init__(self) -> None:
         super().__init__("teleop_pair")
-        self.speed = self.declare_parameter("speed", 0.4).value  # m/s
+        self.speed = self.declare_parameter("speed", 0.52).value  # m/s, of the outer robot of a bend
         self.turn_rate = self.declare_parameter("turn_rate", 0.8).value  # rad/s
         models = self.declare_parameter("models", ["left", "right"]).value
         # Two robots have namespaces of their own names; one alone has ours.
@@ -60,15 +60,17 @@ class TeleopPair(Node):
 
     def send(self) -> None:
         """Each robot drives as its place beside the middle asks: v - turn * y, where y is how far to the left it is."""
-        forward = self.strength * self.speed * (("up" in self.held) - ("down" in self.held))
         turn = self.strength * self.turn_rate * (("left" in self.held) - ("right" in self.held))
         middle_x = sum(pose[0] for pose in self.poses.values()) / max(1, len(self.poses))
         middle_y = sum(pose[1] for pose in self.poses.values()) / max(1, len(self.poses))
+        lefts = dict.fromkeys(self.drives, 0.0)
+        for name, (x, y, heading) in self.poses.items():
+            lefts[name] = -math.sin(heading) * (x - middle_x) + math.cos(heading) * (y - middle_y)
+        top = self.strength * self.speed - abs(turn) * max(map(abs, lefts.values()))
+        forward = top * (("up" in self.held) - ("down" in self.held))
         for name, drive in self.drives.items():
-            x, y, heading = self.poses.get(name, (middle_x, middle_y, 0.0))
-            left = -math.sin(heading) * (x - middle_x) + math.cos(heading) * (y - middle_y)
             command = Twist()
-            command.linear.x = forward - turn * left
+            command.linear.x = forward - turn * lefts[name]
             command.angular.z = turn
             drive.publish(command)
 

@@ -80,14 +80,19 @@ def _rows_of_table(table: Table, width: int) -> list[Row]:
 
 
 def list_rows(table: Table, width: int, height: int, chosen: int, marked: Collection[int] = ()) -> list[Row]:
-    """A table from which an entry is chosen: its heads, and as many entries as there is room for, the chosen one among them.
+    """A table from which an entry is chosen: its heads, and as many entries as there is room for, the chosen one among them,
+    which stands out up to its first word.
 
     ``marked``: the numbers of entries with a mark of their own.
     """
     if table.rows:
-        first, *others = table.rows[chosen]
-        shown = ToneText(format_cell(first, table.columns[0]), Tone.CHOSEN)
-        table = replace(table, rows=(*table.rows[:chosen], (shown, *others), *table.rows[chosen + 1 :]))
+        cells = list(table.rows[chosen])
+        for number, column in enumerate(table.columns):
+            text = format_cell(cells[number], column)
+            cells[number] = ToneText(text, Tone.CHOSEN)
+            if any(map(str.isalpha, text)):
+                break
+        table = replace(table, rows=(*table.rows[:chosen], tuple(cells), *table.rows[chosen + 1 :]))
     placed = table_rows(replace(table, is_ruled=False), width - LIST_MARGIN)
     heads = [row((" " * LIST_MARGIN + row_text(each), Tone.DIM)) for each in placed.heads]
     made: list[Row] = []

@@ -56,7 +56,8 @@ class RequirementBreach:
     """The shared layers that make it happen."""
 
     def __str__(self) -> str:
-        through = f" (layer {', '.join(self.layers)})" if self.layers else ""
+        names = ", ".join(name.removeprefix("layer ") for name in self.layers)
+        through = f" (layer {names})" if names else ""
         if isinstance(self.requirement, SightRequirement):
             verb = "must see" if self.is_missing else "must not see"
             return f"{self.requirement.laser} {verb} {self.requirement.entity}, but {'does not' if self.is_missing else 'does'}{through}"

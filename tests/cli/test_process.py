@@ -6,7 +6,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import click
 import pytest
+from click.testing import CliRunner
+
+from kit.cli.lazy_group import LazyGroup
+from kit.cli.process import INTERRUPTED
 
 PROGRAM = """
 import atexit, sys, threading, time
@@ -44,3 +49,19 @@ def test_a_command_ends_without_being_taken_apart_once_all_is_written(tmp_path: 
     assert ended.returncode == code, ended.stderr
     assert ended.stdout == "said, without an end of line at exit\n"
     assert file.read_text() == "late", "the thread was waited for"
+
+
+@pytest.mark.parametrize("end", [KeyboardInterrupt, click.Abort])
+def test_an_interruption_that_no_verb_tells_is_a_sentence(end: type[BaseException]) -> None:
+    @click.command()
+    def work() -> None:
+        raise end
+
+    class Group(LazyGroup):
+        def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:
+            return work
+
+    ended = CliRunner().invoke(Group(name="kit", verbs={}), ["work"])
+    assert ended.exit_code == INTERRUPTED
+    assert "interrupted" in ended.output
+    assert "Aborted" not in ended.output

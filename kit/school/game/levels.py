@@ -194,6 +194,8 @@ class GameLevel:
     """Its reference drive, where that is not in the file of all."""
     conditions: LevelConditions = UNCHANGED
     rules: ExtraRules = ExtraRules()
+    untrained: str = ""
+    """What of it no training has, so that it is for hands and programs alone; empty where agents can learn all of it."""
 
     @property
     def lesson_number(self) -> str:
@@ -309,11 +311,11 @@ def _read_levels(section: Section, worlds: Mapping[str, GameWorld]) -> Iterator[
             )
         each.finish()
         try:
-            level.find_scenario()
+            scenario = level.find_scenario()
         except (LookupError, WorldError) as error:
             each.error(str(error), "place")
             continue
-        yield level
+        yield replace(level, untrained=level.untrained or _untrained_part(level, scenario))
 
 
 def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) -> GameLevel:
@@ -347,7 +349,21 @@ def _read_level(each: Section, identity: str, after: tuple[str, ...], row: int) 
             each.integer("max_lines", MAX_LINES, minimum=1, maximum=1000),
             each.integer("max_training_steps", MAX_TRAINING_STEPS, minimum=1, maximum=10**9),
         ),
+        untrained=each.text("untrained", ""),
     )
+
+
+def _untrained_part(level: GameLevel, scenario: Scenario) -> str:
+    """What of a level ``kit.learning`` has no counterpart of."""
+    plugins = [plugin for model in scenario.world.models for plugin in model.plugins]
+    parts = {
+        "tricycles": any(isinstance(plugin.params, TricycleDriveParams) for plugin in plugins),
+        "ice": level.conditions.acceleration,
+        "wheels that lie": level.conditions.wheel_error,
+        "batteries": level.conditions.charge,
+        "leaders": level.leader,
+    }
+    return next((name for name, is_there in parts.items() if is_there), "")
 
 
 def _check_goal(each: Section, goal: Goal, targets: tuple[tuple[float, float], ...], leader: str) -> None:

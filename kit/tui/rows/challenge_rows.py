@@ -131,16 +131,23 @@ def puzzle_page(
 
 
 def puzzle_beside(
-    challenge: Challenge, board: Board, judgement: Judgement | str, width: int, height: int
+    challenge: Challenge,
+    board: Board,
+    judgement: Judgement | str,
+    width: int,
+    height: int,
+    below: Sequence[Row] = (),
 ) -> list[Row]:
-    """A puzzle with its board at the left, as large as there is room for, and the rest beside it."""
+    """A puzzle with its board at the left, as large as there is room for, and the rest beside it, with more ``below`` that where
+    it has room."""
     scale, drawing = largest_drawing(board, width - LEAST_TEXT - GAP, height - 1)
     column = min(max(LEAST_BOARD, drawing + GAP), width - LEAST_TEXT)
     left = [each for shown in board.rows(scale) for each in _wrap_row(shown, column - GAP)]
     room = min(width - column - 1, WIDEST_TEXT)
     story, task, keys = _about_puzzle(challenge, board, room)
     worth, sentence = worth_now(judgement, room)
-    text = [row(), *story, row(), *task, row(), *keys, row(), *worth, *sentence]
+    text = [row(), *story, row(), *task, row(), *keys, row(), *worth, *sentence, row()]
+    text += below if len(text) + len(below) <= height else ()
     return side_by_side([row(), *left], text, column)
 
 

@@ -85,7 +85,8 @@ def world_levels(
         medals: list[str | tuple[str, str]] = []
         for driver, width in zip(DriverKind, (6, 9, 7), strict=True):
             medal = each.medals.get(driver, Medal.NONE)
-            sign = MEDAL_SIGNS[medal] if each.is_open else SHUT
+            is_meant = driver is not DriverKind.AGENT or not level.untrained
+            sign = MEDAL_SIGNS[medal] if each.is_open and (medal or is_meant) else SHUT
             medals.append((f"{sign:<{width}}", MEDAL_STYLES[medal]))
         best = min(each.best_times.values(), default=None)
         reference = references.get(level.id)
@@ -127,6 +128,9 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
         return [*rows, row(("best   ", "dim"), ", ".join(times) or "none yet")]
     for driver in DriverKind:
         best = progress.best_times.get(driver)
+        if driver is DriverKind.AGENT and best is None and level.untrained:
+            rows.append(row((f"{driver.phrase:<11}", "dim"), not_for_agents(level)))
+            continue
         rows.append(
             row(
                 (f"{driver.phrase:<11}", "dim"),
@@ -135,6 +139,12 @@ def about(progress: LevelProgress, ghosts: Sequence[Ghost], reference: float | N
             )
         )
     return rows
+
+
+def not_for_agents(level: GameLevel) -> str:
+    """Why a level is not meant for agents; empty where it is."""
+    part = level.untrained
+    return f"For hands and programs: training has no {part}." if part else ""
 
 
 def other_start(number: int, seconds: float) -> Row:

@@ -15,6 +15,8 @@ def medal_row(medal: Medal, *, is_new: bool) -> Row:
     return row((f"   {MEDAL_SIGNS[medal]} ", MEDAL_STYLES[medal]), (f"{medal.title}{better}", "bold"))
 
 
+HIGH: Final = 30
+"""Rows of a screen from which on the medal is drawn."""
 RIBBON: Final = (
     "  ▀██▄     ▄██▀",
     "    ▀██▄ ▄██▀",
@@ -29,8 +31,11 @@ DISC: Final = (
 SPARK_SIGNS: Final = "*.+'"
 
 
-def medal_drawing(medal: Medal, spark: int) -> list[Row]:
-    """A medal with its letter. ``spark``: the number of a picture of joy around it, 0 for none."""
+def medal_drawing(medal: Medal, height: int, spark: int = 0) -> list[Row]:
+    """A medal with its letter; none on a screen of too small a ``height``. ``spark``: the number of a picture of joy around it,
+    0 for none."""
+    if medal is Medal.NONE or height < HIGH:
+        return []
     drawn = [(line, "code") for line in RIBBON]
     drawn += [(line.format(MEDAL_SIGNS[medal]), MEDAL_STYLES[medal]) for line in DISC]
     rows = []

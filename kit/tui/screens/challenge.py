@@ -25,6 +25,7 @@ from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.challenge_rows import answers_needed_rows, beside_others, challenge_page, judged
 from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.lesson_rows import checking
+from kit.tui.rows.medal_rows import medal_drawing
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.screens.text_screen import TextScreen
@@ -71,6 +72,8 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         self._clock_began_at = time.monotonic() - seconds
         self._watch = None if self._file is None else FileWatcher(self._file)
         self._result: list[Row] = []
+        self._won = Medal.NONE
+        """The medal that was just won, which is drawn where there is room."""
         self._needed: list[Row] = []
         """What all players of this machine needed."""
         self._doing = ""
@@ -118,7 +121,17 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
     def _result_rows(self) -> list[Row]:
         if self._started_at is not None:
             return [checking(time.monotonic() - self._started_at, self._doing, self.size.width)]
-        return [each for parts in self._result for each in broken(parts, self.size.width)]
+        drawing = [] if self._draws_beside else self._drawing
+        return [*drawing, *(each for parts in self._result for each in broken(parts, self.size.width))]
+
+    @property
+    def _drawing(self) -> list[Row]:
+        return medal_drawing(self._won, self.size.height)
+
+    @property
+    def _draws_beside(self) -> bool:
+        """Whether the page has the medal's drawing."""
+        return False
 
     def _unavailable_actions(self) -> list[str]:
         return [
@@ -158,7 +171,9 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             judgement, previous = await to_thread(self._judge, answer)
             beside = self._beside_others(judgement)
             self._result = [*judged(judgement, previous, self._following, beside), *self._needed]
+            self._won = judgement.medal if judgement.medal > previous else Medal.NONE
         except (AnswerError, WorldError, ProgressError, OSError) as error:
+            self._won = Medal.NONE
             self._result = [row((" No medal", "bold")), row(f" {error}")]
         finally:
             self._started_at = None

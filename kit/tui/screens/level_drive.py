@@ -13,7 +13,7 @@ from textual.message import Message
 from kit.controllers import ControllerFile, find_controller
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.shared_actions import VIEW_IDS
-from kit.document.rows import Row, at_both_edges, row
+from kit.document.rows import Row, at_both_edges, row, row_width
 from kit.inspection.sockets import sockets_folder
 from kit.plain_text import format_clock
 from kit.render.scene import Scene, SceneMark
@@ -276,23 +276,28 @@ class LevelDrive(WatchScreen):
     def _heading(self, time_s: float) -> Row:
         """The level and its goal, bumps, the difference to the reference where the robot is now, and the clock."""
         referee = self._referee
+        width, clock = self.size.width, (format_clock(time_s), "bold")
         left = [(self._level.title, "bold")]
         if self._race_program is not None:
             left.append((f"  {self.agent_name or self._race_program.name} drives", "dim"))
-        right: list[str | tuple[str, str]] = []
-        if referee is not None:
-            if referee.objective.progress:
-                left.append((f"  {referee.objective.progress}", ""))
-            if self._level.conditions.charge:
-                right.append(f"battery {max(0.0, referee.battery.charge):.1f} m  ")
-            if self._behind is not None:
-                right += [(f"{self._behind:+.2f}", "good" if self._behind <= 0.0 else "warn"), " to R  "]
-            right.append(f"bumps {referee.finish.collisions}  ")
-            reference = reference_seconds(self._level) if self._level.has_medals else None
-            if reference is not None and not self._is_over:
-                reach = level_rows.still_in_reach(self._driver, reference, time_s, referee.finish.is_flawed)
+        if referee is None:
+            return at_both_edges(row(*left), row(clock), width)
+        conditions, finish = self._level.conditions, referee.finish
+        if referee.objective.progress:
+            left.append((f"  {referee.objective.progress}", ""))
+        right: list[str | tuple[str, str]] = [f"bumps {finish.collisions}  ", clock]
+        if conditions.charge:
+            right.insert(0, f"battery {max(0.0, referee.battery.charge):.1f} m  ")
+        reference = reference_seconds(self._level) if self._level.has_medals else None
+        if reference is not None and not self._is_over:
+            reach = level_rows.still_in_reach(self._driver, reference, time_s, finish.is_flawed)
+            if row_width(row(*left, *right)) + len(reach) + 4 <= width:
                 left.append((f"  {reach}", "dim"))
-        return at_both_edges(row(*left), row(*right, (format_clock(time_s), "bold")), self.size.width)
+        if self._behind is not None:
+            behind = row((f"{self._behind:+.2f}", "good" if self._behind <= 0.0 else "warn"), " to R  ")
+            if row_width(row(*left, *behind, *right)) + 2 <= width:
+                right = [*behind, *right]
+        return at_both_edges(row(*left), row(*right), width)
 
     def _end(self, session: Session) -> None:
         """Ends the drive in the world's thread, between two ticks: nothing moves any more."""

@@ -66,8 +66,6 @@ LEAST_BESIDE_ROWS, MOST_BESIDE_ROWS = 9, 12
 """Of that map."""
 LEAST_MAP_ROWS: Final = 7
 """Of the map below the result; where there are fewer it is left out."""
-HIGH: Final = 30
-"""Rows from which on the medal is drawn."""
 SPARKS: Final = 10
 """Pictures of a first gold's second of joy."""
 SPARK_INTERVAL: Final = 0.1
@@ -213,8 +211,7 @@ class DriveResultScreen(ModalScreen[Wish]):
     @property
     def _medal(self) -> list[Row]:
         """The medal as a drawing, where there is room for it."""
-        has_room = self.app.size.height >= HIGH and self._result.record.medal is not Medal.NONE
-        return medal_drawing(self._result.record.medal, self._spark) if has_room else []
+        return medal_drawing(self._result.record.medal, self.app.size.height, self._spark)
 
     @property
     def _earned(self) -> list[Row]:
@@ -254,9 +251,12 @@ class DriveResultScreen(ModalScreen[Wish]):
         return self.app.size.height - len(self._fixed) - len(self._medal) - ROWS_AROUND
 
     def _show(self) -> None:
-        without = () if self._result.finish.reached else ("next",)
-        keys = footer(self.screen_actions, self.app.size.width, without=without, keys={"next": "Enter"})
         revealed = self._revealed
+        without = [
+            *([] if self._result.finish.reached else ["next"]),
+            *(["replay"] if self._shown < len(revealed) else []),
+        ]
+        keys = footer(self.screen_actions, self.app.size.width, without=without, keys={"next": "Enter"})
         hidden = [row()] * max(0, len(revealed) - self._shown)  # what is below keeps its place
         rows = [*self._fixed, *self._medal, *revealed[: self._shown], *hidden, self._note]
         for text in self.query(TextRows):  # none where the kit is left meanwhile
@@ -280,7 +280,9 @@ class DriveResultScreen(ModalScreen[Wish]):
         self.dismiss("back")
 
     def action_replay(self) -> None:
-        """The film of this drive."""
+        """The film of this drive; not while its rows appear, when the key may still be held from driving."""
+        if self._shown < len(self._revealed):
+            return
         result = self._result
         scenario = film_scenario(result.level, result.recording.seed)
         self.app.push_screen(RecordingScreen(self._theme, scenario, result.recording, result.driver.phrase))

@@ -73,6 +73,7 @@ NOTES: Final = (
     ("", "few training steps"),
     ("bump", "back to the start, and all targets are to be reached again"),
     ("side by side", "a pair that is apart for longer gets bronze at best"),
+    ("agent -", "no training has what this level asks for"),
     ("---", "not open yet: finish the level before it, or its lesson"),
 )
 

@@ -12,6 +12,7 @@ from kit.document.rows import Row
 from kit.school.game.board import Board
 from kit.school.game.challenge import AnswerError, Challenge, as_comments
 from kit.school.game.judgement import Judgement
+from kit.school.game.medal import Medal
 from kit.school.progress import ProgressJournal
 from kit.tui.rows.challenge_rows import puzzle_beside, puzzle_page
 from kit.tui.rows.key_rows import bindings, footer
@@ -72,8 +73,12 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
             judgement = str(error) if self._board.answer.strip() else ""
         height = self.size.height - 2 - len(self._result_rows())
         if width >= WIDE:
-            return puzzle_beside(self._challenge, self._board, judgement, width, height)
+            return puzzle_beside(self._challenge, self._board, judgement, width, height, self._drawing)
         return puzzle_page(self._challenge, self._board, judgement, width, height)
+
+    @property
+    def _draws_beside(self) -> bool:
+        return self.size.width >= WIDE
 
     def _unavailable_actions(self) -> list[str]:
         board = self._board
@@ -90,7 +95,7 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         )
 
     def _changed(self) -> None:
-        self._result = []
+        self._result, self._won = [], Medal.NONE
         self._renew()
 
     def _beside_others(self, judgement: Judgement) -> list[Row]:

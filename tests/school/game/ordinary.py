@@ -1,6 +1,6 @@
 """A hand with ordinary skill: the tidy driver's keys a fifth of a second late, and what the hint of a level tells everybody.
 
-It stops at a dock before the battery is empty, mops the nearest floor that is left, keeps behind a leader, releases the keys
+It stops at a dock before the battery is empty, mops in lanes, keeps behind a leader, releases the keys
 early on ice, and waits for traffic or gets out of its way. It searches nothing and learns nothing.
 """
 
@@ -16,12 +16,12 @@ import numpy as np
 
 from kit.geometry import Pose, wrap_angle
 from kit.learning.environment.distance_field import CELL, DistanceField, compute_distance_field
-from kit.learning.tasks.goals.cover import CoverGoal
 from kit.run.scenario import BEACON
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import DOCK_TIME
 from kit.sim.simulation import Simulation
+from tests.school.game.map_plans import LANES
 from tests.school.game.tidy import (
     CLEARANCE,
     LOOKAHEAD,
@@ -39,8 +39,6 @@ KEY_TICKS: Final = 10
 """Keys change no faster than a terminal repeats them: every 0.1 s."""
 AT_DOCK: Final = 0.25
 """From here it lets go of all keys to stand at a dock [m]."""
-LANE: Final = 0.9
-"""Floor nearer than this share of what is covered counts as mopped for it: lanes overlap."""
 BEHIND_LEADER: Final = (0.4, 0.6)
 """Nearer than the first it backs off, farther than the second it follows [m]."""
 BEND: Final = 0.4
@@ -56,7 +54,9 @@ STUCK_TICKS, BACKING_TICKS = 60, 80
 
 
 def targets_of(level: GameLevel) -> list[tuple[float, float]]:
-    """The targets in the order of the file, whatever order would be best."""
+    """The targets in the order of the file, whatever order would be best; or the corners of lanes."""
+    if level.id in LANES:
+        return LANES[level.id][1:]
     if level.goal.is_route:
         return list(level.goal.route(level.targets))
     case = level.find_scenario().case
@@ -83,8 +83,6 @@ class OrdinaryDriver(TidyDriver):
         self._charge = level.conditions.charge
         self._has_docked = False
         self._docked_s = 0.0
-        self._floor: np.ndarray | None = None
-        """Middles of the cells that are still to be mopped (k, 2) [m]."""
 
     def keys(self, pose: Pose) -> tuple[float, float]:
         if self._seen:
@@ -104,8 +102,6 @@ class OrdinaryDriver(TidyDriver):
         conditions = self._level.conditions
         if self._level.leader:
             return self._follow(pose)
-        if isinstance(self._level.goal, CoverGoal):
-            self._mop(pose, self._level.goal.radius)
         if conditions.docks and self._is_docking(pose):
             return 0.0, 0.0
         keys = super().keys(pose)
@@ -120,22 +116,6 @@ class OrdinaryDriver(TidyDriver):
         speed = SPEED if distance > BEHIND_LEADER[1] else -SPEED if distance < BEHIND_LEADER[0] else 0.0
         turn = 0.0 if abs(error) < 0.1 else math.copysign(TURN_RATE, error)
         return (speed if abs(error) < TURN_IN_PLACE_ANGLE else 0.0), turn
-
-    def _mop(self, pose: Pose, radius: float) -> None:
-        """Makes the nearest floor that is left the target; keeps to one until it is mopped."""
-        if self._floor is None:
-            field = self._field_to(pose[:2])
-            cells = np.column_stack(np.nonzero(np.isfinite(field.values) & (field.values < 1e3)))
-            places = np.array(field.origin) + CELL * cells[:, ::-1]
-            self._floor = places[[self._wall_distance(x, y) > 0.2 for x, y in places]]
-            self._targets = []
-        self._floor = self._floor[np.hypot(*(self._floor - pose[:2]).T) > LANE * radius]
-        if not len(self._floor):
-            return
-        target = np.array(self._targets[0]) if self._targets else None
-        if target is None or np.hypot(*(self._floor - target).T).min() > 0.5 * CELL:
-            nearest = self._floor[np.hypot(*(self._floor - pose[:2]).T).argmin()]
-            self._targets, self._field = [(float(nearest[0]), float(nearest[1]))], None
 
     def _is_docking(self, pose: Pose) -> bool:
         """Makes the dock the next target where the charge would not last; whether it stands there to be charged."""

@@ -27,13 +27,15 @@ from kit.kernels import grids
 from kit.learning.environment.distance_field import compute_distance_field
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.school.game.drive_commands import DriveCommand, ReferenceDrive
-from kit.school.game.levels import SPEED, TURN_RATE, GameLevel, all_levels
+from kit.school.game.levels import PAIR_SPEED, SPEED, TURN_RATE, GameLevel, all_levels
 from kit.school.game.race import DOCK_TIME, RaceReferee
 from kit.school.game.references import drive_reference, drives_file, load_drives
 from kit.school.game.starts import OWN_SEED
 from kit.sim.simulation import Simulation
+from tests.school.game.map_plans import LANES
 from tests.school.game.measured_drivers import drive
 from tests.school.game.ordinary import OrdinaryDriver
+from tests.school.game.tidy import PAIR_TURN_RATE
 
 TICKS = 10
 """Of one primitive."""
@@ -44,23 +46,8 @@ KEY_CELL = 0.02
 MARGIN = 0.004
 """The hull is taken to be this much larger all round [m]."""
 MAX_NODES = 4_000_000
-ROUTES = {
-    "lawn": [
-        (0.95, 0.3),
-        (0.3, 0.3),
-        (0.27, 2.75),
-        (0.62, 2.75),
-        (0.62, 1.9),
-        (0.97, 2.7),
-        (0.97, 0.8),
-        (0.62, 0.9),
-        (0.4, 1.05),
-        (0.95, 1.05),
-        (0.95, 1.85),
-        (0.35, 1.85),
-    ]
-}
-"""Points that a drive passes where the goal is a floor to cover [m]."""
+LANE_RADIUS = 0.06
+"""So near it comes to the corners of lanes [m]."""
 PURSUIT_S = 40.0
 POLISH_S = 5.0
 """Wall clock [s]."""
@@ -248,9 +235,15 @@ def commands_of(level: GameLevel) -> list[tuple[float, float]]:
     scenario = level.find_scenario()
     if is_tricycle(scenario):
         return [(s * SPEED, a) for s in (1, -1) for a in (0.0, 0.9, -0.9, 0.45, -0.45)]
-    speed, turn = (0.4, 0.8) if len(scenario.partners) > 1 else (SPEED, TURN_RATE)
-    found = [(s * speed, w * turn) for s in (1, -1) for w in (0, 1, -1)] + [(0.0, turn), (0.0, -turn)]
-    found += [(speed, 0.5 * turn), (speed, -0.5 * turn)]
+    pair = len(scenario.partners) > 1
+    speed, turn = (PAIR_SPEED, PAIR_TURN_RATE) if pair else (SPEED, TURN_RATE)
+    half_gap = 0.5 * math.dist(*(pose[:2] for pose in scenario.starts)) if pair else 0.0
+
+    def bend(direction: int, share: float) -> tuple[float, float]:
+        return direction * (speed - abs(share) * turn * half_gap), share * turn
+
+    found = [bend(s, w) for s in (1, -1) for w in (0, 1, -1)] + [(0.0, turn), (0.0, -turn)]
+    found += [bend(1, 0.5), bend(1, -0.5)]
     if scenario.world.models and (
         level.conditions.docks or level.conditions.carts or level.map_name == "crossing"
     ):
@@ -351,8 +344,8 @@ def hull_of(scenario, robot: str = "") -> np.ndarray:
 def legs_of(level: GameLevel, scenario):
     """Candidates for the order of the targets: rows (x, y, radius, seconds to stand still)."""
     radius = scenario.case.target_radius
-    if level.id in ROUTES:
-        return [[(x, y, 0.06, 0.0) for x, y in ROUTES[level.id]]]
+    if level.id in LANES:
+        return [[(x, y, LANE_RADIUS, 0.0) for x, y in LANES[level.id][1:]]]
     if not level.goal.is_route:
         orders = [[(*scenario.case.target, radius, 0.0)]]
     else:

@@ -101,9 +101,12 @@ def test_no_driver_has_gold_everywhere_and_every_level_has_a_rung_in_reach() -> 
     for driver, won in medals.items():
         assert sum(medal >= Medal.GOLD for medal in won) <= len(LEVELS) / 3, driver
         assert {Medal.BRONZE, Medal.SILVER} <= set(won), driver
-    for level, won in zip(LEVELS, zip(*medals.values(), strict=True), strict=True):
-        assert max(won) >= Medal.BRONZE, level.id
-        assert min(won) < Medal.GOLD, level.id
+    for level in LEVELS:
+        won = {driver: drives[level.id, driver].medal(level) for driver in medals}
+        assert won["keys"] >= Medal.BRONZE, level.id
+        assert max(won["laser"], won["map"]) >= Medal.BRONZE, level.id
+        assert bool(won["agent"]) is not bool(level.untrained), level.id
+        assert min(won.values()) < Medal.GOLD, level.id
 
 
 NEEDS_MORE_THAN_TIDINESS = (
@@ -201,8 +204,8 @@ def test_the_time_that_is_shown_for_a_medal_earns_it() -> None:
 
 def test_hands_get_more_time_than_programs_and_nobody_for_the_record() -> None:
     hand, program, agent = (SHARES[driver] for driver in DriverKind)
-    assert program == agent
     assert all(hand[medal] > program[medal] for medal in (Medal.BRONZE, Medal.SILVER, Medal.GOLD))
+    assert all(hand[medal] >= agent[medal] >= program[medal] for medal in RUNGS)
     assert hand[Medal.MASTER] == program[Medal.MASTER]
     assert medal_time(Medal.RECORD, 10.0) < 10.0
 

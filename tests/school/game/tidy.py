@@ -15,9 +15,12 @@ from kit.geometry import Pose, wrap_angle
 from kit.learning.environment.distance_field import CELL, DistanceField, compute_distance_field
 from kit.msg.geometry_msgs import Twist, Vector3
 from kit.run.session import Session
+from kit.school.game.levels import PAIR_SPEED
 
 SPEED, TURN_RATE = 0.5, 1.5
 """What the keys of ``teleop`` give [m/s, rad/s]."""
+PAIR_TURN_RATE = 0.8
+"""What those of ``teleop_pair`` give; the outer one of a bend drives at the pair's full speed [rad/s]."""
 LOOKAHEAD = 0.4
 """Distance along the path to the point it aims at [m]."""
 TURN_IN_PLACE_ANGLE = 0.9
@@ -53,7 +56,9 @@ class TidyDriver:
 
     def keys(self, pose: Pose) -> tuple[float, float]:
         """The speed and turn rate of the keys that are held."""
-        speed_limit, turn_limit = (SPEED, TURN_RATE) if len(self._models) == 1 else (0.4, 0.8)
+        speed_limit, turn_limit = (
+            (SPEED, TURN_RATE) if len(self._models) == 1 else (PAIR_SPEED, PAIR_TURN_RATE)
+        )
         if len(self._targets) > 1 and math.dist(pose[:2], self._targets[0]) < ARRIVAL_DISTANCE:
             self._targets.pop(0)
             self._field = None
@@ -64,7 +69,7 @@ class TidyDriver:
         x, y = self._aim_point(self._field, pose.x, pose.y)
         error = wrap_angle(math.atan2(y - pose.y, x - pose.x) - pose.theta)
         turn = 0.0 if abs(error) < STEERING_TOLERANCE else math.copysign(turn_limit, error)
-        return (speed_limit if abs(error) < TURN_IN_PLACE_ANGLE else 0.0), turn
+        return (speed_limit - abs(turn) * self._half_gap if abs(error) < TURN_IN_PLACE_ANGLE else 0.0), turn
 
     def _pose(self) -> Pose:
         """The robot's, or that of the point between two."""
