@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
+from itertools import combinations
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -43,6 +44,10 @@ MOST: Final = 0.1
 
 MOST_OF_ANSWERS: Final = 0.5
 """The share of an exercise's points that one answer to all of its questions may earn."""
+
+
+MOST_OF_PLANS: Final = 0.17
+"""Likewise, of plans: everything that must happen happens where all is in one layer, which is the first of several criteria."""
 
 
 def exercises_of(kind: str) -> Iterator[tuple[str, str]]:
@@ -181,3 +186,21 @@ def test_one_answer_to_all_questions_earns_little(name: str, exercise: str) -> N
     assert max(earned.values()) <= MOST_OF_ANSWERS * assignment.max_points, earned
     if exercise == "what-happens":
         assert max(earned.values()) > 0, "answers are read"
+
+
+@pytest.mark.parametrize(("name", "exercise"), list(exercises_of("plan")))
+def test_a_plan_without_an_idea_earns_little(name: str, exercise: str) -> None:
+    """Everything in one layer, nothing in any, and each pair of things in a layer of its own."""
+    assignment = read_assignment(lessons_folder() / name / exercise)
+    things, lasers = list(assignment.task.names), list(assignment.task.laser)
+    pairs = {f"L{number}": list(pair) for number, pair in enumerate(combinations(things, 2))}
+    plans = (
+        {"layers": {"A": things}, "lasers": {laser: ["A"] for laser in lasers}},
+        {"layers": {"A": []}},
+        {"layers": pairs, "lasers": {laser: list(pairs) for laser in lasers}},
+    )
+    for plan in plans:
+        work = Submission("plan", assignment.submit, {assignment.submit: yaml.safe_dump(plan).encode()})
+        earned = grade(assignment, work, GradingOptions(Level.LIMITED, secret=True)).points
+        assert earned is not None
+        assert earned <= MOST_OF_PLANS * assignment.max_points
