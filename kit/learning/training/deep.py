@@ -279,6 +279,8 @@ def _pack_replay_buffer(buffer: Any) -> bytes:
 def _unpack_replay_buffer(buffer: Any, data: bytes) -> None:
     with np.load(io.BytesIO(data), allow_pickle=False) as stored:
         pos, full = stored["arr_0"].tolist()
+        if not 0 <= pos < buffer.buffer_size:
+            raise ValueError("a place outside its replay buffer")
         for number, name in enumerate(REPLAY_ARRAYS, start=1):
             values = stored[f"arr_{number}"]
             getattr(buffer, name)[: len(values)] = values

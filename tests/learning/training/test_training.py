@@ -291,6 +291,19 @@ class Spy:
 
 
 @needs_learner
+@pytest.mark.parametrize("place", [-1, 10**9])
+def test_a_replay_buffer_that_ends_outside_of_itself_is_refused(place: int) -> None:
+    choice = TaskSpec("turn")
+    preset = resolve_preset(RunConfig(choice, "dqn"))
+    learner = make_learner(ALGORITHMS["dqn"], preset, choice, choice.resolve(), seed=1)
+    parts, changed = learner.save(), io.BytesIO()
+    with np.load(io.BytesIO(parts["replay.npz"])) as stored:
+        np.savez(changed, **{**stored, "arr_0": np.array([place, 0])})
+    with pytest.raises(ValueError, match="replay buffer"):
+        learner.load({**parts, "replay.npz": changed.getvalue()})
+
+
+@needs_learner
 @pytest.mark.parametrize("name", ["ppo", "dqn", "boltzmann-dqn", "q-learning"])
 def test_a_hostile_checkpoint_runs_nothing(name: str, tmp_path: Path) -> None:
     """Every part of numpy's holds an object that would be run by unpickling."""
