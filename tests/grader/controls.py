@@ -100,8 +100,8 @@ CONTROLS: Final = (
     Control(
         "one user's drives that take hours to run again",
         "kit/school/game/leaderboard.py",
-        "        if self._ticks_left <= 0:\n",
-        "        if self._ticks_left is None:\n",
+        "_Judge(user, MAX_TICKS_OF_ONE_USER * len(read))",
+        "_Judge(user, 10**12)",
         "school/game/test_leaderboard.py::test_many_files_of_one_user_make_nobody_wait",
     ),
     Control(
