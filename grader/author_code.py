@@ -28,6 +28,7 @@ from kit.host.private_folder import private_folder
 from kit.host.sandbox.confinement import confine_reader
 from kit.host.sandbox.grants import find_grants
 from kit.host.sandbox.limits import GIB, MIB
+from kit.host.sandbox.privileges import NO_CORE
 from kit.host.sandbox.sandbox_config import Level
 from kit.host.wire import Json
 from kit.world.catalogue import maps_folder
@@ -135,7 +136,7 @@ def _confine(folder: Path, scratch: str) -> None:
     tempfile.tempdir = scratch
     sys.dont_write_bytecode = True
     with suppress(ValueError, OSError):
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_CORE, (NO_CORE, NO_CORE))
         resource.setrlimit(resource.RLIMIT_FSIZE, (MAX_FILE_SIZE, MAX_FILE_SIZE))
         used = _address_space()
         if used:

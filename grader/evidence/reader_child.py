@@ -16,6 +16,7 @@ import grader
 import kit
 from kit.extensions import ExtensionError, extensions, load
 from kit.host.sandbox.grants import find_grants
+from kit.host.sandbox.privileges import NO_CORE
 
 
 def confine_before_reading(
@@ -84,4 +85,4 @@ def limit_resources() -> None:
     if sys.platform == "linux":
         with suppress(OSError, AttributeError):
             ctypes.CDLL(None).prctl(1, ctypes.c_ulong(9))  # PR_SET_PDEATHSIG, SIGKILL
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_CORE, (NO_CORE, NO_CORE))

@@ -17,7 +17,7 @@ from kit.controllers import find_controller
 from kit.host.failure import StudentCodeError
 from kit.learning.maps.batch_map import UnsupportedWorld
 from kit.learning.policies.policy import Policy, PolicyError
-from kit.learning.policies.policy_file import load_policy
+from kit.learning.policies.policy_file import TORCH_SUFFIXES, load_policy
 from kit.learning.tasks.disturbances import DISTURBANCE_KINDS, DisturbanceError, DisturbanceKind, UniformRange
 from kit.learning.tasks.learning_task import LearningTask, UnknownTask
 from kit.learning.tasks.student_reward import RewardFileError
@@ -193,9 +193,14 @@ def find_demonstrations(names: tuple[str, ...], workspace: Path | None) -> tuple
     return tuple(found)
 
 
+def _is_file(name: str) -> bool:
+    """Whether a policy's name is that of a file, and not of a run."""
+    return name.endswith((".npz", ".zip", *TORCH_SUFFIXES)) or "/" in name
+
+
 def find_policy(name: str | None, workspace: Path | None, *, newest: bool = False) -> tuple[str, Policy]:
     """Finds a policy by the name of its run, or by its file; without a name that of the last run. Returns its title too."""
-    if name is not None and (name.endswith((".npz", ".zip")) or "/" in name):
+    if name is not None and _is_file(name):
         return Path(name).stem, load_policy(Path(name))
     run = find_run(runs_folder(workspace), name)
     return run.name, run.policy(newest=newest)
@@ -203,7 +208,7 @@ def find_policy(name: str | None, workspace: Path | None, *, newest: bool = Fals
 
 def sweep_journal(name: str | None, workspace: Path | None) -> Path:
     """The file that keeps the sweep of a policy, which is named as in ``find_policy``: beside it, or in its run."""
-    if name is not None and (name.endswith((".npz", ".zip")) or "/" in name):
+    if name is not None and _is_file(name):
         return Path(name).with_suffix(".sweep.jsonl")
     return find_run(runs_folder(workspace), name).folder / "sweep.jsonl"
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,10 +20,16 @@ from kit.mapmaking.pixels import (
 )
 from kit.mapmaking.sheet import SheetNotFound, find_sheet, refine_corners
 from kit.mapmaking.strokes import SHEET_PIXELS, NoStrokes, StrokeOptions, find_strokes
+from kit.plain_files import read_plain_file
+from kit.world.documents import UnusableFile
+from kit.world.layer_reader import FORMATS, open_picture
 
 PAPER: Final = {"a4": math.sqrt(2), "letter": 11 / 8.5, "square": 1.0}
 """Longer side by shorter one."""
 MAX_PIXELS: Final = 60_000_000
+MAX_PHOTO_BYTES: Final = 100_000_000
+PHOTO_FORMATS: Final = (*FORMATS, "WEBP", "GIF")
+"""Of one that Pillow reads as well, it has another program draw (PostScript)."""
 
 WORKING_WIDTH: Final = 1600
 """Pixels: larger photographs are made smaller first."""
@@ -90,9 +95,7 @@ class PhotoPlan:
 def open_photo(path: Path) -> Image.Image:
     """The photograph, upright. Raises PhotoError."""
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the size is looked at below
-            image = Image.open(path)
+        image = open_picture(read_plain_file(path, MAX_PHOTO_BYTES), PHOTO_FORMATS)
         with image:
             if image.width * image.height > MAX_PIXELS:
                 raise PhotoError(
@@ -101,6 +104,8 @@ def open_photo(path: Path) -> Image.Image:
             upright = _in_colour(ImageOps.exif_transpose(image))
     except Image.DecompressionBombError:
         raise PhotoError(f"{path} has too many pixels. Make it smaller first, 4000 wide at most.") from None
+    except UnusableFile as error:
+        raise PhotoError(f"{path}: {error}.") from None
     except (UnidentifiedImageError, SyntaxError, ValueError) as error:
         if isinstance(error, PhotoError):
             raise

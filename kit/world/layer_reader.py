@@ -43,6 +43,8 @@ MAX_REPORTED_LINES = 10
 """Mistakes reported of one .dat file."""
 
 FORMATS = ("PNG", "JPEG", "BMP", "PPM")
+MAX_JPEG_SCANS = 100
+"""How often a JPEG may go over its pixels: progressive ones do it about ten times."""
 
 # Luma weights of red, green and blue in 1/32768, as OpenCV and libpng have them.
 _LUMA = np.array([9798, 19235, 3735], dtype=np.uint32)
@@ -56,24 +58,32 @@ def dark_pixels(grey: Uint8Array, occupied_thresh: float) -> BoolArray:
     return found
 
 
+def open_picture(content: bytes, formats: Iterable[str] = FORMATS) -> Image.Image:
+    """Opens a picture, whose pixels are decoded later. Raises UnusableFile for one that would take minutes to decode, and
+    what Pillow raises."""
+    if content.startswith(b"\xff\xd8") and content.count(b"\xff\xda") > MAX_JPEG_SCANS:
+        raise UnusableFile(f"it goes over its pixels more than {MAX_JPEG_SCANS} times: save it again")
+    with warnings.catch_warnings():
+        # Pillow's own size warning: whoever opens a picture has a stricter limit, and says what to do.
+        warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+        return Image.open(io.BytesIO(content), formats=tuple(formats))
+
+
 def read_image(file: Path) -> tuple[Uint8Array, Uint8Array | None]:
     """A picture as (rows, columns) grey levels, the top row first, and the opacity of the pixels likewise; None if it has none.
     Raises UnusableFile."""
     content = read_bytes(file, MAX_IMAGE_BYTES)
     try:
-        with warnings.catch_warnings():
-            # Pillow's own size warning: the limit below is stricter, and says what to do.
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
-            with Image.open(io.BytesIO(content), formats=FORMATS) as image:
-                if image.width * image.height > MAX_PIXELS:
-                    raise UnusableFile(
-                        f"the picture has {image.width} x {image.height} pixels, "
-                        f"but at most {MAX_PIXELS} are read: reduce its resolution"
-                    )
-                alpha = None
-                if image.has_transparency_data:
-                    alpha = np.asarray(image.convert("RGBA"))[..., 3]
-                return _grey_levels(image), alpha
+        with open_picture(content) as image:
+            if image.width * image.height > MAX_PIXELS:
+                raise UnusableFile(
+                    f"the picture has {image.width} x {image.height} pixels, "
+                    f"but at most {MAX_PIXELS} are read: reduce its resolution"
+                )
+            alpha = None
+            if image.has_transparency_data:
+                alpha = np.asarray(image.convert("RGBA"))[..., 3]
+            return _grey_levels(image), alpha
     except UnusableFile:
         raise
     except Image.DecompressionBombError as error:

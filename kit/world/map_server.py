@@ -70,5 +70,10 @@ def count_read_otherwise(
     is_wall: BoolArray, grey: Uint8Array, alpha: Uint8Array | None, keys: MapServerKeys
 ) -> int:
     """The number of pixels that are a wall here and free to map_server, or none here and occupied to it."""
-    cells = occupancy(grey, alpha, keys)
+    levels, opacities = np.arange(256, dtype=np.uint8), np.arange(1 if alpha is None else 256, dtype=np.uint8)
+    shades, clear = np.meshgrid(levels, opacities)
+    # What each pair of brightness and opacity means: pictures have millions of pixels.
+    cells = occupancy(shades, None if alpha is None else clear, keys).astype(np.int8)[
+        0 if alpha is None else alpha, grey
+    ]
     return int(np.count_nonzero(np.where(is_wall, cells == FREE, cells == OCCUPIED)))

@@ -100,8 +100,8 @@ CONTROLS: Final = (
     Control(
         "one user's drives that take hours to run again",
         "kit/school/game/leaderboard.py",
-        "        if self._ticks_left <= 0:\n",
-        "        if self._ticks_left is None:\n",
+        "_Judge(user, MAX_TICKS_OF_ONE_USER * len(read))",
+        "_Judge(user, 10**12)",
         "school/game/test_leaderboard.py::test_many_files_of_one_user_make_nobody_wait",
     ),
     Control(
@@ -428,10 +428,38 @@ CONTROLS: Final = (
     ),
     Control(
         "a checkpoint that holds code",
-        "kit/learning/training/deep.py",
-        "weights_only=True",
-        "weights_only=False",
+        "kit/learning/training/tabular.py",
+        "allow_pickle=False",
+        "allow_pickle=True",
         "learning/training/test_training.py::test_a_hostile_checkpoint_runs_nothing",
+    ),
+    Control(
+        "an optimiser's state of another size",
+        "kit/learning/training/torch_parts.py",
+        'raise ValueError(f"{name} does not fit the network")',
+        "pass",
+        "learning/training/test_torch_parts.py::test_an_array_of_another_size_is_refused",
+    ),
+    Control(
+        "a picture that is decoded for minutes",
+        "kit/world/layer_reader.py",
+        "> MAX_JPEG_SCANS:",
+        "> 10**9:",
+        "world/test_layer_reader.py::test_a_picture_that_goes_over_its_pixels_again_and_again_is_refused",
+    ),
+    Control(
+        "a picture that another program draws",
+        "kit/mapmaking/photo.py",
+        '(*FORMATS, "WEBP", "GIF")',
+        '(*FORMATS, "EPS")',
+        "mapmaking/test_photo.py::test_no_other_program_draws_a_picture",
+    ),
+    Control(
+        "a crash whose memory is kept",
+        "kit/host/sandbox/seccomp.py",
+        ", refused=(1, LIMIT_OF_CORES)",
+        "",
+        "host/sandbox/test_confinement.py::test_the_filter_decides_each_call_rightly",
     ),
     Control(
         "a path that tells a process",

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from PIL import Image, ImageDraw
+from PIL import EpsImagePlugin, Image, ImageDraw
 
 from kit.cli import main
 from kit.mapmaking.photo import PhotoError, PhotoScale, open_photo, plan_from_photo
@@ -109,6 +110,28 @@ def test_a_file_that_is_no_picture_is_named(tmp_path: Path, content: bytes, told
     (tmp_path / "cat.jpg").write_bytes(content)
     with pytest.raises(PhotoError, match=told):
         open_photo(tmp_path / "cat.jpg")
+
+
+def test_no_other_program_draws_a_picture(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As Pillow has PostScript drawn, under whatever name the file has."""
+    drawn = []
+    monkeypatch.setattr(
+        EpsImagePlugin, "Ghostscript", lambda *given, **named: drawn.append(given) or flat().im
+    )
+    file = tmp_path / "plan.jpg"
+    Image.new("RGB", (800, 600)).save(file, "EPS")
+    with pytest.raises(PhotoError, match="not a readable picture"):
+        open_photo(file)
+    assert not drawn
+    with Image.open(file) as opened:
+        opened.load()
+    assert drawn, "it would have been"
+
+
+def test_a_named_pipe_is_no_photograph(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "plan.jpg")
+    with pytest.raises(PhotoError, match="not a plain file"):
+        open_photo(tmp_path / "plan.jpg")
 
 
 def test_a_tiny_picture_is_refused(tmp_path: Path) -> None:

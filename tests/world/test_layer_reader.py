@@ -266,6 +266,20 @@ def test_a_huge_picture_file_is_not_read(tmp_path: Path) -> None:
         read_image(tmp_path / "huge.png")
 
 
+def test_a_picture_that_goes_over_its_pixels_again_and_again_is_refused(tmp_path: Path) -> None:
+    """Of 40 bytes each: a picture of a megabyte takes a minute, and one of the largest size half an hour."""
+    content = io.BytesIO()
+    Image.new("L", (64, 64)).save(content, "JPEG", progressive=True)
+    usual = content.getvalue()
+    (tmp_path / "usual.jpg").write_bytes(usual)
+    assert read_image(tmp_path / "usual.jpg")[0].shape == (64, 64)
+    first = usual.index(b"\xff\xda")
+    scan = usual[first : usual.index(b"\xff", first + 2)]
+    (tmp_path / "again.jpg").write_bytes(usual[:first] + 200 * scan + usual[first:])
+    with pytest.raises(UnusableFile, match="over its pixels"):
+        read_image(tmp_path / "again.jpg")
+
+
 def lines(tmp_path: Path, text: str, scale: float = 1.0) -> FloatArray:
     file = tmp_path / "lines.dat"
     file.write_text(text)

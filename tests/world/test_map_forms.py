@@ -7,6 +7,7 @@ read by nobody there.
 
 from __future__ import annotations
 
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,7 @@ from kit.world.map_server import (
     MODES,
     OCCUPIED,
     UNKNOWN,
+    MapMode,
     MapServerKeys,
     count_read_otherwise,
     occupancy,
@@ -90,6 +92,23 @@ def test_each_fact(
     assert bool(dark[0, 0]) == is_wall
     contradict = (cell == OCCUPIED and not is_wall) or (cell == FREE and is_wall)
     assert count_read_otherwise(dark, grey, alpha, keys) == contradict
+
+
+@every_case("mode", ["trinary", "scale", "raw"])
+@every_case("is_clear", [False, True])
+def test_of_a_picture_each_pixel_counts_and_few_bytes_are_taken_for_it(mode: MapMode, is_clear: bool) -> None:
+    rng = np.random.default_rng(1)
+    grey, alpha = (rng.integers(0, 256, (300, 400), dtype=np.uint8) for _ in range(2))
+    opacity = alpha if is_clear else None
+    keys = MapServerKeys(0.65, 0.196, mode=mode)
+    dark = dark_pixels(grey, 0.5)
+    cells = occupancy(grey, opacity, keys)
+    expected = np.count_nonzero((dark & (cells == FREE)) | (~dark & (cells == OCCUPIED)))
+    tracemalloc.start()
+    assert count_read_otherwise(dark, grey, opacity, keys) == expected
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 5_000_000 + 8 * grey.size
 
 
 def world(folder: Path, map_text: str, *, name: str = "rgb.png", alpha: int = 255) -> Path:

@@ -7,6 +7,7 @@ import os
 import resource
 import sys
 from contextlib import suppress
+from typing import Final
 
 from kit.host.sandbox import libc
 from kit.host.sandbox.limits import KIB
@@ -16,6 +17,9 @@ MAX_PENDING_SIGNALS = 128
 """Signals and timers that wait, of all programs of its user together."""
 MAX_LOCKED_BYTES = 64 * KIB
 """Bytes of memory that cannot be written to the disk."""
+NO_CORE: Final = 1
+"""Bytes of a core file: less than any has, and the one limit at which Linux starts no program to which cores are piped. With
+0 it does, as root, and such a program keeps the memory of a process that has crashed."""
 FIRST_USER, USERS = 1_500_000_000, 100_000_000
 """User ids for runs, above those that systems give to people, services and containers."""
 
@@ -26,7 +30,7 @@ def set_limits(config: SandboxConfig) -> None:
         resource.RLIMIT_AS: limits.memory,
         resource.RLIMIT_NOFILE: limits.open_files,
         resource.RLIMIT_FSIZE: limits.file_size,
-        resource.RLIMIT_CORE: 0,
+        resource.RLIMIT_CORE: NO_CORE,
     }
     if limits.processes is not None:
         running = 0 if config.level >= Level.ANOTHER_USER else _threads_of(os.getuid())

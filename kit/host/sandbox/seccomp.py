@@ -66,7 +66,7 @@ ALLOWED: Final[dict[str, CallNumbers]] = {
     "getpid": (39, 172), "getppid": (110, 173), "gettid": (186, 178), "getuid": (102, 174), "geteuid": (107, 175),
     "getgid": (104, 176), "getegid": (108, 177), "getgroups": (115, 158), "getresuid": (118, 148),
     "getresgid": (120, 150), "getpgrp": (111, None), "getpgid": (121, 155), "getsid": (124, 156),
-    "capget": (125, 90), "getrlimit": (97, 163), "setrlimit": (160, 164), "getrusage": (98, 165),
+    "capget": (125, 90), "getrlimit": (97, 163), "getrusage": (98, 165),
     "getpriority": (140, 141), "sched_getaffinity": (204, 123), "sched_getparam": (143, 121),
     "sched_getscheduler": (145, 120), "sched_get_priority_max": (146, 125), "sched_get_priority_min": (147, 126),
     "sched_rr_get_interval": (148, 127), "getcpu": (309, 168), "uname": (63, 160), "sysinfo": (99, 179),
@@ -176,6 +176,8 @@ TERMINAL_STATE, TERMINAL_STATE_2, WINDOW_SIZE, BYTES_TO_READ, NOT_BLOCKING, CLOS
 files that can merely be read, or have other processes signalled."""
 SET_SIGNAL_OF_PARENTS_DEATH, SET_HUGE_PAGES = 1, 41
 """Options of ``prctl`` that must stay as they are: the first ends a program whose kit was killed."""
+LIMIT_OF_CORES: Final = 4
+"""The limit that must stay as it is: see ``privileges.NO_CORE``."""
 DROP_FROM_MEMORY, MAKE_COLD, PAGE_OUT = 4, 20, 21
 """Advice on files, the last two of ``madvise``: which of a library's pages are in memory is a message to later programs."""
 
@@ -203,6 +205,8 @@ class CheckedCall(NamedTuple):
     values: tuple[int, ...]
     are_allowed: bool
     """Whether these values of the argument are allowed, and all others refused; or the other way round."""
+    refused: tuple[int, int] | None = None
+    """Another argument, and a value of it that is refused whatever the first one is."""
 
 
 def checked_calls(own_process: int) -> dict[str, CheckedCall]:
@@ -228,7 +232,10 @@ def checked_calls(own_process: int) -> dict[str, CheckedCall]:
         "pwritev2": CheckedCall((328, 287), 5, (0,), are_allowed=True),
         "kill": CheckedCall((62, 129), 0, (own_process,), are_allowed=True),
         "tgkill": CheckedCall((234, 131), 0, (own_process,), are_allowed=True),
-        "prlimit64": CheckedCall((302, 261), 0, (0, own_process), are_allowed=True),
+        "prlimit64": CheckedCall(
+            (302, 261), 0, (0, own_process), are_allowed=True, refused=(1, LIMIT_OF_CORES)
+        ),
+        "setrlimit": CheckedCall((160, 164), 0, (LIMIT_OF_CORES,), are_allowed=False),
         "prctl": CheckedCall((157, 167), 0, (SET_SIGNAL_OF_PARENTS_DEATH, SET_HUGE_PAGES), are_allowed=False),
     }
 
@@ -292,6 +299,11 @@ def _check_argument(call: CheckedCall) -> Iterator[Instruction]:
     listed, others = (
         (_ALLOW, _errno_action(errno.EPERM)) if call.are_allowed else (_errno_action(errno.EPERM), _ALLOW)
     )
+    if call.refused is not None:
+        argument, value = call.refused
+        yield _LOAD, 0, 0, _argument_offset(argument)
+        yield _EQUAL, 0, 1, value
+        yield _RETURN, 0, 0, _errno_action(errno.EPERM)
     yield _LOAD, 0, 0, _argument_offset(call.argument)
     for value in call.values:
         yield _EQUAL, 0, 1, value

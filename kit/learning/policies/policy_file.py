@@ -27,6 +27,7 @@ from kit.plain_text import quoted
 from kit.workspace import write_atomically
 
 FORMAT_VERSION = 1
+TORCH_SUFFIXES = (".pt", ".pth")
 
 
 def save_policy(policy: Policy, file: Path | str) -> None:
@@ -118,6 +119,12 @@ def load_policy(
     except FileNotFoundError:
         raise
     except Exception as error:  # noqa: BLE001 - whatever a damaged archive makes numpy raise
+        if file.suffix in TORCH_SUFFIXES:
+            raise PolicyError(
+                f"{file}: what torch saves does not say which network it belongs to. Save the whole model with "
+                "stable-baselines3, model.save('model.zip'), and read it with kit.load_policy('model.zip', task='turn'); a "
+                "training of the kit's writes best.npz, which `kit evaluate` takes."
+            ) from None
         if file.suffix == ".zip":
             raise PolicyError(
                 f"{file}: not a model of stable-baselines3, or damaged: save it again."

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import copy
 import io
 import json
 import math
 import warnings
 from collections.abc import Mapping
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +30,7 @@ from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.measures import RecentExperience
 from kit.learning.training.presets import Preset
+from kit.learning.training.torch_parts import TorchParts, pack_parts, unpack_parts
 
 LEARNING_RATE_FACTOR = 0.5
 """Factor for the learning rate each time a learner returns to an earlier policy."""
@@ -218,30 +219,26 @@ class DeepLearner:
         assert values is not None  # of these algorithms either the scores or a critic tell
         return recent.measures(values, float(self._model.gamma), None)
 
-    def snapshot(self) -> Any:
-        return copy.deepcopy(self._parameters())
-
-    def _parameters(self) -> dict[str, Any]:
+    def _parts(self) -> TorchParts:
         """Networks and optimisers, and the weight of SAC's entropy, which the library keeps beside them."""
-        found: dict[str, Any] = self._model.get_parameters()
-        weight = getattr(self._model, ENTROPY_WEIGHT, None)
-        return found if weight is None else {**found, ENTROPY_WEIGHT: weight.detach()}
+        names = self._model.get_parameters()
+        if getattr(self._model, ENTROPY_WEIGHT, None) is not None:
+            names = (*names, ENTROPY_WEIGHT)
+        return {name: attrgetter(name)(self._model) for name in names}
 
-    def restore(self, known: Any) -> None:
-        self._set_parameters(copy.deepcopy(known))
-        self._rate_factor *= LEARNING_RATE_FACTOR
-
-    def _set_parameters(self, parameters: Any) -> None:
-        networks = {name: value for name, value in parameters.items() if name != ENTROPY_WEIGHT}
-        self._model.set_parameters(networks, device="cpu")
-        if ENTROPY_WEIGHT in parameters:
-            getattr(self._model, ENTROPY_WEIGHT).data.copy_(parameters[ENTROPY_WEIGHT])
+    def _set_parts(self, packed: bytes) -> None:
+        unpack_parts(self._parts(), packed)
         if self._algorithm.family == "search":  # it keeps a copy of its own
             self._model.weights = nn.utils.parameters_to_vector(self._model.policy.parameters()).detach()
 
+    def snapshot(self) -> bytes:
+        return pack_parts(self._parts())
+
+    def restore(self, known: bytes) -> None:
+        self._set_parts(known)
+        self._rate_factor *= LEARNING_RATE_FACTOR
+
     def save(self) -> dict[str, bytes]:
-        parameters = io.BytesIO()
-        torch.save(self._parameters(), parameters)
         counts = {
             "algorithm": self._algorithm.name,
             "steps": self.steps,
@@ -249,7 +246,7 @@ class DeepLearner:
             "slower": self._rate_factor,
             "largest": self._env.recent.save(),
         }
-        parts = {"learner.json": json.dumps(counts).encode(), "parameters.pt": parameters.getvalue()}
+        parts = {"learner.json": json.dumps(counts).encode(), "parameters.npz": self.snapshot()}
         if self._algorithm.family == "replay":
             parts["replay.npz"] = _pack_replay_buffer(self._model.replay_buffer)
         return parts
@@ -258,8 +255,7 @@ class DeepLearner:
         counts = json.loads(parts["learner.json"])
         if counts["algorithm"] != self._algorithm.name:
             raise ValueError(f"it is from {counts['algorithm']}, not from {self._algorithm.name}")
-        known = torch.load(io.BytesIO(parts["parameters.pt"]), weights_only=True, map_location="cpu")
-        self._set_parameters(known)
+        self._set_parts(parts["parameters.npz"])
         self._model.num_timesteps = int(counts["steps"])
         self._model._n_updates = int(counts["updates"])
         self._rate_factor = float(counts["slower"])
@@ -283,6 +279,8 @@ def _pack_replay_buffer(buffer: Any) -> bytes:
 def _unpack_replay_buffer(buffer: Any, data: bytes) -> None:
     with np.load(io.BytesIO(data), allow_pickle=False) as stored:
         pos, full = stored["arr_0"].tolist()
+        if not 0 <= pos < buffer.buffer_size:
+            raise ValueError("a place outside its replay buffer")
         for number, name in enumerate(REPLAY_ARRAYS, start=1):
             values = stored[f"arr_{number}"]
             getattr(buffer, name)[: len(values)] = values

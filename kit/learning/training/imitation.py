@@ -7,11 +7,9 @@ what it would have done there, and learns from all examples together (Ross, Gord
 
 from __future__ import annotations
 
-import copy
 import io
 import json
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 import torch
@@ -29,6 +27,7 @@ from kit.learning.training.algorithms import Algorithm
 from kit.learning.training.demonstrations import DemonstrationError, Demonstrator, Examples, join_examples
 from kit.learning.training.learner import TrainingCallback
 from kit.learning.training.presets import Preset
+from kit.learning.training.torch_parts import TorchParts, pack_parts, unpack_parts
 
 ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU}
 DEFAULT_RATE = LinearSchedule(1e-3, 1e-4)
@@ -141,18 +140,18 @@ class ImitationLearner:
     def measures(self) -> dict[str, float]:
         return {}
 
-    def snapshot(self) -> Any:
-        return copy.deepcopy(self._network.state_dict())
+    def _parts(self) -> TorchParts:
+        return {"network": self._network, "optimizer": self._optimizer}
 
-    def restore(self, known: Any) -> None:
-        self._network.load_state_dict(copy.deepcopy(known))
+    def snapshot(self) -> bytes:
+        return pack_parts({"network": self._network})
+
+    def restore(self, known: bytes) -> None:
+        unpack_parts({"network": self._network}, known)
         self._rate_factor *= RESTORED_RATE
 
     def save(self) -> dict[str, bytes]:
-        parameters, examples = io.BytesIO(), io.BytesIO()
-        torch.save(
-            {"network": self._network.state_dict(), "optimizer": self._optimizer.state_dict()}, parameters
-        )
+        examples = io.BytesIO()
         known = join_examples(self._examples) if self._examples else None
         counts = {
             "algorithm": self._algorithm.name,
@@ -160,7 +159,7 @@ class ImitationLearner:
             "rounds": self._rounds,
             "slower": self._rate_factor,
         }
-        parts = {"learner.json": json.dumps(counts).encode(), "parameters.pt": parameters.getvalue()}
+        parts = {"learner.json": json.dumps(counts).encode(), "parameters.npz": pack_parts(self._parts())}
         if known is not None:
             np.savez(examples, observations=known.observations, actions=known.actions)
             parts["examples.npz"] = examples.getvalue()
@@ -170,9 +169,7 @@ class ImitationLearner:
         counts = json.loads(parts["learner.json"])
         if counts["algorithm"] != self._algorithm.name:
             raise ValueError(f"it is from {counts['algorithm']}, not from {self._algorithm.name}")
-        known = torch.load(io.BytesIO(parts["parameters.pt"]), weights_only=True, map_location="cpu")
-        self._network.load_state_dict(known["network"])
-        self._optimizer.load_state_dict(known["optimizer"])
+        unpack_parts(self._parts(), parts["parameters.npz"])
         self.steps, self._rounds = int(counts["steps"]), int(counts["rounds"])
         self._rate_factor = float(counts["slower"])
         if "examples.npz" in parts:

@@ -52,10 +52,10 @@ def choose_cases(chance):
     yield {"values": [0.0, 0.5, 0.2, 0.5], "epsilon": 0.1, "drawn": 0.7, "any_move": 3}
     yield {"values": [0.0, 0.5, 0.2, 0.5], "epsilon": 0.1, "drawn": 0.05, "any_move": 3}
     yield {"values": [-1.0, -0.5, -2.0, -3.0], "epsilon": 0.0, "drawn": 0.0, "any_move": 0}
-    for _ in range(30):
-        values = [round(chance.uniform(-2, 2), 2) for _ in range(4)]
+    for _ in range(60):
+        values = [round(chance.uniform(-2, 2), 2) for _ in range(6)]
         epsilon, drawn = chance.choice((0.0, 0.1, 0.5, 1.0)), round(chance.random(), 2)
-        yield {"values": values, "epsilon": epsilon, "drawn": drawn, "any_move": chance.randrange(4)}
+        yield {"values": values, "epsilon": epsilon, "drawn": drawn, "any_move": chance.randrange(6)}
 
 
 def learn(table, steps, alpha, gamma):

@@ -21,7 +21,7 @@ def choose_cases(chance):
     yield {"table": [[1.0, 0.7], [0.5, 0.6]]}
     yield {"table": [[1.0, 0.6], [1.0, 0.6], [0.3, 0.6]]}
     yield {"table": [[0.5, 0.5], [0.9, 0.9]]}
-    for _ in range(30):
+    for _ in range(60):
         yield {"table": random_table(chance)}
 
 
@@ -41,5 +41,5 @@ def gap_cases(chance):
 
 
 def random_table(chance):
-    columns = chance.randint(2, 4)
+    columns = chance.randint(3, 6)
     return [[round(chance.random(), 2) for _ in range(columns)] for _ in range(chance.randint(3, 5))]

@@ -33,7 +33,7 @@ def imitate_cases(chance):
     yield {"known": [[0, 0]], "row": 3}
     yield {"known": [[-1, 1], [1, -1]], "row": 0}
     yield {"known": [[1, -1], [-1, 1]], "row": 0}
-    for _ in range(20):
+    for _ in range(60):
         yield {"known": random_examples(chance, at_least=4), "row": chance.randint(-3, 3)}
 
 

@@ -31,11 +31,12 @@ def claim_cases(chance):
     yield {"one": [0.79, 0.64, 0.93], "other": [0.93, 0.87, 0.99]}
     yield {"one": [1.0, 1.0, 1.0], "other": [0.93, 0.87, 0.99]}
     yield {"one": [0.5, 0.4, 0.6], "other": [0.8, 0.61, 0.9]}
-    for number in range(20):
+    for number in range(60):
         # Their ends are near each other, and what is between them decides.
         b = chance.randint(20, 75)
         a, c, d = b - chance.randint(6, 20), b + chance.randint(1, 4), b + chance.randint(10, 25)
-        first, last = (((a, b), (c, d)), ((a, c), (b, d)), ((a, b), (c, d)), ((a, d), (b, c)))[number % 4]
+        apart, across, within = ((a, b), (c, d)), ((a, c), (b, d)), ((a, d), (b, c))
+        first, last = within if number % 15 == 0 else apart if number % 2 else across
         one, other = chance.sample((row_between(*first), row_between(*last)), 2)
         yield {"one": one, "other": other}
 

@@ -20,7 +20,7 @@ def heard_cases(chance):
             "offered": chance.choice(profiles(chance.randint(1, 6))),
             "asked": chance.choice(profiles(chance.randint(1, 6))),
             "before": chance.randint(0, 9),
-            "after": chance.randint(0, 9),
+            "after": chance.randint(0, 99),
         }
 
 

@@ -18,10 +18,15 @@ def fits_cases(chance):
         yield {"grid": grid, "cell": cell, "size": size}
     yield {"grid": ["....", "....", "...."], "cell": [0, 1], "size": 1}
     yield {"grid": ["....", "....", "...."], "cell": [1, 3], "size": 1}
-    for _ in range(25):
-        grid = scattered(chance)
-        cell = [chance.randrange(len(grid)), chance.randrange(len(grid[0]))]
-        yield {"grid": grid, "cell": cell, "size": chance.randint(0, 2)}
+    for number in range(60):
+        size = chance.randint(0, 2)
+        grid = scattered(chance, (0.4, 0.1, 0.03)[size])
+        cells = [[row, column] for row in range(len(grid)) for column in range(len(grid[0]))]
+        yield {
+            "grid": grid,
+            "cell": chance.choice([each for each in cells if fits(grid, each, size) == (number % 2 > 0)] or cells),
+            "size": size,
+        }
 
 
 def connected(grid, start, target, size):
@@ -42,9 +47,9 @@ def connected_cases(chance):
     yield {"grid": ["#####", "#.#.#", "##..#", "#####"], "start": [1, 1], "target": [2, 2], "size": 0}
     yield {"grid": ["...", "...", "..."], "start": [0, 0], "target": [2, 2], "size": 1}
     yield {"grid": with_door(range(1, 10)), "start": [3, 4], "target": [8, 15], "size": 3}
-    for number in range(10):
+    for number in range(20):
         yield {
-            "grid": with_door(any_door(chance)),
+            "grid": with_door(any_door(chance), any_niches(chance)),
             "start": [3, 4],
             "target": [8, 15],
             "size": chance.randint(0, 2),
@@ -62,7 +67,11 @@ def widest(grid, start, target):
 def widest_cases(chance):
     yield {"grid": ROOMS, "start": [3, 4], "target": [8, 15]}
     for number in range(8):
-        yield {"grid": with_door(any_door(chance)), "start": [5, 5], "target": [6, 15]}
+        yield {
+            "grid": with_door(any_door(chance), any_niches(chance)),
+            "start": [5, 5],
+            "target": [6, 15],
+        }
         yield maze(chance, chance.choice((1, 3, 5)), is_open=number % 2 > 0)
 
 
@@ -72,14 +81,22 @@ def any_door(chance):
     return range(top, top + wide)
 
 
-def with_door(rows):
-    """The two rooms, with a door in these rows."""
-    return [row[:10] + "." + row[11:] if number in rows else row for number, row in enumerate(ROOMS)]
+def any_niches(chance):
+    """Rows of the outer wall with a cell of floor that leads nowhere: how many walls there are tells nothing."""
+    return chance.sample(range(1, 12), chance.randint(0, 9))
+
+
+def with_door(rows, niches=()):
+    """The two rooms, with a door in these rows, and niches in those."""
+    cells = [list(row) for row in ROOMS]
+    for row, column in [*((row, 10) for row in rows), *((row, 0) for row in niches)]:
+        cells[row][column] = "."
+    return ["".join(row) for row in cells]
 
 
 def maze(chance, wide, is_open):
-    """A maze of four by four places with corridors of this width, and a start and a target in it; unless it is open, a wall
-    stands across the one way between them."""
+    """A maze of four by four places with corridors of this width, and a start and a target in it. A wall stands across one of
+    its passages: unless the maze is open, one of the way between them."""
     start = chance.randrange(4), chance.randrange(4)
     came_from, ring = {start: start}, [start]
     while ring:
@@ -93,9 +110,12 @@ def maze(chance, wide, is_open):
             ring.pop()
     target = chance.choice([each for each in came_from if each not in (start, came_from[start])])
     passages = {(place, before) for place, before in came_from.items() if place != start}
-    if not is_open:
-        passages.remove((target, came_from[target]))
-        passages -= {(place, before) for place, before in passages if before == target}
+    way, place = set(), target
+    while place != start:
+        way.add((place, came_from[place]))
+        place = came_from[place]
+    if cut := sorted(passages - way if is_open else way):
+        passages.remove(chance.choice(cut))
     pitch = wide + 1
     cells = [["#"] * (4 * pitch + 1) for _ in range(4 * pitch + 1)]
     for place, before in [*passages, *((place, place) for place in came_from)]:
@@ -112,5 +132,5 @@ def maze(chance, wide, is_open):
     return {"grid": ["".join(row) for row in cells], **ends}
 
 
-def scattered(chance):
-    return ["".join("#" if chance.random() < 0.12 else "." for _ in range(9)) for _ in range(7)]
+def scattered(chance, share):
+    return ["".join("#" if chance.random() < share else "." for _ in range(9)) for _ in range(7)]

@@ -8,6 +8,7 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import os
+import resource
 import socket
 import struct
 import subprocess
@@ -134,6 +135,7 @@ ATTACKS_BY_PROMISE = {
         "write all to the disk": "os.sync(); return 0 if ctypes.get_errno() else 1 + call(162, 81)",
     },
     "rights": {
+        "have its memory kept by what cores are piped to": "import resource; resource.setrlimit(resource.RLIMIT_CORE, (0, 0)); return 1",
         "raise its own limits": "import resource; resource.setrlimit(resource.RLIMIT_AS, (2**40, 2**40)); return 1",
         "become another user": "os.setuid(12345); return 1",
         "mount": "return 1 + call(165, 40, b'none', b'.', b'tmpfs', 0, b'')",
@@ -400,6 +402,15 @@ def test_threads_are_counted(student: Student, level: Level) -> None:
         functions.call_batch("f", [{}])
 
 
+@LINUX
+def test_no_program_of_the_machines_gets_the_memory_of_one_that_crashes(student: Student) -> None:
+    """As those do to which Linux pipes cores, whatever the limit is, unless it is 1."""
+    file = student("import resource\ndef f(): return resource.getrlimit(resource.RLIMIT_CORE)\n")
+    with StudentFunctions(file, limits=QUICK, level=Level.LIMITED) as functions:
+        allowed = resource.getrlimit(resource.RLIMIT_CORE)[1]
+        assert functions.call_json("f", {}) == ([0.0, 0.0] if allowed == 0 else [1.0, 1.0])
+
+
 def test_the_probe_says_what_is_missing() -> None:
     supports = _supports()
     assert [support.level for support in supports] == list(Level)
@@ -526,6 +537,8 @@ def test_the_filter_decides_each_call_rightly(machine: str) -> None:
         ("tgkill", (4711,), (1,)),
         ("prlimit64", (0,), (1,)),
         ("prlimit64", (4711,), (4712,)),
+        ("prlimit64", (0, 9), (0, 4)),
+        ("setrlimit", (9,), (4,)),
         ("ioctl", (3, 0x5401), (3, 0x40086602)),
         ("ioctl", (3, 0x541B), (3, 0x8902)),
         ("fcntl", (3, 1030), (3, 1031)),

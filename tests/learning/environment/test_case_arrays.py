@@ -50,6 +50,14 @@ def test_a_map_of_several_cases_stands_once() -> None:
     assert len(courses.fleet.map_blocks) == 3
 
 
+@pytest.mark.parametrize("away", [5e3, 2e9])
+def test_a_target_far_off_the_map_takes_no_memory(away: float) -> None:
+    """As one of a task in somebody else's policy may be: its field would have had up to 1e11 cells in a row."""
+    batch_map = load_batch_map(find_map("hall_straight"))
+    with pytest.raises(UnsupportedWorld, match="on the map"):
+        compute_distance_field(batch_map, (away, 1.0))
+
+
 def to_go(task: LearningTask, *places: tuple[float, float]) -> list[float]:
     """From these places, on the task's first case."""
     poses = np.array([[(x, y, 0.0)] for x, y in places])

@@ -212,6 +212,17 @@ def test_numbers_of_which_many_tensors_are_views_are_read_once(monkeypatch: pyte
     assert len(read) == len(set(read))
 
 
+@every_case("name", ["network.pt", "network.pth"])
+def test_of_parameters_alone_it_is_said_what_is_wanted(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / name).write_bytes(saved_by_torch(GOOD, ZEROS))
+    result = CliRunner().invoke(main, ["evaluate", name, "--workspace", str(tmp_path)])
+    assert result.exit_code == 2
+    assert "model.save('model.zip')" in result.output
+
+
 def test_a_pickle_of_python_runs_nothing(tmp_path: Path) -> None:
     class Spy:
         def __reduce__(self) -> tuple[Any, ...]:

@@ -233,7 +233,7 @@ def zipped(parts: Mapping[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> by
     "make",
     [
         lambda: zipped({"learner.json": b"0" * (1 << 24)}),
-        lambda: zipped({"parameters.pt": zipped({"data.pkl": b"0" * (1 << 24)})}, zipfile.ZIP_STORED),
+        lambda: zipped({"parameters.npz": zipped({"data.npy": b"0" * (1 << 24)})}, zipfile.ZIP_STORED),
         lambda: zipped({"replay.npz": zipped({"arr_0.npy": b"0" * (1 << 24)})}, zipfile.ZIP_STORED),
         lambda: zipped({"replay.npz": array_bomb()}, zipfile.ZIP_STORED),
         lambda: zipped({str(number): b"" for number in range(2000)}, zipfile.ZIP_STORED),
