@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -57,10 +57,10 @@ def parse_value(text: str) -> Any:
     return "" if node is None else _value(node, source)
 
 
-def read_parameter_file(path: str) -> list[GivenParameters]:
+def read_parameter_file(path: str, substitute: Callable[[str], str] = str) -> list[GivenParameters]:
     """Reads the values of a YAML file, in its order: ``node: {ros__parameters: {name: value}}``, also with namespaces.
 
-    Raises InvalidRosArguments, naming file and line.
+    ``substitute`` changes the file's text first. Raises InvalidRosArguments, naming file and line.
     """
     try:
         text = Path(path).read_text(encoding="utf-8")
@@ -68,7 +68,7 @@ def read_parameter_file(path: str) -> list[GivenParameters]:
         reason = problem.strerror if isinstance(problem, OSError) else "it is not UTF-8 text"
         raise InvalidRosArguments(f"--params-file '{path}': {reason}") from None
     source = _TextSource(path)
-    root = _compose(text, source)
+    root = _compose(substitute(text), source)
     return [] if root is None else list(_node_parameters(root, "", source))
 
 

@@ -10,7 +10,7 @@ import pytest
 from kit.launch.launch_file_process import LIMITS
 from kit.ros.launch import file_substitutions
 from kit.ros.launch.context import LaunchContext, LaunchError
-from kit.ros.launch.description_sources import LaunchDescriptionSource
+from kit.ros.launch.description_sources import load_launch_file
 from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.frontend.substitution_parser import (
     SubstitutionSyntaxError,
@@ -172,7 +172,7 @@ def requests(file: Path, text: str) -> list[Any]:
     """What carrying the file out asks for, now and three seconds later; without the places in the file."""
     file.write_text(text)
     service = LaunchService(str(file), {}, environment={})
-    description = LaunchDescriptionSource(str(file)).load(service.context)
+    description = load_launch_file(service.context, str(file))
     found = [*service.start(description), *service.advance(3_000_000_000, [])]
     for _, *content in found:
         for part in content:
