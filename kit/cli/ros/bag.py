@@ -13,6 +13,7 @@ import click
 
 from kit.cli import bag_storage
 from kit.cli.bag_storage import Storage
+from kit.cli.options import ListOptionsCommand
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
 from kit.msg.interfaces import UnknownInterface, find_message
@@ -27,30 +28,6 @@ if TYPE_CHECKING:
 @click.group()
 def command() -> None:
     """Record and play bags: messages of topics, with their simulated times."""
-
-
-class ListOptionsCommand(click.Command):
-    """A command some of whose options take all the words up to the next option, as in ``ros2 bag``."""
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        lists = {
-            name
-            for option in self.params
-            if isinstance(option, click.Option) and option.multiple
-            for name in option.opts
-        }
-        given: list[str] = []
-        current: str | None = None
-        for word in args:
-            if word.startswith("-"):
-                current = word if word in lists else None
-                if current is None and word != "--":
-                    given.append(word)
-            elif current is not None:
-                given += [current, word]
-            else:
-                given.append(word)
-        return super().parse_args(ctx, given)
 
 
 def topic_options(verb: str) -> Callable[[Any], Any]:
