@@ -12,6 +12,7 @@ import click
 
 from kit.cli import learning_options, messages, options
 from kit.cli.output_file import OutputFile
+from kit.cli.process import INTERRUPTED
 from kit.document.layout import Page, lines_of
 from kit.learning.policies.episode_paths import record_paths
 from kit.learning.policies.evaluation import evaluate_on
@@ -162,7 +163,7 @@ def _run_sweep(sweep: PolicySweep, title: str, csv_file: Path | None, as_json: b
             points = list(progress)
         except KeyboardInterrupt:
             click.echo("\nFinished tests are kept; run the same command to continue.", err=True)
-            raise SystemExit(130) from None
+            raise SystemExit(INTERRUPTED) from None
     if csv_file is not None:
         write_atomically(csv_file, sweep_csv(points).encode())
     if as_json:

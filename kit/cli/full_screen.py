@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from kit.cli import terminal_options
-from kit.cli.process import ScreenClosed
+from kit.cli.process import INTERRUPTED, ScreenClosed
 from kit.tui.terminal import TerminalDecision
 from kit.workspace import Workspace, open_workspace
 
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from kit.tui.screens.lessons import LessonsScreen
     from kit.tui.screens.levels import LevelsScreen
 
-INTERRUPTED: Final = 130
 AnyScreen = TypeVar("AnyScreen", bound="Screen[Any]")
 
 

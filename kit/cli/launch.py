@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,6 +12,7 @@ import click
 from kit.cli import messages, opening, options, terminal_options
 from kit.cli.existing_path import ExistingPath
 from kit.cli.full_screen import run_screen
+from kit.cli.process import INTERRUPTED
 from kit.host.failure import StudentCodeError
 from kit.inspection.sockets import sockets_folder, world_name
 from kit.msg.interfaces import PACKAGES
@@ -34,9 +34,6 @@ if TYPE_CHECKING:
     from kit.launch.launch_run import LaunchOutputLine
     from kit.tui.app import KitApp
     from kit.tui.screens.launched import LaunchScreen
-
-
-INTERRUPTED = 128 + signal.SIGINT
 
 
 @click.command()

@@ -11,7 +11,7 @@ import click
 from click.shell_completion import CompletionItem
 from click.types import StringParamType
 
-from kit.cli.process import BAD_INPUT
+from kit.cli.process import BAD_INPUT, INTERRUPTED
 from kit.extensions import Extension, ExtensionError, extensions, load
 from kit.plain_text import nearest_name
 
@@ -130,6 +130,13 @@ class LazyGroup(click.Group):
             raise click.UsageError(
                 f"There is no `{path} {args[0]}`.{hint} `{path} --help` lists the commands.", ctx
             ) from None
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:  # click ends by 1 then
+            click.echo("\nAborted!", err=True)
+            raise click.exceptions.Exit(INTERRUPTED) from None
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         """The verbs that begin so, without importing any, and the options."""

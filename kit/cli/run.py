@@ -11,6 +11,7 @@ import click
 
 from kit.cli import bag_storage, messages, opening, options
 from kit.cli.bag_storage import Storage
+from kit.cli.process import INTERRUPTED
 from kit.controllers import find_controller
 from kit.document.blocks import Picture, labelled_table
 from kit.document.layout import lines_of
@@ -28,9 +29,6 @@ from kit.run.scenario import find_scenario
 from kit.run.view import format_log
 from kit.workspace import WorkspaceError, open_workspace
 from kit.world.problems import WorldError
-
-INTERRUPTED = 130
-"""Exit code after Ctrl-C, as shells have it."""
 
 
 @click.command()

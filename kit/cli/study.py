@@ -11,6 +11,7 @@ import click
 
 from kit.cli import learning_options, messages, opening, options, report_output
 from kit.cli.executor_options import executor_options
+from kit.cli.process import INTERRUPTED
 from kit.cli.sweep import run_sweep
 from kit.document.blocks import Document
 from kit.host.job_executors import ExecutorUnavailable
@@ -208,7 +209,7 @@ def _run_again(
         raise SystemExit(1) from None
     except KeyboardInterrupt:
         click.echo("\nFinished training is kept; run the same command to continue.", err=True)
-        raise SystemExit(130) from None
+        raise SystemExit(INTERRUPTED) from None
 
 
 def _run_fields(run: StudyRun) -> None:

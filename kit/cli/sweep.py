@@ -15,6 +15,7 @@ import click
 from kit.cli import learning_options, messages, options
 from kit.cli.executor_options import executor_options
 from kit.cli.output_file import OutputFile
+from kit.cli.process import INTERRUPTED
 from kit.document.layout import lines_of
 from kit.host.job_executors import ExecutorUnavailable
 from kit.host.job_folder import JobExecutor
@@ -230,7 +231,7 @@ def command(
             messages.fail(str(error))
         except KeyboardInterrupt:
             click.echo("\nFinished training is kept; run the same command to continue.", err=True)
-            raise SystemExit(130) from None
+            raise SystemExit(INTERRUPTED) from None
         if csv_file is not None:
             write_atomically(csv_file, sweep_table_csv(sweep).encode())
         failed = problems(sweep)
