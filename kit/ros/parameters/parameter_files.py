@@ -108,7 +108,11 @@ def _compose(text: str, source: _TextSource) -> YamlNode | None:
     try:
         return yaml.compose(text, Loader=yaml.SafeLoader)
     except yaml.MarkedYAMLError as problem:
-        raise source.error(problem.problem or "this is not YAML", problem.problem_mark) from None
+        from kit.world.yaml_tree import parser_mistake  # only where there is one
+
+        slip = parser_mistake(problem, text)
+        place = f":{slip.line}:{slip.column}" if source.is_file else ""
+        raise InvalidRosArguments(f"{source.name}{place}: {slip.message}") from None
     except yaml.YAMLError as problem:
         raise source.error(str(problem), None) from None
 
@@ -135,7 +139,10 @@ def _parameters(node: YamlNode, prefix: str, source: _TextSource) -> Iterator[Pa
 
 def _entries(node: YamlNode, source: _TextSource) -> Iterator[tuple[str, YamlNode]]:
     if not isinstance(node, MappingNode):
-        message = f"needs a mapping here: 'node: {{{PARAMETERS_KEY}: {{name: value}}}}'"
+        from kit.world.yaml_tree import missing_blank  # only where something is wrong
+
+        slip = missing_blank(node.value) if isinstance(node, ScalarNode) else None
+        message = slip or f"needs a mapping here: 'node: {{{PARAMETERS_KEY}: {{name: value}}}}'"
         raise source.error(message, node.start_mark)
     for key, value in node.value:
         if not isinstance(key, ScalarNode):

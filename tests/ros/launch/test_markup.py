@@ -241,7 +241,7 @@ def test_three_languages_ask_for_the_same(suffix: str, text: str, tmp_path: Path
         ("a.launch.xml", "<launch><log message='a' if='1' unless='0'/></launch>", (1, "column 9", "both 'if'")),
         ("a.launch.xml", "<launch><log message='a'><env name='a' value='b'/></log></launch>", (1, "", "<env>")),
         ("a.launch.yaml", "launch:\n- nod: {pkg: a}\n", (2, "column 3", "did you mean <node>")),
-        ("a.launch.yaml", "launch:\n- node: {pkg: a, exec: b\n", (3, "column 1", "not YAML")),
+        ("a.launch.yaml", "launch:\n- node: {pkg: a, exec: b\n", (2, "column 9", "not closed")),
         ("a.launch.yaml", "- node: {pkg: a}\n", (1, "column 1", "starts with 'launch:'")),
         ("a.launch.yaml", "launch:\n- node\n", (2, "column 3", "a single key")),
         ("a.launch.yaml", "launch:\n- log: hello\n", (2, "column 3", "come below it")),
