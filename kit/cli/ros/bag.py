@@ -254,14 +254,17 @@ def play(
         client.wait_for_tick()
         graph.wait(lambda: False, graph.now_ns + int(delay * 1e9))
         while True:
-            client.wait_for_tick()
-            began_ns = graph.now_ns
+            began_ns = None
             for time_ns, topic, message in read_messages(folder, tuple(publishers)):
                 if first_ns <= time_ns <= last_ns:
+                    if began_ns is None:  # the bag is open: that took time in which no message was due
+                        client.hold_time()
+                        began_ns = graph.now_ns
                     graph.wait(lambda: False, began_ns + int((time_ns - first_ns) / rate))
                     publishers[topic].publish(message)
             if not loop:
                 return
+            began_ns = graph.now_ns if began_ns is None else began_ns
             graph.wait(lambda: False, began_ns + int((last_ns - first_ns) / rate))
     except BagError as problem:
         exit_with_error(str(problem))
