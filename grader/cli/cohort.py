@@ -30,6 +30,7 @@ from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.cli.executor_options import executor_options
 from kit.cli.existing_path import ExistingPath
 from kit.cli.messages import describe_error
+from kit.cli.process import INTERRUPTED
 from kit.document.blocks import CellStyle, Column, Table
 from kit.document.layout import lines_of
 from kit.host.job_executors import ExecutorUnavailable, read_shard
@@ -79,9 +80,8 @@ def cohort(
     attention.
 
     Exit code: 0 all submissions have a grade, or wait for shards; 1 some cannot be read; 2 an argument is wrong; 3 the
-    grader failed for some, or a worker left no result for some.
+    grader failed for some, or a worker left no result for some; 130 interrupted by Ctrl-C.
     """
-
     assignment = loading.load_assignment(folder)
     if secret:
         loading.warn_of_short_seeds(assignment)
@@ -101,6 +101,9 @@ def cohort(
         click.echo(f"{counted(len(entries), 'submission')}{anew}, {len(waiting)} to grade", err=True)
         with counted_progress(len(waiting), "graded") as count_one:
             executor.run(queue, waiting, lambda key: count_one())
+    except KeyboardInterrupt:
+        click.echo("\nWhat is graded is kept; run the same command to continue.", err=True)
+        raise SystemExit(INTERRUPTED) from None
     except (QueueError, ExecutorUnavailable, OSError) as error:
         exits.fail(describe_error(error))
     raise SystemExit(publish(queue, is_graded=executor.name != "none"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -256,7 +256,7 @@ def package_command(ctx: click.Context, workspace: Path | None) -> None:
         ctx.invoke(executables)
 
 
-@package_command.command()
+@package_command.command(cls=options.ListOptionsCommand)
 @click.argument("name")
 @click.option(
     "--dest",
@@ -267,9 +267,21 @@ def package_command(ctx: click.Context, workspace: Path | None) -> None:
 )
 @click.option("--node-name", default="driver", show_default=True, help="Name of its program.")
 @click.option("--map", "map_name", default="simple", show_default=True, help="Map to start with.")
+@click.option("--build-type", type=click.Choice(["ament_python"]), help="Packages are of this type alone.")
+@click.option("--dependencies", multiple=True, metavar="PACKAGE ...", help="Packages that it needs too.")
+@click.option("--description", default="", help="What it is.")
+@click.option("--license", default="MIT", show_default=True, help="Its licence.")
+@click.option("--maintainer-name", "maintainer", default="", help="Who maintains it (default: you).")
+@click.option("--maintainer-email", "email", default="", help="The maintainer's address.")
 @click.pass_obj
 def create(
-    opened_workspace: Workspace, name: str, destination: Path | None, node_name: str, map_name: str
+    opened_workspace: Workspace,
+    /,
+    name: str,
+    destination: Path | None,
+    node_name: str,
+    build_type: str | None,
+    **about: Any,
 ) -> None:
     """Create a package with a world, a robot, a program and a launch file.
 
@@ -279,9 +291,7 @@ def create(
     from kit.world.catalogue import UnknownMap
 
     try:
-        folder = create_package(
-            name, destination or opened_workspace.packages, node=node_name, map_name=map_name
-        )
+        folder = create_package(name, destination or opened_workspace.packages, node=node_name, **about)
     except (PackageError, UnknownMap) as problem:
         messages.fail(str(problem))
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):

@@ -108,7 +108,7 @@ class LazyGroup(click.Group):
         try:
             return super().invoke(ctx)
         except (KeyboardInterrupt, click.Abort):  # of which click says "Aborted!"
-            click.echo(f"\n{ctx.info_name}: interrupted before it was done.", err=True)
+            click.echo(f"\n{ctx.command_path}: interrupted before it was done.", err=True)
             raise SystemExit(INTERRUPTED) from None
 
     def list_commands(self, ctx: click.Context) -> list[str]:

@@ -54,3 +54,27 @@ def environment_variable(text: str) -> tuple[str, str]:
     if not given and name not in os.environ:
         raise click.UsageError(f"The environment variable {name} is not set; use --env {name}=VALUE.")
     return name, value if given else os.environ[name]
+
+
+class ListOptionsCommand(click.Command):
+    """A command some of whose options take all the words up to the next option, as those of ``ros2``."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        lists = {
+            name
+            for option in self.params
+            if isinstance(option, click.Option) and option.multiple
+            for name in option.opts
+        }
+        given: list[str] = []
+        current: str | None = None
+        for word in args:
+            if word.startswith("-"):
+                current = word if word in lists else None
+                if current is None and word != "--":
+                    given.append(word)
+            elif current is not None:
+                given += [current, word]
+            else:
+                given.append(word)
+        return super().parse_args(ctx, given)

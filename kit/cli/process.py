@@ -24,7 +24,7 @@ FAILED: Final = 1
 """Exit code where what was asked for is not so, or not possible."""
 BAD_INPUT: Final = 2
 """Exit code where an argument is wrong, or something cannot be read or written."""
-INTERRUPTED: Final = 130
+INTERRUPTED: Final = 128 + signal.SIGINT
 """Exit code after Ctrl-C, as shells have it."""
 NO_ROOM: Final = frozenset((ENOSPC, EDQUOT, EFBIG))
 REFUSED: Final = frozenset((EACCES, EPERM, EROFS, EIO, ENAMETOOLONG, EMFILE, ENFILE))

@@ -26,8 +26,9 @@ from kit.learning.training.crosstable import (
     crosstable_columns,
     crosstable_tables,
 )
+from kit.learning.training.process_lock import LockedError
 from kit.learning.training.run_check import check_run_config
-from kit.learning.training.run_config import PresetName, RunConfig
+from kit.learning.training.run_config import PresetName, RunConfig, RunError
 from kit.learning.training.run_folders import NAME_PATTERN
 from kit.learning.training.sweep_table import problems, sweep_rows, sweep_table, sweep_table_csv
 from kit.learning.training.training_sweep import TrainingSweep, combine
@@ -266,13 +267,21 @@ def _tune(
 
 
 def run_sweep(sweep: TrainingSweep, executor: JobExecutor) -> None:
-    """Runs the trainings that have no result yet. Raises ExecutorUnavailable and KeyboardInterrupt."""
+    """Runs the trainings that have no result yet. Raises ExecutorUnavailable, KeyboardInterrupt, and RunError if another
+    process does."""
     keys = sweep.waiting()
     if executor.name == "none" or not keys:
         return
-    click.echo(f"{counted(len(sweep.entries()), 'training')}, {len(keys)} to do, in {sweep.folder}", err=True)
-    with click.progressbar(length=len(keys), label="trained", file=sys.stderr) as bar:
-        executor.run(sweep, keys, lambda key: bar.update(1))
+    try:
+        with sweep.kept_from_others():
+            told = f"{counted(len(sweep.entries()), 'training')}, {len(keys)} to do, in {sweep.folder}"
+            click.echo(told, err=True)
+            with click.progressbar(length=len(keys), label="trained", file=sys.stderr) as bar:
+                executor.run(sweep, keys, lambda key: bar.update(1))
+    except LockedError:
+        raise RunError(
+            f"{sweep.folder}: another process trains this sweep now. Wait for it, or end it first."
+        ) from None
 
 
 def _print_table(

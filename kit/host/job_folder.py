@@ -116,7 +116,7 @@ def serve_keys(run_job: Callable[[str], object]) -> None:
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     try:
         serve_jobs(run_job, sys.stdin, answers)
-    except BrokenPipeError:  # the process that started this one has ended
+    except (BrokenPipeError, KeyboardInterrupt):  # the process that started this one has ended, or ends it
         raise SystemExit(1) from None
     except OSError as error:
         raise SystemExit(f"{error.filename or 'a result'}: {error.strerror or error}") from None

@@ -389,7 +389,7 @@ def _undefined_interface(name: str, kind: type[Any]) -> Interface:
     """A class without fields that stands for an interface of another workspace: it is listed, but never used."""
     own_name = name.rpartition("/")[2]
     if issubclass(kind, Message):
-        return make_message_class(name, (), module=__name__, qualname=own_name, is_custom=True)
+        return make_message_class(name, (), is_custom=True)
     attributes = {"__ros_type__": name, "__ros_custom__": True, "Request": Message, "Response": Message}
     return cast(Interface, ServiceType(own_name, (Definition,), attributes))
 

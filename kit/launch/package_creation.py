@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -47,15 +47,35 @@ class PackageFrame:
     """Packages that it needs when it runs."""
     data_folders: tuple[str, ...]
     """Folders that are installed besides the code."""
+    license: str = "MIT"
+    maintainer: str = ""
+    """Without it, the account's name."""
+    email: str = ""
 
 
-def create_package(name: str, destination: Path, *, node: str = "driver", map_name: str = "simple") -> Path:
+def create_package(
+    name: str,
+    destination: Path,
+    *,
+    node: str = "driver",
+    map_name: str = "simple",
+    dependencies: Sequence[str] = (),
+    description: str = "",
+    **about: str,
+) -> Path:
     """Creates a package in ``destination``, completely or not at all; returns its folder. Raises PackageError, UnknownMap.
 
-    ``node``: the name of its program; ``map_name``: the map of the kit that is copied into its world.
+    ``node``: the name of its program; ``map_name``: the map of the kit that is copied into its world; ``dependencies``:
+    packages besides those that the program needs; ``about``: further fields of PackageFrame.
     """
     card = find_map(map_name)
-    frame = PackageFrame(name, node, "A robot in a Flatland world", DEPENDENCIES, ("launch", "world"))
+    needed = tuple(dict.fromkeys((*DEPENDENCIES, *dependencies)))
+    for each in dependencies:
+        if not NAME_PATTERN.fullmatch(each):
+            raise PackageError(f"'{each}' cannot be the name of a package that this one depends on")
+    frame = PackageFrame(
+        name, node, description or "A robot in a Flatland world", needed, ("launch", "world"), **about
+    )
     with new_package_folder(name, destination, node) as folder:
         write_package_frame(folder, frame)
         text = Template((TEMPLATES / "launch.py.template").read_text(encoding="utf-8"))
@@ -96,16 +116,18 @@ def new_package_folder(name: str, destination: Path, program: str) -> Iterator[P
 def write_package_frame(folder: Path, frame: PackageFrame) -> None:
     """Writes what every package of the build type ament_python has; its program and its data are the caller's."""
     user = re.sub(r"[^A-Za-z0-9_.-]", "", os.environ.get("USER", "")) or "me"
+    maintainer, email = frame.maintainer or user, frame.email or f"{user}@example.org"
     installed = "".join(
         f"\n        ('share/' + package_name + '/{each}', glob('{each}/*'))," for each in frame.data_folders
     )
     words = {
         "name": frame.name,
         "node": frame.program,
-        "maintainer": user,
-        "email": f"{user}@example.org",
-        "description": re.sub(r"[^\w ,.()-]", "", frame.description),  # it goes into XML and Python
-        "license": "MIT",
+        # They go into XML and Python.
+        "maintainer": re.sub(r"[^\w .-]", "", maintainer),
+        "email": re.sub(r"[^\w.@+-]", "", email),
+        "description": re.sub(r"[^\w ,.()-]", "", frame.description),
+        "license": re.sub(r"[^\w ,.()+-]", "", frame.license),
         "dependencies": "\n".join(f"  <exec_depend>{each}</exec_depend>" for each in frame.dependencies),
         "installed": installed,
     }

@@ -81,7 +81,7 @@ class _RosFinder:
     def _has_generated(self, package: str, part: str, module: str) -> bool:
         """Whether rosidl would make this module: the name of an interface, ``_laser_scan`` for LaserScan."""
         names = (file.removesuffix(f".{part}") for file in _definition_files(self._folders[package], part))
-        return module in {f"_{_snake_case(name)}" for name in names}
+        return module in {f"_{snake_case(name)}" for name in names}
 
 
 class _PackageFinder:
@@ -140,7 +140,7 @@ def _definition_files(folder: str, part: str) -> list[str]:
         return []
 
 
-def _snake_case(name: str) -> str:
+def snake_case(name: str) -> str:
     """Returns the name of the module that rosidl makes for an interface: ``laser_scan``, ``tf_message``, ``pose2_d``."""
     name = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
     return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()

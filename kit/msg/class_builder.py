@@ -25,6 +25,7 @@ from kit.msg.message import (
     Message,
     Service,
     ServiceType,
+    generated_module,
     make_message_class,
     short_type_name,
 )
@@ -39,19 +40,19 @@ _ITEM = re.compile(r"""\s*("(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[^,\s][^,]*?)\s*(
 
 
 def build_interface(
-    ros_type: str, text: str, file: str, find_message: FindMessage, *, module: str, is_custom: bool
+    ros_type: str, text: str, file: str, find_message: FindMessage, *, is_custom: bool
 ) -> Interface:
     """The class of an interface from its definition's text.
 
-    ``module`` is the module from which Python imports the class; ``file`` is named in errors. Raises DefinitionError.
+    ``file`` is named in errors. Raises DefinitionError.
     """
-    package, part, name = ros_type.split("/")
-    builder = _InterfaceBuilder(package, part, file, find_message, module, is_custom)
+    _, part, name = ros_type.split("/")
+    builder = _InterfaceBuilder(ros_type, file, find_message, is_custom)
     sections = parse_definition(text, part, file)
     if part == "msg":
-        return builder.message(ros_type, name, sections[0])
+        return builder.message(ros_type, sections[0])
     if part == "srv":
-        return builder.service(ros_type, name, *(_Members(section) for section in sections))
+        return builder.service(ros_type, *(_Members(section) for section in sections))
     return builder.action(ros_type, name, sections)
 
 
@@ -79,9 +80,7 @@ def build_recorded_message(ros_type: str, text: str, find_message: FindMessage) 
         return find_message(name)
 
     def build(name: str, body: str) -> type[Message]:
-        package, part, own_name = name.split("/")
-        builder = _InterfaceBuilder(package, part, name, find, f"{package}.{part}", True)
-        return builder.message(name, own_name, parse_definition(body, "msg", name)[0])
+        return _InterfaceBuilder(name, name, find, True).message(name, parse_definition(body, "msg", name)[0])
 
     return build(ros_type, own)
 
@@ -97,40 +96,29 @@ class _Members:
 class _InterfaceBuilder:
     """Builds the classes of one definition file."""
 
-    def __init__(
-        self, package: str, part: str, file: str, find_message: FindMessage, module: str, is_custom: bool
-    ) -> None:
-        self.package = package
-        self.part = part
+    def __init__(self, ros_type: str, file: str, find_message: FindMessage, is_custom: bool) -> None:
+        self.package, self.part, self._name = ros_type.split("/")
         self._file = file
         self._find_message = find_message
-        self._module = module
         self._is_custom = is_custom
 
-    def message(
-        self, ros_type: str, qualname: str, section: SectionText, fields: tuple[Field, ...] = ()
-    ) -> type[Message]:
+    def message(self, ros_type: str, section: SectionText, fields: tuple[Field, ...] = ()) -> type[Message]:
         return make_message_class(
             ros_type,
             [*fields, *map(self._field, section.fields)],
             map(self._constant, section.constants),
-            module=self._module,
-            qualname=qualname,
+            interface=self._name,
             is_custom=self._is_custom,
         )
 
-    def service(self, ros_type: str, qualname: str, request: _Members, response: _Members) -> type[Service]:
+    def service(self, ros_type: str, request: _Members, response: _Members) -> type[Service]:
         cls = ServiceType(
-            qualname.rpartition(".")[2],
+            ros_type.rpartition("/")[2],
             (Service,),
             {
-                **self._attributes(ros_type, qualname),
-                "Request": self.message(
-                    f"{ros_type}_Request", f"{qualname}.Request", request.section, request.fields
-                ),
-                "Response": self.message(
-                    f"{ros_type}_Response", f"{qualname}.Response", response.section, response.fields
-                ),
+                **self._attributes(ros_type),
+                "Request": self.message(f"{ros_type}_Request", request.section, request.fields),
+                "Response": self.message(f"{ros_type}_Response", response.section, response.fields),
             },
         )
         return cast(type[Service], cls)
@@ -138,7 +126,7 @@ class _InterfaceBuilder:
     def action(self, ros_type: str, name: str, sections: list[SectionText]) -> type[Action]:
         """The action, with the services and the message that carry it, as rosidl generates them."""
         goal, result, feedback = (
-            self.message(f"{ros_type}_{word}", f"{name}.{word}", section)
+            self.message(f"{ros_type}_{word}", section)
             for word, section in zip(("Goal", "Result", "Feedback"), sections, strict=True)
         )
         goal_id = _message_field("goal_id", self._find_message("unique_identifier_msgs/msg/UUID"))
@@ -147,31 +135,28 @@ class _InterfaceBuilder:
         impl = {
             "SendGoalService": self.service(
                 f"{ros_type}_SendGoal",
-                f"{name}.Impl.SendGoalService",
                 _Members(fields=(goal_id, _message_field("goal", goal))),
                 _Members(fields=(accepted, stamp)),
             ),
             "GetResultService": self.service(
                 f"{ros_type}_GetResult",
-                f"{name}.Impl.GetResultService",
                 _Members(fields=(goal_id,)),
                 _Members(fields=(status, _message_field("result", result))),
             ),
             "FeedbackMessage": self.message(
                 f"{ros_type}_FeedbackMessage",
-                f"{name}.Impl.FeedbackMessage",
                 SectionText([], []),
                 (goal_id, _message_field("feedback", feedback)),
             ),
             "GoalStatusMessage": self._find_message("action_msgs/msg/GoalStatusArray"),
             "CancelGoalService": self._find_message("action_msgs/srv/CancelGoal"),
         }
-        place = {"__module__": self._module, "__qualname__": f"{name}.Impl"}
+        place = {"__module__": generated_module(ros_type, name), "__qualname__": f"{name}.Impl"}
         return type(
             name,
             (Action,),
             {
-                **self._attributes(ros_type, name),
+                **self._attributes(ros_type),
                 "Goal": goal,
                 "Result": result,
                 "Feedback": feedback,
@@ -179,10 +164,10 @@ class _InterfaceBuilder:
             },
         )
 
-    def _attributes(self, ros_type: str, qualname: str) -> dict[str, Any]:
+    def _attributes(self, ros_type: str) -> dict[str, Any]:
         return {
-            "__module__": self._module,
-            "__qualname__": qualname,
+            "__module__": generated_module(ros_type, self._name),
+            "__qualname__": ros_type.rpartition("/")[2],
             "__ros_type__": ros_type,
             "__ros_custom__": self._is_custom,
         }

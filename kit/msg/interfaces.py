@@ -7,6 +7,7 @@ packages' source folders, and ``ReceivedInterfaces`` those that another process 
 
 from __future__ import annotations
 
+import copyreg
 import os
 import sys
 import threading
@@ -28,7 +29,7 @@ from kit.msg.definition_writer import (
     same_interface,
 )
 from kit.msg.fields import MessageKind, SequenceKind
-from kit.msg.message import Action, Field, Message, Service, make_message_class, short_type_name
+from kit.msg.message import Action, Field, Message, MessageType, Service, make_message_class, short_type_name
 from kit.msg.renamed_packages import RENAMED_PACKAGES
 
 _MAX_DEPTH: Final = 50
@@ -162,7 +163,6 @@ class _InterfaceRegistry:
                     text,
                     file,
                     self._find_part,
-                    module=f"kit.msg.{package}" if package in PACKAGES else f"{package}.{part}",
                     is_custom=package in _CUSTOM_PACKAGES or name in _CUSTOM_TYPES or package not in PACKAGES,
                 )
                 self._classes[name] = same_interface(built)
@@ -303,6 +303,20 @@ def _inner_class(interface: Any, words: list[str]) -> Any:
     return interface
 
 
+def _find_part(ros_type: str) -> Any:
+    package, part, name = ros_type.split("/")
+    whole, *inner = name.split("_")
+    return _inner_class(find_interface(f"{package}/{part}/{whole}"), inner)
+
+
+def _reduce_class(cls: MessageType) -> str | tuple[Any, ...]:
+    """How a message class is pickled: by its type's name, as its module is there only where programs are run."""
+    return (_find_part, (cls.__ros_type__,)) if "__ros_fields__" in vars(cls) else cls.__qualname__
+
+
+copyreg.pickle(MessageType, _reduce_class)
+
+
 def definition_source(name: str) -> str:
     """The text of an interface's definition file, with its comments. Raises UnknownInterface."""
     return _registry.source(find_interface(name).__ros_type__)[1]
@@ -348,8 +362,7 @@ def service_event_class(srv_type: type[Service]) -> type[Message]:
             at_most_one("request", srv_type.Request),
             at_most_one("response", srv_type.Response),
         ],
-        module=srv_type.__module__,
-        qualname=f"{srv_type.__name__}{EVENT_SUFFIX}",
+        interface=srv_type.__name__,
         is_custom=True,
     )
     mark_part(event, srv_type)
@@ -426,10 +439,7 @@ class ReceivedInterfaces:
             found = self._build(part, depth + 1) if part in self._texts else find_interface(part)
             return cast(type[Message], found)
 
-        package, part, _ = name.split("/")
-        built = build_interface(
-            name, self._texts[name], name, find_part, module=f"{package}.{part}", is_custom=True
-        )
+        built = build_interface(name, self._texts[name], name, find_part, is_custom=True)
         self._classes[name] = cls = same_interface(built)
         _registry.received[name] = cls
         return cls

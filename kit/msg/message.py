@@ -15,6 +15,7 @@ from functools import partial
 from operator import attrgetter
 from typing import Any, NamedTuple, NoReturn, Self, TypeVar, cast, dataclass_transform
 
+from kit.msg import snake_case
 from kit.msg.fields import (
     FieldError,
     FieldKind,
@@ -81,6 +82,13 @@ def _accessor(field: Field, put: Callable[[Any, Any], None]) -> property:
     return property(read, write)
 
 
+class _FieldTypes:
+    """``_fields_and_field_types`` of a message class or a message, as rosidl has it."""
+
+    def __get__(self, message: object, cls: type[Message]) -> dict[str, str]:
+        return cls.get_fields_and_field_types()
+
+
 class MessageType(type):
     """The type of message classes: gives each its slots and checking properties from its fields.
 
@@ -123,6 +131,8 @@ class Message(metaclass=MessageType):
         """Field names and their types as ROS 2's interface language writes them, in order."""
         return {field.name: field.kind.idl for field in cls.__ros_fields__}
 
+    _fields_and_field_types = _FieldTypes()
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Message) or type(self) is not type(other):
             return False
@@ -141,22 +151,28 @@ def make_message_class(
     fields: Iterable[Field],
     constants: Iterable[Constant] = (),
     *,
-    module: str,
-    qualname: str,
+    interface: str = "",
     is_custom: bool = False,
 ) -> type[Message]:
-    """A new message class with these fields; ``module`` and ``qualname`` say where Python finds it."""
+    """A new message class with these fields, of the module and the name that rosidl gives it: ``std_srvs.srv._set_bool``,
+    ``SetBool_Request``. ``interface``: the interface that it is a part of, if it is one."""
     constants = tuple(constants)
+    own_name = ros_type.rpartition("/")[2]
     namespace: dict[str, Any] = {constant.name: constant.value for constant in constants}
     namespace |= {
-        "__module__": module,
-        "__qualname__": qualname,
+        "__module__": generated_module(ros_type, interface or own_name),
+        "__qualname__": own_name,
         "__ros_type__": ros_type,
         "__ros_fields__": tuple(fields),
         "__ros_constants__": constants,
         "__ros_custom__": is_custom,
     }
-    return cast(type[Message], MessageType(qualname.rpartition(".")[2], (Message,), namespace))
+    return cast(type[Message], MessageType(own_name, (Message,), namespace))
+
+
+def generated_module(ros_type: str, interface: str) -> str:
+    """The module that rosidl makes for an interface: ``geometry_msgs.msg._twist``."""
+    return f"{'.'.join(ros_type.split('/')[:2])}._{snake_case(interface)}"
 
 
 class ServiceType(type):

@@ -19,7 +19,6 @@ from rosbags.interfaces import Connection
 from rosbags.rosbag2 import Reader
 
 from kit.msg.interfaces import UnknownInterface, find_message
-from kit.part_file import BeingWrittenError
 from kit.ros.bag_storage import (
     STORAGE_SETTINGS,
     WRITE_ERRORS,
@@ -195,10 +194,9 @@ class SequentialWriter:
                 f"Bag directory already exists ({storage_options.uri}), can't overwrite existing bag"
             )
         try:
-            folder.parent.mkdir(parents=True, exist_ok=True)
             tuple(restore_bags(folder.parent, wanted=folder))
             self._part = part = BagPart(folder, cast("Storage", storage))
-        except (BeingWrittenError, OSError) as problem:
+        except OSError as problem:
             raise RuntimeError(str(problem)) from None
         self._serializer = Serializer(STORAGE_SETTINGS[cast("Storage", storage)].distro)
         self._finish = finalize(self, _complete, part)

@@ -80,7 +80,7 @@ class BagPart:
         self._torn = False
         """Whether half a record may have been written."""
         try:
-            self._part.mkdir(exist_ok=True)
+            self._part.mkdir(parents=True, exist_ok=True)  # as ROS 2 does
             self._lock = lock_part(self._part / LOCK_FILE, folder)
             self._writer = _open_writer(self._part / first_file(folder), self._settings)
             self._topics = (self._part / TOPICS_FILE).open("a", encoding="utf-8")

@@ -97,8 +97,6 @@ class Serializer:
         whole = make_message_class(
             cls.__ros_type__,
             [Field(name, message_kind(part)) for name, part in parts.items()],
-            module=cls.__module__,
-            qualname=cls.__name__,
         )
         return self.type_hash(whole)
 

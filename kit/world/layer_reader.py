@@ -277,18 +277,21 @@ class LayerReader:
         =============== ===============================================================================
         """
         origin = section.pose("origin")
+        readings = {turn_remark(section.location_of("origin"), "the origin", origin.theta)}
         resolution, keys = 0.0, None
         if section.text("type", "") == "line_segments":
             key, scale = "data", section.number("scale")
         else:
             key = "image"
             resolution = section.number("resolution", above=0)
-            keys = self._read_keys(section)
+            if resolution > 1:
+                remark = f"a pixel is {resolution:g} m wide. If {resolution:g} means pixels per metre, write {1 / resolution:g}."
+                readings.add(ReadingRemark(section.location_of("resolution"), remark))
+            keys = self._read_keys(section, readings)
         source = self._documents.referenced_file(section, key)
         section.finish(ignore_unknown=True)
         if source is None:
             return None
-        readings = {turn_remark(section.location_of("origin"), "the origin", origin.theta)}
         try:
             if keys is None:
                 local = walls_from_lines(source, scale, self._documents.problems)
@@ -309,16 +312,24 @@ class LayerReader:
             readings=tuple(sorted(filter(None, readings))),
         )
 
-    def _read_keys(self, section: Section) -> MapServerKeys:
-        """The keys of ROS's map_server. Flatland uses the first alone, so what it does not use may be anything."""
+    def _read_keys(self, section: Section, readings: set[ReadingRemark | None]) -> MapServerKeys:
+        """The keys of ROS's map_server. Flatland uses the first alone, so what it does not use may be anything: what
+        map_server would refuse or take otherwise than it looks is added to ``readings``."""
         threshold = self._read_threshold(section)
         free = parse_number(section.text("free_thresh", "") or "")
         negate = section.text("negate", "0").lower()
+        mode = section.text("mode", "trinary").lower()
+        if free is not None and free > 1:
+            remark = f'"free_thresh" is a share of 1 to ROS\'s map_server, and has no effect here: {free / 100:g} if {free:g} means percent.'
+            readings.add(ReadingRemark(section.location_of("free_thresh"), remark))
+        if mode not in MODES:
+            remark = f"the mode has no effect here; ROS's map_server refuses {quoted(mode)}: there is {join_with_and(MODES)}."
+            readings.add(ReadingRemark(section.location_of("mode"), remark))
         return MapServerKeys(
             threshold,
             FREE_THRESH if free is None else free,
             bool(parse_number(negate)) or negate in NEGATED,
-            MODES.get(section.text("mode", "trinary").lower(), "trinary"),
+            MODES.get(mode, "trinary"),
         )
 
 

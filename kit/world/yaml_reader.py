@@ -28,11 +28,10 @@ from kit.world.yaml_tree import (
     MapNode,
     Node,
     ParserMark,
-    ParserReport,
     ScalarNode,
-    find_slip,
     parse_bool,
     parse_number,
+    parser_mistake,
 )
 
 _INCLUDE = re.compile(r"\$(?P<spread>\[include\]|include)\s+(?P<file>\S.*)", re.DOTALL)
@@ -188,18 +187,9 @@ class YamlComposer:
                     self._anchors = {}
                     yield self._compose_node(next(events), events, depth)
         except yaml.MarkedYAMLError as error:
-            mark = error.problem_mark or error.context_mark
-            slip = None
-            if mark is not None:
-                lines = text.splitlines()
-                slip = find_slip(
-                    ParserReport(lines, error.context or "", error.context_mark, error.problem or "", mark)
-                )
-            if slip is not None:
-                location = SourceLocation(self._file, slip.line, slip.column)
-                raise InvalidYaml(location, f"not valid YAML: {slip.message}") from error
-            words = ", ".join(word for word in (error.context, error.problem) if word)
-            raise InvalidYaml(self._location(mark), f"not valid YAML: {words}") from error
+            slip = parser_mistake(error, text)
+            location = SourceLocation(self._file, slip.line, slip.column)
+            raise InvalidYaml(location, f"not valid YAML: {slip.message}") from error
         except (yaml.YAMLError, ValueError, OverflowError) as error:  # the last two: an escape beyond Unicode
             raise InvalidYaml(SourceLocation(self._file), "not valid YAML") from error
 

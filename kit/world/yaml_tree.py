@@ -13,10 +13,13 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Final, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Final, Protocol, TypeAlias
 
 from kit.plain_text import quoted
 from kit.world.records import SourceLocation
+
+if TYPE_CHECKING:
+    from yaml import MarkedYAMLError
 
 _NUMBER = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?", re.ASCII)
 _INTEGER = re.compile(r"[-+]?[0-9]{1,19}", re.ASCII)
@@ -175,6 +178,18 @@ class ParserReport:
         """Returns the index of the last line with content above the reported one; -1 if there is none."""
         above = range(min(self.mark.line, len(self.lines)) - 1, -1, -1)
         return next((index for index in above if self.lines[index].partition("#")[0].strip()), -1)
+
+
+def parser_mistake(error: MarkedYAMLError, text: str) -> YamlSlip:
+    """Where and why a parser gave up on a text: the slip that most likely made it do so, or else its own words."""
+    mark = error.problem_mark or error.context_mark
+    words = ", ".join(word for word in (error.context, error.problem) if word)
+    if mark is None:
+        return YamlSlip(1, 1, words)
+    report = ParserReport(
+        text.splitlines(), error.context or "", error.context_mark, error.problem or "", mark
+    )
+    return find_slip(report) or YamlSlip(mark.line + 1, mark.column + 1, words)
 
 
 def find_slip(report: ParserReport) -> YamlSlip | None:

@@ -10,6 +10,7 @@ import pytest
 
 from kit.learning.policies.policy_file import load_policy
 from kit.learning.training.algorithms import IMITATION_ALGORITHMS, algorithms_for
+from kit.learning.training.training_sweep import TrainingSweep
 from tests.cli.verbs import kit
 
 QUICK = ("--algo", "q-learning", "--steps", "4000", "--keep-training")
@@ -99,6 +100,13 @@ MISTAKES = {
 def test_a_mistake_ends_with_a_clear_line(arguments: tuple[str, ...], message: str, tmp_path: Path) -> None:
     assert message in kit(*arguments, code=2).output
     assert not list((tmp_path / "workspace").glob("runs/*"))
+
+
+def test_a_sweep_that_another_process_trains_is_refused(tmp_path: Path) -> None:
+    words = ("sweep", "turn", "--algos", "q-learning", "--seeds", "1", "--steps", "2000", "--name", "mine")
+    kit(*words, "--executor", "none")
+    with TrainingSweep(tmp_path / "workspace" / "sweeps" / "mine").kept_from_others():
+        assert "another process" in kit(*words, code=2).output
 
 
 def test_a_bad_reward_is_told_before_anything_is_written(tmp_path: Path) -> None:

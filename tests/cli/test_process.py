@@ -16,6 +16,7 @@ from kit.cli.process import INTERRUPTED
 PROGRAM = """
 import atexit, sys, threading, time
 import click
+from kit.cli.lazy_group import LazyGroup
 from kit.cli.process import run_as_process
 
 class Slow:
@@ -28,23 +29,27 @@ def late(name):
     time.sleep(0.2)
     open(name, "w").write("late")
 
+@click.group(cls=LazyGroup, verbs={"verb": ("__main__:verb", "")})
+def command():
+    pass
+
 @click.command()
 @click.argument("name")
 @click.argument("code", type=int)
-def command(name, code):
+def verb(name, code):
     atexit.register(lambda: print("at exit"))
     threading.Thread(target=late, args=(name,)).start()
     sys.stdout.write("said, without an end of line ")
-    raise SystemExit(code)
+    raise KeyboardInterrupt if code == 130 else SystemExit(code)  # 130: Ctrl-C
 
 run_as_process(command, "command")
 """
 
 
-@pytest.mark.parametrize("code", [0, 1, 2, 3, 143])
+@pytest.mark.parametrize("code", [0, 1, 2, 3, 130, 143])
 def test_a_command_ends_without_being_taken_apart_once_all_is_written(tmp_path: Path, code: int) -> None:
     file = tmp_path / "late.txt"
-    command = [sys.executable, "-c", PROGRAM, str(file), str(code)]
+    command = [sys.executable, "-c", PROGRAM, "verb", str(file), str(code)]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     assert ended.returncode == code, ended.stderr
     assert ended.stdout == "said, without an end of line at exit\n"

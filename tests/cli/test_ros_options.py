@@ -11,12 +11,34 @@ import click
 from click.testing import CliRunner
 
 from kit.cli import main
-from kit.cli.ros import VERBS
-from kit.cli.ros.documented_options import ABSENT_OPTIONS
+from kit.cli.ros import ABSENT, VERBS
+from kit.cli.ros.documented_options import ABSENT_COMMANDS, ABSENT_OPTIONS
 from tests.cases import every_case
 
 TABLE = Path(__file__).with_name("ros2_options.csv")
 """The options that `ros2 COMMAND --help` documents."""
+
+COMMANDS = {
+    "action": "echo find info list send_goal type",
+    "bag": "burst convert info list play record reindex",
+    "component": "",
+    "daemon": "",
+    "doctor": "",
+    "interface": "list package packages proto show",
+    "launch": "",
+    "lifecycle": "get list nodes set",
+    "multicast": "",
+    "node": "info list",
+    "param": "delete describe dump get list load set",
+    "pkg": "create executables list prefix xml",
+    "run": "",
+    "security": "",
+    "service": "call echo find info list type",
+    "test": "",
+    "topic": "bw delay echo find hz info list pub type",
+    "wtf": "",
+}
+"""The commands that `ros2 --help` and `ros2 COMMAND --help` document."""
 
 
 def documented() -> dict[str, set[str]]:
@@ -27,10 +49,15 @@ def documented() -> dict[str, set[str]]:
     return found
 
 
-def options_of(name: str) -> set[str]:
-    verb, _, part = name.partition(" ")
+def command_of(verb: str) -> click.Command:
     module, _, attribute = VERBS[verb][0].partition(":")
     command: click.Command = getattr(import_module(module), attribute or "command")
+    return command
+
+
+def options_of(name: str) -> set[str]:
+    verb, _, part = name.partition(" ")
+    command = command_of(verb)
     if part:
         assert isinstance(command, click.Group)
         command = command.commands[part]
@@ -47,6 +74,20 @@ def test_a_documented_option_is_there_or_told_as_not_there(name: str) -> None:
         assert f"Options of `ros2 {name}` that are not here: " in output
         told = "".join(output.partition("that are not here: ")[2].split()).rstrip(".").split(",")
         assert set(told) == absent
+
+
+def test_a_documented_command_is_there_or_told_as_not_there() -> None:
+    assert COMMANDS.keys() - VERBS.keys() == ABSENT.keys()
+    told = CliRunner().invoke(main, ["ros", "--help"], terminal_width=400).output
+    assert f"Commands of `ros2` that are not here: {', '.join(ABSENT)}." in told
+    for verb in COMMANDS.keys() - ABSENT.keys():
+        command = command_of(verb)
+        there = set(command.commands) if isinstance(command, click.Group) else set()
+        absent = ABSENT_COMMANDS.get(verb, ())
+        assert set(COMMANDS[verb].split()) - there == set(absent)
+        if absent:
+            told = CliRunner().invoke(main, ["ros", verb, "--help"], terminal_width=400).output
+            assert f"that are not here: {', '.join(absent)}." in told
 
 
 def test_nothing_is_told_as_not_there_that_nobody_documents() -> None:

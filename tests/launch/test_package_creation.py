@@ -128,3 +128,15 @@ def test_models_are_placed_and_the_rest_of_a_world_stays(tmp_path: Path) -> None
     assert "# the robot" in file.read_text()
     assert "# somewhere" in file.read_text()
     assert [each["model"] for each in found] == [f"{name}.model.yaml" for name in ("serp", "cart", "beacon")]
+
+
+def test_a_package_is_created_by_a_tutorials_own_command(
+    kit: Callable[..., tuple[str, str, int]], tmp_path: Path
+) -> None:
+    words = "--build-type ament_python --license Apache-2.0 --node-name my_node my_package --dependencies rclpy std_msgs"
+    assert kit("ros", "pkg", "create", *words.split())[2] == 0
+    manifest = (tmp_path / "workspace" / "packages" / "my_package" / "package.xml").read_text()
+    assert "<license>Apache-2.0</license>" in manifest
+    assert manifest.count("depend>rclpy<") == manifest.count("depend>std_msgs<") == 1
+    assert kit("ros", "pkg", "create", "other", "--dependencies", "a<b")[2] == 2
+    assert kit("ros", "pkg", "create", "--build-type", "ament_cmake", "other")[2] == 2

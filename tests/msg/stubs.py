@@ -53,21 +53,21 @@ def _interface_lines(cls: Interface, package: str) -> Iterator[str]:
     if issubclass(cls, Message):
         yield from _message_lines(cls, cls.__name__, package)
     elif issubclass(cls, Service):
-        yield from _service_lines(cls, package)
+        yield from _service_lines(cls, cls.__name__, package)
     else:
         yield f"class {cls.__name__}(_Action):"
         for name in ("Goal", "Result", "Feedback"):
             yield from _indented(_message_lines(getattr(cls, name), name, package))
         yield "    class Impl:"
         for name in ("SendGoalService", "GetResultService"):
-            yield from _indented(_indented(_service_lines(getattr(cls.Impl, name), package)))
+            yield from _indented(_indented(_service_lines(getattr(cls.Impl, name), name, package)))
         yield from _indented(_indented(_message_lines(cls.Impl.FeedbackMessage, "FeedbackMessage", package)))
         yield "        GoalStatusMessage = action_msgs.GoalStatusArray"
         yield "        CancelGoalService = action_msgs.CancelGoal"
 
 
-def _service_lines(cls: type[Service], package: str) -> Iterator[str]:
-    yield f"class {cls.__name__}(_Service):"
+def _service_lines(cls: type[Service], name: str, package: str) -> Iterator[str]:
+    yield f"class {name}(_Service):"
     yield from _indented(_message_lines(cls.Request, "Request", package))
     yield from _indented(_message_lines(cls.Response, "Response", package))
 
@@ -92,7 +92,7 @@ def _python_type(kind: FieldKind, package: str) -> str:
         return kind.python_type.__name__
     if isinstance(kind, MessageKind):
         owner, _, name = kind.cls.__ros_type__.partition("/")
-        name = kind.cls.__qualname__ if "/action/" in kind.cls.__ros_type__ else name.rpartition("/")[2]
+        name = name.rpartition("/")[2].replace("_", ".")  # the goal of an action
         return name if owner == package else f"{owner}.{name}"
     if isinstance(kind, FixedArrayKind):
         number = "bool" if kind.item.text == "bool" else {"char": "uint8"}.get(kind.item.text, kind.item.text)

@@ -13,7 +13,7 @@ from tests.cases import every_case
 
 
 def built(text: str, name: str = "my_msgs/msg/Sample") -> type[Message]:
-    return build_interface(name, text, "Sample.msg", find_message, module="my_msgs.msg", is_custom=True)  # type: ignore[return-value]  # a message, by its text
+    return build_interface(name, text, "Sample.msg", find_message, is_custom=True)  # type: ignore[return-value]  # a message, by its text
 
 
 def test_every_kind_of_field_has_its_default() -> None:

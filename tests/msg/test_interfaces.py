@@ -129,12 +129,29 @@ def test_every_package_of_definitions_is_listed_and_has_its_module() -> None:
         import_module("kit.msg.nonsense")
 
 
-def test_a_message_is_pickled_by_its_module() -> None:
+def test_a_message_is_pickled_by_its_type() -> None:
     """In another process too, which has not imported the module before."""
-    text = pickle.dumps(find_message("std_msgs/String")(data="hello"))
-    code = f"import pickle; print(pickle.loads({text!r}).data)"
+    goal = find_action("example_interfaces/action/Fibonacci").Goal(order=3)
+    text = pickle.dumps([find_message("std_msgs/String")(data="hello"), goal])
+    code = f"import pickle; found = pickle.loads({text!r}); print(found[0].data, found[1].order)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert run.stdout == "hello\n", run.stderr
+    assert run.stdout == "hello 3\n", run.stderr
+
+
+def test_a_class_says_of_itself_what_rosidls_does() -> None:
+    twist, request = find_message("geometry_msgs/Twist"), find_service("std_srvs/srv/SetBool").Request
+    action = find_action("example_interfaces/action/Fibonacci")
+    assert [
+        (each.__module__, each.__name__)
+        for each in (twist, request, action.Goal, action.Impl.SendGoalService)
+    ] == [
+        ("geometry_msgs.msg._twist", "Twist"),
+        ("std_srvs.srv._set_bool", "SetBool_Request"),
+        ("example_interfaces.action._fibonacci", "Fibonacci_Goal"),
+        ("example_interfaces.action._fibonacci", "Fibonacci_SendGoal"),
+    ]
+    fields = {"linear": "geometry_msgs/Vector3", "angular": "geometry_msgs/Vector3"}
+    assert twist._fields_and_field_types == twist()._fields_and_field_types == fields
 
 
 def test_stubs_are_those_that_the_definitions_give() -> None:
@@ -194,7 +211,7 @@ def test_only_messages_of_services_are_requests_and_responses() -> None:
         assert is_request_or_response(cls)
     for other in (find_message("std_msgs/msg/String"), action.Impl.FeedbackMessage, action.Goal):
         assert not is_request_or_response(other)
-    made = make_message_class("my_msgs/msg/Foo_Request", (), module=__name__, qualname="Foo")
+    made = make_message_class("my_msgs/msg/Foo_Request", ())
     assert not is_request_or_response(made), "a message of a topic, however it is called"
 
 

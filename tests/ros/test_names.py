@@ -249,9 +249,9 @@ def test_names_come_before_or_after_those_that_are_installed(tmp_path: Path) -> 
             f"import sys, kit.ros; sys.path.insert(0, {str(tmp_path)!r})\n"
             f"kit.ros.install_import_names({{'my_msgs': {str(tmp_path / 'my_msgs')!r}}}, first={first})\n"
             "import launch, my_msgs; from my_msgs.msg import Reading; from std_msgs.msg import Header\n"
-            "print(launch.__file__, my_msgs.own, Reading(value=1.0).value, Header.__module__)"
+            "print(launch.__file__, my_msgs.own, Reading(value=1.0).value, Header.__base__.__module__)"
         )
         run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
         folder = FOLDER if first else tmp_path
         assert run.stdout.startswith(str(folder)), run.stderr
-        assert run.stdout.split()[1:] == ["True", "1.0", "kit.msg.std_msgs"]
+        assert run.stdout.split()[1:] == ["True", "1.0", "kit.msg.message"]

@@ -116,7 +116,8 @@ def world(folder: Path, map_text: str, *, name: str = "rgb.png", alpha: int = 25
     picture = np.full((5, 5, 4), 255, dtype=np.uint8)
     picture[2, 2] = (0, 0, 0, alpha)
     Image.fromarray(picture).save(folder / name)
-    (folder / "m.yaml").write_text(f"resolution: 1\norigin: [0, 0, 0]\n{map_text}\n")
+    resolution = "" if "resolution" in map_text else "resolution: 1\n"
+    (folder / "m.yaml").write_text(f"{resolution}origin: [0, 0, 0]\n{map_text}\n")
     (folder / "world.yaml").write_text("properties: {}\nlayers: [{name: static, map: m.yaml}]\nmodels: []\n")
     return folder / "world.yaml"
 
@@ -143,7 +144,10 @@ def loaded(file: Path) -> tuple[World, int]:
         ("occupied_thresh: 0.65\nnegate: 00", 255, None),
         ("occupied_thresh: 0.65\nmode: raw", 255, 5),
         ("occupied_thresh: 0.65\nfree_thresh: 0.9\nmode: Raw", 255, 6),
-        ("occupied_thresh: 0.65\nfree_thresh: junk\nnegate: junk\nmode: junk", 255, None),
+        ("occupied_thresh: 0.65\nfree_thresh: junk\nnegate: junk", 255, None),
+        ("occupied_thresh: 0.65\nfree_thresh: 25", 255, 5),
+        ("occupied_thresh: 0.65\nmode: junk", 255, 5),
+        ("occupied_thresh: 0.65\nresolution: 20", 255, 4),
     ],
 )
 def test_a_picture_is_read_as_flatland_reads_it_and_a_difference_is_said_with_its_line(

@@ -65,15 +65,14 @@ class RosGroup(LazyGroup):
     verbs=VERBS,
     absent=ABSENT,
     epilog="A world runs while `kit play`, `kit launch` or `kit run --serve` runs. If several run, the newest is used, "
-    "or the one given by --world. Times are simulated. Ctrl-C stops a command that keeps running. A command takes effect when it "
+    f"or the one given by --world. Commands of `ros2` that are not here: {', '.join(ABSENT)}. Times are simulated. Ctrl-C stops a command that keeps running. A command takes effect when it "
     "arrives, at no certain instant of simulated time: one that is to come at the same instant in every run belongs in a launch "
     "file, in a TimerAction.",
 )
 def command() -> None:
     """Inspect a running world from a second terminal, as `ros2` does on a robot.
 
-    Commands, arguments and output are those of `ros2`. The help of each command names the options of `ros2` that are
-    not here.
+    Commands, arguments and output are those of `ros2`. The help of each command names what `ros2` has besides.
 
     \b
     kit ros node list

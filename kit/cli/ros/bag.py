@@ -13,6 +13,7 @@ import click
 
 from kit.cli import bag_storage
 from kit.cli.bag_storage import Storage
+from kit.cli.options import ListOptionsCommand
 from kit.cli.ros.world_client import exit_with_error, with_world_client
 from kit.inspection.client import InspectionClient
 from kit.msg.interfaces import UnknownInterface, find_message
@@ -27,30 +28,6 @@ if TYPE_CHECKING:
 @click.group()
 def command() -> None:
     """Record and play bags: messages of topics, with their simulated times."""
-
-
-class ListOptionsCommand(click.Command):
-    """A command some of whose options take all the words up to the next option, as in ``ros2 bag``."""
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        lists = {
-            name
-            for option in self.params
-            if isinstance(option, click.Option) and option.multiple
-            for name in option.opts
-        }
-        given: list[str] = []
-        current: str | None = None
-        for word in args:
-            if word.startswith("-"):
-                current = word if word in lists else None
-                if current is None and word != "--":
-                    given.append(word)
-            elif current is not None:
-                given += [current, word]
-            else:
-                given.append(word)
-        return super().parse_args(ctx, given)
 
 
 def topic_options(verb: str) -> Callable[[Any], Any]:
@@ -277,14 +254,17 @@ def play(
         client.wait_for_tick()
         graph.wait(lambda: False, graph.now_ns + int(delay * 1e9))
         while True:
-            client.wait_for_tick()
-            began_ns = graph.now_ns
+            began_ns = None
             for time_ns, topic, message in read_messages(folder, tuple(publishers)):
                 if first_ns <= time_ns <= last_ns:
+                    if began_ns is None:  # the bag is open: that took time in which no message was due
+                        client.hold_time()
+                        began_ns = graph.now_ns
                     graph.wait(lambda: False, began_ns + int((time_ns - first_ns) / rate))
                     publishers[topic].publish(message)
             if not loop:
                 return
+            began_ns = graph.now_ns if began_ns is None else began_ns
             graph.wait(lambda: False, began_ns + int((last_ns - first_ns) / rate))
     except BagError as problem:
         exit_with_error(str(problem))

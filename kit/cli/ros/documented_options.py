@@ -1,4 +1,4 @@
-"""Options of ROS 2's commands that the kit's do not have: the help of each command names them."""
+"""Options and commands of ROS 2's that the kit does not have: the help of each command names them."""
 
 from __future__ import annotations
 
@@ -59,21 +59,17 @@ ABSENT_OPTIONS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
             "--storage",
         ),
         "bag info": ("--topic-name", "--sort", "--storage"),
-        "pkg create": (
-            "--package-format",
-            "--license",
-            "--build-type",
-            "--dependencies",
-            "--maintainer-email",
-            "--maintainer-name",
-            "--library-name",
-            "--description",
-        ),
+        "pkg create": ("--package-format", "--library-name"),
         "run": ("--prefix",),
         "launch": ("--noninteractive", "--debug", "--print", "--launch-prefix", "--launch-prefix-filter"),
     }
 )
 """The options, by command."""
+
+ABSENT_COMMANDS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {"action": ("echo",), "bag": ("burst", "convert", "list", "reindex")}
+)
+"""Commands of ROS 2's that the kit's groups do not have."""
 
 
 def tell_absent_options(name: str, command: click.Command) -> click.Command:
@@ -81,6 +77,10 @@ def tell_absent_options(name: str, command: click.Command) -> click.Command:
     if isinstance(command, click.Group):
         for part in list(command.commands):
             tell_absent_options(f"{name} {part}", command.commands[part])
+        if name in ABSENT_COMMANDS:
+            command.epilog = (
+                f"Commands of `ros2 {name}` that are not here: {', '.join(ABSENT_COMMANDS[name])}."
+            )
     elif name in ABSENT_OPTIONS:
         command.epilog = f"Options of `ros2 {name}` that are not here: {', '.join(ABSENT_OPTIONS[name])}."
     return command

@@ -20,8 +20,8 @@ from typing import Final
 
 from kit.host.job_executors import read_shard
 from kit.host.job_folder import JobExecutor, serve_keys
-from kit.learning.training.process_lock import LockedError, process_lock
-from kit.learning.training.training_sweep import LOCK_FILE, TrainingSweep
+from kit.learning.training.process_lock import LockedError
+from kit.learning.training.training_sweep import TrainingSweep
 from kit.learning.training.worker import EXIT_SIGNALS, ExitRequest
 
 PATIENCE_S: Final = 30.0
@@ -49,10 +49,7 @@ def _run_all(sweep: TrainingSweep) -> int:
     """Trains all that has no result yet, unless another process does."""
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    with suppress(LockedError), process_lock(sweep.folder / LOCK_FILE) as lock:
-        lock.truncate(0)
-        lock.write(b"%d" % os.getpid())
-        lock.flush()
+    with suppress(LockedError), sweep.kept_from_others():
         JobExecutor(jobs=_available_processors()).run(sweep, sweep.waiting(), lambda key: None)
     return 0
 

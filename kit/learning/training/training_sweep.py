@@ -13,8 +13,8 @@ import json
 import os
 import signal
 import time
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -27,7 +27,7 @@ from kit.host.python_command import python_command
 from kit.learning.policies.evaluation import evaluate_on
 from kit.learning.policies.seeds import derive_seed
 from kit.learning.tasks.task_spec import TaskSpec
-from kit.learning.training.process_lock import is_locked
+from kit.learning.training.process_lock import is_locked, process_lock
 from kit.learning.training.run_config import PresetName, RunConfig, RunError, format_settings
 from kit.learning.training.run_folders import RunExists, create_run
 from kit.learning.training.runs import TrainingRun
@@ -155,8 +155,17 @@ class TrainingSweep(JobFolder):
 
     @property
     def is_active(self) -> bool:
-        """Whether a process of its own trains it, as ``sweep_worker.start_sweep`` starts one."""
+        """Whether a process trains it."""
         return is_locked(self.folder / LOCK_FILE)
+
+    @contextmanager
+    def kept_from_others(self) -> Iterator[None]:
+        """Lets no other process train it meanwhile. Raises LockedError if one does."""
+        with process_lock(self.folder / LOCK_FILE) as lock:
+            lock.truncate(0)
+            lock.write(b"%d" % os.getpid())
+            lock.flush()
+            yield
 
     def stop(self) -> None:
         """Ends the process that trains it; the training that runs leaves a checkpoint. Nothing if there is none."""

@@ -174,7 +174,8 @@ def _parse_parameter(text: str) -> GivenParameters:
     from kit.ros.parameters.parameter_files import parse_value
 
     node, name, value = _split_rule(text, "-p", "name:=value or node:name:=value")
-    return GivenParameters(f"/**/{node}" if node else "/**", (Parameter(name, value=parse_value(value)),))
+    pattern = "/**" if node is None else node if node.startswith("/") else f"/**/{node}"
+    return GivenParameters(pattern, (Parameter(name, value=parse_value(value)),))
 
 
 def _file(path: str) -> list[GivenParameters]:

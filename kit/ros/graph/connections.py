@@ -8,6 +8,7 @@ from typing import Final
 
 from kit.msg.message import type_name
 from kit.plain_text import join_names, nearest_name
+from kit.ros.constants import CLOCK_TOPIC
 from kit.ros.graph.directory import Directory, NodeEntry, describe_mismatch
 from kit.ros.graph.graph import Graph
 
@@ -121,6 +122,8 @@ def _mistakes(directory: Directory, handle: NodeEntry) -> Iterator[str]:
                 yield f"Nothing passes on {name}. {why}."
     for publisher in handle.publishers:
         name, kind = publisher.topic_name, type_name(publisher.msg_type)
+        if name == CLOCK_TOPIC:
+            yield f"{handle.full_name} publishes {name}, which no clock follows: here every node has the simulated time."
         if name in UNHEARD_BY_DESIGN:
             continue
         heard = _topics(directory, publishes=False)

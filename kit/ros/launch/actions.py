@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from kit.ros.launch.context import LaunchContext, LaunchError
-from kit.ros.launch.description_sources import LaunchDescriptionSource
+from kit.ros.launch.description_sources import LaunchDescriptionSource, load_launch_file
 from kit.ros.launch.entity import (
     Action,
     ArgumentDeclaration,
@@ -186,7 +186,7 @@ class IncludeLaunchDescription(Action):
             raise LaunchError(f"launch files include each other without end: {circle} -> {path}")
         context.files.append(path)
         return [
-            _ContextStep(lambda context: [self.source.load(context)]),
+            _ContextStep(lambda context: [load_launch_file(context, path)]),
             _ContextStep(lambda context: [] if context.files.pop() else None),
         ]
 

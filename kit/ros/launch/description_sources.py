@@ -41,16 +41,16 @@ class LaunchDescriptionSource:
             raise LaunchError(f"the launch file {path} does not exist")
         return str(path)
 
-    def load(self, context: LaunchContext) -> LaunchDescription:
-        """Executes the file and returns its description. Raises LaunchError, and what the file raises."""
-        path = self.path(context)
-        if path.endswith(MARKUP_SUFFIXES):
-            description: LaunchDescription = context.read_markup(path, Path(path).read_bytes())
-            return description
-        module = ModuleType(Path(path).name.partition(".")[0])
-        module.__file__ = path
-        exec(compile(Path(path).read_bytes(), path, "exec", dont_inherit=True), module.__dict__)
-        return description_of(module, f"{path}: ")
+
+def load_launch_file(context: LaunchContext, path: str) -> LaunchDescription:
+    """Executes the file at ``path`` and returns its description. Raises LaunchError, and what the file raises."""
+    if path.endswith(MARKUP_SUFFIXES):
+        description: LaunchDescription = context.read_markup(path, Path(path).read_bytes())
+        return description
+    module = ModuleType(Path(path).name.partition(".")[0])
+    module.__file__ = path
+    exec(compile(Path(path).read_bytes(), path, "exec", dont_inherit=True), module.__dict__)
+    return description_of(module, f"{path}: ")
 
 
 def description_of(module: ModuleType, where: str = "") -> LaunchDescription:

@@ -9,6 +9,7 @@ from typing import Any
 
 from kit.ros.exceptions import InvalidRosArguments
 from kit.ros.launch.context import LaunchContext, LaunchError
+from kit.ros.launch.entity import IfCondition
 from kit.ros.launch.substitutions import (
     SomeText,
     Substitution,
@@ -43,6 +44,7 @@ class ParameterFile:
 
     def __init__(self, param_file: SomeText, *, allow_substs: bool | SomeText = False) -> None:
         self.param_file = normalize_to_substitutions(param_file)
+        self.allow_substs = IfCondition(allow_substs)
 
 
 class Parameter(ParameterValue):
@@ -69,7 +71,26 @@ def arguments(context: LaunchContext, given: Iterable[Any]) -> Iterator[str]:
             path = perform_substitutions(context, source)
             if not Path(path).is_file():
                 raise LaunchError(f"the parameter file {path} does not exist")
-            yield from ("--params-file", path)
+            if isinstance(entry, ParameterFile) and entry.allow_substs.evaluate(context):
+                yield from _substituted_arguments(context, path)
+            else:
+                yield from ("--params-file", path)
+
+
+def _substituted_arguments(context: LaunchContext, path: str) -> Iterator[str]:
+    """What a file says once the substitutions in its text are made; no process writes files for another one."""
+    from kit.ros.launch.frontend.substitution_parser import SubstitutionSyntaxError, parse_substitutions
+    from kit.ros.parameters.parameter_files import read_parameter_file
+
+    def substitute(text: str) -> str:
+        try:
+            return perform_substitutions(context, parse_substitutions(text))
+        except SubstitutionSyntaxError as problem:
+            raise LaunchError(f"{path}: {problem}") from None
+
+    for node, parameters in read_parameter_file(path, substitute):
+        for each in parameters:
+            yield from ("-p", f"{node}:{each.name}:={to_argument_text(each.value)}")
 
 
 def flatten_parameters(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from enum import IntEnum
 from functools import total_ordering
 from typing import Any, overload
@@ -53,6 +54,23 @@ class Duration:
         if not isinstance(msg, DurationMessage):
             raise TypeError("Must pass a builtin_interfaces.msg.Duration object")
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec)
+
+    def __add__(self, other: object) -> Duration:
+        if not isinstance(other, Duration):
+            return NotImplemented
+        return Duration(nanoseconds=self._nanoseconds + other._nanoseconds)
+
+    def __sub__(self, other: object) -> Duration:
+        if not isinstance(other, Duration):
+            return NotImplemented
+        return Duration(nanoseconds=self._nanoseconds - other._nanoseconds)
+
+    def __mul__(self, other: object) -> Duration:
+        if not isinstance(other, (int, float)):
+            return NotImplemented
+        if other == math.inf:
+            return Infinite
+        return Duration(nanoseconds=self._nanoseconds * other)
 
     def __eq__(self, other: object) -> bool:
         return self._nanoseconds == _as_duration(other)._nanoseconds
@@ -130,6 +148,8 @@ class Time:
             self._same_clock(other, "subtract")
             return Duration(nanoseconds=self._nanoseconds - other._nanoseconds)
         if isinstance(other, Duration):
+            if other.nanoseconds > self._nanoseconds:
+                raise ValueError("Subtraction leads to negative time.")
             return self._at(self._nanoseconds - other.nanoseconds)
         return NotImplemented
 
@@ -147,8 +167,6 @@ class Time:
         return f"Time(nanoseconds={self._nanoseconds}, clock_type={self._clock_type.name})"
 
     def _at(self, nanoseconds: int) -> Time:
-        if not 0 <= nanoseconds <= _INT64_MAX:
-            raise OverflowError("Time leads to overflow: a time cannot be negative or beyond 292 years")
         return Time(nanoseconds=nanoseconds, clock_type=self._clock_type)
 
     def _same_clock(self, other: Time, verb: str) -> None:

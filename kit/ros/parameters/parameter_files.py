@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -57,10 +57,10 @@ def parse_value(text: str) -> Any:
     return "" if node is None else _value(node, source)
 
 
-def read_parameter_file(path: str) -> list[GivenParameters]:
+def read_parameter_file(path: str, substitute: Callable[[str], str] = str) -> list[GivenParameters]:
     """Reads the values of a YAML file, in its order: ``node: {ros__parameters: {name: value}}``, also with namespaces.
 
-    Raises InvalidRosArguments, naming file and line.
+    ``substitute`` changes the file's text first. Raises InvalidRosArguments, naming file and line.
     """
     try:
         text = Path(path).read_text(encoding="utf-8")
@@ -68,7 +68,7 @@ def read_parameter_file(path: str) -> list[GivenParameters]:
         reason = problem.strerror if isinstance(problem, OSError) else "it is not UTF-8 text"
         raise InvalidRosArguments(f"--params-file '{path}': {reason}") from None
     source = _TextSource(path)
-    root = _compose(text, source)
+    root = _compose(substitute(text), source)
     return [] if root is None else list(_node_parameters(root, "", source))
 
 
@@ -108,7 +108,11 @@ def _compose(text: str, source: _TextSource) -> YamlNode | None:
     try:
         return yaml.compose(text, Loader=yaml.SafeLoader)
     except yaml.MarkedYAMLError as problem:
-        raise source.error(problem.problem or "this is not YAML", problem.problem_mark) from None
+        from kit.world.yaml_tree import parser_mistake  # only where there is one
+
+        slip = parser_mistake(problem, text)
+        place = f":{slip.line}:{slip.column}" if source.is_file else ""
+        raise InvalidRosArguments(f"{source.name}{place}: {slip.message}") from None
     except yaml.YAMLError as problem:
         raise source.error(str(problem), None) from None
 
@@ -135,7 +139,10 @@ def _parameters(node: YamlNode, prefix: str, source: _TextSource) -> Iterator[Pa
 
 def _entries(node: YamlNode, source: _TextSource) -> Iterator[tuple[str, YamlNode]]:
     if not isinstance(node, MappingNode):
-        message = f"needs a mapping here: 'node: {{{PARAMETERS_KEY}: {{name: value}}}}'"
+        from kit.world.yaml_tree import missing_blank  # only where something is wrong
+
+        slip = missing_blank(node.value) if isinstance(node, ScalarNode) else None
+        message = slip or f"needs a mapping here: 'node: {{{PARAMETERS_KEY}: {{name: value}}}}'"
         raise source.error(message, node.start_mark)
     for key, value in node.value:
         if not isinstance(key, ScalarNode):

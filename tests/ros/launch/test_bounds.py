@@ -11,7 +11,7 @@ import pytest
 from kit.ros.launch.actions import LogInfo, OpaqueFunction
 from kit.ros.launch.bounds import MAX_ACTIONS, MAX_DEPTH, MAX_LOGGED, MAX_PROCESSES
 from kit.ros.launch.context import LaunchError
-from kit.ros.launch.description_sources import LaunchDescriptionSource
+from kit.ros.launch.description_sources import load_launch_file
 from kit.ros.launch.entity import LaunchDescription
 from kit.ros.launch.expressions import evaluate
 from kit.ros.launch.frontend.markup_reader import read_launch_description
@@ -123,10 +123,9 @@ def test_what_is_counted_begins_anew_with_each_answer(play: type[Play]) -> None:
 def test_an_expression_fails_with_its_own_words(tmp_path: Path) -> None:
     file = tmp_path / "a.launch.xml"
     file.write_text("<launch>\n<include file=\"$(eval '1/0')\"/></launch>")
-    description = LaunchDescriptionSource(str(file))
     service = LaunchService(str(file), {}, environment={})
     with pytest.raises(LaunchError, match="ZeroDivisionError") as caught:
-        service.start(description.load(service.context))
+        service.start(load_launch_file(service.context, str(file)))
     assert caught.value.location is not None
     assert caught.value.location.line == 2
 

@@ -10,7 +10,7 @@ import pytest
 from kit.launch.launch_file_process import LIMITS
 from kit.ros.launch import file_substitutions
 from kit.ros.launch.context import LaunchContext, LaunchError
-from kit.ros.launch.description_sources import LaunchDescriptionSource
+from kit.ros.launch.description_sources import load_launch_file
 from kit.ros.launch.frontend.markup_reader import read_launch_description
 from kit.ros.launch.frontend.substitution_parser import (
     SubstitutionSyntaxError,
@@ -172,7 +172,7 @@ def requests(file: Path, text: str) -> list[Any]:
     """What carrying the file out asks for, now and three seconds later; without the places in the file."""
     file.write_text(text)
     service = LaunchService(str(file), {}, environment={})
-    description = LaunchDescriptionSource(str(file)).load(service.context)
+    description = load_launch_file(service.context, str(file))
     found = [*service.start(description), *service.advance(3_000_000_000, [])]
     for _, *content in found:
         for part in content:
@@ -241,7 +241,7 @@ def test_three_languages_ask_for_the_same(suffix: str, text: str, tmp_path: Path
         ("a.launch.xml", "<launch><log message='a' if='1' unless='0'/></launch>", (1, "column 9", "both 'if'")),
         ("a.launch.xml", "<launch><log message='a'><env name='a' value='b'/></log></launch>", (1, "", "<env>")),
         ("a.launch.yaml", "launch:\n- nod: {pkg: a}\n", (2, "column 3", "did you mean <node>")),
-        ("a.launch.yaml", "launch:\n- node: {pkg: a, exec: b\n", (3, "column 1", "not YAML")),
+        ("a.launch.yaml", "launch:\n- node: {pkg: a, exec: b\n", (2, "column 9", "not closed")),
         ("a.launch.yaml", "- node: {pkg: a}\n", (1, "column 1", "starts with 'launch:'")),
         ("a.launch.yaml", "launch:\n- node\n", (2, "column 3", "a single key")),
         ("a.launch.yaml", "launch:\n- log: hello\n", (2, "column 3", "come below it")),

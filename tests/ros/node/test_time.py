@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 import threading
 import time
@@ -16,7 +17,7 @@ from kit.ros.execution.context import context_of, default_context
 from kit.ros.graph.graph import Graph
 from kit.ros.node.clock import Clock, JumpThreshold, ROSClock
 from kit.ros.node.node import create_graph_node
-from kit.ros.node.time import ClockType, Duration, Time
+from kit.ros.node.time import ClockType, Duration, Infinite, Time
 
 
 def test_seconds_and_nanoseconds_add_up() -> None:
@@ -58,8 +59,11 @@ def test_arithmetic() -> None:
     assert Time(seconds=7) - start == span
     assert start < start + span
     assert span > Duration()
-    with pytest.raises(OverflowError):
-        start - Duration(seconds=6)
+    for negative in (lambda: start - Duration(seconds=6), lambda: start + Duration(seconds=-6)):
+        with pytest.raises(ValueError, match="negative"):
+            negative()
+    assert (span + span - Duration(seconds=1)) * 2 == Duration(seconds=6)
+    assert span * math.inf == Infinite
     for wrong in (5, 1.0, start):
         with pytest.raises(TypeError):
             start + wrong

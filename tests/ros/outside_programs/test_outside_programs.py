@@ -14,6 +14,12 @@ MISTAKEN: Final = {
 }
 """Programs that do not do in ROS 2 what their author means either, and why."""
 
+NOT_DONE: Final = {
+    "01_time_machine": "publishes a /clock of its own, which no node's clock follows here",
+    "11_split_bag": "writes a bag in several files, which is refused",
+}
+"""Programs of what the kit does not do, and says so."""
+
 PROGRAMS: Final = [each for name in SETS for each in programs_of(name)]
 
 
@@ -22,4 +28,4 @@ PROGRAMS: Final = [each for name in SETS for each in programs_of(name)]
 @pytest.mark.parametrize("program", PROGRAMS, ids=lambda each: each.name)
 def test_a_program_does_what_its_author_means(program: OutsideProgram) -> None:
     complaints = run_program(program).complaints
-    assert bool(complaints) == (program.name in MISTAKEN), complaints
+    assert bool(complaints) == (program.name in MISTAKEN | NOT_DONE), complaints

@@ -7,6 +7,7 @@ import yaml
 from kit.ros.launch.bounds import MAX_ACTIONS, MAX_DEPTH, NESTED_TOO_DEEPLY
 from kit.ros.launch.context import LaunchError, LaunchFileLocation
 from kit.ros.launch.frontend.element import Element, Problems, TextPosition
+from kit.world.yaml_tree import parser_mistake
 
 ROOT = "launch"
 
@@ -20,9 +21,8 @@ def read_yaml(source: bytes, problems: Problems) -> Element:
     except UnicodeDecodeError:
         problems.add(TextPosition(1, 1), "this is not UTF-8 text")
     except yaml.MarkedYAMLError as problem:
-        mark = problem.problem_mark
-        place = TextPosition(1, 1) if mark is None else TextPosition(mark.line + 1, mark.column + 1)
-        problems.add(place, f"this is not YAML: {problem.problem}")
+        slip = parser_mistake(problem, source.decode("utf-8"))
+        problems.add(TextPosition(slip.line, slip.column), f"this is not YAML: {slip.message}")
     except yaml.YAMLError as problem:
         problems.add(TextPosition(1, 1), f"this is not YAML: {problem}")
     except RecursionError:

@@ -2,6 +2,10 @@
 
 # Made by: python -m tests.ros.import_names
 
-from kit.ros.node.endpoint import TopicEndpointInfo, TopicEndpointTypeEnum
+from kit.ros.node.endpoint import (
+    TopicEndpointInfo,
+    TopicEndpointTypeEnum as EndpointTypeEnum,
+    TopicEndpointTypeEnum,
+)
 
-__all__ = ["TopicEndpointInfo", "TopicEndpointTypeEnum"]
+__all__ = ["EndpointTypeEnum", "TopicEndpointInfo", "TopicEndpointTypeEnum"]

@@ -214,7 +214,11 @@ class League(JobFolder):
         share_drives(recordings, self.result_file(key), remarks)
 
     def record_loss(self, key: str) -> None:
-        """Writes nothing: a job that was lost waits for the next run."""
+        """Leaves nothing: a job that was lost waits for the next run. Raises OSError where no result can be written, on a
+        full disk, so that the others are not driven in vain."""
+        trial = self.result_file(key).with_suffix(".trial")
+        write_atomically(trial, bytes(4096))
+        trial.unlink()
 
     # Results
 
