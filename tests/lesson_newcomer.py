@@ -401,19 +401,17 @@ class ScreenNewcomer(Newcomer):
             assert b"Traceback" not in self.user.output[began:]
 
     def _read_output(self, began: int) -> None:
-        """What a command printed, below which one goes back with Enter; or, where it is long, on pages of its own. A
-        training has a screen of its own, which is left once it has finished."""
+        """What a command printed, on a page of its own. A training has a screen of its own, which is left once it has
+        finished."""
 
         def has_finished() -> bool:
             return self.user.modes.alternate and " finished " in f"{self.rows[0]} "
 
-        self.wait(
-            lambda: b"Enter goes back." in self.user.output[began:] or self.shows("scroll") or has_finished(),
-            "the end of the command",
-        )
-        if b"Enter goes back." in self.user.output[began:]:
-            self.type(KEYS["Enter"])
-        elif has_finished():
+        def is_told() -> bool:
+            return self.user.modes.alternate and self.rows[0].startswith(("kit ", "grader "))
+
+        self.wait(lambda: is_told() or has_finished(), "the end of the command")
+        if has_finished():
             self.type(KEYS["Esc"])
         else:
             self.press("back")

@@ -133,6 +133,8 @@ def _placed_rows(block: Block, page: Page) -> list[Row]:
             return _code_rows(block, page)
         case Marked():
             return _marked_rows(block, page)
+        case Picture() if max(map(len, block.lines), default=0) > page.width:
+            return _block_rows(block, page)  # made for the whole width
         case _:
             return [(row(margin) + each if margin and each else each) for each in _block_rows(block, page)]
 

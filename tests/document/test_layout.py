@@ -38,6 +38,12 @@ def test_a_picture_has_its_tone() -> None:
     assert rows_of([Picture(("| x",), 5, Tone.DIM)], Page()) == [(("     | x", Tone.DIM),)]
 
 
+def test_a_picture_as_wide_as_the_screen_has_no_margin() -> None:
+    page = Page(width=20, margin=2)
+    assert lines_of([Picture(("x" * 20,), indent=0)], page) == [" " * 2 + "x" * 20]
+    assert lines_of([Picture(("short", "x" * 24), indent=0)], page) == ["short", "x" * 24]
+
+
 @pytest.mark.parametrize("width", [14, 40])
 def test_code_in_a_sentence_has_its_tone_on_a_screen_and_its_marks_where_there_are_no_tones(
     width: int,
