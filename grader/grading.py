@@ -496,8 +496,12 @@ class Grading:
             return text if first is None else f"{SAME_MISTAKE} “{first.title}”."
         check = self._checks[criterion.check]
         if worst.measure is None:
-            title = self._criterion(criterion.after or criterion.id).title
-            return f"{evidence.label} does not count here: “{title}” comes first."
+            text = f"{evidence.label} does not count here: “{self._lost_first(criterion, evidence).title}” comes first."
+            return (
+                f"{evidence.label} does not count here either."
+                if self._shown_before(criterion, text)
+                else text
+            )
         text = criterion.feedback.format(
             actual=check.format(worst.measure, beside=criterion.anchors.full),
             full=check.format(criterion.anchors.full),
@@ -514,6 +518,15 @@ class Grading:
             return text
         return f"{text} {explanation}".strip()
 
+    def _lost_first(self, criterion: Criterion, evidence: Evidence) -> Criterion:
+        """Returns the first of those that a criterion comes after which this evidence has not earned in full."""
+        if criterion.after is None:
+            return criterion
+        before = self._criterion(criterion.after)
+        earlier = self._lost_first(before, evidence)
+        is_lost = any(each.evidence is evidence and each.share < 1.0 for each in self._score(earlier))
+        return earlier if is_lost else before
+
     def _what_differs(self, criterion: Criterion, shown: Sequence[_ScoredEvidence]) -> str:
         """Says of points that secret evidence alone has lost, which is shown, what may be the reason; once, and not to a teacher."""
         secret = [each for each in shown if each.evidence.secret]
@@ -529,7 +542,9 @@ class Grading:
 
     def _hints(self, criterion: Criterion, rationale: str, worst: _ScoredEvidence | None) -> tuple[str, ...]:
         """Returns the criterion's hints, that for the mistake that was made first; none where a file with data cannot be
-        read, or the mistake was described before: then that is all there is to mend."""
+        read, the mistake was described before, or what comes before was lost: then that is all there is to mend."""
+        if worst is not None and worst.failure is None and worst.measure is None:
+            return ()
         if worst is None or worst.evidence.secret:
             return criterion.hints
         if worst.failure is not None and (
