@@ -524,8 +524,7 @@ class Grading:
             return criterion
         before = self._criterion(criterion.after)
         earlier = self._lost_first(before, evidence)
-        is_lost = any(each.evidence is evidence and each.share < 1.0 for each in self._score(earlier))
-        return earlier if is_lost else before
+        return earlier if self._score_counterpart(earlier, evidence).share < 1.0 else before
 
     def _what_differs(self, criterion: Criterion, shown: Sequence[_ScoredEvidence]) -> str:
         """Says of points that secret evidence alone has lost, which is shown, what may be the reason; once, and not to a teacher."""
