@@ -46,6 +46,7 @@ from kit.layers.requirements import (
 from kit.layers.requirements_file import read_requirements
 from kit.plain_text import quoted, suggestion
 from kit.world.problems import WorldError
+from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
 MAX_ENTRIES: Final = 64
@@ -99,7 +100,7 @@ def few_layers(evidence: EvidenceRecord, params: NoParams) -> float:
 @check(none=0, full=1, unit="lines")
 def proof(evidence: EvidenceRecord, params: NoParams) -> float:
     """A proof is a list of things that must happen, no two of which fit one layer: then each needs a layer of its
-    own. Yours proves {actual}; {full} are wanted."""
+    own. Of yours {actual} count; {full} are wanted."""
     plan: SubmittedPlan = evidence.content
     return 0.0 if _faults_of_proof(plan) else float(len(plan.proof))
 
@@ -158,20 +159,30 @@ def _read_plan(section: Section, case: LayerCase) -> SubmittedPlan:
         if laser not in case.laser:
             watched.error(f"no laser {quoted(laser)}: {suggestion(laser, tuple(case.laser))}", laser)
         watches[laser] = _known_names(watched, laser, names, "layer of yours")
-    lines_given = () if section.is_blank("proof") else section.texts("proof", ())
-    lines = [(_requirement(line), section.location_of("proof", item=n)) for n, line in enumerate(lines_given)]
-    if max(len(layers), len(lines)) > MAX_ENTRIES:
+    proof, faults = _read_proof(section, case)
+    if max(len(layers), len(proof) + len(faults)) > MAX_ENTRIES:
         section.error(f"at most {MAX_ENTRIES} layers and {MAX_ENTRIES} lines of proof")
-    return SubmittedPlan(
-        case,
-        Plan(tuple(layers), watches),
-        tuple(dict.fromkeys(each for each, _ in lines if each in case.requirements)),
-        tuple(
-            f"{replace(at, file=Path(at.file.name))}: {_fault_of_line(each, case)}"
-            for each, at in lines
-            if each not in case.requirements
-        ),
-    )
+    return SubmittedPlan(case, Plan(tuple(layers), watches), proof, faults)
+
+
+def _read_proof(section: Section, case: LayerCase) -> tuple[tuple[Requirement, ...], tuple[str, ...]]:
+    """Returns the lines that must happen, each once, and what is wrong with the others."""
+    if section.is_blank("proof"):
+        return (), ()
+    if not section.is_list("proof"):
+        return (), (_at(section.location_of("proof"), "write a list, [one - other, laser sees thing]"),)
+    lines = [_requirement(line) for line in section.texts("proof")]
+    faults = [
+        _at(section.location_of("proof", item=number), _fault_of_line(each, case))
+        for number, each in enumerate(lines)
+        if each not in case.requirements
+    ]
+    return tuple(dict.fromkeys(each for each in lines if each in case.requirements)), tuple(faults)
+
+
+def _at(location: SourceLocation, fault: str) -> str:
+    """A fault with its place in the file, whose folder means nothing to its author."""
+    return f"{replace(location, file=Path(location.file.name))}: {fault}"
 
 
 def _subsection(section: Section, key: str) -> Section | None:

@@ -126,6 +126,12 @@ def test_a_line_that_proves_nothing_is_named_and_costs_the_proof_alone(
     assert told in proof.rationale
 
 
+def test_a_proof_that_is_no_list_costs_the_proof_alone(folder: Path) -> None:
+    *others, proof = graded(folder, GOOD.replace("[robot - walls, walls - drone]", "robot - walls")).tests
+    assert all(test.is_passed for test in others)
+    assert "write a list" in proof.rationale
+
+
 def test_an_example_of_the_kit_can_be_the_case(folder: Path) -> None:
     (folder / "secret.yaml").write_text("case: drone\n")
     assert read_assignment(folder).task.names
