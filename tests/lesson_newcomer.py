@@ -598,22 +598,28 @@ class LineNewcomer(Newcomer):
         assert self.user.wait() == 0
 
 
+def as_shown(text: str) -> str:
+    """Words as they stand in a row, without the marks of code, which screens replace by a tone."""
+    return " ".join(text.replace("`", "").split())
+
+
 def asked_item(items: Sequence[QuizItem], text: str) -> QuizItem:
     """The question that stands in a text. Two may have the same words, but not the same picture and options."""
+    text = as_shown(text)
     return next(
         each
         for each in items
-        if " ".join(each.question.split())[:60] in text
-        and " ".join(" ".join(each.picture).split()) in text
-        and all(" ".join(option.text.split())[:20] in text for option in each.options)
+        if as_shown(each.question)[:60] in text
+        and as_shown(" ".join(each.picture)) in text
+        and all(as_shown(option.text)[:20] in text for option in each.options)
     )
 
 
 def number_of_option(item: QuizItem, rows: Sequence[str]) -> str:
     """The number that stands before the right answer."""
-    right = " ".join(item.options[item.right_option].text.split())
+    right = as_shown(item.options[item.right_option].text)
     found = (re.match(r"\s*(\d)  (\S.*)$", row) for row in rows)
-    return next(each[1] for each in found if each and right.startswith(each[2].rstrip()))
+    return next(each[1] for each in found if each and right.startswith(as_shown(each[2])))
 
 
 def missing_follow_ups(lesson: Lesson, text: str) -> list[str]:
