@@ -142,6 +142,7 @@ class Grading:
             kind = find_kind(assignment.kind)
         self._checks, self._seed_decides = kind.checks, kind.seed_decides
         self._scored: dict[str, tuple[_ScoredEvidence, ...]] = {}
+        self._public_scored: dict[str, tuple[_ScoredEvidence, ...]] = {}
         self._tests: dict[str, CriterionResult] = {}
         self._counterexamples: dict[str, _ScoredEvidence | None] = {}
         self._tried_counts: dict[str, int] = {}
@@ -275,7 +276,6 @@ class Grading:
         return next((each for each in seen if not each.secret), None)
 
     def _judge(self, criterion: Criterion) -> CriterionResult:
-        scored = self._score(criterion)
         blank = CriterionResult(
             criterion.id,
             criterion.title,
@@ -284,6 +284,9 @@ class Grading:
             criterion.points,
             criterion.visibility,
         )
+        if self._looks_afterwards and not self._is_its_turn(criterion):
+            return self._not_its_turn(criterion, blank)
+        scored = self._score(criterion)
         if not scored or (criterion.after is not None and not self._score(self._criterion(criterion.after))):
             return replace(blank, rationale="Graded with secret seeds when you hand in.")
         broken = next(
@@ -291,9 +294,8 @@ class Grading:
         )
         if broken is not None:
             return self._broken_result(criterion, str(broken.failure))
-        if criterion.after is not None and not self._is_its_turn(criterion):
-            title = self._criterion(criterion.after).title
-            return replace(blank, rationale=NOT_ITS_TURN.format(title), depends_on=criterion.after)
+        if not self._is_its_turn(criterion):
+            return self._not_its_turn(criterion, blank)
         share = _earned_share(criterion, scored)
         full = share == 1.0
         shown = self._public_evidence(criterion, scored, full=full)
@@ -324,6 +326,11 @@ class Grading:
             uses_secrets=any(each.evidence.secret for each in scored),
             teacher_note="" if full else self._teacher_note(criterion, scored),
         )
+
+    def _not_its_turn(self, criterion: Criterion, blank: CriterionResult) -> CriterionResult:
+        assert criterion.after is not None  # else it is always its turn
+        title = self._criterion(criterion.after).title
+        return replace(blank, rationale=NOT_ITS_TURN.format(title), depends_on=criterion.after)
 
     def _is_its_turn(self, criterion: Criterion) -> bool:
         """Whether every criterion that it comes after, one behind the other, was earned in full in some episode: they may be
@@ -367,7 +374,8 @@ class Grading:
         self._has_run_public = True
         with reading_submission(self.submission.name, AuthorCodeError):
             for criterion in self.assignment.criteria:
-                self._collector.public_evidence(criterion)
+                if self._may_get_its_turn(criterion):
+                    self._collector.public_evidence(criterion)
             if self._examples and self._secret and self._collector.collected():
                 self._clock.show_progress(f"{PUBLIC_CASES}{self._public_verdict()}")
         if not self._examples or self._looks_afterwards:
@@ -393,15 +401,27 @@ class Grading:
         )
 
     def _score_public(self, criterion: Criterion) -> tuple[_ScoredEvidence, ...]:
-        """Scores the public evidence of a criterion alone."""
-        full: dict[int, bool] = {}
-        if criterion.after is not None:
-            before = self._score_public(self._criterion(criterion.after))
+        """Scores the public evidence of a criterion alone, once."""
+        if criterion.id not in self._public_scored:
+            before = () if criterion.after is None else self._score_public(self._criterion(criterion.after))
             full = {id(each.evidence): each.share == 1.0 for each in before}
-        return tuple(
-            self._score_evidence(criterion, each, is_ready=full.get(id(each), True))
-            for each in self._collector.public_evidence(criterion)
-        )
+            self._public_scored[criterion.id] = (
+                tuple(
+                    self._score_evidence(criterion, each, is_ready=full.get(id(each), True))
+                    for each in self._collector.public_evidence(criterion)
+                )
+                if self._may_get_its_turn(criterion)
+                else tuple(replace(each, share=0.0) for each in before)
+            )
+        return self._public_scored[criterion.id]
+
+    def _may_get_its_turn(self, criterion: Criterion) -> bool:
+        """Whether what a criterion comes after may still be earned, by its public evidence. In a student's own check, who mends
+        that first, nothing else is run."""
+        if criterion.after is None or not self._looks_afterwards:
+            return True
+        public = self._score_public(self._criterion(criterion.after))
+        return not public or any(each.share == 1.0 for each in public)
 
     def _find_counterexample(self, criterion: Criterion) -> _ScoredEvidence | None:
         """Returns the first public counterpart that loses points; None if all that the collector makes earn everything."""
@@ -476,8 +496,12 @@ class Grading:
             return text if first is None else f"{SAME_MISTAKE} “{first.title}”."
         check = self._checks[criterion.check]
         if worst.measure is None:
-            title = self._criterion(criterion.after or criterion.id).title
-            return f"{evidence.label} does not count here: “{title}” comes first."
+            text = f"{evidence.label} does not count here: “{self._lost_first(criterion, evidence).title}” comes first."
+            return (
+                f"{evidence.label} does not count here either."
+                if self._shown_before(criterion, text)
+                else text
+            )
         text = criterion.feedback.format(
             actual=check.format(worst.measure, beside=criterion.anchors.full),
             full=check.format(criterion.anchors.full),
@@ -494,6 +518,14 @@ class Grading:
             return text
         return f"{text} {explanation}".strip()
 
+    def _lost_first(self, criterion: Criterion, evidence: Evidence) -> Criterion:
+        """Returns the first of those that a criterion comes after which this evidence has not earned in full."""
+        if criterion.after is None:
+            return criterion
+        before = self._criterion(criterion.after)
+        earlier = self._lost_first(before, evidence)
+        return earlier if self._score_counterpart(earlier, evidence).share < 1.0 else before
+
     def _what_differs(self, criterion: Criterion, shown: Sequence[_ScoredEvidence]) -> str:
         """Says of points that secret evidence alone has lost, which is shown, what may be the reason; once, and not to a teacher."""
         secret = [each for each in shown if each.evidence.secret]
@@ -509,7 +541,9 @@ class Grading:
 
     def _hints(self, criterion: Criterion, rationale: str, worst: _ScoredEvidence | None) -> tuple[str, ...]:
         """Returns the criterion's hints, that for the mistake that was made first; none where a file with data cannot be
-        read, or the mistake was described before: then that is all there is to mend."""
+        read, the mistake was described before, or what comes before was lost: then that is all there is to mend."""
+        if worst is not None and worst.failure is None and worst.measure is None:
+            return ()
         if worst is None or worst.evidence.secret:
             return criterion.hints
         if worst.failure is not None and (

@@ -401,19 +401,17 @@ class ScreenNewcomer(Newcomer):
             assert b"Traceback" not in self.user.output[began:]
 
     def _read_output(self, began: int) -> None:
-        """What a command printed, below which one goes back with Enter; or, where it is long, on pages of its own. A
-        training has a screen of its own, which is left once it has finished."""
+        """What a command printed, on a page of its own. A training has a screen of its own, which is left once it has
+        finished."""
 
         def has_finished() -> bool:
             return self.user.modes.alternate and " finished " in f"{self.rows[0]} "
 
-        self.wait(
-            lambda: b"Enter goes back." in self.user.output[began:] or self.shows("scroll") or has_finished(),
-            "the end of the command",
-        )
-        if b"Enter goes back." in self.user.output[began:]:
-            self.type(KEYS["Enter"])
-        elif has_finished():
+        def is_told() -> bool:
+            return self.user.modes.alternate and self.rows[0].startswith(("kit ", "grader "))
+
+        self.wait(lambda: is_told() or has_finished(), "the end of the command")
+        if has_finished():
             self.type(KEYS["Esc"])
         else:
             self.press("back")
@@ -600,22 +598,28 @@ class LineNewcomer(Newcomer):
         assert self.user.wait() == 0
 
 
+def as_shown(text: str) -> str:
+    """Words as they stand in a row, without the marks of code, which screens replace by a tone."""
+    return " ".join(text.replace("`", "").split())
+
+
 def asked_item(items: Sequence[QuizItem], text: str) -> QuizItem:
     """The question that stands in a text. Two may have the same words, but not the same picture and options."""
+    text = as_shown(text)
     return next(
         each
         for each in items
-        if " ".join(each.question.split())[:60] in text
-        and " ".join(" ".join(each.picture).split()) in text
-        and all(" ".join(option.text.split())[:20] in text for option in each.options)
+        if as_shown(each.question)[:60] in text
+        and as_shown(" ".join(each.picture)) in text
+        and all(as_shown(option.text)[:20] in text for option in each.options)
     )
 
 
 def number_of_option(item: QuizItem, rows: Sequence[str]) -> str:
     """The number that stands before the right answer."""
-    right = " ".join(item.options[item.right_option].text.split())
+    right = as_shown(item.options[item.right_option].text)
     found = (re.match(r"\s*(\d)  (\S.*)$", row) for row in rows)
-    return next(each[1] for each in found if each and right.startswith(each[2].rstrip()))
+    return next(each[1] for each in found if each and right.startswith(as_shown(each[2])))
 
 
 def missing_follow_ups(lesson: Lesson, text: str) -> list[str]:

@@ -134,13 +134,12 @@ def _own_starts(file: Path, level: str | None, *, for_student: bool) -> Abstract
 
 def _report(result: GradingResult, format_name: str, hints: int, picture: str) -> str:
     from grader.reports import FORMATS
+
+    if format_name != "text":
+        return FORMATS[format_name].write(result)
     from grader.reports.formats.text_report import write_text
 
-    return (
-        write_text(result, hints=hints) + picture
-        if format_name == "text"
-        else FORMATS[format_name].write(result)
-    )
+    return write_text(result, hints=hints) + picture
 
 
 def _worst_picture(grading: Grading, replay: Path | None) -> str:

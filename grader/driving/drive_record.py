@@ -40,6 +40,8 @@ MOTION_CHECKS = frozenset(
     {"moves", "gets_about", "circle", "reached", "in_time", "approach", "comes_by", "comes_back", "faces"}
 )
 """Checks of where the robot comes, which nothing but a command brings about."""
+DISTANCE_CHECKS = frozenset({"moves", "gets_about"})
+"""Checks of how far the robot gets."""
 COMMAND = "geometry_msgs/msg/Twist"
 NO_COMMAND = "It published no command at all: what is computed must be published, too."
 NO_CIRCLE = "It hardly moves, or drives along a line: a circle is asked for."
@@ -201,6 +203,8 @@ class GradedDrive:
         if check == "circle":
             fit = self.fit_circle(params.after)
             return NO_CIRCLE if fit is None else fit.describe(params.radius, params.turning)
+        if check in DISTANCE_CHECKS and self.bump_ticks:
+            return f"It touches something after {self.bump_ticks[0] * self.recording.step_size:.1f} s."
         topics = self._topic_mistakes(params.topics) if check == "topics" else ()
         counts = self._counts(check, params) if check in COUNTED_CHECKS and params is not None else ()
         return " ".join([*counts, *self._idle_timers(), *topics, *self.connections.mistakes])

@@ -164,9 +164,14 @@ class SingleEvidence:
         collect: Callable[[], Evidence],
         level: Level,
         collect_counterpart: Callable[[], Evidence] | None = None,
+        *,
+        runs_program: bool = True,
     ) -> None:
-        """``collect_counterpart``: collects the same with the public seeds, where what ``collect`` collects is secret."""
+        """``collect_counterpart``: collects the same with the public seeds, where what ``collect`` collects is secret.
+        ``runs_program``: whether a program of the submission's runs. If not, whoever checks their own work is shown the secret
+        evidence itself, and nothing is collected twice."""
         self.level = level
+        self._has_counterpart = runs_program or level is not Level.LIMITED
         self._collect = collect
         self._evidence: Evidence | None = None
         self._collect_counterpart = collect_counterpart
@@ -184,7 +189,7 @@ class SingleEvidence:
         return () if self._evidence is None else (self._evidence,)
 
     def counterparts(self, criterion: Criterion) -> Iterator[Evidence]:
-        if self._collect_counterpart is None:
+        if self._collect_counterpart is None or not self._has_counterpart:
             return
         if self._counterpart is None:
             self._counterpart = self._collect_counterpart()

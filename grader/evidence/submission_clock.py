@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -29,8 +28,6 @@ SHOWN_TESTS: Final = 2
 DRIVE_KIND: Final = ", drive"
 """Ends the part before the first colon of a text that is to be drawn, and not to be read."""
 TRAINING: Final = "training "
-PUBLIC: Final = "public "
-"""Begins the title of a training that is made once more, with a seed that may be shown."""
 REPORTS: Final = 50
 """How often the steps of one training are shown, about."""
 
@@ -60,16 +57,6 @@ class SubmissionClock:
     def end_condition(self) -> EndCondition:
         """Ends an episode as soon as the time is used up."""
         return when(lambda: self.is_used_up)
-
-    @contextmanager
-    def public_again(self) -> Iterator[None]:
-        """In the block, trainings are shown as made once more with public seeds, after secret ones that lost points."""
-        show = self.show_progress
-        self.show_progress = lambda text: show(f"{PUBLIC}{text}" if text.startswith(TRAINING) else text)
-        try:
-            yield
-        finally:
-            self.show_progress = show
 
     def check(self) -> None:
         """Raises StudentCodeError if the time is used up."""

@@ -123,24 +123,22 @@ def read_submitted_yaml(file: Path, make: Callable[[Section], Parsed]) -> Parsed
 
 def collect_once(
     collect_evidence: Callable[[Assignment, Path, EvidenceOptions], EvidenceRecord],
+    *,
+    runs_program: bool = True,
 ) -> Callable[..., AbstractContextManager[EvidenceCollector]]:
     """Makes a ``SubmissionKind.collect`` for a kind with one piece of evidence. Where that is made with a secret seed, the
-    public counterpart is collected too when somebody asks for it."""
+    public counterpart is collected too when somebody asks for it. ``runs_program``: see ``SingleEvidence``."""
 
     def collect(
         assignment: Assignment, file: Path, options: EvidenceOptions
     ) -> AbstractContextManager[EvidenceCollector]:
         public = replace(options, secret=False)
         is_secret = options.secret and bool(assignment.secret_seeds)
-
-        def collect_counterpart() -> EvidenceRecord:
-            with options.clock.public_again():
-                return collect_evidence(assignment, file, public)
-
         collected = SingleEvidence(
             lambda: collect_evidence(assignment, file, options),
             options.level,
-            collect_counterpart if is_secret else None,
+            (lambda: collect_evidence(assignment, file, public)) if is_secret else None,
+            runs_program=runs_program,
         )
         return nullcontext(collected)
 

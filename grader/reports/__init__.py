@@ -2,18 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from importlib import import_module
 from pkgutil import iter_modules
-from types import MappingProxyType
 from typing import Final
 
 from grader.reports import formats
 from grader.reports.report_format import ReportFormat
 
-_FOUND: Final[list[ReportFormat]] = [
-    import_module(f"{formats.__name__}.{module.name}").FORMAT for module in iter_modules(formats.__path__)
-]
 
-FORMATS: Final[Mapping[str, ReportFormat]] = MappingProxyType({each.name: each for each in _FOUND})
+class _Formats(Mapping[str, ReportFormat]):
+    """Each is imported when it is asked for: most need more of the kit than the one that a check writes."""
+
+    def __init__(self) -> None:
+        self._modules = {
+            each.name.removesuffix("_report"): each.name for each in iter_modules(formats.__path__)
+        }
+
+    def __getitem__(self, name: str) -> ReportFormat:
+        found: ReportFormat = import_module(f"{formats.__name__}.{self._modules[name]}").FORMAT
+        return found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._modules)
+
+    def __len__(self) -> int:
+        return len(self._modules)
+
+
+FORMATS: Final[Mapping[str, ReportFormat]] = _Formats()
 """Every format by its name on the command line."""

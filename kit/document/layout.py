@@ -90,7 +90,7 @@ def lines_of(blocks: Sequence[Block], page: Page = HEARD) -> list[str]:
 
 def document_lines(document: Document, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Iterator[str]:
     """A whole document, line by line, 79 columns wide."""
-    page = Page(glyphs=glyphs)
+    page = Page(is_heard=True, glyphs=glyphs)
     yield from wrap(printable_line(document.title), WIDTH)
     for chapter in document.chapters:
         title = printable_line(chapter.title)
@@ -99,7 +99,28 @@ def document_lines(document: Document, glyphs: PlotGlyphs = BLOCK_GLYPHS) -> Ite
 
 
 def block_rows(block: Block, page: Page) -> list[Row]:
-    """The rows of one block."""
+    """The rows of one block. What is read line by line keeps the marks of code in sentences, for it has no tones."""
+    made = _placed_rows(block, page)
+    return _toned_code(made) if isinstance(block, (Text, Choices, KeyLine)) and not page.is_heard else made
+
+
+def _toned_code(rows: list[Row]) -> list[Row]:
+    """Gives `code` in sentences its tone instead of its marks, as in marked text; nothing where a mark has no second one."""
+    marks = sum(text.count("`") for each in rows for text, _ in each)
+    if not marks or marks % 2:
+        return rows
+    made, is_code = [], False
+    for each in rows:
+        parts: list[StyledText] = []
+        for text, tone in each:
+            for number, piece in enumerate(text.split("`")):
+                is_code ^= number > 0
+                parts.append((piece, Tone.CODE if is_code and piece.strip() else tone))
+        made.append(_parts(*parts))
+    return made
+
+
+def _placed_rows(block: Block, page: Page) -> list[Row]:
     margin = " " * page.margin
     match block:
         case Choices():
@@ -112,6 +133,8 @@ def block_rows(block: Block, page: Page) -> list[Row]:
             return _code_rows(block, page)
         case Marked():
             return _marked_rows(block, page)
+        case Picture() if max(map(len, block.lines), default=0) > page.width:
+            return _block_rows(block, page)  # made for the whole width
         case _:
             return [(row(margin) + each if margin and each else each) for each in _block_rows(block, page)]
 

@@ -70,13 +70,14 @@ def criterion_blocks(
     if criterion.is_passed:
         return blocks
     blocks.append(_paragraph(_shorten(criterion.rationale, MAX_RATIONALE)))
-    if any(map(str.isdigit, criterion.actual)):  # words alone say no more than the title
+    # Words alone say no more than the title, and a share of all cases no more than the points.
+    if any(map(str.isdigit, criterion.actual)) and criterion.expected != EVERYTHING:
         is_said = criterion.actual in criterion.rationale
         values = (("expected:", criterion.expected), ("actual:  ", criterion.actual))
         blocks += [
             _paragraph(_shorten(text), Tone.DIM, lead=name)
             for name, text in values
-            if text and not (is_said and (text in criterion.rationale or text == EVERYTHING))
+            if text and not (is_said and text in criterion.rationale)
         ]
     of = len(criterion.hints)
     blocks += [

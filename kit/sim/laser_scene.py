@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from array import array
 from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 
@@ -166,8 +167,10 @@ class Scanner:
     def _look_up(self) -> None:
         self._shapes_version = self._physics.shapes_version
         self._walls, self._visible = self._scene.visible(*self._layers)
-        corners = kernels.most_corners(self._visible.shapes.world.starts)
-        self._buffers = kernels.allocate_scan_buffers(self._beams.lines, corners)
+        corners = int(np.diff(self._visible.shapes.world.starts).max(initial=0))
+        # As Python: it is called once, and its machine code takes longer to load.
+        allocate: Any = kernels.allocate_scan_buffers
+        self._buffers = allocate.py_func(self._beams.lines, corners)
 
 
 def footprint_outlines(bodies: Iterable[PhysicalBody]) -> tuple[FootprintOutline, ...]:

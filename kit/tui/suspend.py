@@ -25,8 +25,7 @@ def run_aside(
 ) -> str | None:
     """Runs a command in the terminal and comes back when it ends; None where that is not possible.
 
-    ``folder``: where it runs. ``waits``: until Enter, so that what it printed can be read. Where that was more than
-    the terminal shows, it comes back at once and returns what was printed, to be looked at page by page; else "".
+    ``folder``: where it runs. ``waits``: whether what it printed is to be read: then it is returned; else "".
     """
     arguments = arguments_of(line)
     if arguments is None:

@@ -102,18 +102,18 @@ class Section:
         """Every key written in the file, in order."""
         return tuple(self._entries)
 
-    def location_of(self, key: str) -> SourceLocation:
-        """Returns the location of the key's value; that of the section if the key is missing."""
-        entry = self._entries.get(key)
-        return self.location if entry is None else entry.value.location
+    def location_of(self, key: str, *, item: int | None = None) -> SourceLocation:
+        """Returns the location of the key's value, or of an item of its list; that of the section if the key is missing."""
+        if key not in self._entries:
+            return self.location
+        value = self._entries[key].value
+        if isinstance(value, ListNode) and item is not None and item < len(value.items):
+            return value.items[item].location
+        return value.location
 
     def error(self, message: str, key: str | None = None, *, item: int | None = None) -> None:
         """Notes a problem at the key's value, or at the section. ``item``: at that item of the key's list."""
-        location = self.location if key is None else self.location_of(key)
-        value = self._entries[key].value if key in self._entries and key is not None else None
-        if isinstance(value, ListNode) and item is not None and item < len(value.items):
-            location = value.items[item].location
-        self._report(message, location)
+        self._report(message, self.location if key is None else self.location_of(key, item=item))
 
     def text(
         self, key: str, default: str | Required = REQUIRED, *, choices: Collection[str] | None = None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from kit.document.blocks import Picture, Text, Tone, labelled_table
+from kit.document.blocks import Choice, Choices, Picture, Text, Tone, labelled_table
 from kit.document.layout import Page, lines_of, rows_of
 
 
@@ -36,3 +36,27 @@ def test_the_rows_of_a_table_stand_below_its_title() -> None:
 
 def test_a_picture_has_its_tone() -> None:
     assert rows_of([Picture(("| x",), 5, Tone.DIM)], Page()) == [(("     | x", Tone.DIM),)]
+
+
+def test_a_picture_as_wide_as_the_screen_has_no_margin() -> None:
+    page = Page(width=20, margin=2)
+    assert lines_of([Picture(("x" * 20,), indent=0)], page) == [" " * 2 + "x" * 20]
+    assert lines_of([Picture(("short", "x" * 24), indent=0)], page) == ["short", "x" * 24]
+
+
+@pytest.mark.parametrize("width", [14, 40])
+def test_code_in_a_sentence_has_its_tone_on_a_screen_and_its_marks_where_there_are_no_tones(
+    width: int,
+) -> None:
+    text = "Try `kit task show turn` first."
+    for block in (Text(text, Tone.DIM), Choices((Choice("1", text),))):
+        coded = [
+            part for each in rows_of([block], Page(width=width)) for part in each if part[1] is Tone.CODE
+        ]
+        assert "".join("".join(part for part, _ in coded).split()) == "kittaskshowturn"
+        assert "`" not in "".join(lines_of([block], Page(width=width)))
+        assert "`kit" in "".join(lines_of([block], Page(width=width, is_heard=True)))
+
+
+def test_a_single_mark_is_a_character_as_others() -> None:
+    assert rows_of([Text("the key ` is free")], Page()) == [(("the key ` is free", Tone.PLAIN),)]

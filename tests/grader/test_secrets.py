@@ -545,6 +545,47 @@ def test_nothing_that_a_student_reads_of_is_run_after_a_secret_run(
     assert ("It returns what it should in 0 %" in result.tests[0].rationale) == (is_lost and examples)
 
 
+class RunsOfCriteria(MeasuredOnly):
+    """A collector with one public piece of evidence for each criterion, that of the first wrong in so many cases."""
+
+    def __init__(self, wrong: int) -> None:
+        self._wrong = wrong
+        self.run: dict[str, EvidenceRecord] = {}
+
+    def evidence(self, criterion: Criterion) -> Sequence[EvidenceRecord]:
+        is_first = criterion.after is None
+        return [self.run.setdefault(criterion.id, comparison(self._wrong if is_first else 0))]
+
+    def public_evidence(self, criterion: Criterion) -> Sequence[EvidenceRecord]:
+        return self.evidence(criterion)
+
+    def collected(self) -> Sequence[EvidenceRecord]:
+        return list(self.run.values())
+
+
+@pytest.mark.parametrize(
+    ("wrong", "statuses", "run"),
+    [
+        (10_000, ["fail", "skipped", "skipped"], ["one"]),
+        (0, ["pass", "pass", "pass"], ["one", "two", "three"]),
+    ],
+)
+def test_an_own_check_runs_nothing_for_a_criterion_whose_turn_has_not_come(
+    function_assignment: Assignment, wrong: int, statuses: list[str], run: list[str]
+) -> None:
+    """Nor for the one that comes after it."""
+    first = function_assignment.criteria[0]
+    criteria = tuple(
+        replace(first, id=name, after=after)
+        for name, after in (("one", None), ("two", "one"), ("three", "two"))
+    )
+    assignment = replace(function_assignment, criteria=criteria)
+    collector, work = RunsOfCriteria(wrong), Submission("ada", "scans.py", {"scans.py": b""})
+    grading = Grading(assignment, work, collector, secret=True, clock=SubmissionClock(), examples=True)
+    assert [each.status.value for each in grading.result().tests] == statuses
+    assert list(collector.run) == run
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("kind", ["controller", "function", "launch", "environment"])
 def test_every_kind_that_runs_programs_tells_public_evidence_from_secret(kind: str, tmp_path: Path) -> None:

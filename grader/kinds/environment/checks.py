@@ -16,6 +16,7 @@ from grader.kinds.environment.examination import (
     sector_minima,
 )
 from kit.geometry import Pose, wrap_angle
+from kit.plain_text import counted
 
 SECTORS: Final = 9
 MAX_START_OFFSET: Final = (0.15, 0.35)
@@ -104,6 +105,12 @@ def _has_acted(record: EnvironmentRecord) -> bool:
     return any(not step.collided and not _move_complaint(step, record) for step in record.step_records)
 
 
+def _returned_text(returned: Mapping[str, object]) -> str:
+    """What a function of theirs has returned, in a few words."""
+    count = returned.get("count")
+    return counted(count, "value") if isinstance(count, int) else f"one of the type {returned.get('kind')}"
+
+
 def _space_text(value: Mapping[str, object]) -> str:
     """Formats a space as Python code shows it."""
     kind = value.get("kind")
@@ -128,9 +135,9 @@ def resets(record: EnvironmentRecord) -> Iterator[str]:
         turned = abs(wrap_angle(episode.pose.theta - home.theta))
         away = math.hypot(episode.pose.x - home.x, episode.pose.y - home.y)
         if returned.get("kind") != "tuple" or returned.get("count") != 2:
-            yield f"reset() returns two values, observation and info, not a {returned.get('kind')}."
+            yield f"reset() returns two values, observation and info; yours returned {_returned_text(returned)}."
         elif parts[1].get("kind") != "dict":
-            yield f"The second value of reset() is info, a dictionary, not a {parts[1].get('kind')}."
+            yield f"The second value of reset() is info, a dictionary; yours is of the type {parts[1].get('kind')}."
         elif changed := _changed_text(record, "observation_space"):
             yield f"What reset() returned lies in no space that stays: {changed}"
         elif not episode.is_in_space:
@@ -151,19 +158,19 @@ def steps(record: EnvironmentRecord) -> Iterator[str]:
     for name, step in ((name, step) for name, each in record.episodes.items() for step in each.step_records):
         returned = step.returned
         if returned.get("kind") != "tuple" or returned.get("count") != 5:
-            count = returned.get("count", "no")
-            yield f"step() returns five values: observation, reward, terminated, truncated, info; not {count}."
+            five = "five values: observation, reward, terminated, truncated, info"
+            yield f"step() returns {five}; yours returned {_returned_text(returned)}."
         elif changed := _changed_text(record, "observation_space"):
             yield f"What step() returned lies in no space that stays: {changed}"
         elif not step.is_in_space:
             yield "The observation of step() is not in observation_space: look at its shape, dtype and bounds."
         elif step.part(1).get("kind") not in NUMBER_TYPES or step.part(1).get("value") is None:
-            yield f"The second value of step(), the reward, is a finite number, not a {step.part(1).get('kind')}."
+            yield f"The second value of step(), the reward, is a finite number; yours is of the type {step.part(1).get('kind')}."
         elif (step.part(2).get("kind"), step.part(3).get("kind")) != ("bool", "bool"):
             kinds = f"{step.part(2).get('kind')} and {step.part(3).get('kind')}"
             yield f"terminated and truncated are True or False, not {kinds}."
         elif step.part(4).get("kind") != "dict":
-            yield f"The fifth value of step() is info, a dictionary, not a {step.part(4).get('kind')}."
+            yield f"The fifth value of step() is info, a dictionary; yours is of the type {step.part(4).get('kind')}."
         elif not has_lasted[name]:
             yield _instant_step_text(record)
         else:
@@ -288,8 +295,12 @@ def _ending_complaint(episode: EnvironmentEpisode, due: int | None, why: str, ho
     step_records = episode.step_records
     over = next((k for k, step in enumerate(step_records) if step.is_over), None)
     if over is not None and (due is None or over < due):
-        ended = "terminated" if step_records[over].is_true(2) else "truncated"
-        return f"The episode “{episode.name}” was {ended} after {over + 1} steps, without a reason."
+        after = f"The episode “{episode.name}” was {{}} after {counted(over + 1, 'step')}"
+        if step_records[over].is_true(2):
+            return f"{after.format('terminated')}, though it had neither collided nor arrived."
+        return (
+            f"{after.format('truncated')}, before its time was up: does reset() set the count of steps back?"
+        )
     if due is None:
         return f"The episode “{episode.name}” did not end: do the actions do what they should?"
     if over is None or over > due + 1:

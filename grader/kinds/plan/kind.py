@@ -15,7 +15,7 @@ The submission::
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
 from typing import Final
@@ -31,6 +31,7 @@ from grader.kinds.contract import (
     read_submitted_yaml,
 )
 from grader.kinds.plan.sheet_keys import SHEET_KEYS
+from grader.problem_text import numbered
 from kit.host.failure import Failure
 from kit.layers.assignment import LayerAssignment as Plan
 from kit.layers.assignment import NamedLayer, RequirementBreach, find_breaches
@@ -45,6 +46,7 @@ from kit.layers.requirements import (
 from kit.layers.requirements_file import read_requirements
 from kit.plain_text import quoted, suggestion
 from kit.world.problems import WorldError
+from kit.world.records import SourceLocation
 from kit.world.yaml_section import Section
 
 MAX_ENTRIES: Final = 64
@@ -60,6 +62,8 @@ class SubmittedPlan:
     case: LayerCase
     plan: Plan
     proof: tuple[Requirement, ...]
+    unusable_lines: tuple[str, ...] = ()
+    """What is wrong with lines of the proof that name nothing that must happen."""
 
     @property
     def breaches(self) -> tuple[RequirementBreach, ...]:
@@ -96,9 +100,9 @@ def few_layers(evidence: EvidenceRecord, params: NoParams) -> float:
 @check(none=0, full=1, unit="lines")
 def proof(evidence: EvidenceRecord, params: NoParams) -> float:
     """A proof is a list of things that must happen, no two of which fit one layer: then each needs a layer of its
-    own. Yours proves {actual}; {full} are wanted."""
+    own. Of yours {actual} count; {full} are wanted."""
     plan: SubmittedPlan = evidence.content
-    return 0.0 if next(plan.combinable_pairs(), None) else float(len(plan.proof))
+    return 0.0 if _faults_of_proof(plan) else float(len(plan.proof))
 
 
 CHECKS: Final = (complete, nothing_more, few_layers, proof)
@@ -130,11 +134,15 @@ def collect_evidence(assignment: Assignment, file: Path, options: EvidenceOption
 
 def _explain(plan: SubmittedPlan, name: str) -> str:
     if name == proof.name:
-        return "; ".join(plan.combinable_pairs())
+        return numbered(_faults_of_proof(plan))
     if name in (complete.name, nothing_more.name):
         wanted = name == complete.name
         return "; ".join(str(breach) for breach in plan.breaches if breach.is_missing is wanted)
     return ""
+
+
+def _faults_of_proof(plan: SubmittedPlan) -> tuple[str, ...]:
+    return plan.unusable_lines or tuple(plan.combinable_pairs())
 
 
 def _read_plan(section: Section, case: LayerCase) -> SubmittedPlan:
@@ -151,13 +159,30 @@ def _read_plan(section: Section, case: LayerCase) -> SubmittedPlan:
         if laser not in case.laser:
             watched.error(f"no laser {quoted(laser)}: {suggestion(laser, tuple(case.laser))}", laser)
         watches[laser] = _known_names(watched, laser, names, "layer of yours")
-    lines_given = () if section.is_blank("proof") else section.texts("proof", ())
-    lines = tuple(_requirement(section, number, line, case) for number, line in enumerate(lines_given))
-    if max(len(layers), len(lines)) > MAX_ENTRIES:
+    proof, faults = _read_proof(section, case)
+    if max(len(layers), len(proof) + len(faults)) > MAX_ENTRIES:
         section.error(f"at most {MAX_ENTRIES} layers and {MAX_ENTRIES} lines of proof")
-    return SubmittedPlan(
-        case, Plan(tuple(layers), watches), tuple(dict.fromkeys(each for each in lines if each))
-    )
+    return SubmittedPlan(case, Plan(tuple(layers), watches), proof, faults)
+
+
+def _read_proof(section: Section, case: LayerCase) -> tuple[tuple[Requirement, ...], tuple[str, ...]]:
+    """Returns the lines that must happen, each once, and what is wrong with the others."""
+    if section.is_blank("proof"):
+        return (), ()
+    if not section.is_list("proof"):
+        return (), (_at(section.location_of("proof"), "write a list, [one - other, laser sees thing]"),)
+    lines = [_requirement(line) for line in section.texts("proof")]
+    faults = [
+        _at(section.location_of("proof", item=number), _fault_of_line(each, case))
+        for number, each in enumerate(lines)
+        if each not in case.requirements
+    ]
+    return tuple(dict.fromkeys(each for each in lines if each in case.requirements)), tuple(faults)
+
+
+def _at(location: SourceLocation, fault: str) -> str:
+    """A fault with its place in the file, whose folder means nothing to its author."""
+    return f"{replace(location, file=Path(location.file.name))}: {fault}"
 
 
 def _subsection(section: Section, key: str) -> Section | None:
@@ -184,21 +209,25 @@ def _line(requirement: Requirement) -> str:
     return f"{requirement.a}{CONTACT_SEPARATOR}{requirement.b}"
 
 
-def _requirement(section: Section, number: int, line: str, case: LayerCase) -> Requirement | None:
-    """Reads a line of the proof, counted from 0, as a requirement of the case; notes an error for any other line."""
+def _requirement(line: str) -> Requirement:
+    """Reads a line of the proof."""
     split = SIGHT_SEPARATOR if SIGHT_SEPARATOR in line else CONTACT_SEPARATOR
     one, _, other = (part.strip() for part in line.partition(split))
-    plan: Requirement = (
-        SightRequirement(one, other) if split == SIGHT_SEPARATOR else ContactRequirement(one, other)
-    )
-    if plan in case.requirements:
-        return plan
-    section.error(
-        f"{quoted(line)} is not among what must happen here: {suggestion(line, tuple(map(_line, case.requirements)))}",
-        "proof",
-        item=number,
-    )
-    return None
+    return SightRequirement(one, other) if split == SIGHT_SEPARATOR else ContactRequirement(one, other)
+
+
+def _fault_of_line(line: Requirement, case: LayerCase) -> str:
+    """Says why a line of the proof that need not happen proves nothing."""
+    named = [line.laser, line.entity] if isinstance(line, SightRequirement) else [line.a, line.b]
+    known = [*case.laser, *case.names]
+    if "" in named:
+        return (
+            f"{quoted(next(filter(None, named), ''))} is no pair: write “one - other”, or “laser sees thing”"
+        )
+    unknown = next((each for each in named if each not in known), None)
+    if unknown is not None:
+        return f"there is nothing named {quoted(unknown)}: {suggestion(unknown, known)}"
+    return f"“{_line(line)}” is not among what must happen here, so it proves nothing"
 
 
 KIND: Final = SubmissionKind(

@@ -156,7 +156,10 @@ def collect(assignment: Assignment, file: Path, options: EvidenceOptions) -> Ite
         is_secret = options.secret and bool(assignment.secret_seeds)
         counterpart = (lambda: collect_evidence(assignment, file, public, stack)) if is_secret else None
         yield SingleEvidence(
-            lambda: collect_evidence(assignment, file, options, stack), options.level, counterpart
+            lambda: collect_evidence(assignment, file, options, stack),
+            options.level,
+            counterpart,
+            runs_program=False,
         )
 
 

@@ -268,7 +268,7 @@ KIND: Final = SubmissionKind(
     (".yaml", ".yml"),
     CHECKS,
     read_settings,
-    collect_once(collect_evidence),
+    collect_once(collect_evidence, runs_program=False),
     sheet_keys=SHEET_KEYS,
     exercise="12-training-strategies/forget",
 )

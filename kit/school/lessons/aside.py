@@ -19,8 +19,7 @@ from rich.text import Text
 from kit.host.python_command import python_command
 from kit.school.lessons.shell_lines import expand_words
 
-ROWS_AROUND: Final = 5
-"""Rows above and below what a command printed: the command itself, and how to go back."""
+NOTHING_PRINTED: Final = b"It ended and printed nothing."
 OPENS_SCREEN: Final = b"\x1b[?1049h"
 """What a program sends to a terminal before it uses the whole screen."""
 PROGRAMS: Final = {"kit": "kit", "grader": "grader"}
@@ -76,14 +75,15 @@ def keys_of_vi(environment: Mapping[str, str], arguments: Sequence[str]) -> str:
 def run_here(
     line: str, arguments: Sequence[str], environment: dict[str, str], folder: Path | None, waits: bool
 ) -> bytes:
-    """The terminal is as a shell would have it. Ctrl-C is for the command, not for us. Returns what is to be paged."""
+    """The terminal is as a shell would have it. Ctrl-C is for the command, not for us. ``waits``: whether what it prints is to
+    be read; then that is returned, unless the command had a screen of its own."""
     out = sys.__stderr__
     before = signal.signal(signal.SIGINT, _ignore)
     try:
         if out is not None:
             out.write(f"\n$ {line}\n")
             out.flush()
-        if not waits or out is None or sys.__stdin__ is None:
+        if not waits or out is None:
             subprocess.run(arguments, env=environment, cwd=folder, check=False)
             return b""
         size = os.get_terminal_size(out.fileno())
@@ -91,12 +91,7 @@ def run_here(
             printed = run_and_copy(arguments, environment, folder, size, raw)
         if OPENS_SCREEN in printed:  # such as a training's: what was on it is nothing to read afterwards
             return b""
-        if row_count(printed, size.columns) > size.lines - ROWS_AROUND:
-            return printed
-        out.write("\nEnter goes back. ")
-        out.flush()
-        sys.__stdin__.readline()
-        return b""
+        return printed or NOTHING_PRINTED
     finally:
         signal.signal(signal.SIGINT, before)
 
@@ -124,11 +119,6 @@ def run_and_copy(
     finally:
         os.close(ours)
     return bytes(printed)
-
-
-def row_count(printed: bytes, columns: int) -> int:
-    """Rows that a text takes on a terminal of this many columns."""
-    return sum(max(1, -(-len(line) // columns)) for line in plain_lines(printed.decode(errors="replace")))
 
 
 def plain_lines(printed: str) -> list[str]:

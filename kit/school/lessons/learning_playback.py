@@ -21,6 +21,8 @@ from kit.school.lessons.records import LearningScene
 PACE_EXPONENT: Final = 3.0
 """Of n updates in T seconds, n (t / T)^3 are done after t: the first ones can be followed one by one."""
 MIN_CURVE_COLUMNS: Final = 24
+VALUE_COLUMNS: Final = 10
+"""Of a curve's mark and its newest value, beside its name."""
 MAX_CURVE_COLUMNS: Final = 60
 MIN_CURVE_ROWS: Final = 7
 MAX_CURVE_ROWS: Final = 14
@@ -86,7 +88,9 @@ class LearningPlayback:
         frame = Frame.empty(columns, rows)
         used, high = value_grids_width(grids, columns), value_grids_height(grids, columns, rows - 1)
         paste_frame(frame, draw_value_grids(grids, columns, rows - 1, encoder), 0, 0)
-        if columns - used > MIN_CURVE_COLUMNS and rows > MIN_CURVE_ROWS:
+        curves = self._curves()
+        names = sum(len(each.name) + VALUE_COLUMNS for each in curves)
+        if columns - used > max(MIN_CURVE_COLUMNS, names) and rows > MIN_CURVE_ROWS:
             self._add_curves(frame, (0, used + 2), (rows - 1, columns - used - 2), encoder)
             write_text(frame, rows - 1, 0, self.update_text(columns))
         elif rows - high > MIN_CURVE_ROWS + UPDATE_ROWS:

@@ -104,7 +104,7 @@ def status_text(
         if exercise.name in progress.passed_exercises:
             return Text(begin, lead="Passed before.", lead_tone=Tone.GOOD)
         best = progress.best_shares.get(exercise.name)
-        return Text(begin, tail=f" Best so far: {best:.0%}." if best else "")
+        return Text(begin, tail=f" Best so far: {100 * best:.0f} %." if best else "")
     if report.is_broken:
         again = "^S tries again." if is_writing else "Press c to try again."
         return Text(f"The check itself failed. {again}", Tone.WARN)
@@ -134,7 +134,9 @@ def ending_blocks(
         blocks.append(Text("That was the last step. Not done yet:", Tone.BOLD))
         blocks.append(Choices(tuple(Choice(str(step.number), step.title) for step in left), is_tight=True))
         blocks.append(Text("Press b for the previous step, l for the list of steps."))
-    best = [f"{each.name} {progress.best_shares.get(each.name, 0.0):.0%}" for each in lesson.exercises]
+    best = [
+        f"{each.name} {100 * progress.best_shares.get(each.name, 0.0):.0f} %" for each in lesson.exercises
+    ]
     if best:
         blocks.append(Text(f"Exercises: {join_names(best, len(best))}"))
     if progress.is_completed and (text := opened_levels_text(tuple(levels))):

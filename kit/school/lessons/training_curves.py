@@ -25,14 +25,12 @@ LONGEST_SHOWN_S: Final = 3.0
 """Longest replay of a drive [s]."""
 HOLD_S: Final = 0.8
 """How long its end stands still, to be read [s]."""
-_PUBLIC: Final = re.compile(r"^public training \d", re.MULTILINE)
-"""Here trainings begin once more, with seeds that may be shown: they are what the check will speak of."""
 _TEST: Final = re.compile(
-    r"^(?:public )?training (\d{1,3}) of (\d{1,3}), test: (\d{1,3}) % after ([\d,]{1,15}) of ([\d,]{1,15}) steps$",
+    r"^training (\d{1,3}) of (\d{1,3}), test: (\d{1,3}) % after ([\d,]{1,15}) of ([\d,]{1,15}) steps$",
     re.MULTILINE,
 )
-_EXAM: Final = re.compile(r"^(?:public )?training (\d{1,3}) of \d{1,3}, exam: (\d{1,3}) %$", re.MULTILINE)
-_DRIVE: Final = re.compile(r"^(?:public )?training (\d{1,3}) of \d{1,3}, drive: (\{.*\})$", re.MULTILINE)
+_EXAM: Final = re.compile(r"^training (\d{1,3}) of \d{1,3}, exam: (\d{1,3}) %$", re.MULTILINE)
+_DRIVE: Final = re.compile(r"^training (\d{1,3}) of \d{1,3}, drive: (\{.*\})$", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -177,8 +175,6 @@ def read_training_curves(progress: str) -> TrainingCurves | None:
     """
     tests: dict[int, list[tuple[int, int]]] = {}
     count = steps = 0
-    if (again := _PUBLIC.search(progress)) is not None:
-        progress = progress[again.start() :]
     for found in _TEST.finditer(progress):
         number, count, share, after, steps = (int(each.replace(",", "")) for each in found.groups())
         tests.setdefault(number, []).append((after, share))

@@ -198,13 +198,12 @@ def calibration_blocks(calibration: Calibration) -> list[Block]:
 def _calibration_summary(calibration: Calibration) -> str:
     if calibration.answers < MIN_ANSWERS:
         return f"After {MIN_ANSWERS} such answers this says how well you judge yourself."
-    figures = f"so sure means {calibration.expected_share:.0%}, and {calibration.actual_share:.0%} were right"
+    expected, actual = 100 * calibration.expected_share, 100 * calibration.actual_share
+    figures = f"{expected:.0f} % expected, {actual:.0f} % right"
     gap = calibration.expected_share - calibration.actual_share
     if abs(gap) < CALIBRATED_GAP:
         return f"You judge yourself well: {figures}."
-    return (
-        f"You were surer than right: {figures}." if gap > 0 else f"You know more than you trust: {figures}."
-    )
+    return f"You were too sure: {figures}." if gap > 0 else f"You know more than you think: {figures}."
 
 
 def round_lines(history: RoundHistory) -> list[str]:

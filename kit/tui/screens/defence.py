@@ -24,6 +24,7 @@ class DefenceScreen(DialogueScreen):
     DefenceScreen { layout: vertical; }
     DefenceScreen #heading, DefenceScreen #remark, DefenceScreen #keys { height: 1; }
     DefenceScreen #body { height: auto; }
+    DefenceScreen #scene { display: block; }
     """
 
     def __init__(self, dialogue: DefenceDialogue, theme: Theme, workspace: Workspace) -> None:

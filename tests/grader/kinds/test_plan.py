@@ -93,8 +93,6 @@ def test_a_proof_that_proves_nothing_is_told_why(folder: Path) -> None:
         ("layers: {a: [robbot]}", 'did you mean "robot"'),
         ("layers: {a: [robot]}\nlasers: {lida: [a]}", 'did you mean "lidar"'),
         ("layers: {a: [robot]}\nlasers: {lidar: [b]}", "layer of yours"),
-        ("proof: [robot - drone]", "must happen"),
-        ("proof: [robot]", "must happen"),
         ("layer: {}", "layers"),
         ("layers: {" + ", ".join(f"l{n}: [robot]" for n in range(100)) + "}", "at most"),
         ("layers: !!python/object:os.system {}", "plan.yaml"),
@@ -107,12 +105,31 @@ def test_a_plan_that_cannot_be_read_is_an_error_with_its_place(folder: Path, tex
     assert "/tmp" not in tests[0].rationale
 
 
-def test_a_wrong_line_of_a_list_is_named_at_its_own_line(folder: Path) -> None:
-    told = graded(
-        folder, GOOD.replace("[robot - walls, walls - drone]", "\n  - robot - walls\n  - robot - wals")
-    )
-    lines = GOOD[: GOOD.index("proof")].count("\n") + 3
-    assert f"plan.yaml:{lines}:5:" in told.tests[0].rationale
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("robot - wals", 'did you mean "walls"'),
+        ("lida sees drone", 'did you mean "lidar"'),
+        ("robot", "is no pair"),
+        ("robot - drone", "is not among what must happen"),
+    ],
+)
+def test_a_line_that_proves_nothing_is_named_and_costs_the_proof_alone(
+    folder: Path, line: str, told: str
+) -> None:
+    lines = f"\n  - robot - walls\n  - {line}"
+    *others, proof = graded(folder, GOOD.replace("[robot - walls, walls - drone]", lines)).tests
+    assert all(test.is_passed for test in others)
+    assert proof.status is CriterionStatus.FAIL
+    number = GOOD[: GOOD.index("proof")].count("\n") + 3
+    assert f"plan.yaml:{number}:5: " in proof.rationale
+    assert told in proof.rationale
+
+
+def test_a_proof_that_is_no_list_costs_the_proof_alone(folder: Path) -> None:
+    *others, proof = graded(folder, GOOD.replace("[robot - walls, walls - drone]", "robot - walls")).tests
+    assert all(test.is_passed for test in others)
+    assert "write a list" in proof.rationale
 
 
 def test_an_example_of_the_kit_can_be_the_case(folder: Path) -> None:

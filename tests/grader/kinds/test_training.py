@@ -16,7 +16,7 @@ from grader.evidence.training_results import (
     TrainingResults,
     TrainingSettings,
 )
-from grader.grading import Grading, GradingOptions, grade
+from grader.grading import GradingOptions, grade
 from grader.kinds.contract import read_submitted_yaml
 from grader.kinds.training import kind as training
 from grader.kinds.training.kind import CHECKS, StepsUsedParams, _read_settings, collect_evidence
@@ -78,17 +78,16 @@ def test_secret_seeds_take_the_place_of_the_others(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("is_own_check", [True, False])
-def test_a_students_own_check_says_what_secret_trainings_found(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, is_own_check: bool
-) -> None:
-    """Where the public ones show nothing. They were shown while they ran; a grade at a level that confines says nothing of
-    them."""
-    monkeypatch.setattr(Grading, "_find_counterexample", lambda self, criterion: None)
+def test_a_students_own_check_says_what_secret_trainings_found(folder: Path, is_own_check: bool) -> None:
+    """They were shown while they ran, and no others are made; a grade at a level that confines says nothing of them."""
     (folder / "secret.yaml").write_text("seeds: [7]\n")
     assignment = read_assignment(folder)
     work = Submission("work", "training.yaml", {"training.yaml": b"batch: 1000\nsteps: 1000\n"})
     level = Level.LIMITED if is_own_check else Level.FILTERED
-    found = grade(assignment, work, GradingOptions(level, secret=True, examples=is_own_check))
+    progress: list[str] = []
+    options = GradingOptions(level, secret=True, examples=is_own_check, show_progress=progress.append)
+    found = grade(assignment, work, options)
+    assert sum("exam: " in line and "tests" not in line for line in progress) == 1, progress
     told = next(each for each in found.tests if each.id == "succeeds")
     assert not told.is_passed
     assert ("The exams of the trainings: 0.28." in told.rationale) is is_own_check

@@ -22,17 +22,11 @@ from kit.school.lessons.training_curves import (
 )
 
 
-def told(
-    *trainings: list[tuple[int, float]], count: int = 3, steps: int = 90_000, again: bool = False
-) -> str:
-    """What the grader says of trainings with these tests. ``again``: made once more with public seeds."""
+def told(*trainings: list[tuple[int, float]], count: int = 3, steps: int = 90_000) -> str:
+    """What the grader says of trainings with these tests."""
     lines: list[str] = []
     clock = SubmissionClock(show_progress=lines.append)
-    if again:
-        with clock.public_again():
-            _tell(clock, trainings, count, steps)
-    else:
-        _tell(clock, trainings, count, steps)
+    _tell(clock, trainings, count, steps)
     return "".join(f"{line}\n" for line in lines)
 
 
@@ -58,17 +52,6 @@ def test_three_trainings_are_three_curves() -> None:
     assert all(f"training {number}" in picture[0] for number in (1, 2, 3))
     assert all(len(row) <= 76 and row.isascii() for row in picture)
     assert curves.describe()[0] == "training 1 of 3: tests 25 83 %"
-
-
-def test_trainings_made_once_more_with_public_seeds_take_the_place_of_the_secret_ones() -> None:
-    """The verdict speaks of them, so that no curve may be of the others."""
-    secret, public = (
-        told([(10_000, 0.25), (20_000, 0.5)], [(10_000, 0.75)]),
-        told([(10_000, 1.0)], again=True),
-    )
-    curves = read_training_curves(f"{secret}training 1 of 3, exam: 58 %\n{public}")
-    assert curves is not None
-    assert (curves.tests, curves.exams) == ((((10_000, 100),),), {})
 
 
 def test_the_figure_that_is_judged_stands_beside_the_curve() -> None:

@@ -518,6 +518,7 @@ def test_a_passed_program_is_defended(student: Student, play: Play) -> None:
         await seen(pilot, "Passed: ***")
         await pilot.press("y")
         await seen(pilot, "question 1 of 3")
+        assert pilot.app.screen.query_one(LessonSceneView).size.height > 10, "where the robot starts"
         await pilot.press("3", "1")  # there is no third answer
         await seen(pilot, "question 2 of 3")
         await pilot.press("3")
