@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -270,28 +270,40 @@ def package_command(ctx: click.Context, workspace: Path | None) -> None:
 @click.option("--build-type", type=click.Choice(["ament_python"]), help="Packages are of this type alone.")
 @click.option("--dependencies", multiple=True, metavar="PACKAGE ...", help="Packages that it needs too.")
 @click.option("--description", default="", help="What it is.")
-@click.option("--license", default="MIT", show_default=True, help="Its licence.")
+@click.option("--license", "licence", default="MIT", show_default=True, help="Its licence.")
 @click.option("--maintainer-name", "maintainer", default="", help="Who maintains it (default: you).")
 @click.option("--maintainer-email", "email", default="", help="The maintainer's address.")
 @click.pass_obj
 def create(
     opened_workspace: Workspace,
-    /,
     name: str,
     destination: Path | None,
     node_name: str,
+    map_name: str,
     build_type: str | None,
-    **about: Any,
+    dependencies: tuple[str, ...],
+    description: str,
+    licence: str,
+    maintainer: str,
+    email: str,
 ) -> None:
     """Create a package with a world, a robot, a program and a launch file.
 
     `kit launch` runs it without building it; in a ROS 2 workspace, `colcon build` builds it.
     """
-    from kit.launch.package_creation import create_package
+    from kit.launch.package_creation import PackageOwner, create_package
     from kit.world.catalogue import UnknownMap
 
     try:
-        folder = create_package(name, destination or opened_workspace.packages, node=node_name, **about)
+        folder = create_package(
+            name,
+            destination or opened_workspace.packages,
+            node=node_name,
+            map_name=map_name,
+            dependencies=dependencies,
+            description=description,
+            owner=PackageOwner(maintainer, email, licence),
+        )
     except (PackageError, UnknownMap) as problem:
         messages.fail(str(problem))
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):

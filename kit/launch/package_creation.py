@@ -37,6 +37,18 @@ RESERVED_NAMES: Final = frozenset(
 
 
 @dataclass(frozen=True, slots=True)
+class PackageOwner:
+    """Who maintains a package, and under which licence; the account of this machine where nobody is named."""
+
+    name: str = ""
+    email: str = ""
+    license: str = "MIT"
+
+
+ACCOUNT = PackageOwner()
+
+
+@dataclass(frozen=True, slots=True)
 class PackageFrame:
     """What a package is called, what it needs, and which folders it installs."""
 
@@ -47,10 +59,7 @@ class PackageFrame:
     """Packages that it needs when it runs."""
     data_folders: tuple[str, ...]
     """Folders that are installed besides the code."""
-    license: str = "MIT"
-    maintainer: str = ""
-    """Without it, the account's name."""
-    email: str = ""
+    owner: PackageOwner = ACCOUNT
 
 
 def create_package(
@@ -61,12 +70,12 @@ def create_package(
     map_name: str = "simple",
     dependencies: Sequence[str] = (),
     description: str = "",
-    **about: str,
+    owner: PackageOwner = ACCOUNT,
 ) -> Path:
     """Creates a package in ``destination``, completely or not at all; returns its folder. Raises PackageError, UnknownMap.
 
     ``node``: the name of its program; ``map_name``: the map of the kit that is copied into its world; ``dependencies``:
-    packages besides those that the program needs; ``about``: further fields of PackageFrame.
+    packages besides those that the program needs.
     """
     card = find_map(map_name)
     needed = tuple(dict.fromkeys((*DEPENDENCIES, *dependencies)))
@@ -74,7 +83,7 @@ def create_package(
         if not NAME_PATTERN.fullmatch(each):
             raise PackageError(f"'{each}' cannot be the name of a package that this one depends on")
     frame = PackageFrame(
-        name, node, description or "A robot in a Flatland world", needed, ("launch", "world"), **about
+        name, node, description or "A robot in a Flatland world", needed, ("launch", "world"), owner
     )
     with new_package_folder(name, destination, node) as folder:
         write_package_frame(folder, frame)
@@ -116,7 +125,7 @@ def new_package_folder(name: str, destination: Path, program: str) -> Iterator[P
 def write_package_frame(folder: Path, frame: PackageFrame) -> None:
     """Writes what every package of the build type ament_python has; its program and its data are the caller's."""
     user = re.sub(r"[^A-Za-z0-9_.-]", "", os.environ.get("USER", "")) or "me"
-    maintainer, email = frame.maintainer or user, frame.email or f"{user}@example.org"
+    maintainer, email = frame.owner.name or user, frame.owner.email or f"{user}@example.org"
     installed = "".join(
         f"\n        ('share/' + package_name + '/{each}', glob('{each}/*'))," for each in frame.data_folders
     )
@@ -127,7 +136,7 @@ def write_package_frame(folder: Path, frame: PackageFrame) -> None:
         "maintainer": re.sub(r"[^\w .-]", "", maintainer),
         "email": re.sub(r"[^\w.@+-]", "", email),
         "description": re.sub(r"[^\w ,.()-]", "", frame.description),
-        "license": re.sub(r"[^\w ,.()+-]", "", frame.license),
+        "license": re.sub(r"[^\w ,.()+-]", "", frame.owner.license),
         "dependencies": "\n".join(f"  <exec_depend>{each}</exec_depend>" for each in frame.dependencies),
         "installed": installed,
     }

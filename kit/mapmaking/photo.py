@@ -28,7 +28,7 @@ PAPER: Final = {"a4": math.sqrt(2), "letter": 11 / 8.5, "square": 1.0}
 """Longer side by shorter one."""
 MAX_PIXELS: Final = 60_000_000
 MAX_PHOTO_BYTES: Final = 100_000_000
-PHOTO_FORMATS: Final = (*FORMATS, "WEBP", "GIF")
+PHOTO_FORMATS: Final = (*FORMATS, "WEBP", "GIF", "TIFF")
 """Of one that Pillow reads as well, it has another program draw (PostScript)."""
 
 WORKING_WIDTH: Final = 1600

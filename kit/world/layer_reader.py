@@ -8,6 +8,7 @@ fork and of its releases up to 1.4.1; later ones trace outlines through the midd
 from __future__ import annotations
 
 import io
+import re
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -45,6 +46,9 @@ MAX_REPORTED_LINES = 10
 FORMATS = ("PNG", "JPEG", "BMP", "PPM")
 MAX_JPEG_SCANS = 100
 """How often a JPEG may go over its pixels: progressive ones do it about ten times."""
+START_OF_JPEG, START_OF_SCAN, END_OF_JPEG = b"\xff\xd8", b"\xda", b"\xd9"
+JPEG_MARKER = re.compile(rb"\xff+([^\x00\xff\xd0-\xd7])", re.DOTALL)
+"""Begins a segment; what stands among the pixels is another."""
 
 # Luma weights of red, green and blue in 1/32768, as OpenCV and libpng have them.
 _LUMA = np.array([9798, 19235, 3735], dtype=np.uint32)
@@ -61,12 +65,21 @@ def dark_pixels(grey: Uint8Array, occupied_thresh: float) -> BoolArray:
 def open_picture(content: bytes, formats: Iterable[str] = FORMATS) -> Image.Image:
     """Opens a picture, whose pixels are decoded later. Raises UnusableFile for one that would take minutes to decode, and
     what Pillow raises."""
-    if content.startswith(b"\xff\xd8") and content.count(b"\xff\xda") > MAX_JPEG_SCANS:
+    if content.startswith(START_OF_JPEG) and _has_more_scans(content, MAX_JPEG_SCANS):
         raise UnusableFile(f"it goes over its pixels more than {MAX_JPEG_SCANS} times: save it again")
     with warnings.catch_warnings():
         # Pillow's own size warning: whoever opens a picture has a stricter limit, and says what to do.
         warnings.simplefilter("ignore", Image.DecompressionBombWarning)
         return Image.open(io.BytesIO(content), formats=tuple(formats))
+
+
+def _has_more_scans(jpeg: bytes, most: int) -> bool:
+    """Whether the picture goes over its pixels more often; what comes after it, such as a telephone's film, does not count."""
+    scans, place = 0, len(START_OF_JPEG)
+    while scans <= most and (found := JPEG_MARKER.search(jpeg, place)) and found[1] != END_OF_JPEG:
+        scans += found[1] == START_OF_SCAN
+        place = found.end() + int.from_bytes(jpeg[found.end() : found.end() + 2])
+    return scans > most
 
 
 def read_image(file: Path) -> tuple[Uint8Array, Uint8Array | None]:

@@ -278,6 +278,8 @@ def test_a_picture_that_goes_over_its_pixels_again_and_again_is_refused(tmp_path
     (tmp_path / "again.jpg").write_bytes(usual[:first] + 200 * scan + usual[first:])
     with pytest.raises(UnusableFile, match="over its pixels"):
         read_image(tmp_path / "again.jpg")
+    (tmp_path / "film.jpg").write_bytes(usual + 200 * scan)  # telephones put a film behind a picture
+    assert read_image(tmp_path / "film.jpg")[0].shape == (64, 64)
 
 
 def lines(tmp_path: Path, text: str, scale: float = 1.0) -> FloatArray:

@@ -10,9 +10,9 @@ from typing import Any
 
 import click
 
+from kit.cli.process import INTERRUPTED
 from kit.cli.ros.message_options import find_or_exit, make_message, parse_fields
 from kit.cli.ros.world_client import (
-    EXIT_INTERRUPTED,
     exit_with_error,
     print_names,
     print_names_of,
@@ -166,7 +166,7 @@ class _GoalSender:
         finally:
             signal.signal(signal.SIGINT, before)
         if self._presses:
-            raise SystemExit(EXIT_INTERRUPTED)
+            raise SystemExit(INTERRUPTED)
         if result is not None:
             click.echo(f"Result:\n    {_yaml(result.result)}")
             click.echo(f"Goal finished with status: {STATUS_NAMES[result.status]}")

@@ -11,7 +11,8 @@ import click
 
 from kit.cli import messages, opening, options, terminal_options
 from kit.cli.launch import run_launch
-from kit.cli.ros.world_client import EXIT_INTERRUPTED, exit_with_error
+from kit.cli.process import INTERRUPTED
+from kit.cli.ros.world_client import exit_with_error
 from kit.host.program_terminal import ProgramTerminal, has_user_terminal
 from kit.inspection.client import InspectionClient, WorldDisconnected
 from kit.inspection.sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
@@ -102,7 +103,7 @@ def command(world: str | None, seed: int, workspace: Path | None, package: str, 
     except WorldDisconnected as problem:
         exit_with_error(str(problem))
     except KeyboardInterrupt:
-        raise SystemExit(EXIT_INTERRUPTED) from None
+        raise SystemExit(INTERRUPTED) from None
     if ended.reason:
         click.echo(ended.reason, err=True)
     raise SystemExit(ended.code)

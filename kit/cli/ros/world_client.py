@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import wraps
@@ -12,13 +11,13 @@ from typing import Any, NoReturn
 import click
 
 from kit.cli import messages, opening, options
+from kit.cli.process import INTERRUPTED
 from kit.inspection.client import InspectionClient, ServiceTimeout, WorldDisconnected
 from kit.inspection.sockets import WORLD_VARIABLE, WorldNotFound, find_world, sockets_folder
 from kit.msg.interfaces import register_packages
 from kit.ros.packages import find_packages, interface_packages
 
 EXIT_FAILURE = 1
-EXIT_INTERRUPTED = 128 + signal.SIGINT
 
 
 def exit_with_error(message: str) -> NoReturn:
@@ -52,7 +51,7 @@ def connect_to_world(world: str | None, workspace: Path | None) -> Iterator[Insp
     except (WorldDisconnected, ServiceTimeout) as problem:
         exit_with_error(str(problem))
     except KeyboardInterrupt:
-        raise SystemExit(EXIT_INTERRUPTED) from None
+        raise SystemExit(INTERRUPTED) from None
 
 
 def with_world_client(function: Callable[..., Any]) -> Callable[..., Any]:
