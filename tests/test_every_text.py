@@ -38,9 +38,10 @@ PARTS = re.compile(r"[^/,]*[/,]+|[^/,]+")
 
 
 def broken_words(source: str, lines: Sequence[str], width: int) -> list[str]:
-    """The words of a text that its lines do not hold whole, though they would fit."""
+    """The words of a text that its lines do not hold whole, though they would fit. Marks of code may have become a tone."""
+    lines = [line.replace("`", "") for line in lines]
     shown = {word for line in lines for word in line.split()}
-    words = dict.fromkeys(source.split())
+    words = dict.fromkeys(source.replace("`", "").split())
     lost = [word for word in words if word not in shown and len(word) <= width]
     running = "".join("".join(lines).split())
     return lost + [

@@ -450,7 +450,7 @@ CONTROLS: Final = (
     Control(
         "a picture that another program draws",
         "kit/mapmaking/photo.py",
-        '(*FORMATS, "WEBP", "GIF")',
+        '(*FORMATS, "WEBP", "GIF", "TIFF")',
         '(*FORMATS, "EPS")',
         "mapmaking/test_photo.py::test_no_other_program_draws_a_picture",
     ),

@@ -307,7 +307,9 @@ def test_every_verb_explains_itself(kit_ros: Kit) -> None:
         assert f"  {group} " in out
         text, _, code = kit_ros(group, "--help")
         assert code == 0, text
-        for verb in re.findall(r"^  (\w+) ", text.partition("Commands:")[2], re.MULTILINE):
+        for verb in re.findall(
+            r"^  (\w+) ", text.partition("Commands:")[2].partition("\n\n")[0], re.MULTILINE
+        ):
             text, _, code = kit_ros(group, verb, "--help")
             assert code == 0, text
             assert len(dedent(text).splitlines()) > 3

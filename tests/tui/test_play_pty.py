@@ -267,7 +267,7 @@ def test_what_the_keys_drove_is_kept_when_one_leaves(kit: Open, tmp_path: Path) 
     terminal.send(b"\x1b[1;1:1A")
     terminal.until(lambda: "forward   0.50" in terminal.text, "full speed")
     terminal.send(b"r\x03")
-    assert terminal.wait() == 0
+    assert terminal.wait() == 0, terminal.text
     recording = load_recording(file)
     assert (recording.place, recording.case) == ("simple", "simple")
     assert (rerun(recording, find_scenario("simple").world).poses == recording.poses).all()
