@@ -24,7 +24,9 @@ def fits_cases(chance):
         cells = [[row, column] for row in range(len(grid)) for column in range(len(grid[0]))]
         yield {
             "grid": grid,
-            "cell": chance.choice([each for each in cells if fits(grid, each, size) == (number % 2 > 0)] or cells),
+            "cell": chance.choice(
+                [each for each in cells if fits(grid, each, size) == (number % 2 > 0)] or cells
+            ),
             "size": size,
         }
 
