@@ -174,11 +174,11 @@ class ControllerSwitcher:
             self._pending = None
 
     def _unload(self) -> None:
-        if self._active is not None:
-            self._pass_on_output(self._active)
-            self._runner.participants.remove(self._active)
-            self._active.close()
-            self._active = None
+        active, self._active = self._active, None
+        if active is not None:
+            self._pass_on_output(active)
+            self._runner.participants.remove(active)
+            active.close()
             self._on_stop()
 
     def _pass_on_output(self, process: NodeProcess) -> None:

@@ -37,6 +37,7 @@ class WorldThread:
         self._jobs: list[Callable[[Runner], object]] = []
         self._steps = 0
         self._stopping = False
+        self._has_ticked = False
         self._meter = SpeedMeter()
         self.failure: BaseException | None = None
         self._thread = threading.Thread(target=self._run_guarded, name="world", daemon=True)
@@ -81,7 +82,7 @@ class WorldThread:
         with self._wake:
             self._stopping = True
             self._wake.notify()
-        is_loading = self._runner.simulation.tick == 0 and not self._runner.paused
+        is_loading = not self._has_ticked and not self._runner.paused
         if self._thread.is_alive() and not is_loading and threading.current_thread() is not self._thread:
             self._thread.join(timeout=wait_s)
         return not self._thread.is_alive()
@@ -113,6 +114,7 @@ class WorldThread:
                 self._meter.restart()
             else:
                 self._tick_while_due(schedule)
+            self._has_ticked = True
             self._on_change(runner)
 
     def _step_paused(self, steps: int) -> None:

@@ -85,6 +85,25 @@ def test_jobs_are_done_in_the_worlds_thread_even_while_paused(runner: Runner) ->
     assert threads == ["world"]
 
 
+def test_the_end_waits_for_a_job_that_has_set_the_clock_back(runner: Runner) -> None:
+    """As a restart does: what comes after the end would otherwise take the world apart under it."""
+    has_reset, may_end = threading.Event(), threading.Event()
+
+    def restart(runner: Runner) -> None:
+        runner.call_service("reset")
+        has_reset.set()
+        may_end.wait(10)
+
+    with WorldThread(runner, factor=MAXIMUM, on_change=lambda runner: None) as live:
+        wait_until(lambda: runner.simulation.tick > 0)
+        live.post(restart)
+        assert has_reset.wait(10)
+        assert runner.simulation.tick == 0
+        threading.Timer(0.1, may_end.set).start()
+        assert live.stop()
+        assert may_end.is_set()
+
+
 @pytest.mark.long
 def test_real_time_is_kept(runner: Runner) -> None:
     with WorldThread(runner, on_change=lambda runner: None):
