@@ -47,8 +47,8 @@ FORMATS = ("PNG", "JPEG", "BMP", "PPM")
 MAX_JPEG_SCANS = 100
 """How often a JPEG may go over its pixels: progressive ones do it about ten times."""
 START_OF_JPEG, START_OF_SCAN, END_OF_JPEG = b"\xff\xd8", b"\xda", b"\xd9"
-JPEG_MARKER = re.compile(rb"\xff+([^\x00\xff\xd0-\xd7])", re.DOTALL)
-"""Begins a segment; what stands among the pixels is another."""
+JPEG_MARKER = re.compile(rb"\xff+([^\x00\x01\xff\xd0-\xd7])", re.DOTALL)
+"""Begins a segment and is followed by its length, as those are not that stand among the pixels."""
 
 # Luma weights of red, green and blue in 1/32768, as OpenCV and libpng have them.
 _LUMA = np.array([9798, 19235, 3735], dtype=np.uint32)
