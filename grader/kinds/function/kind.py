@@ -61,8 +61,6 @@ REFERENCE_LIMIT_S: Final = 60.0
 """Wall clock of the reference for all cases of a submission."""
 CALL_LIMITS: Final = replace(GRADER_LIMITS, reply_s=2.0)
 """A call gets plain data and computes from it: what takes longer has no end, most likely."""
-FEW: Final = 3
-"""Entries of a list among which a reader finds the wrong one."""
 MAX_SHOWN: Final = 9
 """The most entries of a list that feedback shows."""
 
@@ -409,7 +407,7 @@ def format_value(value: Json) -> str:
 
 
 def _first_difference(expected: Json, actual: Json) -> str:
-    """Describes where two lists first differ; empty for other values, and where so few entries show it themselves."""
+    """Describes where two lists first differ; empty for other values."""
     if not isinstance(expected, list) or not isinstance(actual, list):
         return ""
     if len(expected) != len(actual):
@@ -417,7 +415,7 @@ def _first_difference(expected: Json, actual: Json) -> str:
         why = ". Does the return stand inside the loop, so that the first entry ends it?" if ended else ""
         return f": {counted(len(actual), 'entry')} instead of {len(expected)}{why}"
     for index, (one, other) in enumerate(zip(expected, actual, strict=True)):
-        if not is_close(one, other, 1e-6) and (len(expected) > FEW or isinstance(one, list)):
+        if not is_close(one, other, 1e-6):
             return f": item [{index}] should be {format_value(one)}, and is {format_value(other)}"
     return ""
 

@@ -109,7 +109,7 @@ def test_the_seed_of_the_grade_is_another_one(folder: Path) -> None:
         (("return self.observation(), {}\n\n    def step", "return self.observation()\n\n    def step"), {"resets"}, "two values"),
         (("dx, dy, self.np_random", "1 + dx, dy, self.np_random"), {"resets"}, "from its home"),
         (("self.robot.drive(*MOVES[action])", "self.robot.drive(*MOVES[0])"), {"acts", "timeout"}, "should drive"),
-        (("self.steps = 0\n        return", "return"), {"crash"}, "without a reason"),
+        (("self.steps = 0\n        return", "return"), {"crash"}, "count of steps"),
         (("self.steps += 1", "self.steps += 1; self.action_space = gymnasium.spaces.Discrete(3 + self.steps)"), {"spaces"}, "another one after step"),
         (("self.steps += 1", "self.steps += 1; self.observation_space.high[0] = self.steps"), {"spaces"}, "another one after step"),
     ],
