@@ -9,7 +9,7 @@ import click
 
 from kit.cli.lazy_group import LazyGroup, Verbs
 from kit.cli.plain_flag import PLAIN_OPTION
-from kit.cli.ros.documented_options import tell_absent_options
+from kit.cli.ros.documented_options import tell_what_is_absent
 
 VERBS: Final[Verbs] = {
     "node": ("kit.cli.ros.node", "Inspect nodes: list, info."),
@@ -55,7 +55,7 @@ class RosGroup(LazyGroup):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         command = super().get_command(ctx, cmd_name)
-        return command and tell_absent_options(cmd_name, command)
+        return command and tell_what_is_absent(cmd_name, command)
 
 
 @click.group(
@@ -65,9 +65,9 @@ class RosGroup(LazyGroup):
     verbs=VERBS,
     absent=ABSENT,
     epilog="A world runs while `kit play`, `kit launch` or `kit run --serve` runs. If several run, the newest is used, "
-    f"or the one given by --world. Commands of `ros2` that are not here: {', '.join(ABSENT)}. Times are simulated. Ctrl-C stops a command that keeps running. A command takes effect when it "
+    "or the one given by --world. Times are simulated. Ctrl-C stops a command that keeps running. A command takes effect when it "
     "arrives, at no certain instant of simulated time: one that is to come at the same instant in every run belongs in a launch "
-    "file, in a TimerAction.",
+    f"file, in a TimerAction. Commands of `ros2` that are not here: {', '.join(ABSENT)}.",
 )
 def command() -> None:
     """Inspect a running world from a second terminal, as `ros2` does on a robot.

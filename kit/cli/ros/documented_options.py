@@ -72,11 +72,11 @@ ABSENT_COMMANDS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
 """Commands of ROS 2's that the kit's groups do not have."""
 
 
-def tell_absent_options(name: str, command: click.Command) -> click.Command:
-    """Adds to the help of a command of ``kit ros`` which of ROS 2's options it does not have; returns the command."""
+def tell_what_is_absent(name: str, command: click.Command) -> click.Command:
+    """Adds to the help of a command of ``kit ros`` which of ROS 2's options and commands it does not have; returns the command."""
     if isinstance(command, click.Group):
         for part in list(command.commands):
-            tell_absent_options(f"{name} {part}", command.commands[part])
+            tell_what_is_absent(f"{name} {part}", command.commands[part])
         if name in ABSENT_COMMANDS:
             command.epilog = (
                 f"Commands of `ros2 {name}` that are not here: {', '.join(ABSENT_COMMANDS[name])}."
