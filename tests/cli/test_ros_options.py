@@ -78,7 +78,7 @@ def test_a_documented_option_is_there_or_told_as_not_there(name: str) -> None:
 
 def test_a_documented_command_is_there_or_told_as_not_there() -> None:
     assert COMMANDS.keys() - VERBS.keys() == ABSENT.keys()
-    told = CliRunner().invoke(main, ["ros", "--help"], terminal_width=400).output
+    told = " ".join(CliRunner().invoke(main, ["ros", "--help"], terminal_width=400).output.split())
     assert f"Commands of `ros2` that are not here: {', '.join(ABSENT)}." in told
     for verb in COMMANDS.keys() - ABSENT.keys():
         command = command_of(verb)
