@@ -7,7 +7,7 @@ getter notes a ``Problem`` and returns a value of the right type, so one pass fi
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from enum import Enum
 from types import MappingProxyType
 from typing import Final, TypeVar, overload
@@ -26,6 +26,7 @@ from kit.world.yaml_tree import (
     parse_number,
     to_python,
 )
+from kit.yaml_numbers import ambiguity
 
 MAX_NUMBER = 1e12
 """No quantity of a flat world is larger, and nothing computed from smaller ones overflows."""
@@ -177,7 +178,7 @@ class Section:
         instead = _fallback(default, int(_number_within(minimum, None, maximum)))
         if node is None:
             return instead
-        integer = parse_integer(node.text) if isinstance(node, ScalarNode) else None
+        integer = _parsed(node, parse_integer)
         if integer is None or abs(integer) > max(MAX_INTEGER, maximum or 0):
             self._report_mismatch(node, f"{quoted(key)} must be a whole number")
             return instead
@@ -200,7 +201,7 @@ class Section:
             return instead
         integers = []
         for i, item in enumerate(items):
-            integer = parse_integer(item.text) if isinstance(item, ScalarNode) else None
+            integer = _parsed(item, parse_integer)
             if integer is None or not minimum <= integer <= maximum:
                 what = f"{quoted(key)}[{i}] must be a whole number from {minimum} to {maximum}"
                 self._report_mismatch(item, what)
@@ -306,6 +307,13 @@ class Section:
         """Returns the keys not requested so far, as plain immutable values; they count as known from now on."""
         rest = {key: e.value for key, e in self._entries.items() if key not in self._requested}
         self._requested.update(rest)
+        for scalar in _scalars(rest.values()):
+            if (
+                scalar.is_plain
+                and parse_integer(scalar.text) is not None
+                and (told := ambiguity(scalar.text))
+            ):
+                self._report(told, scalar.location)
         return MappingProxyType({key: to_python(value) for key, value in rest.items()})
 
     def finish(self, *, ignore_unknown: bool = False) -> None:
@@ -330,7 +338,10 @@ class Section:
     def _report_mismatch(self, node: Node, demand: str) -> None:
         """Notes that the node is not what is demanded, unless it is broken, which was noted already."""
         if not _is_broken(node):
-            self._report(f"{demand}, not {_describe_node(node)}", node.location)
+            told = (
+                ambiguity(node.text) if isinstance(node, ScalarNode) and node.display_text is None else None
+            )
+            self._report(f"{demand}, not {_describe_node(node)}{f': {told}' if told else ''}", node.location)
 
     def _node_of(self, key: str, default: object) -> Node | None:
         self._requested.add(key)
@@ -396,7 +407,7 @@ class Section:
             self.error(f"{quoted(key)} must be a name: one line, not empty", key)
 
     def _number(self, node: Node, what: str, *, infinite: bool = False) -> float | None:
-        number = parse_number(node.text) if isinstance(node, ScalarNode) else None
+        number = _parsed(node, parse_number)
         if number is None:
             self._report_mismatch(node, f"{what} must be a number")
             return None
@@ -432,6 +443,22 @@ class Section:
 
     def _missing_section(self, location: SourceLocation) -> Section:
         return Section(MapNode(MappingProxyType({}), location, height=1), self._problems, is_silent=True)
+
+
+def _parsed(node: Node, parse: Callable[[str], T | None]) -> T | None:
+    """The number that a scalar spells; None where it spells none, or one that can be read in two ways."""
+    return parse(node.text) if isinstance(node, ScalarNode) and ambiguity(node.text) is None else None
+
+
+def _scalars(nodes: Iterable[Node]) -> Iterator[ScalarNode]:
+    """All scalars in the nodes, and in what they hold."""
+    for node in nodes:
+        if isinstance(node, ScalarNode):
+            yield node
+        elif isinstance(node, ListNode):
+            yield from _scalars(node.items)
+        else:
+            yield from _scalars(entry.value for entry in node.entries.values())
 
 
 def _fallback(default: T | Required, otherwise: T) -> T:

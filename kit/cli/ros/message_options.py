@@ -19,11 +19,12 @@ from kit.msg.interfaces import DefinitionError, UnknownInterface
 from kit.msg.message import Message
 from kit.msg.std_msgs import Header
 from kit.ros.node.qos import DurabilityPolicy, HistoryPolicy, QoSPresetProfiles, QoSProfile, ReliabilityPolicy
+from kit.yaml_numbers import UnambiguousLoader
 
 T = TypeVar("T")
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(UnambiguousLoader):
     """A YAML loader that also reads ``1e-3`` as a number."""
 
 

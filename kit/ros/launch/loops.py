@@ -135,8 +135,12 @@ def with_loop_values(
 def _read_values(text: str) -> dict[str, Any]:
     import yaml  # only now: most launch files have no loop
 
+    from kit.yaml_numbers import AmbiguousNumber, UnambiguousLoader
+
     try:
-        found = yaml.safe_load(text)
+        found = yaml.load(text, Loader=UnambiguousLoader)
+    except AmbiguousNumber as problem:
+        raise LaunchError(f"the values of a ForEach: {problem}") from None
     except yaml.YAMLError:
         found = None
     if not isinstance(found, dict) or not all(isinstance(name, str) for name in found):

@@ -1,6 +1,7 @@
 """Parses parameter values: on a command line, and in the YAML files of ``--params-file``.
 
-Text is read as ROS 2 reads it: ``yes`` and ``on`` are truth values, ``1e-3`` is a number, quotes make a text.
+Text is read as ROS 2 reads it: ``yes`` and ``on`` are truth values, ``1e-3`` is a number, quotes make a text. ROS 2 itself
+reads ``1:30`` and ``1_000`` as texts in a file and as numbers on a command line: they are refused in both.
 """
 
 from __future__ import annotations
@@ -20,13 +21,13 @@ from kit.msg.rcl_interfaces import Parameter as ParameterMessage
 from kit.msg.rcl_interfaces import ParameterValue
 from kit.ros.exceptions import InvalidRosArguments
 from kit.ros.parameters.parameter import GivenParameters, Parameter
+from kit.yaml_numbers import ambiguity
 
 PARAMETERS_KEY = "ros__parameters"
 
 _TRUE = {"y", "Y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"}
 _FALSE = {"n", "N", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"}
 _INTEGER = re.compile(r"[-+]?(?:0x[0-9a-fA-F]+|[0-9]+)")
-_ZERO_FIRST = re.compile(r"[-+]?0[0-9]+")
 _FLOAT = re.compile(r"[-+]?(?:[0-9]+\.[0-9]*|\.[0-9]+|[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _SPECIAL = {".nan": math.nan, ".inf": math.inf, "+.inf": math.inf, "-.inf": -math.inf}
 
@@ -154,8 +155,8 @@ def _value(node: YamlNode, source: _TextSource) -> Any:
     if isinstance(node, ScalarNode):
         if node.style in ("'", '"', "|", ">"):
             return node.value
-        if _is_ambiguous(node.value):
-            raise AmbiguousValue(str(source.error(_ambiguity(node.value), node.start_mark)))
+        if told := ambiguity(node.value):
+            raise AmbiguousValue(str(source.error(told, node.start_mark)))
         return _parse_scalar(node.value)
     if not isinstance(node, SequenceNode):
         raise source.error("a parameter cannot hold a mapping", node.start_mark)
@@ -167,24 +168,6 @@ def _value(node: YamlNode, source: _TextSource) -> Any:
     except TypeError as problem:
         raise source.error(str(problem), node.start_mark) from None
     return values
-
-
-def _is_ambiguous(text: str) -> bool:
-    """Whether a number with a zero before it is another one in base eight, in which ROS 2 reads it."""
-    if not _ZERO_FIRST.fullmatch(text):
-        return False
-    digits = text.lstrip("+-")
-    return not set(digits) <= set("01234567") or int(digits, 8) != int(digits)
-
-
-def _ambiguity(text: str) -> str:
-    digits = text.lstrip("+-")
-    sign = "-" if text.startswith("-") else ""
-    octal = f"{sign}{int(digits, 8)}" if set(digits) <= set("01234567") else "no whole number"
-    return (
-        f"{text} can be read in two ways: it is {octal} in base eight, as ROS 2 reads it. "
-        f"Write {sign}{int(digits)}, or '{text}' for a text"
-    )
 
 
 def _parse_scalar(text: str) -> Any:

@@ -425,6 +425,8 @@ def test_loops_ask_for_the_same_in_three_languages(tmp_path: Path) -> None:
     [
         ("<for len='many' name='i'/>", "'many', which is not a whole number"),
         ("<for_each values='{a: 1};b'><log message='a'/></for_each>", "'b' does not"),
+        ("<for_each values='{a: 012}'><log message='a'/></for_each>", "two ways: it is 10"),
+        ("<for_each values='{a: 1:30}'><log message='a'/></for_each>", "the number 90"),
         ("<for_each values='{a: 1}'><log message='$(for-var b)'/></for_each>", "no value 'b'; available: a"),
         ("<log message='$(index i)'/>", "no loop is around it"),
     ],

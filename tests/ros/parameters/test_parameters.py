@@ -363,9 +363,9 @@ class TestCommandLine:
         assert later.declare_parameter("speed", 0.0).value == 0.9
 
 
-@every_case("text", ["012", "-010", "[1, 017]", "08"])
-def test_a_number_with_a_zero_before_it_is_refused(text: str) -> None:
-    """In base eight, as ROS 2 reads it, it is another number, or none."""
+@every_case("text", ["012", "-010", "[1, 017]", "08", "1_000", "1:30", "[1.0, 1:30.5]", "0b11"])
+def test_a_number_that_can_be_read_in_two_ways_is_refused(text: str) -> None:
+    """By YAML 1.1 it is another number, or one at all."""
     for read in (get_parameter_value, parse_value):
         with pytest.raises(AmbiguousValue, match="two ways"):
             read(text)
@@ -376,7 +376,9 @@ def test_a_number_with_a_zero_before_it_is_refused(text: str) -> None:
     [
         ("007", 7),
         ("'012'", "012"),
-        ("1_000", "1_000"),
+        ("'1_000'", "1_000"),
+        ("00:11:22:33", "00:11:22:33"),
+        ("_1", "_1"),
         ("1", 1),
         ("-1", -1),
         ("0x10", 16),
