@@ -7,11 +7,14 @@ only if its reader accepts it: a worker may have another version, a full disk, o
 from __future__ import annotations
 
 import json
+import math
 import re
 import shlex
 import shutil
+import signal
 import subprocess
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -27,6 +30,8 @@ from kit.workspace import write_atomically
 DONE: Final = "done"
 MAX_TRIES: Final = 2
 """How often a job is tried whose worker dies."""
+STOP_S: Final = 30.0
+"""How long workers that are asked to end may take, to save what they have, before they are killed [s]."""
 MAX_RESULT_BYTES: Final = 16_000_000
 """Bytes of a result's file, many times those of the longest."""
 SLURM_SCRIPT: Final = "slurm.sh"
@@ -103,34 +108,40 @@ class JobPool:
         self._is_stopped = False
 
     def run(self) -> None:
-        """Runs until every key is through. Raises OSError if results cannot be saved; ends the workers if interrupted."""
-        threads = [threading.Thread(target=self._run_worker) for _ in range(self._jobs)]
-        for thread in threads:
-            thread.start()
+        """Runs until every key is through. Raises OSError if results cannot be saved; ends the workers if interrupted, at a
+        second interruption at once."""
+        # Not ``Thread.join``: before Python 3.13 a thread counts as ended where waiting for it was interrupted.
+        ends = [threading.Event() for _ in range(self._jobs)]
+        for end in ends:
+            threading.Thread(target=self._run_worker, args=(end,)).start()
         try:
-            for thread in threads:
-                thread.join()
+            _wait_for(ends)
         except BaseException:
-            self._stop()
-            for thread in threads:
-                thread.join()
+            self._is_stopped = True
+            self._signal_workers(signal.SIGTERM)
+            try:
+                _wait_for(ends, STOP_S)
+            finally:
+                self._signal_workers(signal.SIGKILL)
+                _wait_for(ends)
             raise
         if self._problems:
             raise self._problems[0]
 
-    def _stop(self) -> None:
-        self._is_stopped = True
+    def _signal_workers(self, number: signal.Signals) -> None:
         for worker in tuple(self._workers):
-            worker.terminate()
+            worker.send_signal(number)
 
-    def _run_worker(self) -> None:
-        """Feeds keys to one worker process, and replaces it when it dies."""
+    def _run_worker(self, end: threading.Event) -> None:
+        """Feeds keys to one worker process, and replaces it when it dies. Sets ``end`` once all is over."""
         worker: subprocess.Popen[str] | None = None
         try:
             while (key := self._next()) is not None:
                 for attempt in range(MAX_TRIES):
                     worker = worker or self._start()
                     self._workers.add(worker)
+                    if self._is_stopped:  # while it was started: nobody else ends it
+                        return
                     if self._is_done(worker, key):
                         break
                     self._workers.discard(worker)
@@ -145,8 +156,11 @@ class JobPool:
         except Exception as error:  # noqa: BLE001  # a thread's error is raised where the threads were started
             self._problems.append(error)
         finally:
-            if worker is not None:
-                _stop_worker(worker)
+            try:
+                if worker is not None:
+                    _stop_worker(worker)
+            finally:
+                end.set()
 
     def _next(self) -> str | None:
         with self._lock:
@@ -174,6 +188,13 @@ class JobPool:
             return worker.stdout.readline() == f"{DONE} {key}\n"
         finally:
             watchdog.cancel()
+
+
+def _wait_for(ends: Sequence[threading.Event], limit_s: float = math.inf) -> None:
+    """Waits until all are set, or so long."""
+    until = time.monotonic() + limit_s
+    for end in ends:
+        end.wait(min(max(0.0, until - time.monotonic()), threading.TIMEOUT_MAX))
 
 
 def _stop_worker(worker: subprocess.Popen[str], *, now: bool = False) -> None:

@@ -40,6 +40,7 @@ from kit.host.failure import (
 )
 from kit.host.output import OutputCollector, ProgramOutput, StackPosition, Stream
 from kit.host.private_folder import make_private_folder
+from kit.host.processor_delay import delayed_s
 from kit.host.program_terminal import ProgramStreams
 from kit.host.protocol import (
     STATE_AFTER_COMMAND,
@@ -371,12 +372,12 @@ class StudentProcess:
         began, used_before_s = time.monotonic(), self._processor_s()
         total_s = self._limits.total_s
         left_s = math.inf if total_s is None or budget == "start" else total_s - self._waited_s
-        used_s, delayed_s = 0.0, 0.0
+        used_s, extra_s = 0.0, 0.0
         pause_s = CHECK_S  # the kernel's files are read only of a program that does not answer at once
         delayed_before_s: float | None = None
         while True:
             now = time.monotonic()
-            end = began + min(wall_s + delayed_s, left_s)
+            end = began + min(wall_s + extra_s, left_s)
             frame = self._receive(min(max(end, now + CHECK_S), now + pause_s))
             if frame is not None:
                 return frame
@@ -386,12 +387,12 @@ class StudentProcess:
                 used_s = self._processor_s() - used_before_s
             if used_s >= processor_s:
                 self._fail_timeout(budget, processor_s)
-            if extends_wall:
+            if extends_wall and self._program is not None:
                 if delayed_before_s is None:
-                    delayed_before_s = self._delayed_s()
-                delayed_s = self._delayed_s() - delayed_before_s
+                    delayed_before_s = delayed_s(self._program)
+                extra_s = delayed_s(self._program) - delayed_before_s
             waited_s = time.monotonic() - began
-            if waited_s >= min(wall_s + delayed_s, left_s):
+            if waited_s >= min(wall_s + extra_s, left_s):
                 if total_s is not None and waited_s >= left_s:
                     self._fail_timeout("total", total_s)
                 self._fail_timeout("start wall" if budget == "start" else "reply wall", wall_s)
@@ -406,17 +407,6 @@ class StudentProcess:
             return time.clock_gettime((~self._program << 3) | 2)
         except OSError:  # it has ended
             return 0.0
-
-    def _delayed_s(self) -> float:
-        """Returns for how long the student's process was ready to compute and had no processor [s]: the longest of its threads.
-        0 where it cannot be known."""
-        delays_ns = [0]
-        if self._program is not None:
-            with suppress(OSError):  # it has ended, or this kernel does not tell
-                for thread in os.listdir(f"/proc/{self._program}/task"):
-                    with open(f"/proc/{self._program}/task/{thread}/schedstat", "rb") as file:
-                        delays_ns.append(int(file.read().split()[1]))
-        return max(delays_ns) / 1e9
 
     def _send_command(self, kind: str, *content: Json) -> None:
         assert self._first_answer is not None, "a command before wait_started"

@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Final
 
+from kit.host.processor_delay import family_delayed_s
 from kit.launch.launch_run import Launch
 from kit.launch.processes import CommandProcess
 
@@ -35,6 +36,8 @@ class CommandTime:
         """When each command was first seen, on the monotonic clock [s], by process id."""
         self._answered_s: dict[int, float] = {}
         """When each was last found not to owe an answer [s]."""
+        self._given_up: set[int] = set()
+        """The processes that took longer than they are waited for: it is not looked again what kept them."""
 
     def wait(self, exchange: Callable[[], object]) -> None:
         """Calls ``exchange``, which exchanges messages while time stands still, until no command must be waited for."""
@@ -65,8 +68,18 @@ class CommandTime:
             )  # until the launch has taken note, which does so in the tick after the start
         if not command.is_of_kit:
             taken_s = now_s - began_s
-            return taken_s < COMMAND_S or (now_ns - began_ns) / 1e9 > taken_s
+        if not command.is_of_kit:
+            return self._is_within(COMMAND_S, taken_s, command) or (now_ns - began_ns) / 1e9 > taken_s
         if owing.get(command.pid) is False:
             self._answered_s[command.pid] = now_s
             return False
-        return now_s - self._answered_s.get(command.pid, began_s) < START_S
+        return self._is_within(START_S, now_s - self._answered_s.get(command.pid, began_s), command)
+
+    def _is_within(self, limit_s: float, waited_s: float, command: CommandProcess) -> bool:
+        """Whether a command that was waited for so long may still be, by the wall clock but for what a busy machine took."""
+        if waited_s < limit_s:
+            return True
+        if command.pid not in self._given_up and waited_s - family_delayed_s(command.pid) < limit_s:
+            return True
+        self._given_up.add(command.pid)
+        return False

@@ -86,7 +86,7 @@ CONTROLS: Final = (
     Control(
         "a reply that sleeps and computes a twentieth of the time",
         "kit/host/process.py",
-        "                delayed_s = self._delayed_s() - delayed_before_s\n",
+        "                extra_s = delayed_s(self._program) - delayed_before_s\n",
         "                delayed_s = used_s / 0.05\n",
         "host/test_process.py::test_who_computes_now_and_then_and_sleeps_is_ended_by_the_wall_clock",
     ),

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import io
+import os
+import signal
+import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
+from typing import ClassVar
 
 import pytest
 
+from kit.host import job_executors
 from kit.host.job_executors import (
     MAX_TRIES,
+    STOP_S,
     ExecutorUnavailable,
     JobPool,
     SlurmResources,
@@ -19,6 +27,7 @@ from kit.host.job_executors import (
     serve_jobs,
     slurm_script,
 )
+from tests.waiting import wait_until
 
 WORKER = """
 import sys
@@ -49,6 +58,77 @@ def test_what_goes_wrong_where_jobs_are_counted_ends_the_pool(tmp_path: Path) ->
 
     with pytest.raises(OSError, match="full"):
         JobPool([sys.executable, "-c", WORKER, str(tmp_path)], ["a", "b"], 1, full, full).run()
+
+
+STUBBORN = """
+import signal, sys
+from pathlib import Path
+folder = Path(sys.argv[1])
+def end(*_):
+    (folder / "asked").touch()
+    if len(sys.argv) == 2:
+        sys.exit(1)
+signal.signal(signal.SIGTERM, end)
+for line in sys.stdin:
+    if line == "first\\n":
+        print("done first", flush=True)
+        continue
+    (folder / "began").touch()
+    while True:
+        signal.pause()
+"""
+
+
+class _InterruptedPool(JobPool):
+    """A pool whose process is interrupted while a worker is being started: the second one of two."""
+
+    started: ClassVar[list[subprocess.Popen[str]]] = []
+
+    def _start(self) -> subprocess.Popen[str]:
+        if self.started:
+            os.kill(os.getpid(), signal.SIGINT)
+            wait_until(lambda: self._is_stopped)
+        self.started.append(super()._start())
+        return self.started[-1]
+
+
+def test_a_worker_that_is_started_while_the_pool_is_ended_gets_no_job(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It would run it to its end, which nobody waits for any more."""
+    monkeypatch.setattr(_InterruptedPool, "started", [])
+    command = [sys.executable, "-c", WORKER, str(tmp_path)]
+    with pytest.raises(KeyboardInterrupt):
+        _InterruptedPool(command, ["dead", "b2"], 1, list[str]().append, list[str]().append).run()
+    assert [each.wait() is not None for each in _InterruptedPool.started] == [True, True]
+    assert [file.name for file in tmp_path.iterdir()] == ["dead-0"]
+
+
+def test_workers_that_do_not_end_when_they_are_asked_are_killed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(job_executors, "STOP_S", 0.2)
+
+    def interrupt(key: str) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+
+    command = [sys.executable, "-c", STUBBORN, str(tmp_path), "stubborn"]
+    with pytest.raises(KeyboardInterrupt):
+        JobPool(command, ["first", "second"], 1, interrupt, interrupt).run()
+
+
+def test_a_second_interruption_kills_workers_at_once(tmp_path: Path) -> None:
+    def interrupt_twice() -> None:
+        for name in ("began", "asked"):
+            wait_until((tmp_path / name).exists)
+            os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Thread(target=interrupt_twice).start()
+    command = [sys.executable, "-c", STUBBORN, str(tmp_path), "stubborn"]
+    began = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        JobPool(command, ["second"], 1, list[str]().append, list[str]().append).run()
+    assert time.monotonic() - began < STOP_S
 
 
 def test_a_server_answers_when_a_job_is_done() -> None:

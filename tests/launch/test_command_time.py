@@ -6,13 +6,19 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
+from kit.host.processor_delay import delayed_s
 from kit.inspection.sockets import running_worlds, sockets_folder
+from kit.launch import command_time
+from kit.launch.command_time import CommandTime
 from tests.launch.conftest import Launched
 from tests.waiting import wait_until
 
@@ -186,6 +192,62 @@ def test_ros2_commands_of_a_launch_file_go_by_simulated_time(tmp_path: Path, lau
     assert any("Spawn_Response(name='turtle2')" in line for line in lines)
     assert any("/turtle2/pose" in line for line in lines)
     assert sum("publishing #" in line for line in lines) in (9, 10, 11)
+
+
+@dataclass(frozen=True)
+class _Command:
+    pid: int
+    is_of_kit: bool
+    poll: Callable[[], int | None]
+
+
+@pytest.mark.skipif(
+    not Path("/proc/self/schedstat").exists(), reason="only Linux tells how long a process waited"
+)
+@pytest.mark.parametrize("is_of_kit", [True, False], ids=["ros2", "other"])
+def test_a_command_that_a_busy_machine_keeps_from_computing_is_waited_for(
+    monkeypatch: pytest.MonkeyPatch, is_of_kit: bool
+) -> None:
+    """And one that sleeps is not."""
+    monkeypatch.setattr(command_time, "START_S", 0.2)
+    monkeypatch.setattr(command_time, "COMMAND_S", 0.2)
+    processor = min(os.sched_getaffinity(0))
+
+    def on_one_processor() -> None:
+        os.sched_setaffinity(0, {processor})
+
+    def when_idle() -> None:
+        on_one_processor()
+        os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
+
+    computes = [sys.executable, "-c", "while True: pass"]
+    rival = subprocess.Popen(computes, preexec_fn=on_one_processor)
+    commands = {
+        "kept": subprocess.Popen(computes, preexec_fn=when_idle),
+        "asleep": subprocess.Popen(["sleep", "1000"]),
+    }
+    try:
+        waits = {
+            name: CommandTime(
+                cast(
+                    "Any",
+                    SimpleNamespace(
+                        commands={_Command(each.pid, is_of_kit, each.poll): 0},
+                        graph=SimpleNamespace(now_ns=0),
+                    ),
+                ),
+                dict,
+            )
+            for name, each in commands.items()
+        }
+        assert waits["kept"]._must_wait()
+        wait_until(lambda: not waits["asleep"]._must_wait())
+        wait_until(lambda: delayed_s(commands["kept"].pid) > 0.3)
+        assert waits["kept"]._must_wait()
+    finally:
+        for each in (rival, *commands.values()):
+            each.kill()
+            each.wait()
 
 
 TURTLESIM = {
