@@ -263,7 +263,7 @@ def package_command(ctx: click.Context, workspace: Path | None) -> None:
     "--destination-directory",
     "destination",
     type=click.Path(file_okay=False, path_type=Path),
-    help="Folder to create it in (default: the workspace's packages).",
+    help="Folder to create it in (default: the packages of the workspace; with `kit ros`, as with ros2, the current folder).",
 )
 @click.option("--node-name", default="driver", show_default=True, help="Name of its program.")
 @click.option("--map", "map_name", default="simple", show_default=True, help="Map to start with.")
@@ -273,9 +273,9 @@ def package_command(ctx: click.Context, workspace: Path | None) -> None:
 @click.option("--license", "licence", default="MIT", show_default=True, help="Its licence.")
 @click.option("--maintainer-name", "maintainer", default="", help="Who maintains it (default: you).")
 @click.option("--maintainer-email", "email", default="", help="The maintainer's address.")
-@click.pass_obj
+@click.pass_context
 def create(
-    opened_workspace: Workspace,
+    ctx: click.Context,
     name: str,
     destination: Path | None,
     node_name: str,
@@ -294,10 +294,14 @@ def create(
     from kit.launch.package_creation import PackageOwner, create_package
     from kit.world.catalogue import UnknownMap
 
+    opened_workspace: Workspace = ctx.obj
+    if destination is None:
+        is_of_ros = "ros" in ctx.command_path.split()
+        destination = Path.cwd() if is_of_ros else opened_workspace.packages
     try:
         folder = create_package(
             name,
-            destination or opened_workspace.packages,
+            destination,
             node=node_name,
             map_name=map_name,
             dependencies=dependencies,
@@ -306,9 +310,10 @@ def create(
         )
     except (PackageError, UnknownMap) as problem:
         messages.fail(str(problem))
+    click.echo(f"destination directory: {destination.absolute()}")
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):
         click.echo(f"creating {path}")
-    click.echo(f"\nkit launch {folder if destination else name}")
+    click.echo(f"\nkit launch {name if destination == opened_workspace.packages else folder}")
 
 
 @package_command.command("list")

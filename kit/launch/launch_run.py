@@ -238,6 +238,7 @@ class Launch:
     def start_processes(self) -> None:
         """Starts the requested processes and waits until they are in the graph. Raises ProcessStartError."""
         self._start_waiting(started_ns=self.graph.now_ns - 1)
+        self._tell_events()
         for running in list(self._running.values()):
             running.process.wait_until_started()
         self._poll_processes()
@@ -323,8 +324,7 @@ class Launch:
         self._connection_watch.look()
         wake = self._launch_file.wake_ns
         if self._events or (wake is not None and wake <= self._clock_ns):
-            events, self._events = self._events, []
-            self._advance_launch_file(events)
+            self._tell_events()
             self._start_requested()
         elif self._launch_file.is_busy and not (self._running or self._waiting or self.has_timers):
             self._end_all_processes()  # as ROS 2 ends a launch in which nothing runs any more
@@ -338,12 +338,19 @@ class Launch:
     def _start_requested(self) -> None:
         try:
             # Time stands still until they are there: they are in step from the tick in which they were due.
-            for started in self._start_waiting():
-                started.wait_until_started()
-                self._has_sent = True  # it may have ended already: its end counts in this tick
+            while every := self._start_waiting():
+                self._tell_events()  # what waits for their start comes before what they say
+                for started in every:
+                    started.wait_until_started()
+                    self._has_sent = True  # it may have ended already: its end counts in this tick
         except ProcessStartError as problem:
             self._record_failure(str(problem))
             self._end_all_processes()
+
+    def _tell_events(self) -> None:
+        """Tells the launch file what has happened since, and lets the timers fire that are due."""
+        events, self._events = self._events, []
+        self._advance_launch_file(events)
 
     def _advance_launch_file(self, events: list[Json]) -> None:
         with self._launch_file_failures():

@@ -166,6 +166,35 @@ def test_a_node_from_a_second_terminal_ticks_from_the_instant_at_which_it_was_du
     assert int(first) == int(start) + 100_000_000
 
 
+START_ORDER = """
+from launch import LaunchDescription
+from launch.actions import *
+from launch.event_handlers import *
+
+def generate_launch_description():
+    said = [ExecuteProcess(cmd=["echo", f"{{name}} speaks"], name=name) for name in ("early", "late", "after")]
+    told = [LogInfo(msg=f"{{name}} has started") for name in ("early", "late")]
+    return LaunchDescription([
+        RegisterEventHandler(OnProcessStart(target_action=said[0], on_start=[told[0]])),
+        RegisterEventHandler(OnProcessStart(target_action=said[1], on_start=[told[1], said[2]])),
+        said[0], TimerAction(period=1.0, actions=[said[1]]),
+    ])
+"""
+
+
+def test_what_waits_for_a_start_comes_before_what_the_process_says(tmp_path: Path, launch: Launched) -> None:
+    """As in ROS 2, where the event is there before the first line; what it starts begins in the same tick."""
+    file = tmp_path / "order.launch.py"
+    file.write_text(START_ORDER.format())
+    out, _, status = launch(file, "--until", "5")
+    assert status == 0
+    lines = [line.split("] ", 1)[1] for line in out.splitlines() if "speaks" in line or "has started" in line]
+    assert lines == [
+        *("[launch]: early has started", "early speaks", "[launch]: late has started"),
+        *("late speaks", "after speaks"),
+    ]
+
+
 COMMANDS = """
 from launch import LaunchDescription
 from launch.actions import *

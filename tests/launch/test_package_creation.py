@@ -131,11 +131,22 @@ def test_models_are_placed_and_the_rest_of_a_world_stays(tmp_path: Path) -> None
 
 
 def test_a_package_is_created_by_a_tutorials_own_command(
-    kit: Callable[..., tuple[str, str, int]], tmp_path: Path
+    kit: Callable[..., tuple[str, str, int]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """In the current folder, as there; ``kit pkg create`` keeps packages together, and says where."""
+    (tmp_path / "src").mkdir()
+    monkeypatch.chdir(tmp_path / "src")
     words = "--build-type ament_python --license Apache-2.0 --node-name my_node my_package --dependencies rclpy std_msgs"
-    assert kit("ros", "pkg", "create", *words.split())[2] == 0
-    manifest = (tmp_path / "workspace" / "packages" / "my_package" / "package.xml").read_text()
+    out, _, code = kit("ros", "pkg", "create", *words.split())
+    assert code == 0
+    folder = tmp_path / "src" / "my_package"
+    assert out.startswith(f"destination directory: {tmp_path / 'src'}\n")
+    assert out.endswith(f"\nkit launch {folder}\n")
+    manifest = (folder / "package.xml").read_text()
+    assert kit("ros", "pkg", "executables", "my_package")[0] == "my_package my_node\n"
+    kept = tmp_path / "workspace" / "packages"
+    assert kit("pkg", "create", "mine")[0].startswith(f"destination directory: {kept}\n")
+    assert (kept / "mine").is_dir()
     assert "<license>Apache-2.0</license>" in manifest
     assert manifest.count("depend>rclpy<") == manifest.count("depend>std_msgs<") == 1
     assert kit("ros", "pkg", "create", "other", "--dependencies", "a<b")[2] == 2

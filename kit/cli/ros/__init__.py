@@ -36,7 +36,7 @@ VERBS: Final[Verbs] = {
         "Run a test for launch_testing: its launch, its tests, and those after the end.",
     ),
     "test": ("kit.cli.ros.launch_test", "Same as `kit ros launch_test`."),
-    "pkg": ("kit.cli.launch:package_command", "Same as `kit pkg`."),
+    "pkg": ("kit.cli.launch:package_command", "As `kit pkg`; `create` creates in the current folder."),
     "doctor": ("kit.cli.ros.doctor", "Check the running world, packages and this shell; report on them."),
     "wtf": ("kit.cli.ros.doctor", "Same as `kit ros doctor`."),
 }

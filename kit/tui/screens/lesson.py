@@ -483,14 +483,13 @@ class LessonScreen(DialogueScreen, DriveScreen):
 
         if self._editor is None or self._editor.program.file != file or not self._is_editing:
             try:
-                program = ProgramFile(file)
+                if self._editor is None:
+                    self._editor = ProgramEditor(ProgramFile(file))
+                    self.query_one("#workplace").mount(self._editor)
+                else:
+                    self._editor.open(file)
             except ProgramFileError as error:
                 return str(error)
-            if self._editor is None:
-                self._editor = ProgramEditor(program)
-                self.query_one("#workplace").mount(self._editor)
-            else:
-                self._editor.edit(program)
         self.add_class(EDITING)
         self.call_after_refresh(self._write_at, line)
         return ""

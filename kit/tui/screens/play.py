@@ -166,13 +166,11 @@ class PlayScreen(WatchScreen):
         driving = self._before_takeover or self._controller
         try:
             controller = editable_controller(driving, self._folder, self._runs)
-            if self._editor is None or self._editor.program.file != controller.file:
-                program = ProgramFile(controller.file)
-                if self._editor is None:
-                    self._editor = ProgramEditor(program)
-                    self.query_one("#middle").mount(self._editor)
-                else:
-                    self._editor.edit(program)
+            if self._editor is None:
+                self._editor = ProgramEditor(ProgramFile(controller.file))
+                self.query_one("#middle").mount(self._editor)
+            elif self._editor.program.file != controller.file:
+                self._editor.open(controller.file)
         except ProgramFileError as error:
             self.app.push_screen(MessageDialog("This program cannot be edited here", str(error)))
             return

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import fcntl
+import os
 import stat
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import ClassVar, Final
+from weakref import finalize
 
 from textual import events
 from textual.app import ComposeResult
@@ -41,15 +45,51 @@ class ProgramFileError(Exception):
 
 
 class ProgramFile:
-    """The file of one program. Raises ProgramFileError when opened, if it cannot be read as text."""
+    """The file of one program. Raises ProgramFileError when opened, if it cannot be read as text or another editor of the
+    kit's, whose draft it would be, has opened it."""
 
     def __init__(self, file: Path) -> None:
         self.file: Final = file
+        self._unlock: Callable[[], object] = lambda: None
+        self._locked: os.stat_result | None = None
+        self._lock()
+        self.draft: str | None = None
+        """What was typed the last time and never saved; None where there is nothing of the kind."""
+        self.is_draft_older = False
+        """Whether somebody has saved the file after the draft was typed."""
+        self.reread()
+
+    def reread(self) -> None:
+        """Reads the file and its draft again. Raises ProgramFileError."""
         self._known = self._read()
         self.draft = self._read_draft()
-        """What was typed the last time and never saved; None where there is nothing of the kind."""
         self.is_draft_older = self.draft is not None and self._was_saved_after_draft()
-        """Whether somebody has saved the file after the draft was typed."""
+
+    def close(self) -> None:
+        """Lets other editors open it."""
+        self._unlock()
+        self._locked = None
+
+    def _lock(self) -> None:
+        """Keeps other editors of the kit's out of the file that lies there now: who saves it puts another one in its place. A
+        file system without locks keeps nobody out. Raises ProgramFileError if another editor has it."""
+        try:
+            opened = os.open(self.file, os.O_RDONLY)
+        except OSError:  # reading it says why
+            return
+        if self._locked is not None and os.path.samestat(self._locked, os.fstat(opened)):
+            os.close(opened)
+            return
+        try:
+            fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(opened)
+            text = f"{self.file} is open in another editor of the kit, which keeps what is typed. Go on there, or close it first."
+            raise ProgramFileError(text) from None
+        except OSError:
+            pass
+        self._unlock()
+        self._unlock, self._locked = finalize(self, os.close, opened), os.fstat(opened)
 
     @property
     def text(self) -> str:
@@ -71,6 +111,8 @@ class ProgramFile:
     def accept(self, text: str) -> None:
         """Takes what somebody else has saved as known."""
         self._known = text
+        with suppress(ProgramFileError):  # it has been opened elsewhere too, since
+            self._lock()
 
     def save(self, text: str) -> None:
         """Writes the file at once or not at all. Raises ProgramFileError."""
@@ -86,6 +128,8 @@ class ProgramFile:
             raise ProgramFileError(f"{self.file} could not be saved: {error.strerror}.") from error
         self._known = text
         self.drop_draft()
+        with suppress(ProgramFileError):
+            self._lock()
 
     def keep_draft(self, text: str) -> str:
         """Keeps what is not saved beside the file, for the next time. Returns why that was not possible; empty if it was."""
@@ -278,16 +322,32 @@ class ProgramEditor(Vertical):
         yield TextRows(id="editor-state")
 
     def on_mount(self) -> None:
-        self.edit(self._program)
+        self._show_whole()
 
-    def edit(self, program: ProgramFile) -> None:
-        """Edits another program; what is not saved of the one before is kept beside its file."""
-        is_opened_again = program is not self._program and program.file == self._program.file
-        if program is not self._program and not is_opened_again:
-            self.keep_draft()
-        self._program, self._may_overwrite, self._failure = program, False, ()
-        if not is_opened_again:
-            self.area.show_text(program.text, LANGUAGES.get(program.file.suffix))
+    def on_unmount(self) -> None:
+        self._program.close()
+
+    def open(self, file: Path) -> None:
+        """Edits the program of a file; one that is open already is read again. What is not saved of another one before is kept
+        beside its file. Raises ProgramFileError, and then edits the one before."""
+        if file == self._program.file:
+            self._program.reread()
+            self._show_draft()
+            return
+        program = ProgramFile(file)
+        self.keep_draft()
+        self._program.close()
+        self._program = program
+        self._show_whole()
+
+    def _show_whole(self) -> None:
+        self.area.show_text(self._program.text, LANGUAGES.get(self._program.file.suffix))
+        self._show_draft()
+
+    def _show_draft(self) -> None:
+        """Shows the draft of the last time, if there is one, and says so."""
+        program = self._program
+        self._may_overwrite, self._failure = False, ()
         self.area.take_text(program.text if program.draft is None else program.draft)
         left = "as you left it, not saved"
         if program.draft is None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -114,10 +116,44 @@ def test_a_draft_outlives_the_editor_and_saving_ends_it(tmp_path: Path) -> None:
     assert (again.text, again.draft) == ("one\n", "two\n")
     again.save("two\n")
     assert file.read_text() == "two\n"
-    assert ProgramFile(file).draft is None
+    again.reread()
+    assert again.draft is None
     assert not again.draft_file.exists()
     again.keep_draft("two\n")  # the same as is saved: no draft
     assert not again.draft_file.exists()
+
+
+SECOND_EDITOR = """
+import sys
+from pathlib import Path
+from kit.tui.widgets.program_editor import ProgramFile, ProgramFileError
+try:
+    ProgramFile(Path(sys.argv[1]))
+except ProgramFileError as error:
+    sys.exit(str(error))
+"""
+
+
+def test_a_second_editor_of_a_program_is_refused_until_the_first_one_ends(tmp_path: Path) -> None:
+    """Both would keep what is typed in the same draft."""
+    file = tmp_path / "driver.py"
+    file.write_text("one\n")
+
+    def second() -> str:
+        words = [sys.executable, "-c", SECOND_EDITOR, str(file)]
+        return subprocess.run(words, capture_output=True, text=True, check=False).stderr
+
+    first = ProgramFile(file)
+    assert "driver.py is open in another editor" in second()
+    first.save("two\n")  # another file lies there now
+    assert "driver.py is open in another editor" in second()
+    file.unlink()
+    file.write_text("theirs\n")
+    first.accept("theirs\n")
+    assert "driver.py is open in another editor" in second()
+    first.reread()  # its own lock does not keep it out
+    first.close()
+    assert second() == ""
 
 
 def test_a_file_that_was_saved_after_a_draft_is_overwritten_only_when_asked_twice(tmp_path: Path) -> None:
