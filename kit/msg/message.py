@@ -13,7 +13,7 @@ from array import array
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from operator import attrgetter
-from typing import Any, NamedTuple, NoReturn, Self, TypeVar, cast, dataclass_transform
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, Self, TypeVar, cast, dataclass_transform
 
 from kit.msg import snake_case
 from kit.msg.fields import (
@@ -27,6 +27,10 @@ from kit.msg.fields import (
 )
 
 M = TypeVar("M", bound="Message")
+
+
+if TYPE_CHECKING:
+    from kit.msg.slot_types import AbstractType
 
 
 class Field(NamedTuple):
@@ -89,6 +93,15 @@ class _FieldTypes:
         return cls.get_fields_and_field_types()
 
 
+class _SlotTypes:
+    """``SLOT_TYPES`` of a message class or a message, as rosidl has it."""
+
+    def __get__(self, message: object, cls: type[Message]) -> tuple[AbstractType, ...]:
+        from kit.msg.slot_types import slot_type  # few programs look into messages so
+
+        return tuple(slot_type(field.kind.idl) for field in cls.__ros_fields__)
+
+
 class MessageType(type):
     """The type of message classes: gives each its slots and checking properties from its fields.
 
@@ -132,6 +145,7 @@ class Message(metaclass=MessageType):
         return {field.name: field.kind.idl for field in cls.__ros_fields__}
 
     _fields_and_field_types = _FieldTypes()
+    SLOT_TYPES = _SlotTypes()
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Message) or type(self) is not type(other):
