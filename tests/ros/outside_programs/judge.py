@@ -32,7 +32,7 @@ from kit.ros.graph.graph import Graph
 FOLDER: Final = Path(__file__).parent
 SETS: Final = (
     *("first", "second", "third", "fourth", "fifth", "sixth"),
-    *("seventh", "eighth", "ninth", "tenth", "eleventh", "twelfth"),
+    *("seventh", "eighth", "ninth", "tenth", "eleventh", "twelfth", "thirteenth"),
 )
 """Folders of programs, in the order in which they were written."""
 LIMIT_S: Final = 200.0
