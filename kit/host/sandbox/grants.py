@@ -27,6 +27,7 @@ _KIT_PARTS: Final = (
     "environment_ids.py",
     "geometry.py",
     "plain_text.py",
+    "yaml_numbers.py",
     "host",
     "msg",
     "ros",
