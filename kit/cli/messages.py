@@ -45,14 +45,17 @@ def _indent_of(line: str) -> str:
 
 
 def describe_os_error(error: OSError) -> str:
-    """Formats an error with its file, and the way out where there is no room."""
+    """Formats an error with its file, and the way out where there is no room. Raises one without a file again, as of what is
+    printed: the process says it, in the same words for every command."""
+    if error.errno in NO_ROOM and error.filename is None:
+        raise error
     if error.errno in NO_ROOM:
         return describe_no_room(error)
     return f"{error.filename}: {error.strerror}" if error.filename and error.strerror else str(error)
 
 
 def describe_error(error: Exception) -> str:
-    """What an error says, with the file where it is one of the system."""
+    """What an error says, with the file where it is one of the system. Raises as ``describe_os_error`` does."""
     return describe_os_error(error) if isinstance(error, OSError) else str(error)
 
 
