@@ -20,7 +20,8 @@ from kit.world.problems import Problem, ProblemCollector, WorldError
 from kit.world.records import SourceLocation
 from kit.world.yaml_reader import InvalidYaml, NodeBudget, YamlComposer
 from kit.world.yaml_section import Section
-from kit.world.yaml_tree import MapNode, Node, ScalarNode, missing_blank
+from kit.world.yaml_tree import MapNode, Node, ScalarNode
+from kit.yaml_slips import missing_blank
 
 MAX_YAML_BYTES = 1_000_000
 MAX_KEPT_CHARACTERS = 100_000

@@ -27,12 +27,11 @@ from kit.world.yaml_tree import (
     MapEntry,
     MapNode,
     Node,
-    ParserMark,
     ScalarNode,
     parse_bool,
     parse_number,
-    parser_mistake,
 )
+from kit.yaml_slips import ParserMark, parser_mistake
 
 _INCLUDE = re.compile(r"\$(?P<spread>\[include\]|include)\s+(?P<file>\S.*)", re.DOTALL)
 _EVAL = re.compile(r"\$eval\b\s*(return\b)?\s*", re.DOTALL)

@@ -109,7 +109,7 @@ def _compose(text: str, source: _TextSource) -> YamlNode | None:
     try:
         return yaml.compose(text, Loader=yaml.SafeLoader)
     except yaml.MarkedYAMLError as problem:
-        from kit.world.yaml_tree import parser_mistake  # only where there is one
+        from kit.yaml_slips import parser_mistake  # only where there is one
 
         slip = parser_mistake(problem, text)
         place = f":{slip.line}:{slip.column}" if source.is_file else ""
@@ -140,7 +140,7 @@ def _parameters(node: YamlNode, prefix: str, source: _TextSource) -> Iterator[Pa
 
 def _entries(node: YamlNode, source: _TextSource) -> Iterator[tuple[str, YamlNode]]:
     if not isinstance(node, MappingNode):
-        from kit.world.yaml_tree import missing_blank  # only where something is wrong
+        from kit.yaml_slips import missing_blank  # only where something is wrong
 
         slip = missing_blank(node.value) if isinstance(node, ScalarNode) else None
         message = slip or f"needs a mapping here: 'node: {{{PARAMETERS_KEY}: {{name: value}}}}'"

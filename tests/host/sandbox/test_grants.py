@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -74,6 +76,33 @@ def test_every_package_but_ours_can_be_read(student: Student, library: Path, lev
         assert not any(
             functions.call_batch("imports", [{"name": name} for name in ("kit.sim", "grader", "alias.sim")])
         )
+
+
+def _imports(module: ast.AST) -> Iterator[str]:
+    """The modules of the kit that are imported when the code runs: not those that a type checker alone imports."""
+    for node in ast.iter_child_nodes(module):
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            continue
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("kit."):
+            yield node.module or ""
+        elif isinstance(node, ast.Import):
+            yield from (each.name for each in node.names if each.name.startswith("kit."))
+        yield from _imports(node)
+
+
+def test_all_that_a_students_process_imports_of_the_kit_is_granted() -> None:
+    kit = Path(grants.__file__).parents[2]
+    parts = tuple(f"kit.{Path(part).stem}" for part in grants._KIT_PARTS)
+    own = [kit / part for part in grants._KIT_PARTS if part.endswith(".py")]
+    for folder in ("host/child", "msg", "ros"):
+        own += (kit / folder).rglob("*.py")
+    assert {
+        f"{file.relative_to(kit)}: {name}"
+        for file in own
+        if file.name != "__init__.py" or file.parent != kit  # whose names are imported when they are used
+        for name in _imports(ast.parse(file.read_text("utf-8")))
+        if not name.startswith(tuple(f"{part}." for part in parts)) and name not in parts
+    } == set()
 
 
 def test_nothing_of_ours_lies_below_what_is_granted(library: Path) -> None:

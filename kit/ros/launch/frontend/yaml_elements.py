@@ -7,7 +7,7 @@ import yaml
 from kit.ros.launch.bounds import MAX_ACTIONS, MAX_DEPTH, NESTED_TOO_DEEPLY
 from kit.ros.launch.context import LaunchError, LaunchFileLocation
 from kit.ros.launch.frontend.element import Element, Problems, TextPosition
-from kit.world.yaml_tree import parser_mistake
+from kit.yaml_slips import parser_mistake
 
 ROOT = "launch"
 
