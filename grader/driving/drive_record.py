@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 
 from grader.driving.circle_fit import CircleFit, fit_circle
+from grader.driving.service_calls import NO_ANSWER, NO_SERVICE
+from grader.driving.waypoints import pass_waypoints
 from kit.arrays import FloatArray
 from kit.geometry import Pose
 from kit.host.failure import Failure
@@ -42,6 +44,8 @@ MOTION_CHECKS = frozenset(
 """Checks of where the robot comes, which nothing but a command brings about."""
 DISTANCE_CHECKS = frozenset({"moves", "gets_about"})
 """Checks of how far the robot gets."""
+FOLLOWING_CHECKS = frozenset({"speed_by_range", "flag_by_range", "speed_by_flag"})
+"""Checks of whether something follows what the program was told."""
 COMMAND = "geometry_msgs/msg/Twist"
 NO_COMMAND = "It published no command at all: what is computed must be published, too."
 NO_CIRCLE = "It hardly moves, or drives along a line: a circle is asked for."
@@ -203,11 +207,18 @@ class GradedDrive:
         if check == "circle":
             fit = self.fit_circle(params.after)
             return NO_CIRCLE if fit is None else fit.describe(params.radius, params.turning)
+        if check == "comes_by" and len(self.track):
+            path = self.track[::CLEARANCE_INTERVAL]
+            return pass_waypoints(path, params.places, params.within).describe()
+        if check == "answered":
+            return self._explain_answer(params.call, params.holds)
         if check in DISTANCE_CHECKS and self.bump_ticks:
             return f"It touches something after {self.bump_ticks[0] * self.recording.step_size:.1f} s."
         topics = self._topic_mistakes(params.topics) if check == "topics" else ()
         counts = self._counts(check, params) if check in COUNTED_CHECKS and params is not None else ()
-        return " ".join([*counts, *self._idle_timers(), *topics, *self.connections.mistakes])
+        follows = check in FOLLOWING_CHECKS and params.judge(self.ahead, self.flags, self.commands).mistake
+        wrong = [follows] if follows else []
+        return " ".join([*counts, *wrong, *self._idle_timers(), *topics, *self.connections.mistakes])
 
     def _idle_timers(self) -> Iterator[str]:
         if any(TIMER_WITHOUT_CALLBACK in line for line in self.printed):
@@ -236,6 +247,12 @@ class GradedDrive:
             came = counted(0 if traffic is None else traffic.count, "message")
             what, asked = f"{came} came on {params.topic}", self.seconds * params.rate
         yield f"{what} in {self.seconds:.0f} s; {asked:.0f} are asked for."
+
+    def _explain_answer(self, call: str, holds: str) -> str:
+        """Says what the program answered instead; see ``AnswerParams``."""
+        answer = self.answers.get(call, NO_ANSWER)
+        said = {NO_ANSWER: "There was no answer in time", NO_SERVICE: "There was no such service"}
+        return f"{said.get(answer, f'The answer was {answer}')}; one with {holds} is asked for."
 
     def _explain_profiles(self, ends: Iterable[str]) -> str:
         """Says what the first of the asked ends is instead; see ``ProfilesParams``."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from grader.check import NoParams, check
 from grader.driving.drive_record import CLEARANCE_INTERVAL, GradedDrive
-from kit.geometry import Pose
+from grader.driving.waypoints import pass_waypoints
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,21 +112,13 @@ def short_way(drive: GradedDrive, params: NoParams) -> float:
     return drive.score.distance_m / max(straight - case.target_radius, 1e-9)
 
 
-@check(none=0, full=1, unit="%", params=WaypointParams)
+@check(none=0, full=1, unit="%", params=WaypointParams, is_explained=True)
 def comes_by(drive: GradedDrive, params: WaypointParams) -> float:
-    """Of the asked places the robot came by {actual}, in their order, in the worst episode ({where}). Compare its way
-    in the picture with what was asked."""
+    """Of the asked places the robot came by {actual}, in their order, in the worst episode ({where})."""
     if not len(drive.track):
         return 0.0
-    start, passed = Pose(*drive.track[0].tolist()), 0
-    path = drive.track[::CLEARANCE_INTERVAL, :2]
-    for place in params.places:
-        x, y = (float(number) for number in place.split())
-        near = np.flatnonzero(np.hypot(*(path - start.transform_point(x, y)).T) <= params.within)
-        if not len(near):
-            break
-        path, passed = path[near[0] :], passed + 1
-    return passed / len(params.places)
+    path = drive.track[::CLEARANCE_INTERVAL]
+    return pass_waypoints(path, params.places, params.within).passed / len(params.places)
 
 
 @check(none=1, full=0.15, unit="m")

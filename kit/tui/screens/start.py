@@ -92,6 +92,9 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         self._reading = ThreadPoolExecutor(1)
         """Not the event loop's own, for whose work leaving would wait."""
         self._overview: StudentOverview | None = None
+        """As last read; shown until it is read again."""
+        self._is_outdated = True
+        """Whether it may have changed since: whoever is away works."""
         self._level_picture: tuple[str, ...] = ()
         """Rows of the next level's picture, once it is drawn."""
         self._chosen = 0
@@ -168,10 +171,15 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     async def _read(self) -> None:
         await self._refresh_overview()
 
+    async def _current_overview(self) -> StudentOverview:
+        if self._overview is None or self._is_outdated:
+            return await self._refresh_overview()
+        return self._overview
+
     async def _refresh_overview(self) -> StudentOverview:
         """Read again, and shown."""
         overview = await get_running_loop().run_in_executor(self._reading, self._store.read_overview)
-        self._overview = overview
+        self._overview, self._is_outdated = overview, False
         if overview.next_level is not None and self.has_class("-vast"):
             self._level_picture = await get_running_loop().run_in_executor(
                 self._reading, _picture_of, overview.next_level, self._theme.terminal.glyphs.value
@@ -217,7 +225,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         from kit.school.game.levels import all_levels
         from kit.world.catalogue import all_maps
 
-        overview = self._overview or await self._refresh_overview()
+        overview = await self._current_overview()
         levels = await to_thread(all_levels)
         return [
             *(
@@ -269,7 +277,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     def _close_own_world(self) -> None:
         self.stop_driving()
-        self._is_away = True
+        self._is_away = self._is_outdated = True
         self._show_notice(None)
         self.host.close_session()  # one world at a time
 
@@ -279,7 +287,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         await self._refresh_overview()
 
     async def _open_next_lesson(self) -> None:
-        overview = self._overview or await self._refresh_overview()
+        overview = await self._current_overview()
         if overview.problem:
             self.app.push_screen(MessageDialog("Progress cannot be read", overview.problem))
             return
@@ -303,7 +311,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     async def _open_lessons(self) -> None:
         from kit.tui.screens.lessons import LessonsScreen
 
-        overview = self._overview or await self._refresh_overview()
+        overview = await self._current_overview()
         if overview.problem:
             self.app.push_screen(MessageDialog("Progress cannot be read", overview.problem))
         else:

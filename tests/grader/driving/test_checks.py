@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -11,9 +13,11 @@ import pytest
 
 from grader.check import NoParams
 from grader.driving.checks import interfaces, speeds, walls, ways
-from grader.driving.checks.speeds import FlagByRangeParams, SpeedByFlagParams, SpeedByRangeParams
+from grader.driving.checks.interfaces import AnswerParams
 from grader.driving.checks.ways import CircleParams
 from grader.driving.drive_record import NO_COMMAND, GradedDrive, TopicTraffic
+from grader.driving.following import FlagByRangeParams, SpeedByFlagParams, SpeedByRangeParams
+from grader.driving.service_calls import NO_SERVICE
 from grader.grading import GradingOptions, grade
 from grader.kinds.environment.examination import FreePlacementRunner
 from grader.reading import read_assignment
@@ -112,18 +116,23 @@ def test_all_messages_and_lines_in_the_first_tick_are_no_rate(
 
 def drive_by_range(distances: list[float], driven: list[float]) -> float:
     """What ``speed_by_range`` measures where a scan comes ten times a second, and a command right after it."""
+    return speeds.speed_by_range.measure(range_drive(distances, driven), SpeedByRangeParams())
+
+
+def range_drive(distances: list[float], driven: list[float]) -> GradedDrive:
     times = np.arange(len(distances)) / 10
-    drive = drive_of(
+    return drive_of(
         ahead={"/static_laser": np.column_stack([times, distances, distances])},
         commands=np.column_stack([times + 0.01, driven, 0 * times]),
     )
-    return speeds.speed_by_range.measure(drive, SpeedByRangeParams())
 
 
 def drive_of(**fields: Any) -> GradedDrive:
     """A drive of which only these fields are known."""
     drive = object.__new__(GradedDrive)
-    for name, value in fields.items():
+    nothing = {"ahead": {}, "flags": {}, "commands": np.empty((0, 3)), "answers": {}}
+    known = {"secret": False, "printed": (), "connections": NodeConnections(), **nothing, **fields}
+    for name, value in known.items():
         object.__setattr__(drive, name, value)
     return drive
 
@@ -142,13 +151,46 @@ def test_the_speed_must_follow_what_the_laser_measures() -> None:
     assert drive_by_range([], []) == 0.0
 
 
+def test_the_first_speed_that_does_not_follow_is_told_with_what_was_ahead() -> None:
+    distances = [*np.linspace(2.0, 0.4, 60).tolist(), *[0.4] * 20]
+
+    def told(driven: list[float]) -> str:
+        return range_drive(distances, driven).explain("speed_by_range", SpeedByRangeParams())
+
+    never_stops = told([0.3 if each < 1.2 else 0.6 for each in distances])
+    assert "0.3 m/s; 0 m/s is asked for" in never_stops
+    shown = float(never_stops.partition("with ")[2].partition(" m")[0])
+    assert 0.4 <= shown < 0.5, "the case that is wrong, though the others come before it"
+    assert not told([0.0 if each < 0.5 else 0.3 if each < 1.2 else 0.6 for each in distances])
+    far = range_drive([2.0] * 50, [0.6] * 50).explain("speed_by_range", SpeedByRangeParams())
+    assert "less than 0.5 m" in far, "a case that never came is named"
+    open_ground = range_drive([float("nan")] * 50, [0.0] * 50).explain("speed_by_range", SpeedByRangeParams())
+    assert "nan" in open_ground
+    assert "0.6 m/s is asked for" in open_ground
+
+
 def flags_by_range(near: list[float], wide: list[float], said: list[bool]) -> float:
+    return speeds.flag_by_range.measure(flag_drive(near, wide, said), FlagByRangeParams())
+
+
+def flag_drive(near: list[float], wide: list[float], said: list[bool]) -> GradedDrive:
     times = np.arange(len(near)) / 10
-    drive = drive_of(
+    return drive_of(
         ahead={"/static_laser": np.column_stack([times, near, wide])},
         flags={"/wall_ahead": np.column_stack([times, said])},
     )
-    return speeds.flag_by_range.measure(drive, FlagByRangeParams())
+
+
+def test_the_first_wrong_flag_is_told_with_what_was_ahead() -> None:
+    near = [*[2.0] * 20, *[0.41] * 20]
+
+    def told(said: list[bool]) -> str:
+        return flag_drive(near, near, said).explain("flag_by_range", FlagByRangeParams())
+
+    assert "0.41 m" in told([False] * 40)
+    assert "says False; True is asked for" in told([False] * 40)
+    assert "says True; False is asked for" in told([True] * 40)
+    assert not told([each < 0.5 for each in near])
 
 
 def test_what_is_said_of_walls_must_be_true() -> None:
@@ -164,13 +206,15 @@ def test_what_is_said_of_walls_must_be_true() -> None:
 
 
 def test_the_speed_must_follow_what_was_said() -> None:
-    def measured(said: list[bool], driven: list[float]) -> float:
+    def drive(said: list[bool], driven: list[float]) -> GradedDrive:
         times = np.arange(len(said)) / 10
-        drive = drive_of(
+        return drive_of(
             flags={"/wall_ahead": np.column_stack([times, said])},
             commands=np.column_stack([times + 0.01, driven, 0 * times]),
         )
-        return speeds.speed_by_flag.measure(drive, SpeedByFlagParams())
+
+    def measured(said: list[bool], driven: list[float]) -> float:
+        return speeds.speed_by_flag.measure(drive(said, driven), SpeedByFlagParams())
 
     said = [False] * 20 + [True] * 20
     assert measured(said, [0.4] * 20 + [0.0] * 20) == 1.0
@@ -178,6 +222,36 @@ def test_the_speed_must_follow_what_was_said() -> None:
     assert measured(said, [0.4] * 40) < 0.1
     assert measured([False] * 40, [0.4] * 40) == 0.0, "who is never told of a wall shows nothing"
     assert measured(said, [0.4, 0.0] * 20) < 0.6
+    told = drive(said, [0.4] * 40).explain("speed_by_flag", SpeedByFlagParams())
+    assert told.startswith("At 2.1 s")
+    assert "True on /wall_ahead" in told
+    assert "0 m/s is asked for" in told
+
+
+def test_the_first_place_that_is_missed_is_told() -> None:
+    """An L instead of a square: a metre ahead, half a metre to the left."""
+    legs = [(0, 0), (1, 0), (1, 0.5)]
+    way = np.concatenate([np.linspace(a, b, 101) for a, b in pairwise(legs)])
+    track = np.column_stack([np.add(way, (3.0, 2.0)), np.zeros(len(way))])
+    traffic = {"/cmd_vel": TopicTraffic("geometry_msgs/msg/Twist", 2)}
+    params = ways.WaypointParams(places=("1 0", "1 1", "0 1"), within=0.15)
+    drive = drive_of(track=track, traffic=traffic)
+    assert ways.comes_by.measure(drive, params) == pytest.approx(1 / 3)
+    told = drive.explain("comes_by", params)
+    assert "1 of 3 places" in told
+    assert "1 m ahead and 1 m to the left" in told
+    assert "by 0.5 m" in told
+    assert not drive.explain("comes_by", replace(params, places=("1 0", "1 0.5")))
+
+
+def test_an_answer_that_is_not_the_asked_one_is_shown() -> None:
+    params = AnswerParams(call="set", holds='"successful": false')
+    told = drive_of(answers={"set": '{"successful": true}'}).explain("answered", params)
+    assert '{"successful": true}' in told
+    assert params.holds in told
+    assert "no such service" in drive_of(answers={"set": NO_SERVICE}).explain("answered", params)
+    hidden = drive_of(answers={"set": '{"successful": true}'}, secret=True)
+    assert not hidden.explain("answered", params)
 
 
 def test_to_and_fro_leads_nowhere() -> None:

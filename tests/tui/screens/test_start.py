@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from threading import Event
 
 import pytest
 from textual.pilot import Pilot
@@ -14,7 +15,7 @@ from kit.document.rows import Row
 from kit.school.progress import FILE, EventKind, ProgressJournal
 from kit.tui.screens.start import MENU, StartScreen
 from kit.tui.screens.text_screen import COLUMN
-from kit.tui.student_store import StudentStore
+from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import TextRows
 from tests.kit_content import kit_bank, kit_lesson
@@ -113,6 +114,41 @@ def test_it_goes_on_where_the_student_left_off(house: House) -> None:
         await seen(pilot, "4 of 5")
         assert "Lesson 2, Colours" in text(pilot)
         assert "0 of 3 done" in text(pilot)
+
+    house.play(scene)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("key", "wanted"), [("2", "[~] Colours"), ("1", "step 3 of 5")])
+def test_a_key_pressed_at_once_after_coming_back_opens_what_is_true_now(
+    house: House, monkeypatch: pytest.MonkeyPatch, key: str, wanted: str
+) -> None:
+    """The key comes while the progress is read again."""
+    is_read, may_read = Event(), Event()
+    read = StudentStore.read_overview
+
+    def read_when_allowed(store: StudentStore) -> StudentOverview:
+        may_read.wait()
+        overview = read(store)
+        is_read.set()
+        return overview
+
+    monkeypatch.setattr(StudentStore, "read_overview", read_when_allowed)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        start = pilot.app.screen
+        may_read.set()
+        await until(pilot, is_read.is_set, "the progress to be read")
+        await pilot.press("enter")
+        await seen(pilot, "waiting for your prediction")
+        house.note((EventKind.STEP, "02-colours2/1"), (EventKind.STEP, "02-colours2/2"))
+        may_read.clear()
+        await pilot.press("escape")
+        await until(pilot, lambda: pilot.app.screen is start, "the start")
+        await pilot.press(key)
+        may_read.set()
+        await until(pilot, lambda: pilot.app.screen is not start, "what the key opens")
+        await seen(pilot, wanted)
 
     house.play(scene)
 

@@ -1,0 +1,52 @@
+"""Places that a robot should come by in their order, and what a student is told of the first that it missed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from kit.arrays import FloatArray
+from kit.geometry import Pose
+
+
+@dataclass(frozen=True, slots=True)
+class WaypointsPassed:
+    """How many of the places a robot came by, one after the other."""
+
+    passed: int
+    places: Sequence[str]
+    """Each x and y [m] in the frame of the robot's start."""
+    nearest: float
+    """m, from the first place that was missed to the way after the place before; 0 if none was missed."""
+
+    def describe(self) -> str:
+        """Returns what is told of a way that misses a place."""
+        if self.passed == len(self.places):
+            return ""
+        x, y = self.places[self.passed].split()
+        after = "It " if not self.passed else f"It comes by {self.passed} of {len(self.places)} places, then "
+        return (
+            f"{after}misses the place {x} m ahead and {y} m to the left of its start by {self.nearest:.2g} m. "
+            "Replay it, and see where it turns off."
+        )
+
+
+def pass_waypoints(track: FloatArray, places: Sequence[str], within: float) -> WaypointsPassed:
+    """Follows a robot's way from place to place.
+
+    Args:
+        track: (n, 3) the robot's poses, at least one.
+        places: each x and y [m] in the frame of the first pose.
+        within: how near to a place counts [m].
+    """
+    start, path = Pose(*track[0].tolist()), track[:, :2]
+    for passed, place in enumerate(places):
+        x, y = (float(number) for number in place.split())
+        distances = np.hypot(*(path - start.transform_point(x, y)).T)
+        near = np.flatnonzero(distances <= within)
+        if not len(near):
+            return WaypointsPassed(passed, places, float(distances.min()))
+        path = path[near[0] :]
+    return WaypointsPassed(len(places), places, 0.0)
