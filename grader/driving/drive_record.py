@@ -33,6 +33,9 @@ from kit.world.records import Circle, Polygon
 CLEARANCE_INTERVAL = 5
 """Ticks between two measurements of the clearance: 0.05 s, in which a robot at 1 m/s moves 5 cm."""
 
+NARROW = 0.021
+"""m/s: a range of speeds that is no wider is told by its middle."""
+
 COLUMNS, ROWS = 60, 18
 """Size of the picture, in characters."""
 
@@ -48,6 +51,7 @@ FOLLOWING_CHECKS = frozenset({"speed_by_range", "flag_by_range", "speed_by_flag"
 """Checks of whether something follows what the program was told."""
 COMMAND = "geometry_msgs/msg/Twist"
 NO_COMMAND = "It published no command at all: what is computed must be published, too."
+NOT_HOME = "The world refused a request: it named another robot, or another pose than the start's, of which x, y and theta count."
 NO_CIRCLE = "It hardly moves, or drives along a line: a circle is asked for."
 COUNTED_CHECKS = frozenset({"says", "rate"})
 """Checks of how often something comes."""
@@ -164,6 +168,23 @@ class GradedDrive:
         ]
         return np.array(rows, dtype=np.float64).reshape(-1, 3)
 
+    @cached_property
+    def speeds(self) -> FloatArray:
+        """(ticks - 1,) speeds [m/s]; NaN where the robot was reset, since that jump is no driving."""
+        if self.steps < 2:
+            return np.empty(0)
+        speeds: FloatArray = np.hypot(*np.diff(self.track[:, :2], axis=0).T) / self.recording.step_size
+        sent = [entry.tick - 1 for entry in self.recording.inputs if entry.kind != ACCEPT]
+        speeds[[tick for tick in sent if 0 <= tick < len(speeds)]] = np.nan
+        return speeds
+
+    def speeds_between(self, begin: float, end: float) -> FloatArray:
+        """Returns (k,) the speeds [m/s] from one time of the episode to another [s], without resets."""
+        step = self.recording.step_size
+        first, after = round(begin / step), round(min(end, self.seconds) / step)
+        speeds = self.speeds[first : max(first, after - 1)]
+        return speeds[~np.isnan(speeds)]
+
     def body(self, pose: Pose) -> SceneBody:
         """Returns the robot's body at a pose."""
         model = next(model for model in self.scenario.world.models if model.name == self.scenario.robot)
@@ -210,6 +231,11 @@ class GradedDrive:
         if check == "comes_by" and len(self.track):
             path = self.track[::CLEARANCE_INTERVAL]
             return pass_waypoints(path, params.places, params.within).describe()
+        if check == "faces" and len(self.commands) and self.commands[-1, 2]:
+            time_s, _, turn = self.commands[-1]
+            return f"It still turns: its last command, at {time_s:.1f} s, was {turn:g} rad/s, which holds until the next one."
+        if check == "keeps_speed":
+            return self._explain_speed(params)
         if check == "answered":
             return self._explain_answer(params.call, params.holds)
         if check in DISTANCE_CHECKS and self.bump_ticks:
@@ -218,6 +244,8 @@ class GradedDrive:
         counts = self._counts(check, params) if check in COUNTED_CHECKS and params is not None else ()
         follows = check in FOLLOWING_CHECKS and params.judge(self.ahead, self.flags, self.commands).mistake
         wrong = [follows] if follows else []
+        if check == "goes_home" and "move_model" in self.refused:
+            wrong.append(NOT_HOME)
         return " ".join([*counts, *wrong, *self._idle_timers(), *topics, *self.connections.mistakes])
 
     def _idle_timers(self) -> Iterator[str]:
@@ -247,6 +275,16 @@ class GradedDrive:
             came = counted(0 if traffic is None else traffic.count, "message")
             what, asked = f"{came} came on {params.topic}", self.seconds * params.rate
         yield f"{what} in {self.seconds:.0f} s; {asked:.0f} are asked for."
+
+    def _explain_speed(self, params: Any) -> str:
+        """Says how fast the robot drove, and how fast it should have; see ``SpeedSpanParams``."""
+        begin, end = params.begin, min(params.end, self.seconds)
+        speeds = self.speeds_between(begin, end)
+        if not len(speeds):
+            return ""
+        slow, fast = np.quantile(speeds, (0.1, 0.9))
+        driven, asked = _range_text(slow, fast), _range_text(params.low, params.high)
+        return f"From {begin:g} s to {end:g} s it drove at {driven} m/s; {asked} m/s is asked for."
 
     def _explain_answer(self, call: str, holds: str) -> str:
         """Says what the program answered instead; see ``AnswerParams``."""
@@ -301,3 +339,8 @@ class GradedDrive:
             trails=(self.track[::CLEARANCE_INTERVAL, :2].copy(),),
         )
         return "\n".join(row.rstrip() for row in scene_rows(scene, COLUMNS, ROWS))
+
+
+def _range_text(low: float, high: float) -> str:
+    """Writes a range of speeds; a narrow one as its middle."""
+    return f"{(low + high) / 2:.2g}" if high - low <= NARROW else f"{low:.2g} to {high:.2g}"

@@ -25,12 +25,13 @@ class WaypointsPassed:
         """Returns what is told of a way that misses a place."""
         if self.passed == len(self.places):
             return ""
-        x, y = self.places[self.passed].split()
-        after = "It " if not self.passed else f"It comes by {self.passed} of {len(self.places)} places, then "
-        return (
-            f"{after}misses the place {x} m ahead and {y} m to the left of its start by {self.nearest:.2g} m. "
-            "Replay it, and see where it turns off."
-        )
+        x, y = map(float, self.places[self.passed].split())
+        along = f"{abs(x):g} m {'ahead of' if x > 0 else 'behind'}" if x else ""
+        beside = f"{abs(y):g} m to the {'left' if y > 0 else 'right'} of" if y else ""
+        place = " and ".join(filter(None, (along, beside)))
+        where = f"{place} its start" if place else "its start"
+        before = f"comes by {self.passed} of {len(self.places)} places, then " if self.passed else ""
+        return f"The robot {before}misses the next, {where}, by {self.nearest:.2g} m."
 
 
 def pass_waypoints(track: FloatArray, places: Sequence[str], within: float) -> WaypointsPassed:

@@ -303,6 +303,11 @@ class Section:
         items = self._list_items(key, default, length, at_least, None) or ()
         return tuple(self._section(item, f"{quoted(key)}[{i}]") for i, item in enumerate(items))
 
+    def value(self, key: str) -> object:
+        """Returns whatever a key holds, as a plain immutable value; None where it is missing or broken."""
+        node = self._node_of(key, None)
+        return None if node is None else to_python(node)
+
     def remaining_values(self) -> Mapping[str, object]:
         """Returns the keys not requested so far, as plain immutable values; they count as known from now on."""
         rest = {key: e.value for key, e in self._entries.items() if key not in self._requested}

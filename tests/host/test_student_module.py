@@ -52,6 +52,7 @@ MISTAKES = {
     "the root of a negative number": (b"import math\nmath.sqrt(-1)\n", 2, "no negative number"),
     "a value not set yet": (b"def f():\n    return x\n    x = 1\nf()\n", 2, "further down"),
     "no self": (b"class A:\n    def f():\n        pass\nA().f()\n", 4, "self"),
+    "called in place of handed over": (b"def f(x):\n    pass\nprint(f())\n", 3, "its name alone"),
     "UTF-16": ("x = 1\n".encode("utf-16"), 1, "UTF-8"),
     "a null byte": (b"x = 1\ny = 2\0\n", 2, "UTF-8"),
 }
@@ -71,6 +72,14 @@ def test_an_exception_without_a_text_of_its_own_is_told_all_the_same(tmp_path: P
     failure = failure_of(source, tmp_path)
     assert failure is not None
     assert (failure.line, "Odd" in failure.message) == (4, True)
+
+
+def test_a_message_of_the_kit_about_none_says_enough(tmp_path: Path) -> None:
+    text = "the callback must return its response, not NoneType: end it with 'return response'"
+    failure = failure_of(f'raise TypeError("{text}")'.encode(), tmp_path)
+    assert failure is not None
+    assert text in failure.message
+    assert "append" not in failure.message
 
 
 def test_a_name_like_no_other_gets_no_guess(tmp_path: Path) -> None:

@@ -114,7 +114,7 @@ def obeys(drive: GradedDrive, params: NoParams) -> float:
     return float(len(drive.refused))
 
 
-@check(none=0, full=1, words=("not as asked", "as asked"), params=AnswerParams)
+@check(none=0, full=1, words=("not as asked", "as asked"), params=AnswerParams, is_explained=True)
 def answered(drive: GradedDrive, params: AnswerParams) -> float:
     """The program was called while it drove, and did not answer as asked ({where})."""
     return float(params.holds in drive.answers.get(params.call, ""))
@@ -143,7 +143,7 @@ def hears(drive: GradedDrive, params: HeardTopicsParams) -> float:
     return 1.0 if set(drive.connections.heard.get(params.node, ())) == set(params.topics) else 0.0
 
 
-@check(none=0, full=1, unit="%", params=ProfilesParams)
+@check(none=0, full=1, unit="%", params=ProfilesParams, is_explained=True)
 def profiles(drive: GradedDrive, params: ProfilesParams) -> float:
     """Of the asked publishers and subscriptions {actual} are there with the asked quality of service, and with no other
     ({where})."""

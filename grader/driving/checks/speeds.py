@@ -10,8 +10,6 @@ import numpy as np
 from grader.check import NoParams, check
 from grader.driving.drive_record import GradedDrive
 from grader.driving.following import FlagByRangeParams, SpeedByFlagParams, SpeedByRangeParams
-from kit.arrays import FloatArray
-from kit.run.recording import ACCEPT
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,18 +34,8 @@ def smooth(drive: GradedDrive, params: NoParams) -> float:
 @check(none=2, full=1, unit="m/s")
 def top_speed(drive: GradedDrive, params: NoParams) -> float:
     """The robot drove faster than is allowed: up to {actual} ({where}); the limit is {full}."""
-    speeds = _speeds(drive)
+    speeds = drive.speeds
     return float(np.max(speeds[~np.isnan(speeds)], initial=0.0))
-
-
-def _speeds(drive: GradedDrive) -> FloatArray:
-    """Returns (ticks - 1,) speeds [m/s]; NaN where the robot was reset, since that jump is no driving."""
-    if drive.steps < 2:
-        return np.empty(0)
-    speeds: FloatArray = np.hypot(*np.diff(drive.track[:, :2], axis=0).T) / drive.recording.step_size
-    sent = [entry.tick - 1 for entry in drive.recording.inputs if entry.kind != ACCEPT]
-    speeds[[tick for tick in sent if 0 <= tick < len(speeds)]] = np.nan
-    return speeds
 
 
 @check(none=0.5, full=0.9, unit="%", params=SpeedByRangeParams, is_explained=True)
@@ -72,11 +60,8 @@ def speed_by_flag(drive: GradedDrive, params: SpeedByFlagParams) -> float:
     return params.judge(drive.ahead, drive.flags, drive.commands).share
 
 
-@check(none=0.5, full=0.95, unit="%", params=SpeedSpanParams)
+@check(none=0.5, full=0.95, unit="%", params=SpeedSpanParams, is_explained=True)
 def keeps_speed(drive: GradedDrive, params: SpeedSpanParams) -> float:
     """The robot kept to the asked speed for {actual} of the time that counts here ({where}); {full} earns all points."""
-    step = drive.recording.step_size
-    first, after = round(params.begin / step), round(min(params.end, drive.seconds) / step)
-    speeds = _speeds(drive)[first : max(first, after - 1)]
-    speeds = speeds[~np.isnan(speeds)]
+    speeds = drive.speeds_between(params.begin, params.end)
     return float(np.mean((speeds >= params.low) & (speeds <= params.high))) if len(speeds) else math.nan

@@ -14,7 +14,7 @@ The submission::
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
@@ -171,13 +171,18 @@ def _read_proof(section: Section, case: LayerCase) -> tuple[tuple[Requirement, .
         return (), ()
     if not section.is_list("proof"):
         return (), (_at(section.location_of("proof"), "write a list, [one - other, laser sees thing]"),)
-    lines = [_requirement(line) for line in section.texts("proof")]
-    faults = [
-        _at(section.location_of("proof", item=number), _fault_of_line(each, case))
-        for number, each in enumerate(lines)
-        if each not in case.requirements
-    ]
-    return tuple(dict.fromkeys(each for each in lines if each in case.requirements)), tuple(faults)
+    entries = section.value("proof")
+    assert isinstance(entries, tuple)
+    lines: dict[Requirement, None] = {}
+    faults = []
+    for number, entry in enumerate(entries):
+        line = _requirement("" if entry is None else str(entry))
+        if isinstance(entry, Mapping) or line not in case.requirements:
+            fault = _fault_of_pair(entry) if isinstance(entry, Mapping) else _fault_of_line(line, case)
+            faults.append(_at(section.location_of("proof", item=number), fault))
+        else:
+            lines[line] = None
+    return tuple(lines), tuple(faults)
 
 
 def _at(location: SourceLocation, fault: str) -> str:
@@ -214,6 +219,12 @@ def _requirement(line: str) -> Requirement:
     split = SIGHT_SEPARATOR if SIGHT_SEPARATOR in line else CONTACT_SEPARATOR
     one, _, other = (part.strip() for part in line.partition(split))
     return SightRequirement(one, other) if split == SIGHT_SEPARATOR else ContactRequirement(one, other)
+
+
+def _fault_of_pair(entry: Mapping[str, object]) -> str:
+    """Says how to write what was written with a colon."""
+    one, other = next(iter(entry.items()), ("one", "other"))
+    return f"a colon does not join two things here: write “{one}{CONTACT_SEPARATOR}{other}”, or “laser sees thing”"
 
 
 def _fault_of_line(line: Requirement, case: LayerCase) -> str:

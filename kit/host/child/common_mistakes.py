@@ -8,7 +8,7 @@ from typing import Final
 FUNCTION: Final = "(builtin_function_or_method|function|method)"
 MEANINGS: Final = (
     (
-        r"'NoneType' object|'NoneType' and|and 'NoneType'|\bnot NoneType\b|not 'NoneType'",
+        r"'NoneType' object|'NoneType' and|and 'NoneType'|^(?!.* must return ).*\bnot NoneType\b|not 'NoneType'",
         "Something here is None: given so, not set yet, or from a call that returns nothing, as append does.",
     ),
     (
@@ -34,6 +34,10 @@ MEANINGS: Final = (
     (
         r"'float' object cannot be interpreted as an integer",
         "A whole number is needed: // divides without a remainder, int(x) cuts off the decimals.",
+    ),
+    (
+        r"missing \d+ required positional argument",
+        "Is it to be called later? Then give its name alone: brackets behind it call it at once.",
     ),
     (
         r"got an unexpected keyword argument",

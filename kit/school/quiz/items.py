@@ -144,7 +144,7 @@ def lesson_reference(lesson: str) -> str:
 
 
 def lesson_command(lesson: str) -> str:
-    """The command that opens a lesson, named as ``lesson_reference`` does."""
+    """The command that opens a lesson, named as for ``lesson_reference``."""
     return f"kit lesson {lesson_number(lesson.partition('/')[0])}"
 
 

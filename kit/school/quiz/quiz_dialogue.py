@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar, Final
 
 from kit.dialogue.dialogue import Dialogue, DialogueAction, Panel, help_action, leave_action
-from kit.dialogue.effects import Effect
+from kit.dialogue.effects import Effect, Leave
 from kit.dialogue.screen_action import ScreenAction, digits, letter
 from kit.dialogue.shared_actions import ACTIONS
 from kit.document.blocks import Block, Choice, Choices, KeyLine, Picture, Text, Tone
@@ -225,6 +225,8 @@ class QuizDialogue(Dialogue):
         return None
 
     def go_on(self) -> Effect:
+        if self.is_over:
+            return Leave()
         self.item, self.number = self.session.current_item, self.session.question_number
         self.choice = None
         self.stage = QuizStage.OVER if self.item is None else QuizStage.ASKED
@@ -247,9 +249,11 @@ class QuizDialogue(Dialogue):
             case QuizStage.CHOSEN:
                 return f"Say how sure you are: 1 to {len(CONFIDENCE_CHOICES)}; b changes the answer."
             case _:
-                return self.stage is QuizStage.TOLD
+                return True
 
     def next_word(self) -> str:
+        if self.is_over:
+            return "close"
         return "results" if self.session.current_item is None else "next"
 
     actions: ClassVar[Sequence[DialogueAction[Any]]] = (

@@ -7,13 +7,13 @@ from datetime import date
 from typing import Final
 
 from kit.document.blocks import Block, CellStyle, Column, Picture, Table, Text, Tone, ToneText
+from kit.school.lessons.reading import lesson_number
 from kit.school.quiz.answers import CONFIDENCE_LABELS, AnswerChoice, AnswerOutcome, QuizAnswer
 from kit.school.quiz.items import (
     QuestionBank,
     QuizItem,
     QuizTopic,
     lesson_command,
-    lesson_reference,
 )
 from kit.school.quiz.quiz_scores import (
     CALIBRATED_GAP,
@@ -57,8 +57,9 @@ def feedback_text(item: QuizItem, choice: AnswerChoice) -> str:
 
 def follow_up_blocks(item: QuizItem) -> list[Block]:
     """The lesson to repeat and the command to try."""
-    lesson = item.lesson_to_repeat
-    parts = [(f"See {lesson_reference(lesson)}:", lesson_command(lesson))]
+    folder, _, step = item.lesson_to_repeat.partition("/")
+    place = f"lesson {lesson_number(folder)}{step and f', step {step}'}"
+    parts = [(f"See {place}:", lesson_command(folder))]
     parts += [("Try:", item.command_to_try)] if item.command_to_try else []
     return [Text(words, Tone.DIM, tail=f" {command}", hang=2, is_tight=True) for words, command in parts]
 

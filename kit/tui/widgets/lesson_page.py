@@ -29,7 +29,7 @@ BESIDE: Final = 82
 """Columns of the words, where the picture is beside them."""
 
 
-ROOMY_SIZE: Final = (120, 36)
+ROOMY_SIZE: Final = (120, 30)
 """Columns and rows from which on the scene, the file and its log stand beside the words, all at once."""
 COLUMNS_WIDTH: Final = 180
 """Columns from which on the file has a column of its own."""

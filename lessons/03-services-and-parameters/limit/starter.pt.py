@@ -14,7 +14,8 @@ class Limited(Node):
         self.drive = self.create_publisher(Twist, "cmd_vel", 10)
         self.create_timer(0.1, self.go)
         # TODO: um parâmetro, limit, em m/s, 0.3 por omissão; os
-        # negativos são recusados TODO: um serviço, halt, do tipo Trigger
+        # negativos são recusados
+        # TODO: um serviço, halt, do tipo Trigger
 
     def go(self):
         command = Twist()

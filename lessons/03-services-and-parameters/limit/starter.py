@@ -14,7 +14,8 @@ class Limited(Node):
         self.drive = self.create_publisher(Twist, "cmd_vel", 10)
         self.create_timer(0.1, self.go)
         # TODO: a parameter, limit, in m/s, 0.3 by default; negative ones
-        # are refused TODO: a service, halt, of the type Trigger
+        # are refused
+        # TODO: a service, halt, of the type Trigger
 
     def go(self):
         command = Twist()

@@ -130,7 +130,7 @@ def range_drive(distances: list[float], driven: list[float]) -> GradedDrive:
 def drive_of(**fields: Any) -> GradedDrive:
     """A drive of which only these fields are known."""
     drive = object.__new__(GradedDrive)
-    nothing = {"ahead": {}, "flags": {}, "commands": np.empty((0, 3)), "answers": {}}
+    nothing = {"ahead": {}, "flags": {}, "commands": np.empty((0, 3)), "answers": {}, "refused": ()}
     known = {"secret": False, "printed": (), "connections": NodeConnections(), **nothing, **fields}
     for name, value in known.items():
         object.__setattr__(drive, name, value)
@@ -228,6 +228,14 @@ def test_the_speed_must_follow_what_was_said() -> None:
     assert "0 m/s is asked for" in told
 
 
+def test_who_faces_elsewhere_since_it_was_never_told_to_stop_is_told_so() -> None:
+    traffic = {"/cmd_vel": TopicTraffic("geometry_msgs/msg/Twist", 2)}
+    turning = drive_of(commands=np.array([[0.0, 0.0, 0.5], [3.1, 0.0, 0.5]]), traffic=traffic)
+    assert "at 3.1 s, was 0.5 rad/s" in turning.explain("faces", ways.HeadingParams())
+    stopped = drive_of(commands=np.array([[0.0, 0.0, 0.5], [3.1, 0.0, 0.0]]), traffic=traffic)
+    assert not stopped.explain("faces", ways.HeadingParams())
+
+
 def test_the_first_place_that_is_missed_is_told() -> None:
     """An L instead of a square: a metre ahead, half a metre to the left."""
     legs = [(0, 0), (1, 0), (1, 0.5)]
@@ -239,9 +247,30 @@ def test_the_first_place_that_is_missed_is_told() -> None:
     assert ways.comes_by.measure(drive, params) == pytest.approx(1 / 3)
     told = drive.explain("comes_by", params)
     assert "1 of 3 places" in told
-    assert "1 m ahead and 1 m to the left" in told
-    assert "by 0.5 m" in told
+    assert "1 m ahead of and 1 m to the left of its start, by 0.5 m" in told
+    right = drive.explain("comes_by", replace(params, places=("0 -0.5",)))
+    assert "0.5 m to the right of its start, by 0.5 m" in right
+    assert "its start, by" in drive.explain("comes_by", replace(params, places=("1 0.5", "0 0")))
     assert not drive.explain("comes_by", replace(params, places=("1 0", "1 0.5")))
+
+
+def test_a_request_for_another_pose_than_home_is_told_where_nobody_was_sent_home() -> None:
+    assert "theta" in drive_of(refused=("move_model",)).explain("goes_home", NoParams())
+    assert not drive_of(refused=("pause",)).explain("goes_home", NoParams())
+
+
+def test_the_speed_that_was_driven_is_told_beside_the_asked_one() -> None:
+    drive = drive_of(
+        recording=SimpleNamespace(step_size=0.1, ticks=101),
+        speeds=np.array([0.3] * 50 + [float("nan")] + [0.1, 0.5] * 25),
+    )
+    params = speeds.SpeedSpanParams(begin=1.0, end=4.0, low=0.11, high=0.13)
+    assert speeds.keeps_speed.measure(drive, params) == 0.0
+    told = drive.explain("keeps_speed", params)
+    assert "From 1 s to 4 s" in told
+    assert "0.3 m/s; 0.12 m/s" in told
+    later = drive.explain("keeps_speed", replace(params, begin=4.5, end=1e9))
+    assert "to 10.1 s it drove at 0.1 to 0.5 m/s" in later
 
 
 def test_an_answer_that_is_not_the_asked_one_is_shown() -> None:

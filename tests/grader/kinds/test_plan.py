@@ -112,6 +112,10 @@ def test_a_plan_that_cannot_be_read_is_an_error_with_its_place(folder: Path, tex
         ("lida sees drone", 'did you mean "lidar"'),
         ("robot", "is no pair"),
         ("robot - drone", "is not among what must happen"),
+        ("robot: walls", "write “robot - walls”"),
+        ("[robot, walls]", "is no pair"),
+        ("3", "is no pair"),
+        ("~", "is no pair"),
     ],
 )
 def test_a_line_that_proves_nothing_is_named_and_costs_the_proof_alone(

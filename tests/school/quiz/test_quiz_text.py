@@ -112,11 +112,11 @@ def test_within_a_round_the_first_answer_counts() -> None:
     assert rounds.current == {}
 
 
-def test_a_lesson_to_repeat_is_named_by_its_title_and_number() -> None:
+def test_a_lesson_to_repeat_is_named_by_its_number() -> None:
     item = next(each for each in kit_bank().items if each.lesson_to_repeat.startswith("07-"))
     lesson = kit_lesson("07-who-collides-who-sees")
     line = lines_of(follow_up_blocks(item), Page(1000))[0]
-    assert line.startswith(f"See lesson {lesson.number}, {lesson.title}, step ")
+    assert line.startswith(f"See lesson {lesson.number}, step ")
     assert f": kit lesson {lesson.number}   " in f"{line}   "
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from textual.pilot import Pilot
 
+from kit.dialogue.effects import Leave
 from kit.school.progress import EventKind, ProgressEvent, ProgressJournal
 from kit.school.quiz.quiz_dialogue import QuizDialogue, QuizStage
 from kit.school.quiz.quiz_session import QuizSession, lesson_plan, quiz_plan
@@ -126,7 +127,8 @@ def test_to_the_end_and_what_came_of_it(progress: ProgressJournal) -> None:
         assert f"{count} of {count} right" in flat(screen)
         assert f"certain {count} of {count}" in flat(screen)
         assert "Next: tomorrow" in flat(screen)
-        assert rows(screen)[-1].startswith("? help Esc back")
+        assert rows(screen)[-1].startswith("n close ? help Esc back")
+        assert quiz(screen).go_on() == Leave()
 
     play(scene, progress, lesson="08-fewest-layers")
 
