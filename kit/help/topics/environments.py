@@ -15,7 +15,7 @@ from kit.help.docstrings import docstring_blocks
 from kit.help.topic import HelpTopic, Shelf, chapter
 from kit.learning.environment.env import TaskEnv
 from kit.learning.tasks.actions import DiscreteActions
-from kit.learning.tasks.catalogue import TASKS
+from kit.learning.tasks.catalogue import all_tasks
 
 _TEXT: Final = CellStyle.TEXT
 
@@ -92,7 +92,7 @@ def _action_tables(env: TaskEnv) -> Iterator[Table]:
 
 def _task_tables() -> Iterator[Table]:
     columns = (Column("Task", _TEXT), Column("What it is", _TEXT))
-    rows = tuple((task.name, task.summary) for task in TASKS)
+    rows = tuple((task.name, task.summary) for task in all_tasks())
     yield Table("tasks", "", columns, rows, note="`kit task show NAME` shows one with all it sets.")
 
 

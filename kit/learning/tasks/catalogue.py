@@ -88,9 +88,13 @@ TASKS: Final = (
     TURN_SEED,
     HALLWAY,
     HALLWAY_SEED,
+    find_task("hallway-seed-as-run"),
     WHEELCHAIRS,
     WHEELCHAIRS_SEED,
+    find_task("wheelchairs-seed-as-run"),
     WHEELCHAIRS_SEED_49,
+    find_task("wheelchairs-seed-49-as-run"),
     WHEELCHAIRS_SEED_49_WIDE,
+    find_task("wheelchairs-seed-49-wide-as-run"),
 )
 """Those of the dissertation, and what the kit made of them."""

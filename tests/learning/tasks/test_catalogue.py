@@ -21,6 +21,7 @@ from kit.learning.tasks.catalogue import (
     WHEELCHAIRS_SEED,
     WHEELCHAIRS_SEED_49,
     find_task,
+    task_names,
 )
 from kit.learning.tasks.disturbances import Disturbances
 from kit.learning.tasks.learning_task import LearningTask, UnknownTask
@@ -45,6 +46,7 @@ def test_the_dissertations_sizes() -> None:
     assert sizes(WHEELCHAIRS_SEED) == ((38,), "Discrete(16)", 300, 0.2, 0.4)
     assert WHEELCHAIRS_SEED.start.gap == 0.4
     assert all(task.timeout_terminal == ("-seed" in task.name) for task in TASKS)
+    assert {name for name in task_names() if "-seed" in name} <= {task.name for task in TASKS}
 
 
 def test_the_dissertations_speeds() -> None:
