@@ -365,6 +365,12 @@ class ChildBridge(GraphBridge):
                 self.graph.advance(now_ns)
                 self.apply_events(events)
 
+    def leave(self) -> None:
+        """Forgets what was under way in a process of which this one is a fork: its threads, and what was to be sent."""
+        self.graph.waiting_threads.clear()
+        self.pending.clear()
+        self._upcoming = None
+
     def send_last_messages(self) -> None:
         """Sends what a program has published before it failed: in an answer of its own, since a failure has no events."""
         if self.has_ticked and self.pending and not self.graph.is_waiter_running:

@@ -7,12 +7,21 @@ import os
 import signal
 import sys
 import threading
+import time
 from contextlib import suppress
-from typing import NoReturn
+from time import sleep as wall_sleep  # before it is replaced by one of simulated time
+from typing import Final, NoReturn
 
 from kit.host.child.program_input import DeferredInterrupts
 from kit.host.failure import Failure
 from kit.host.wire import HEADER, LOST_PIPE, Json, decode, encode
+
+FORK_STEP_NS: Final = 10_000_000
+"""How long a forked process waits at most at once [ns]."""
+
+
+SENT: Final = frozenset({"message", "request", "response"})
+"""The events that a program sends by what it does, and not because it has a node."""
 
 
 class CommandChannel:
@@ -43,6 +52,39 @@ class CommandChannel:
         return b"".join(parts)
 
 
+class ForkChannel:
+    """In place of the channel in a process that the program has forked: time goes by the wall clock, from the fork on, and
+    nothing goes to the kit, which knows of one process and has one answer to each question from it."""
+
+    def __init__(self, now_ns: int) -> None:
+        """``now_ns``: the simulated time at the fork."""
+        self._began_ns = time.monotonic_ns() - now_ns
+        self._wake_ns: int | None = None
+        self._has_told = False
+
+    def send(self, content: Json) -> None:
+        """Takes an answer; one that the program has ended, or failed, ends the process."""
+        kind, _, *fields = content
+        if kind == "failed":
+            os._exit(fields[-1])
+        if kind == "ended":
+            os._exit(0)
+        self._wake_ns = fields[0] if len(fields) > 1 else None
+        if not self._has_told and any(event[0] in SENT for event in fields[-1]):
+            self._has_told = True
+            text = "a process that the program has forked cannot publish, nor call: what it sends goes nowhere.\n"
+            os.write(2, text.encode())
+
+    def receive(self) -> Json:
+        """Waits until the time for which the process waits, for a step at most; returns a tick without events."""
+        now_ns = time.monotonic_ns() - self._began_ns
+        until_ns = (
+            now_ns + FORK_STEP_NS if self._wake_ns is None else min(self._wake_ns, now_ns + FORK_STEP_NS)
+        )
+        wall_sleep(max(0, until_ns - now_ns) / 1e9)
+        return ["tick", 0, max(until_ns, time.monotonic_ns() - self._began_ns), []]
+
+
 def enable_stack_dumps(descriptor: int) -> None:
     """Makes Python dump the stack of every thread on a crash and on a timeout; the parent reads it there."""
     faulthandler.enable(descriptor)
@@ -55,7 +97,7 @@ class CommandSession:
     """Receives the parent's commands and sends the answers. Safe to use from any thread."""
 
     def __init__(self, channel: CommandChannel) -> None:
-        self._channel = channel
+        self._channel: CommandChannel | ForkChannel = channel
         self._lock = threading.Lock()
         self._seq = 0
         self._open = False
@@ -63,6 +105,12 @@ class CommandSession:
         self.interrupts = DeferredInterrupts()
         self.reply_s = self.reply_wall_s = 0.0
         """How long an answer may take, by processor time and by the wall clock [s]."""
+
+    def leave(self, now_ns: int) -> None:
+        """Makes this a session without the parent, in a process that the program has forked. ``now_ns``: the simulated time."""
+        self._channel, self._lock = ForkChannel(now_ns), threading.Lock()
+        self.reply_s = self.reply_wall_s = 0.0
+        self._open, self._final_answer = True, None
 
     def set_deadline(self, processor_s: float, wall_s: float) -> None:
         """Makes Python dump its stacks after this long without an answer, by either clock; 0 switches that off."""

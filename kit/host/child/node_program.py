@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import importlib
+import os
 import sys
 import time
 from collections.abc import Callable
@@ -50,6 +51,7 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     sys.setswitchinterval(SWITCH_S)
     if "folder" in start:  # the user's own, not a submission
         answer_ticks_meanwhile(partial(waiter.waiting_for_user, bridge.graph))
+    os.register_at_fork(after_in_child=partial(_leave_graph, bridge, session))
     session.interrupts.install()
     bridge.on_interrupt = session.interrupts.ask
     if start["has_input"]:
@@ -91,6 +93,20 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
     if not bridge.has_had_nodes and not as_package:
         raise _no_program_error("The program ended without creating a node.", program)
     bridge.end()
+
+
+def _leave_graph(bridge: ChildBridge, session: CommandSession) -> None:
+    """In a process that the program has forked, as multiprocessing does: it has no part in the graph."""
+    bridge.leave()
+    session.leave(bridge.graph.now_ns)
+    set_default_graph_finder(_refuse_graph)
+
+
+def _refuse_graph() -> Graph:
+    raise RuntimeError(
+        "nodes cannot be in a process that the program has forked, as multiprocessing does: start each as a program of its "
+        "own, with a launch file or `ros2 run`"
+    )
 
 
 def _end_program(waits: SimulatedWaits, session: CommandSession) -> None:

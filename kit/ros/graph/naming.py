@@ -104,7 +104,7 @@ def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> s
     Raises InvalidTopicNameException for an unknown substitution. The names given must be valid.
     """
     namespace = "" if node_namespace == "/" else node_namespace
-    values = {"node": node_name, "ns": namespace.lstrip("/"), "namespace": namespace.lstrip("/")}
+    values = {"node": node_name, "ns": node_namespace, "namespace": node_namespace}
 
     def replaced(match: re.Match[str]) -> str:
         if match[1] not in values:

@@ -67,7 +67,9 @@ def test_a_full_name_is_absolute_and_plain(name: str) -> None:
         ("~", "/ns", "/ns/me"),
         ("~/x", "/", "/me/x"),
         ("{node}/x", "/ns", "/ns/me/x"),
-        ("/{ns}/x", "/a/b", "/a/b/x"),
+        ("{ns}", "/my_ns", "/my_ns"),
+        ("{namespace}/{node}/chatter", "/my_ns", "/my_ns/me/chatter"),
+        ("/foo/{namespace}", "/my_ns", "/foo//my_ns"),  # which no publisher may have
     ],
 )
 def test_expansion(name: str, namespace: str, full: str) -> None:

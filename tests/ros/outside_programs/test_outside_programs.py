@@ -20,7 +20,12 @@ NOT_DONE: Final = {
 }
 """Programs of what the kit does not do, and says so."""
 
-PROGRAMS: Final = [each for name in SETS for each in programs_of(name)]
+ENDLESS: Final = {
+    "05_two_processes": "has nodes in processes that it forks, which is refused, and waits for them for ever"
+}
+"""Likewise, and they do not end."""
+
+PROGRAMS: Final = [each for name in SETS for each in programs_of(name) if each.name not in ENDLESS]
 
 
 @pytest.mark.long

@@ -54,10 +54,10 @@ class Studio(Node):
         self.drawers = []
         self.clients_by_name = {}
 
-    def call(self, kind, name, **fields):
-        client = self.create_client(kind, name)
+    def call(self, kind, service, **fields):
+        client = self.create_client(kind, service)
         while not client.wait_for_service(timeout_sec=1.0):
-            self.get_logger().info(f'waiting for {name}')
+            self.get_logger().info(f'waiting for {service}')
         future = client.call_async(kind.Request(**fields))
         rclpy.spin_until_future_complete(self, future)
         return future.result()

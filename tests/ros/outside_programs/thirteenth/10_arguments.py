@@ -4,6 +4,7 @@ import sys
 
 import rclpy
 from rclpy.exceptions import InvalidTopicNameException
+from rclpy.expand_topic_name import expand_topic_name
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 from rclpy.validate_full_topic_name import validate_full_topic_name
@@ -46,7 +47,7 @@ def main():
                  cli_args=['--ros-args', '-r', '__ns:=/yard', '-r', 'greeting:=bark', '-p', 'who:=[rex, bo]'])
     print('other', other.get_fully_qualified_name(), other.resolve_topic_name('greeting'),
           list(other.declare_parameter('who', ['nobody']).value))
-    print('expanded', rclpy.expand_topic_name('~/state', 'arm', '/left'), rclpy.expand_topic_name('{ns}/x', 'arm', '/left'))
+    print('expanded', expand_topic_name('~/state', 'arm', '/left'), expand_topic_name('{ns}/x', 'arm', '/left'))
     print('valid', validate_topic_name('a/{ns}/b'), validate_full_topic_name('/a/b'))
     for name, check in (('/a//b', validate_full_topic_name), ('with space', validate_topic_name)):
         try:
