@@ -5,18 +5,22 @@ from __future__ import annotations
 import gc
 import itertools
 from pathlib import Path
+from typing import Any
 
 import pytest
+import yaml
 
 from kit.msg.std_msgs import Int32, String
 from kit.ros import bag_files as rosbag2_py
-from kit.ros.bags import read_messages
+from kit.ros.bags import read_bag, read_messages
 from kit.ros.serialization import deserialize_message, serialize_message
 
 TOPICS = {"/count": Int32, "/words": String}
 
 
-def write(uri: Path, storage: str = "", *, close: bool = True) -> rosbag2_py.SequentialWriter:
+def write(
+    uri: Path, storage: str = "", *, close: bool = True, from_ns: int = 0
+) -> rosbag2_py.SequentialWriter:
     writer = rosbag2_py.SequentialWriter()
     writer.open(
         rosbag2_py.StorageOptions(uri=str(uri), storage_id=storage), rosbag2_py.ConverterOptions("cdr", "cdr")
@@ -27,8 +31,8 @@ def write(uri: Path, storage: str = "", *, close: bool = True) -> rosbag2_py.Seq
             rosbag2_py.TopicMetadata(id=number, name=topic, type=kind, serialization_format="cdr")
         )
     for i in range(10):
-        writer.write("/count", serialize_message(Int32(data=i)), i * 1000)
-        writer.write("/words", serialize_message(String(data=str(i))), i * 1000 + 500)
+        writer.write("/count", serialize_message(Int32(data=i)), from_ns + i * 1000)
+        writer.write("/words", serialize_message(String(data=str(i))), from_ns + i * 1000 + 500)
     if close:
         writer.close()
     return writer
@@ -53,6 +57,50 @@ EXPECTED = list(
         [("/count", i, i * 1000), ("/words", str(i), i * 1000 + 500)] for i in range(10)
     )
 )
+
+
+def join(folder: Path, *bags: Path) -> None:
+    """Makes one bag of several files, as ROS 2 does where a limit of size or duration is given."""
+    folder.mkdir()
+    joined: dict[str, Any] = {}
+    for number, bag in enumerate(bags):
+        told = yaml.safe_load((bag / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
+        (file,) = told["relative_file_paths"]
+        name = f"{folder.name}_{number}{Path(file).suffix}"
+        (bag / file).rename(folder / name)
+        part = {**told["files"][0], "path": name}
+        if not joined:
+            joined = {**told, "relative_file_paths": [name], "files": [part]}
+            continue
+        joined["relative_file_paths"].append(name)
+        joined["files"].append(part)
+        joined["message_count"] += told["message_count"]
+        for each, more in zip(
+            joined["topics_with_message_count"], told["topics_with_message_count"], strict=True
+        ):
+            each["message_count"] += more["message_count"]
+        end_ns = told["starting_time"]["nanoseconds_since_epoch"] + told["duration"]["nanoseconds"]
+        joined["duration"] = {"nanoseconds": end_ns - joined["starting_time"]["nanoseconds_since_epoch"]}
+    (folder / "metadata.yaml").write_text(yaml.safe_dump({"rosbag2_bagfile_information": joined}))
+
+
+@pytest.mark.parametrize("storage", sorted(rosbag2_py.get_registered_writers()))
+def test_a_bag_of_several_files_is_read_as_one(tmp_path: Path, storage: str) -> None:
+    parts = [tmp_path / f"part{number}" for number in range(3)]
+    for number, part in enumerate(parts):
+        write(part, storage, from_ns=number * 20_000)
+    join(tmp_path / "bag", *parts)
+    shifted = [
+        (topic, value, time_ns + number * 20_000) for number in range(3) for topic, value, time_ns in EXPECTED
+    ]
+    reader = opened(tmp_path / "bag", storage)
+    assert read(reader) == shifted
+    reader.seek(40_000)
+    assert read(reader) == shifted[40:]
+    bag = read_bag(tmp_path / "bag")
+    assert (bag.count, len(bag.files)) == (60, 3)
+    times = [time_ns for time_ns, _, _ in read_messages(tmp_path / "bag")]
+    assert times == [time_ns for *_, time_ns in shifted]
 
 
 @pytest.mark.parametrize("storage", sorted(rosbag2_py.get_registered_writers()))
