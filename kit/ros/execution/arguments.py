@@ -6,8 +6,14 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
-from kit.ros.exceptions import InvalidRosArguments
-from kit.ros.graph.naming import expand_topic_name, full_name, validate_namespace, validate_node_name
+from kit.ros.exceptions import InvalidRosArguments, NameValidationException
+from kit.ros.graph.naming import (
+    expand_topic_name,
+    full_name,
+    validate_namespace,
+    validate_node_name,
+    validate_topic_name,
+)
 from kit.ros.log import LoggingSeverity, get_logging_severity_from_string
 from kit.ros.parameters.parameter import GivenParameters, Parameter
 
@@ -21,7 +27,7 @@ class Remapping(NamedTuple):
     match: str
     replacement: str
     node: str | None = None
-    """The node it applies to; None: all."""
+    """The node it applies to, by its name, or for topics and services by its full name; None: all."""
     kind: str = ""
     """``rostopic`` or ``rosservice``: applies to topics or services only."""
 
@@ -73,10 +79,11 @@ class RosArguments(NamedTuple):
 
     def _remap(self, name: str, node_name: str, namespace: str, kind: str) -> str:
         absolute = expand_topic_name(name, node_name, namespace)
+        names = (None, node_name, full_name(node_name, namespace))
         for rule in self.remappings:
             if (
                 rule.match not in (NODE_NAME, NAMESPACE)
-                and rule.node in (None, node_name)
+                and rule.node in names
                 and rule.kind in ("", kind)
                 and expand_topic_name(rule.match, node_name, namespace) == absolute
             ):
@@ -167,6 +174,13 @@ def _remapping(text: str) -> Remapping:
         raise InvalidRosArguments(f"-r '{text}': there is only __node and __ns")
     elif not replacement:
         raise InvalidRosArguments(f"-r '{text}': the new name is missing")
+    try:
+        for name in () if match in checks else (match, replacement):
+            validate_topic_name(name)
+        if node is not None:
+            validate_node_name(node.rpartition("/")[2])
+    except NameValidationException as problem:
+        raise InvalidRosArguments(f"-r '{text}': {str(problem).splitlines()[0].removesuffix(':')}") from None
     return Remapping(match, replacement, node, kind)
 
 
@@ -174,6 +188,10 @@ def _parse_parameter(text: str) -> GivenParameters:
     from kit.ros.parameters.parameter_files import parse_value
 
     node, name, value = _split_rule(text, "-p", "name:=value or node:name:=value")
+    if not value:
+        raise InvalidRosArguments(f"-p '{text}': the value is missing; an empty text is written ''")
+    if set(name) & set("{} \t"):
+        raise InvalidRosArguments(f"-p '{text}': a parameter's name has no blanks and no braces")
     pattern = "/**" if node is None else node if node.startswith("/") else f"/**/{node}"
     return GivenParameters(pattern, (Parameter(name, value=parse_value(value)),))
 

@@ -72,10 +72,22 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
             raise make_exception(name, f"{what} must not have '~' anywhere but at the start", found.start())
     if name.startswith("~") and len(name) > 1 and name[1] != "/":
         raise make_exception(name, f"{what} has tilde ('~') without a following forward slash ('/')", 1)
-    rest = _SUBSTITUTION.sub(lambda match: "_" * len(match[0]), name)
-    for brace in "{}":
-        if brace in rest:
-            raise make_exception(name, f"{what} has unbalanced curly braces", rest.index(brace))
+    opened: int | None = None
+    for place, sign in enumerate(name if "{" in name or "}" in name else ""):
+        if opened is None:
+            if sign == "}":
+                raise make_exception(name, f"{what} has unbalanced curly braces", place)
+            opened = place if sign == "{" else None
+        elif sign == "}":
+            opened = None
+        elif sign in "{/~":
+            raise make_exception(
+                name, f"{what} has a substitution with characters other than alphanumerics or '_'", place
+            )
+        elif place == opened + 1 and sign.isdigit():
+            raise make_exception(name, f"{what} has a substitution that starts with a number", place)
+    if opened is not None:
+        raise make_exception(name, f"{what} has unbalanced curly braces", opened)
     return True
 
 

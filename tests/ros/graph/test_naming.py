@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from kit.ros.exceptions import InvalidNamespaceException, InvalidNodeNameException, NameValidationException
+from kit.ros.exceptions import (
+    InvalidNamespaceException,
+    InvalidNodeNameException,
+    InvalidTopicNameException,
+    NameValidationException,
+)
 from kit.ros.graph.graph import Graph
 from kit.ros.graph.naming import (
     expand_topic_name,
@@ -44,10 +49,43 @@ def test_bad_namespaces(name: str) -> None:
         validate_namespace(name)
 
 
-@every_case("name", ["a", "/a", "a/b", "~", "~/a", "{node}/a", "/{ns}/a", "a_1"])
+@every_case(
+    "name", ["a", "/a", "a/b", "~", "~/a", "{node}/a", "/{ns}/a", "a_1", "{foo}_bar", "a/{ping}/b", "{_bar}"]
+)
 def test_good_topic_names(name: str) -> None:
     assert validate_topic_name(name)
     assert validate_topic_name(name, is_service=True)
+
+
+@every_case(
+    ("name", "place"),
+    [
+        *(
+            ("123abc", 0),
+            (" ", 0),
+            ("foo bar", 3),
+            ("/~", 1),
+            ("~foo", 1),
+            ("foo~", 3),
+            ("foo/~bar", 4),
+            ("foo/", 3),
+            ("", 0),
+        ),
+        *(
+            ("foo/123bar", 4),
+            ("foo/bar}/baz", 7),
+            ("foo/{bar", 4),
+            ("{$}", 1),
+            ("{{bar}_baz}", 1),
+            ("foo/{bar/baz}", 8),
+        ),
+        ("{1foo}", 1),
+    ],
+)
+def test_a_bad_topic_name_is_refused_where_ros_2_refuses_it(name: str, place: int) -> None:
+    with pytest.raises(InvalidTopicNameException) as caught:
+        validate_topic_name(name)
+    assert caught.value.invalid_index == place
 
 
 @pytest.mark.parametrize("name", ["relative", "/a b", "/a/", "/~"])
