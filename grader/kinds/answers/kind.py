@@ -26,7 +26,7 @@ from grader.evidence.contract import EvidenceCollector, EvidenceOptions, Evidenc
 from grader.kinds.answers.sheet_keys import SHEET_KEYS
 from grader.kinds.contract import AssignmentFiles, KindSettings, SubmissionKind, read_submitted_yaml
 from kit.host.failure import Failure
-from kit.plain_text import counted, quoted, suggestion
+from kit.plain_text import counted, join_names, quoted, suggestion
 from kit.world.yaml_section import Section
 
 MAX_ANSWER: Final = 200
@@ -111,12 +111,14 @@ class SubmittedAnswers:
         return ""
 
     def _form_mistake(self, question: AnswerQuestion, given: Sequence[str]) -> str:
-        """Says that an answer is none of the choices, or no number where one is asked for; empty otherwise."""
+        """Says that an answer is none of the choices, no number where one is asked for, or what is wrong with a list."""
         choices = {_normalize_word(choice) for choice in question.choices}
         for each in given:
             if choices and _normalize_word(each) not in choices:
                 return f"There is no choice {quoted(each)}: {suggestion(each, question.choices)}"
         right = self.task.keys[question.name].right
+        if question.is_list:
+            return _list_mistake(given, right)
         if not all(map(_is_number, right)):
             return ""
         for each in given:
@@ -219,9 +221,12 @@ def _as_written(value: object) -> str:
 
 
 def _as_choice(word: str, choices: Sequence[str]) -> str:
-    """Returns the choice that a word is but for blanks and case: "ROS 2" for "ros2". Otherwise the word."""
-    bare = "".join(word.split()).casefold()
-    return next((each for each in choices if "".join(each.split()).casefold() == bare), word)
+    """Returns the choice that a word is but for blanks, case and a slash in front: "ROS 2" for "ros2". Otherwise the word."""
+    return next((each for each in choices if _bare(each) == _bare(word)), word)
+
+
+def _bare(word: str) -> str:
+    return "".join(word.split()).casefold().removeprefix("/")
 
 
 def _is_same(given: str, right: str, within: float) -> bool:
@@ -230,6 +235,16 @@ def _is_same(given: str, right: str, within: float) -> bool:
         return math.isclose(float(given), float(right), rel_tol=1e-9, abs_tol=within)
     except ValueError:
         return _normalize_word(given) == _normalize_word(right)
+
+
+def _list_mistake(given: Sequence[str], right: Sequence[str]) -> str:
+    """Says what does not belong in a list, and how many entries are missing."""
+    known = set(map(_normalize_word, right))
+    odd = [each for each in given if _normalize_word(each) not in known]
+    missing = len(known - set(map(_normalize_word, given)))
+    parts = [f"{join_names(odd)} should not be there"] if odd else []
+    parts += [f"{missing} {'is' if missing == 1 else 'are'} missing"] if missing else []
+    return f"{' and '.join(parts)}." if parts else "One stands there twice."
 
 
 def _is_number(word: str) -> bool:

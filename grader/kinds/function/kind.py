@@ -61,6 +61,8 @@ REFERENCE_LIMIT_S: Final = 60.0
 """Wall clock of the reference for all cases of a submission."""
 CALL_LIMITS: Final = replace(GRADER_LIMITS, reply_s=2.0)
 """A call gets plain data and computes from it: what takes longer has no end, most likely."""
+CALL_FAILURES: Final = (FailureKind.EXCEPTION, FailureKind.TIMEOUT)
+"""Ends of a call that its arguments may explain."""
 MAX_SHOWN: Final = 9
 """The most entries of a list that feedback shows."""
 
@@ -364,7 +366,7 @@ class FunctionCollector(CachingCollector):
 
 def failed_record(blank: EvidenceRecord, failure: Failure, case: Mapping[str, Json] | None) -> EvidenceRecord:
     """Returns the evidence of a function that failed; tells its arguments unless the case is secret."""
-    if case is not None and not blank.secret and failure.kind is FailureKind.EXCEPTION:
+    if case is not None and not blank.secret and failure.kind in CALL_FAILURES:
         arguments = ", ".join(f"{key}={format_value(value)}" for key, value in case.items()) or "nothing"
         end = "" if failure.message.endswith((".", "?", "!")) else "."
         failure = replace(failure, message=f"{failure.message}{end} It was called with {arguments}.")

@@ -114,6 +114,28 @@ def test_a_number_that_is_rounded_or_written_otherwise_is_answered(
     assert named in told if named else told.endswith("is not right.")
 
 
+@pytest.mark.parametrize(
+    ("nodes", "told"),
+    [
+        ("/one", "1 is missing"),
+        ("/three", "/three should not be there and 2 are missing"),
+        ("[/one, /two, /three]", "/three should not be there."),
+        ("[/one, /two, /one]", "twice"),
+    ],
+)
+def test_of_a_list_it_is_told_what_does_not_belong_and_how_much_is_missing(
+    folder: Path, nodes: str, told: str
+) -> None:
+    (folder / "secret.yaml").write_text(KEYS)
+    work = handed_in(f"topic: cmd_vel\nrate: 10\nnodes: {nodes}\n")
+    assert told in grade(read_assignment(folder), work, DESK).tests[1].rationale
+
+
+def test_a_choice_may_be_written_with_or_without_the_slash_in_front(folder: Path) -> None:
+    for written in ("/cmd_vel", "cmd_vel", "/CMD_VEL"):
+        assert grade(read_assignment(folder), handed_in(f"topic: {written}\n"), DESK).tests[0].points == 1.0
+
+
 @pytest.mark.parametrize("written", ["ROS 2", "ros 2", "ROS2", "ros2"])
 def test_a_choice_may_be_written_without_its_blanks(folder: Path, written: str) -> None:
     sheet = ASSIGNMENT_TEXT.replace("choices: [cmd_vel, odom, scan]", "choices: [ROS 2, Flatland]")

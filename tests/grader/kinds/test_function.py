@@ -153,6 +153,7 @@ def test_of_secret_cases_nothing_is_told(folder: Path) -> None:
         ("return [[[[1]]]]", CriterionStatus.STUDENT_ERROR, "must return"),
         ("return [1.0, [float('nan')]]", CriterionStatus.STUDENT_ERROR, "not a list with nan in it"),
         ("while True: pass", CriterionStatus.TIMEOUT, "scans.py:2"),
+        ("while ranges: pass", CriterionStatus.TIMEOUT, "with ranges=[1, 0.5]"),
         ("import sys; sys.exit()", CriterionStatus.STUDENT_ERROR, "exited"),
         ("exit()", CriterionStatus.STUDENT_ERROR, "exited"),
         ("import os; os._exit(0)", CriterionStatus.STUDENT_ERROR, ""),
