@@ -52,6 +52,7 @@ MISTAKES = {
     "the root of a negative number": (b"import math\nmath.sqrt(-1)\n", 2, "no negative number"),
     "a value not set yet": (b"def f():\n    return x\n    x = 1\nf()\n", 2, "further down"),
     "no self": (b"class A:\n    def f():\n        pass\nA().f()\n", 4, "self"),
+    "a list in a set": (b"seen = set()\nseen.add([1, 2])\n", 2, "tuple(x)"),
     "called in place of handed over": (b"def f(x):\n    pass\nprint(f())\n", 3, "its name alone"),
     "UTF-16": ("x = 1\n".encode("utf-16"), 1, "UTF-8"),
     "a null byte": (b"x = 1\ny = 2\0\n", 2, "UTF-8"),

@@ -178,7 +178,7 @@ def _read_proof(section: Section, case: LayerCase) -> tuple[tuple[Requirement, .
     for number, entry in enumerate(entries):
         line = _requirement("" if entry is None else str(entry))
         if isinstance(entry, Mapping) or line not in case.requirements:
-            fault = _fault_of_pair(entry) if isinstance(entry, Mapping) else _fault_of_line(line, case)
+            fault = _fault_of_pair(entry, case) if isinstance(entry, Mapping) else _fault_of_line(line, case)
             faults.append(_at(section.location_of("proof", item=number), fault))
         else:
             lines[line] = None
@@ -221,10 +221,11 @@ def _requirement(line: str) -> Requirement:
     return SightRequirement(one, other) if split == SIGHT_SEPARATOR else ContactRequirement(one, other)
 
 
-def _fault_of_pair(entry: Mapping[str, object]) -> str:
+def _fault_of_pair(entry: Mapping[str, object], case: LayerCase) -> str:
     """Says how to write what was written with a colon."""
     one, other = next(iter(entry.items()), ("one", "other"))
-    return f"a colon does not join two things here: write “{one}{CONTACT_SEPARATOR}{other}”, or “laser sees thing”"
+    separator = SIGHT_SEPARATOR if one in case.laser else CONTACT_SEPARATOR
+    return f"a colon does not join two things here: write “{one}{separator}{other}”"
 
 
 def _fault_of_line(line: Requirement, case: LayerCase) -> str:

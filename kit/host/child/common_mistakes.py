@@ -43,6 +43,10 @@ MEANINGS: Final = (
         r"got an unexpected keyword argument",
         "It has no parameter of this name; parameters keep the names that they have in the starter.",
     ),
+    (
+        r"unhashable type: '(list|dict|set)'",
+        "A set, or the keys of a dictionary, cannot hold a list. They can hold a tuple: tuple(x).",
+    ),
     (r"list index out of range", "A list with n entries has the indices 0 to n - 1."),
     (r"string index out of range", "A text with n characters has the indices 0 to n - 1."),
     (

@@ -113,6 +113,7 @@ def test_a_plan_that_cannot_be_read_is_an_error_with_its_place(folder: Path, tex
         ("robot", "is no pair"),
         ("robot - drone", "is not among what must happen"),
         ("robot: walls", "write “robot - walls”"),
+        ("lidar: walls", "write “lidar sees walls”"),
         ("[robot, walls]", "is no pair"),
         ("3", "is no pair"),
         ("~", "is no pair"),
