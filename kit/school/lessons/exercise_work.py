@@ -24,6 +24,9 @@ from kit.school.lessons.lesson_session import LessonSession
 from kit.school.lessons.records import Exercise
 from kit.school.lessons.training_curves import DriveLoop, TestDrive, TrainingCurves
 
+UNANSWERED: Final = re.compile(r"\w+:\s*")
+"""A line of an answers file that has no answer yet."""
+YAML_ENDINGS: Final = (".yaml", ".yml")
 TO_WRITE: Final = ("TODO", "# write this")
 """What a starter says of a line that is to be written."""
 LARGEST_TEXT: Final = 1_000_000
@@ -91,9 +94,19 @@ class ExerciseAttempt:
         return True
 
     def first_todo(self) -> int:
-        """The line of the edited file that is to be written first, as the file is now, counted from 1; 1 where none says so."""
-        lines = enumerate(self._read_edited_lines(), 1)
-        return next((number for number, text in lines if any(each in text for each in TO_WRITE)), 1)
+        """The line of the edited file that is to be written first, as the file is now, counted from 1: one that says so, or a
+        question without an answer; 1 where there is none."""
+        lines = self._read_edited_lines()
+        is_yaml = self.edited_file.suffix in YAML_ENDINGS
+        return next(
+            (
+                number
+                for number, (text, below) in enumerate(zip(lines, (*lines[1:], ""), strict=True), 1)
+                if any(each in text for each in TO_WRITE)
+                or (is_yaml and UNANSWERED.fullmatch(text) and not below.startswith((" ", "-")))
+            ),
+            1,
+        )
 
     def _read_edited_lines(self) -> tuple[str, ...]:
         try:

@@ -77,7 +77,7 @@ def verdict_blocks(report: CheckReport, hints: Sequence[LessonHint]) -> list[Blo
     skipped = {each.id for each in report.criteria if each.status is CriterionStatus.SKIPPED}
     for number, each in enumerate(report.criteria, 1):
         following = report.criteria[number] if number < len(report.criteria) else None
-        is_said_below = following is not None and each.id in skipped and following.rationale == each.rationale
+        is_said_below = following is not None and following.rationale == each.rationale
         if is_said_below or (each.id in skipped and each.depends_on in skipped):  # said of what comes first
             each = replace(each, rationale="")
         first, *others = criterion_blocks(each, hints=sum(hint.criterion.id == each.id for hint in hints))

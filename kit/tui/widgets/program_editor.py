@@ -419,7 +419,10 @@ class ProgramEditor(Vertical):
 
     def go_to_line(self, number: int) -> None:
         """Puts the cursor at a line, from 1, and brings it into sight."""
-        self.area.move_cursor((min(number, len(self.area.document.lines)) - 1, 0))
+        lines = self.area.document.lines
+        index = min(number, len(lines)) - 1
+        # What is to be answered is written behind the colon.
+        self.area.move_cursor((index, len(lines[index]) if lines[index].rstrip().endswith(":") else 0))
         self.area.scroll_cursor_visible(center=True, animate=False)
 
     def say(self, text: str) -> None:

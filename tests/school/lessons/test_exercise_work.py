@@ -39,6 +39,21 @@ def test_an_editor_begins_at_the_first_todo_and_then_at_the_error(tmp_path: Path
         assert model.line_to_edit == 1
 
 
+def test_an_editor_begins_at_the_first_question_without_an_answer(tmp_path: Path) -> None:
+    lesson = kit_lesson("01-drive")
+    exercise = next(each for each in lesson.exercises if each.name == "readout")
+    with ProgressJournal(tmp_path) as journal:
+        model = ExerciseAttempt(LessonSession(lesson, journal, open_workspace(tmp_path)), exercise)
+        lines = model.file.read_text().splitlines()
+        first, second = [number for number, line in enumerate(lines, 1) if line.endswith(":")][:2]
+        assert model.line_to_edit == first
+        lines[first - 1] += " /odom"
+        model.file.write_text("\n".join(lines))
+        assert model.line_to_edit == second
+        model.file.write_text("layers:\n  - a\nlasers:\n- b\n")
+        assert model.line_to_edit == 1, "whoever holds something is no question"
+
+
 def works_of_folders(tmp_path: Path, journal: ProgressJournal) -> Iterator[tuple[str, ExerciseAttempt]]:
     """The kit's exercises with several files, and the words of their steps."""
     for name in lesson_names():

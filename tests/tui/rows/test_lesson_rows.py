@@ -210,6 +210,22 @@ def test_what_is_not_graded_is_explained_once_for_neighbours() -> None:
     ]
 
 
+def test_one_mistake_that_several_criteria_lose_by_is_told_once_for_neighbours() -> None:
+    broken = replace(LOST, id="a", title="A", hints=(), rationale="mine.yaml:2:1: no YAML.")
+    same = [replace(broken, id=name, title=name, rationale="The same mistake as in “A”.") for name in "bcd"]
+    other = replace(broken, id="e", title="e", rationale="Another one.")
+    result = replace(RESULT, tests=(broken, *same, other))
+    told = " ".join(
+        row_text(each).strip()
+        for each in shown(verdict_blocks(CheckReport(GradingVerdict.FAIL, result, 1.25), []))
+    )
+    assert told.count("The same mistake") == 1
+    places = [
+        told.index(each) for each in ("no YAML", " b:", " c:", " d:", "The same mistake", "Another one")
+    ]
+    assert places == sorted(places)
+
+
 def test_what_has_passed_moves_from_left_to_right_once() -> None:
     def written(seconds: float) -> str:
         return "".join(part for part, _ in lesson_rows.passing(seconds))
