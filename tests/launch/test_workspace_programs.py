@@ -224,3 +224,30 @@ def test_pip_is_not_advised_for_what_lies_nearby(source: Path, tmp_path: Path) -
     output = kit("ros", "run", file, workspace=tmp_path / "kit")
     assert "wall_follower" in output
     assert "pip install" not in output
+
+
+CALLS = {
+    "plain": "main()",
+    "exits": "import sys\nsys.exit(main())",
+    "guarded": "if __name__ == '__main__':\n    main()",
+    "left": "",
+    "told": "'main() is not called here'",
+}
+
+
+def test_main_runs_once_whoever_calls_it(tmp_path: Path, launch: Launched) -> None:
+    """A program without nodes, too: what the file calls itself is not called again."""
+    for name, call in CALLS.items():
+        (tmp_path / f"{name}.py").write_text(f"def main():\n    print('{name}', flush=True)\n\n{call}\n")
+    programs = [
+        f"ExecuteProcess(cmd=['python3', {str(tmp_path / name)!r} + '.py'], name='p')" for name in CALLS
+    ]
+    file = tmp_path / "all.launch.py"
+    file.write_text(
+        "from launch import LaunchDescription\nfrom launch.actions import ExecuteProcess\n"
+        f"def generate_launch_description():\n    return LaunchDescription([{', '.join(programs)}])\n"
+    )
+    out, _, status = launch(file, "--until", "1")
+    assert status == 0
+    printed = [line.split("] ", 1)[1] for line in out.splitlines() if line.startswith("[p-")]
+    assert sorted(printed) == sorted(CALLS)

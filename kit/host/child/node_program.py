@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import importlib
 import os
+import re
 import sys
 import time
 from collections.abc import Callable
@@ -27,6 +28,8 @@ from kit.ros.execution.context import set_default_graph_finder
 from kit.ros.graph.graph import Graph
 from kit.ros.node.node import Node
 
+CALL_OF_MAIN: Final = re.compile(rb"^(?!def |async |class |#|@)(?=\S).*\bmain\(", re.MULTILINE)
+"""A line of a file, and not of a function of it, that may call ``main()``."""
 SWITCH_S: Final = 0.0005
 """How long one of the program's threads may keep the interpreter while others want it [s]."""
 
@@ -70,8 +73,9 @@ def run(program: StudentProgram, session: CommandSession, start: dict[str, Json]
             _run_entry_point(start["entry"], program)
         else:
             module = program.load("__main__")
-            # A file that asks for its own name calls what it wants to have called.
-            if not bridge.has_had_nodes and not (as_package and b"__main__" in program.source):
+            # A file that calls main() itself, or asks for its own name, calls what it wants to have called.
+            calls_itself = (as_package and b"__main__" in program.source) or _calls_main(program.source)
+            if not (bridge.has_had_nodes or calls_itself):
                 _run_main(module, program)
     except SystemExit as stop:
         if exit_status(stop):
@@ -156,6 +160,18 @@ def _run_entry_point(entry: str, program: StudentProgram) -> None:
     result = main()
     if result not in (None, 0):
         raise SystemExit(result)
+
+
+def _calls_main(source: bytes) -> bool:
+    """Whether a file, outside its functions and classes, calls ``main()``."""
+    if not CALL_OF_MAIN.search(source):  # as of nearly all: nothing is parsed once more
+        return False
+    import ast
+
+    defined = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+    outside = [each for each in ast.parse(source).body if not isinstance(each, defined)]
+    calls = (node for each in outside for node in ast.walk(each) if isinstance(node, ast.Call))
+    return any(isinstance(call.func, ast.Name) and call.func.id == "main" for call in calls)
 
 
 def _run_main(module: ModuleType, program: StudentProgram) -> None:

@@ -113,14 +113,14 @@ def validate_parameter_name(name: str) -> bool:
 def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> str:
     """The absolute name of what a node calls ``topic_name``: ``~/x``, ``x`` or ``/x``, with ``{node}``, ``{ns}``.
 
-    Raises InvalidTopicNameException for an unknown substitution. The names given must be valid.
+    Raises ValueError for an unknown substitution. The names given must be valid.
     """
     namespace = "" if node_namespace == "/" else node_namespace
     values = {"node": node_name, "ns": node_namespace, "namespace": node_namespace}
 
     def replaced(match: re.Match[str]) -> str:
         if match[1] not in values:
-            raise InvalidTopicNameException(topic_name, f"unknown substitution '{match[0]}'", match.start())
+            raise ValueError(f"the topic name '{topic_name}' has the unknown substitution '{match[0]}'")
         return values[match[1]]
 
     name = _SUBSTITUTION.sub(replaced, topic_name)

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from enum import IntEnum
-from typing import NamedTuple
+from typing import NamedTuple, Self, cast
 
 from kit.ros.exceptions import NotInitializedException
 from kit.ros.execution.context import Context, get_default_context
@@ -104,7 +104,11 @@ class JumpHandle:
 
 
 class Clock:
-    """Shows the time of the default context's graph."""
+    """Shows the time of the default context's graph. One of ROS_TIME is a ROSClock."""
+
+    def __new__(cls, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> Self:
+        is_ros = cls is Clock and clock_type is ClockType.ROS_TIME
+        return cast("Self", object.__new__(ROSClock)) if is_ros else object.__new__(cls)
 
     def __init__(self, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> None:
         if not isinstance(clock_type, ClockType):
@@ -170,7 +174,11 @@ class Clock:
 class ROSClock(Clock):
     """The clock of a node."""
 
-    def __init__(self, graph: Graph | None = None) -> None:
+    def __new__(cls, graph: Graph | None = None) -> Self:
+        return object.__new__(cls)
+
+    def __init__(self, graph: Graph | None = None, *, clock_type: ClockType = ClockType.ROS_TIME) -> None:
+        """``clock_type``: of no effect; what ``Clock`` was called with."""
         super().__init__(clock_type=ClockType.ROS_TIME)
         self._graph = graph
 

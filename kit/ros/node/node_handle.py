@@ -156,6 +156,13 @@ class NodeGraphMethods:
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         return [(handle.name, handle.namespace) for handle in self.handle.graph.directory.nodes]
 
+    def get_fully_qualified_node_names(self) -> list[str]:
+        return [handle.full_name for handle in self.handle.graph.directory.nodes]
+
+    def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
+        """The third of each is its enclave, of which there is one here."""
+        return [(name, namespace, "/") for name, namespace in self.get_node_names_and_namespaces()]
+
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
         """Waits until a node has this name; False after ``timeout`` seconds of the graph's time."""
         name = f"/{fully_qualified_node_name.lstrip('/')}"

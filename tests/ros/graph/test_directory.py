@@ -332,9 +332,7 @@ class TestMistakes:
         graph.run_due()
         assert heard == [7]
 
-    @pytest.mark.parametrize(
-        "name", ["", "a//b", "1st", "a/1st", "a b", "a-b", "a/", "x~", "~x", "{node", "{what}"]
-    )
+    @pytest.mark.parametrize("name", ["", "a//b", "1st", "a/1st", "a b", "a-b", "a/", "x~", "~x", "{node"])
     def test_a_topic_name_must_be_one(self, node: Node, name: str) -> None:
         with pytest.raises(InvalidTopicNameException):
             node.create_publisher(String, name, 10)

@@ -114,6 +114,11 @@ def test_expansion(name: str, namespace: str, full: str) -> None:
     assert expand_topic_name(name, "me", namespace) == full
 
 
+def test_an_unknown_substitution_is_an_error_of_its_value() -> None:
+    with pytest.raises(ValueError, match="unknown substitution"):
+        expand_topic_name("chatter/{bad_sub}", "me", "/")
+
+
 def test_hidden_names() -> None:
     assert topic_or_service_is_hidden("/a/_b")
     assert not topic_or_service_is_hidden("/a/b_")

@@ -172,3 +172,11 @@ def test_a_node_is_waited_for() -> None:
     assert not node.wait_for_node("/second", 0.01)
     threading.Timer(0.02, create_graph_node, (graph, "second")).start()
     assert node.wait_for_node("/second", 10.0)
+
+
+def test_a_clock_of_ros_time_is_a_ros_clock() -> None:
+    """As rclpy's own tests have it."""
+    clock = Clock(clock_type=ClockType.ROS_TIME)
+    assert isinstance(clock, ROSClock)
+    assert clock.clock_type is ROSClock().clock_type is ClockType.ROS_TIME
+    assert not isinstance(Clock(clock_type=ClockType.STEADY_TIME), ROSClock)
