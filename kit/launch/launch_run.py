@@ -241,6 +241,7 @@ class Launch:
         self._tell_events()
         for running in list(self._running.values()):
             running.process.wait_until_started()
+        self._start_requested()
         self._poll_processes()
 
     @property

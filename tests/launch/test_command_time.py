@@ -172,10 +172,10 @@ from launch.actions import *
 from launch.event_handlers import *
 
 def generate_launch_description():
-    said = [ExecuteProcess(cmd=["echo", f"{{name}} speaks"], name=name) for name in ("early", "late", "after")]
+    said = [ExecuteProcess(cmd=["echo", f"{{name}} speaks"], name=name) for name in ("early", "late", "after", "second")]
     told = [LogInfo(msg=f"{{name}} has started") for name in ("early", "late")]
     return LaunchDescription([
-        RegisterEventHandler(OnProcessStart(target_action=said[0], on_start=[told[0]])),
+        RegisterEventHandler(OnProcessStart(target_action=said[0], on_start=[told[0], said[3]])),
         RegisterEventHandler(OnProcessStart(target_action=said[1], on_start=[told[1], said[2]])),
         said[0], TimerAction(period=1.0, actions=[said[1]]),
     ])
@@ -190,9 +190,25 @@ def test_what_waits_for_a_start_comes_before_what_the_process_says(tmp_path: Pat
     assert status == 0
     lines = [line.split("] ", 1)[1] for line in out.splitlines() if "speaks" in line or "has started" in line]
     assert lines == [
-        *("[launch]: early has started", "early speaks", "[launch]: late has started"),
-        *("late speaks", "after speaks"),
+        *("[launch]: early has started", "early speaks", "second speaks"),
+        *("[launch]: late has started", "late speaks", "after speaks"),
     ]
+
+
+def test_what_waits_for_a_start_is_started_though_nothing_else_happens(
+    tmp_path: Path, launch: Launched
+) -> None:
+    file = tmp_path / "started.launch.py"
+    file.write_text(
+        "from launch import LaunchDescription\nfrom launch.actions import *\nfrom launch.event_handlers import *\n"
+        "def generate_launch_description():\n"
+        "    first = ExecuteProcess(cmd=['sleep', '1000'])\n"
+        "    then = ExecuteProcess(cmd=['echo', 'second'], on_exit=[Shutdown()])\n"
+        "    return LaunchDescription([\n"
+        "        first, RegisterEventHandler(OnProcessStart(target_action=first, on_start=[then]))])\n"
+    )
+    out, _, _ = launch(file, "--until", "5")
+    assert "second" in out
 
 
 COMMANDS = """

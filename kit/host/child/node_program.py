@@ -166,7 +166,7 @@ def _calls_main(source: bytes) -> bool:
     """Whether a file, outside its functions and classes, calls ``main()``."""
     if not CALL_OF_MAIN.search(source):  # as of nearly all: nothing is parsed once more
         return False
-    import ast
+    import ast  # few programs need it, and each start would pay for it
 
     defined = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
     outside = [each for each in ast.parse(source).body if not isinstance(each, defined)]
