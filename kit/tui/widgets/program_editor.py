@@ -300,6 +300,8 @@ class ProgramEditor(Vertical):
     def __init__(self, program: ProgramFile) -> None:
         super().__init__()
         self._program = program
+        self._first_line = 1
+        """Where the cursor was put last; asked for before the text is there."""
         self._notice: Row = ()
         self._failure: Row = ()
         """What is wrong with the program as it was last run."""
@@ -323,6 +325,7 @@ class ProgramEditor(Vertical):
 
     def on_mount(self) -> None:
         self._show_whole()
+        self.go_to_line(self._first_line)
 
     def on_unmount(self) -> None:
         self._program.close()
@@ -419,6 +422,7 @@ class ProgramEditor(Vertical):
 
     def go_to_line(self, number: int) -> None:
         """Puts the cursor at a line, from 1, and brings it into sight."""
+        self._first_line = number
         lines = self.area.document.lines
         index = min(number, len(lines)) - 1
         # What is to be answered is written behind the colon.

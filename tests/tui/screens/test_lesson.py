@@ -620,6 +620,22 @@ def test_who_writes_in_the_editor_sees_task_and_verdict(student: Student, size: 
 
 
 @pytest.mark.long
+def test_the_editor_opens_at_the_first_question_without_an_answer(student: Student) -> None:
+    """Also where it is opened for the first time."""
+    student.goes_to(COLOUR)
+    student.file.parent.mkdir(parents=True)
+    student.file.write_text("# a comment\n\ncolour:\n")
+
+    async def scene(pilot: Pilot[None]) -> None:
+        editor = await opened_editor(pilot)
+        await until(pilot, lambda: editor.area.cursor_location == (2, len("colour:")), "the cursor there")
+        await pilot.press("space", *"red", "ctrl+s")
+        await seen(pilot, "That one means stop.")
+
+    stage(student.screen, scene)
+
+
+@pytest.mark.long
 def test_the_line_of_an_error_is_marked_and_brought_into_sight(student: Student) -> None:
     student.goes_to(CORNER)
 
