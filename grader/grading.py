@@ -540,13 +540,15 @@ class Grading:
         return "" if self._shown_before(criterion, text) else text
 
     def _hints(self, criterion: Criterion, rationale: str, worst: _ScoredEvidence | None) -> tuple[str, ...]:
-        """Returns the criterion's hints, that for the mistake that was made first; none where a file with data cannot be
-        read, the mistake was described before, or what comes before was lost: then that is all there is to mend."""
+        """Returns the criterion's hints, that for the mistake that was made first; none where a file cannot be read or
+        uses a name that there is not, the mistake was described before, or what comes before was lost: then that is all
+        there is to mend."""
         if worst is not None and worst.failure is None and worst.measure is None:
             return ()
         if worst is None or worst.evidence.secret:
             return criterion.hints
-        if worst.failure is not None and (
+        failure = worst.failure
+        if failure is not None and (
             self.assignment.submit.endswith(YAML_ENDINGS) or rationale.startswith(SAME_MISTAKE)
         ):
             return ()
@@ -554,7 +556,9 @@ class Grading:
         made = next(
             (each.hint for each in criterion.mistakes if self._is_made(each, rationale, measure)), None
         )
-        return criterion.hints if made is None else (made, *criterion.hints)[:MAX_HINTS]
+        if made is None:
+            return () if failure is not None and _is_slip(failure) else criterion.hints
+        return (made, *criterion.hints)[:MAX_HINTS]
 
     def _is_made(self, mistake: KnownMistake, rationale: str, measure: float) -> bool:
         has_range = (mistake.low, mistake.high) != (-math.inf, math.inf)
@@ -723,6 +727,15 @@ def _summarize_episode(scored: _ScoredEvidence) -> EpisodeSummary:
     evidence = scored.evidence
     measure = None if scored.measure is None else _finite_or_none(scored.measure)
     return EpisodeSummary(evidence.label, evidence.outcome, scored.steps, measure, evidence.secret)
+
+
+SLIPS: Final = ("NameError:", "ImportError:", "ModuleNotFoundError:")
+"""How the message of an error begins that says itself what to mend."""
+
+
+def _is_slip(failure: Failure) -> bool:
+    """Whether it was not the task that was misunderstood, so that no hint about the task helps."""
+    return failure.kind is FailureKind.SYNTAX or failure.message.startswith(SLIPS)
 
 
 def _public_failure(evidence: Evidence) -> Failure:

@@ -67,7 +67,7 @@ class PosedTaskPlan:
     seed: int
     secret_seed: int | None
     enough: float = 1.0
-    """The share that earns all points: once one training surely reaches it, no further one is made, as the best counts."""
+    """The share that earns all points: once most trainings surely reach it, no further one is made, as the middle one counts."""
 
 
 @dataclass(frozen=True, slots=True)

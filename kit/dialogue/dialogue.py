@@ -248,7 +248,7 @@ class Turn:
             self._asked = None
             return None
         action, args = found
-        return self.do(action.id, *args)
+        return self.do(action.id, *args, pressed=key if len(key) == 1 else key.capitalize())
 
     def find(self, key: str) -> tuple[DialogueAction[Any], tuple[object, ...]] | None:
         """The action that a key means now, and what the key stands for."""
@@ -303,13 +303,15 @@ class Turn:
                 return (action, (rest,)) if rest else (action, ())
         return None
 
-    def do(self, action_id: str, *args: object) -> Effect:
-        """Does an action, or says why not."""
+    def do(self, action_id: str, *args: object, pressed: str = "") -> Effect:
+        """Does an action, or says why not; ``pressed``: its key that was pressed, if it has several."""
         action = self.dialogue.action(action_id)
         allowed, asked = self.allowed(action), self._asked
         self.remark = self._asked = None
         if allowed is not True:
-            sentence = allowed or f"{action.keys.keys.split()[0]} does nothing here; ? lists what does."
+            sentence = (
+                allowed or f"{pressed or action.keys.keys.split()[0]} does nothing here; ? lists what does."
+            )
             return self.set_remark(Remark(str(sentence), Tone.WARN))
         if action.confirm and asked != (action_id, args):
             self._asked = action_id, args

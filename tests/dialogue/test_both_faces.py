@@ -187,8 +187,8 @@ def log(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> list
     steps: list[Step] = []
     do, case = Turn.do, CASES[request.getfixturevalue("name")]
 
-    def logged(turn: Turn, action_id: str, *args: object) -> Effect:
-        effect = do(turn, action_id, *args)
+    def logged(turn: Turn, action_id: str, *args: object, pressed: str = "") -> Effect:
+        effect = do(turn, action_id, *args, pressed=pressed)
         said = "" if turn.remark is None else re.sub(r"[\d.:-]+", "#", turn.remark.text)
         words = [word(each, turn.dialogue) for each in turn.possible() if each.is_for_lines]
         steps.append(Step(action_id, args, type(effect).__name__, said, words, case.shown(turn.dialogue)))
@@ -312,4 +312,22 @@ def test_at_most_one_action_of_a_key_is_possible(name: str, tmp_path: Path) -> N
                 dialogue.stop()
             if then:
                 turn.do(then)
+        dialogue.close()
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_key_that_does_nothing_is_named_as_it_was_pressed(name: str, tmp_path: Path) -> None:
+    case = CASES[name]
+    with ProgressJournal(tmp_path) as journal:
+        dialogue = case.dialogue(journal, tmp_path)
+        turn = Turn(dialogue)
+        idle = [
+            key
+            for key in turn._keys()
+            if len(key) == 1 and (found := turn.find(key)) is not None and turn.allowed(found[0]) is False
+        ]
+        for key in idle:
+            turn.press(key)
+            assert turn.remark is not None
+            assert turn.remark.text.startswith(f"{key} does nothing here")
         dialogue.close()

@@ -21,7 +21,7 @@ submit: words.py
 level: 0
 functions: [{name: half}, {name: twice}]
 checks:
-  - {check: agrees, id: half, points: 1, with: {function: half}}
+  - {check: agrees, id: half, points: 1, with: {function: half}, hints: [what half is]}
   - check: agrees
     id: twice
     points: 1
@@ -103,3 +103,17 @@ def test_a_mistake_that_was_described_before_needs_no_hint(tmp_path: Path) -> No
     both = graded(tmp_path, "{when: x, hint: told}", "def half(x): return\ndef twice(x: return\n").tests
     assert both[1].rationale.startswith("The same mistake as in")
     assert both[1].hints == ()
+
+
+@pytest.mark.parametrize(
+    ("half", "hints"),
+    [
+        ("def half(x): return x /", ()),
+        ("def half(x): return y / 2", ()),
+        ("def half(x): return x / 0", ("what half is",)),
+    ],
+)
+def test_a_slip_gets_no_hint_about_the_task(tmp_path: Path, half: str, hints: tuple[str, ...]) -> None:
+    (first, _) = graded(tmp_path, "{when: x, hint: told}", f"{half}\n{SQUARE}").tests
+    assert not first.is_passed
+    assert first.hints == hints

@@ -220,7 +220,9 @@ def _explain_difference(
 ) -> str:
     """Describes the first wrong value of an observation."""
     numbers, expected = value.get("numbers"), sector_minima(ranges, SECTORS, record.task.clip)
-    if not isinstance(numbers, list) or len(numbers) != len(expected):
+    if not isinstance(numbers, list):
+        return f"an observation is a NumPy array of {SECTORS} numbers, not a {value.get('kind', 'value')}."
+    if len(numbers) != len(expected):
         return f"an observation is {SECTORS} numbers."
     index = next(
         k

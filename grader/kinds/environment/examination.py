@@ -180,6 +180,7 @@ def examine_environment(
         arguments = [file.stem, task.class_name, *controller_arguments(task.scenario)]
         # Subscribe before the program can publish.
         clock = clock or SubmissionClock()
+        clock.show_progress("starting the program")
         examination = _EnvironmentExaminer(runner, task, seed, clock)
         node_process = NodeProcess.start(
             graph,
@@ -247,10 +248,12 @@ class _EnvironmentExaminer:
         moves = [rng.randrange(len(self._task.moves)) for _ in range(15)]
         for name, seed in (("one seed", 3), ("the same seed again", 3), ("another seed", 4)):
             self._run_episode(name, seed, lambda done: moves[done], len(moves))
+        self._clock.show_progress("Gymnasium's own checker")
         self.record.checker_complaint = self._run_checker()
 
     def _run_episode(self, name: str, seed: int, choose: Callable[[int], int], steps: int) -> None:
         """Runs an episode to its end, and a few steps on if it does not end where it should."""
+        self._clock.show_progress(f"episode “{name}”")
         number = self._seed + seed
         answer = self._call({"call": "reset", "keywords": {"seed": number}}, f"reset(seed={number})")
         returned = answer["returned"]

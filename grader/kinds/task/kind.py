@@ -97,7 +97,7 @@ def loops(evidence: EvidenceRecord, params: NoParams) -> float:
 @check(none=0.2, full=0.7, unit="%")
 def learns(evidence: EvidenceRecord, params: NoParams) -> float:
     """A table that learns this task for a short while surely arrives in {actual} of its tests; {full} earns all points.
-    (The best of its trainings counts. “Surely”: the lower end of Wilson's interval.)"""
+    (The middle one of its trainings counts. “Surely”: the lower end of Wilson's interval.)"""
     return _measure(evidence, "learns", 0.0)
 
 

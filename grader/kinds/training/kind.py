@@ -90,11 +90,14 @@ def every_case(evidence: EvidenceRecord, params: object) -> float:
     return results.success_lower_bound(results.worst_case)
 
 
+RESTLESS_RATE: Final = 0.1
+"""With a learning rate above this at the end of a training, values do not come to rest."""
+
+
 @check(none=0.5, full=0.8, unit="%")
 def remembers(evidence: EvidenceRecord, params: object) -> float:
     """At the end of the training the newest policy reaches the target in {actual} of the tests of its worst case; {full}
-    earns all points. A policy that was put aside in time does not help here: what is trained on last must not push out
-    what was learned before."""
+    earns all points. A policy that was put aside in time does not help here."""
     results: TrainingResults = evidence.content
     return min(results.last_tests(case).share for case in results.budget.cases)
 
@@ -207,6 +210,8 @@ def _explain(results: TrainingResults, check: str) -> str:
     if check == "every_case":
         count = results.pooled_count(results.worst_case)
         return f"That is {results.worst_case}, reached {count.reached} times in {count.episodes}."
+    if check == "remembers":
+        return _explain_what_is_left(results)
     if check in ("succeeds", "reliable"):
         shares = ", ".join(f"{training.accuracy:.2f}" for training in results.trainings)
         return f"The exams of the trainings: {shares}."
@@ -218,6 +223,18 @@ def _explain(results: TrainingResults, check: str) -> str:
             f"{sum(count.episodes for count in worst.exam.values())}, found {worst.accuracy:.2f}."
         )
     return ""
+
+
+def _explain_what_is_left(results: TrainingResults) -> str:
+    """Says what the newest policies do in each case, and what in the settings may have undone the rest."""
+    settings, cases = results.settings, results.budget.cases
+    shares = ", ".join(f"{case} {results.last_tests(case).share:.2f}" for case in cases)
+    left = f"The last tests of all trainings: {shares}."
+    if settings.order is CaseOrder.APART:
+        return f"{left} What is trained on last must not push out what was learned before."
+    if settings.learning_rate.final > RESTLESS_RATE:
+        return f"{left} At the end the learning rate is still {settings.learning_rate.final:g}: every step moves a value far."
+    return left
 
 
 def _read_settings(section: Section, budget: TrainingBudget) -> TrainingSettings:

@@ -59,7 +59,7 @@ MEANINGS: Final = (
     ),
     (
         r"^(math domain error|expected a (nonnegative|positive) input)",
-        "Such a root or logarithm takes no negative number.",
+        "Such a root takes no negative number, and a logarithm no 0 either.",
     ),
     (
         r"^cannot access local variable",

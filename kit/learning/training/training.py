@@ -289,7 +289,7 @@ class _TrainingLoop:
         if goal is None or self._is_sure:
             return ""
         case, share = self._worst
-        return f", and the goal is not surely reached: success of {goal:g} in every case (in the last test {share:.3f} in {case})"
+        return f", not surely {goal:g} in each case ({case} {share:.3f})"
 
     def _describe_cheat(self) -> str:
         """What the student's reward pays for missing the goal, where that is what has been learned; else empty."""

@@ -337,11 +337,11 @@ class LessonDialogue(Dialogue):
         blocks: list[Block] = []
         if self.chosen is not None and self.is_answer_shown:
             blocks += feedback_blocks(self.step, self.chosen)
-        if self._film is not None:
-            blocks.append(
-                Text(f"{describe_film(self._film)} This shows the drive again, also tomorrow:", Tone.GOOD)
-            )
-            blocks.append(Picture((f"kit replay {shell_path(self._film.file)}",)))
+        if (film := self._film) is not None:
+            again = " This shows the drive again, also tomorrow:" if film.moves else ""
+            blocks.append(Text(f"{describe_film(film)}{again}", Tone.GOOD if film.is_solved else Tone.WARN))
+            if film.moves:
+                blocks.append(Picture((f"kit replay {shell_path(film.file)}",)))
         work, report = self.work, self.report
         if work is not None and report is not None and work.seconds is None:
             if self.stage.is_described and (curves := work.training_curves) is not None:
@@ -443,7 +443,8 @@ class LessonDialogue(Dialogue):
         """The scene has come to its end: what there is to say of a prediction may be said. Returns whether it is now."""
         if self._film is not None and self._drive_follows:
             self._drive_follows = False
-            self.stage.play(self._film.recording, self._film.place)
+            if self._film.moves:
+                self.stage.play(self._film.recording, self._film.place)
             return True
         if self.is_answer_shown or self.is_waiting:
             return False
@@ -567,6 +568,7 @@ class LessonDialogue(Dialogue):
     def film(self) -> Effect:
         scene, session = self.step.own_agent, self.session
         assert scene is not None  # else it is not possible
+        self._film = None  # also where these lines fail
 
         def shown(film: OwnAgentFilm) -> Effect:
             if self.step.own_agent is not scene:  # another step is looked at by now

@@ -208,8 +208,8 @@ class LessonSession:
         )
 
     def next_hint(self, exercise: Exercise) -> LessonHint | None:
-        """Opens one more hint: those of a criterion that knows the mistake come first, then those of the others that did
-        not pass, in their order. None where all are open, or there is none."""
+        """Opens one more hint. Each criterion that knows the mistake says it first; then come their other hints, then
+        those of the others that did not pass, in their order. None where all are open, or there is none."""
         lost = next(self._with_closed_hints(exercise), None)
         if lost is None:
             return None
@@ -248,9 +248,14 @@ class LessonSession:
         return min(self._lesson_progress.opened_hint_count(exercise, lost.id), len(lost.hints))
 
     def _with_closed_hints(self, exercise: Exercise) -> Iterator[CriterionResult]:
-        for lost in self._lost_criteria(exercise):
-            if self._opened_count(exercise, lost) < len(lost.hints):
-                yield lost
+        closed = [
+            lost
+            for lost in self._lost_criteria(exercise)
+            if self._opened_count(exercise, lost) < len(lost.hints)
+        ]
+        yield from sorted(
+            closed, key=lambda lost: not lost.knows_mistake or self._opened_count(exercise, lost) > 0
+        )
 
     def _record_event(self, kind: EventKind, subject: str, content: dict[str, object] | None = None) -> None:
         self.journal.add(kind, subject, content)

@@ -122,5 +122,7 @@ def _middle_of(cell: GridCell, world: GridWorld) -> tuple[float, float]:
 
 def describe_film(film: OwnAgentFilm) -> str:
     """Says in one sentence what came of it."""
+    if not film.moves:
+        return f"{film.scene.titles[0]} has learned no move that leads away from S, so its robot stays there."
     end = "to G" if film.is_solved else "and does not get to G yet"
     return f"{film.scene.titles[0]}: {film.moves} moves {end}, driven in {film.seconds:.1f} s."

@@ -115,7 +115,14 @@ def note(name: str, status: RunStatus, width: int) -> Row:
         return row((f"{name} was interrupted. p continues from its last checkpoint."[:width], "warn"))
     style = "bad" if state == "failed" else ""
     hint = "  p continues" if state == "stopped" else ""
-    return row((f"{status.note}{hint}"[:width], style))
+    return row((f"{_whole_parts(status.note, width - len(hint))}{hint}", style))
+
+
+def _whole_parts(text: str, width: int) -> str:
+    """As many parts of a sentence, between commas or semicolons, as fit; at least a piece of the first."""
+    while len(text) > width and (end := max(text.rfind(", "), text.rfind("; "))) > 0:
+        text = text[:end]
+    return text[:width]
 
 
 def caption(moment: DemonstrationView, width: int) -> Row:

@@ -14,7 +14,7 @@ from textual.containers import Container
 
 from kit.dialogue.dialogue import Dialogue
 from kit.dialogue.effects import Remark
-from kit.document.blocks import Block, Tone
+from kit.document.blocks import Block, Text, Tone
 from kit.document.layout import Page, place, rows_of
 from kit.document.rows import MARGIN, Row, at_both_edges, row, text_width
 from kit.inspection.sockets import sockets_folder
@@ -206,7 +206,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
             if work is not None and not self._is_editing  # it names the file itself
             else []
         )
-        status = [self._status_row()] if self._has_status_row else []
+        status = self._status_rows() if self._has_status_row else []
         self._rows("file").show_all(file)
         self._rows("status").show_all(status)
         self._rows("heading").show([lesson_rows.heading(dialogue.session.lesson_progress, step, width)])
@@ -303,15 +303,17 @@ class LessonScreen(DialogueScreen, DriveScreen):
             )
         )
 
-    def _status_row(self) -> Row:
-        """One row: where one is with the exercise, or what is said to the last key."""
-        work = self.dialogue.work
+    def _status_rows(self) -> list[Row]:
+        """Where one is with the exercise, in one row, or what is said to the last key, in as many as it needs."""
+        work, remark = self.dialogue.work, self.turn.remark
         if work is not None and work.seconds is not None:
-            return lesson_rows.checking(work.seconds, work.progress, self.room.width)
+            return [lesson_rows.checking(work.seconds, work.progress, self.room.width)]
         since = time.monotonic() - self._passed_at
-        if work is self._passed_work and since < lesson_rows.PASSED_S and self.turn.remark is None:
-            return lesson_rows.passing(since)
-        return self._remark()
+        if work is self._passed_work and since < lesson_rows.PASSED_S and remark is None:
+            return [lesson_rows.passing(since)]
+        if remark is None:
+            return [self._remark()]
+        return rows_of([Text(remark.text, remark.tone)], Page(self.room.width - 2 * MARGIN, MARGIN))
 
     def _work_picture(self, width: int, *, is_roomy: bool = False) -> list[str]:
         """What the student's work does, in characters: the curves of its trainings as they grow, and the robot with the newest
@@ -401,7 +403,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
 
     def _show_status(self) -> None:
         if self.is_active and self.dialogue.work is not None:
-            self._rows("status").show([self._status_row()])
+            self._rows("status").show_all(self._status_rows())
 
     # Keys
 

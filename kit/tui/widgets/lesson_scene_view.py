@@ -101,7 +101,7 @@ class LessonSceneView(WorldView):
         if self.view.failure is not None:
             return "the controller has stopped"
         if self.is_resting:
-            return "your run: w shows it again" if self.is_recorded else "finished"
+            return "your run: r shows it again" if self.is_recorded else "finished"
         run = "your run: " if self.is_recorded else ""
         return f"{run}{int(self.view.time_s)} of {self.scene.seconds:.3g} s"
 

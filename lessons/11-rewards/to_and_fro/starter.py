@@ -4,4 +4,5 @@
 def reward(distance, previous_distance, reached, collided):
     """distance, previous_distance: m to the target after and before the
     step. reached, collided: True or False."""
-    return 10.0 * max(0.0, previous_distance - distance) + reached - collided
+    closer = max(0.0, previous_distance - distance)
+    return 10.0 * closer + reached - collided

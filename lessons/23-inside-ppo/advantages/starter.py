@@ -1,4 +1,4 @@
-"""Advantages: how much better each step went than the critic expected."""
+"""Advantages: how much better a step went than the critic expected."""
 
 
 def errors(rewards, values, next_values, terminated, gamma):

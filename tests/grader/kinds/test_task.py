@@ -173,16 +173,16 @@ def test_a_loop_whose_sum_has_no_value_is_no_loop_that_loses(tmp_path: Path) -> 
     assert len(posed.paying_loops) == 2
 
 
-@pytest.mark.parametrize(("enough", "made"), [(0.2, 1), (1.0, 3)])
-def test_once_a_training_is_good_enough_no_further_one_is_made(
+@pytest.mark.parametrize(("enough", "made"), [(0.2, 2), (1.0, 3)])
+def test_once_most_trainings_are_good_enough_no_further_one_is_made(
     tmp_path: Path, enough: float, made: int
 ) -> None:
     (tmp_path / "task.yaml").write_text(TASK)
     plan = PosedTaskPlan("q-learning", 2_000, 3, 20, "", 1, None, enough)
     posed = PosedTask(tmp_path / "task.yaml", plan, 1, SubmissionClock())
-    best = max(each.sure_success for each in posed.results.trainings)
-    assert len(posed.results.trainings) == made
-    assert posed.measure("learns", {}).value == best > 0.2
+    exams = sorted(each.sure_success for each in posed.results.trainings)
+    assert len(exams) == made
+    assert posed.measure("learns", {}).value == exams[-2] > 0.2
 
 
 @pytest.mark.parametrize(

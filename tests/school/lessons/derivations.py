@@ -473,11 +473,19 @@ def starter_rays(words: str, step: LessonStep, folder: Path) -> str:
     return f"looks at {high - low} rays at once"
 
 
+RAY_ABEAM = 22.5
+"""Where the kit's laser of 91 rays, 4 degrees apart and the middle one straight ahead, would have a ray straight to the right."""
+
+
 def ray_abeam(words: str, step: LessonStep, folder: Path) -> str:
-    """The rays to both sides of the one at which the formula of the step is 0."""
-    found = re.search(rf"ray - ({NUMBER})", step.text)
-    assert found is not None
-    return f"ray {math.floor(float(found[1]))} or {math.ceil(float(found[1]))}"
+    """The rays to both sides of straight to the right."""
+    return f"between ray {math.floor(RAY_ABEAM)} and ray {math.ceil(RAY_ABEAM)}"
+
+
+def askew_at_a_ray(words: str, step: LessonStep, folder: Path) -> str:
+    (ray,) = re.findall(r"nearest is ray (\d+)", words)
+    degrees = 4 * (int(ray) - RAY_ABEAM)
+    return f"If the nearest is ray {ray}, askew is {degrees:g} degrees, or {math.radians(degrees):.2f} rad"
 
 
 def radian(words: str, step: LessonStep, folder: Path) -> str:
@@ -748,6 +756,7 @@ DERIVATIONS: Final[Mapping[str, Claim]] = MappingProxyType(
             steps_in_seconds,
             starter_rays,
             ray_abeam,
+            askew_at_a_ray,
             radian,
             turn_actions,
             discounted_sum,

@@ -36,6 +36,9 @@ EXERCISES = [
 ]
 LESSONS = [kit_lesson(name) for name in lesson_names()]
 TO_WRITE = re.compile(r"^( *).*(?:# write this|TODO).*$", re.MULTILINE)
+NUMBERED = re.compile(r"^( +)# 1\. .*\n(?:\1#.*\n)+", re.MULTILINE)
+"""Comments of a starter that say step by step what stands there in the end."""
+STATEMENT = re.compile(r"[\w.]+ = [-\w.]+")
 PARAMETERS = "reached, collided, distance, previous_distance"
 
 
@@ -60,10 +63,12 @@ def printed_anywhere(lesson: Lesson, exercise: Exercise) -> list[str]:
 
 def copied_programs(lesson: Lesson, starter: str) -> Iterator[str]:
     """The starter with each block of Python of its lesson: in place of what is to be written, what it works out returned, or
-    added at the end; and with all functions and classes that any lesson prints."""
+    added at the end; below what its comments print themselves; and with all functions and classes that any lesson prints."""
     blocks = [(each, tree) for text in code_of(lesson) if (tree := parsed(each := textwrap.dedent(text)))]
     for block, tree in blocks:
         yield f"{starter}\n\n{block}\n"
+        if NUMBERED.search(starter):
+            yield in_place_of_comments(starter, block)
         if TO_WRITE.search(starter):
             yield in_place_of_marks(starter, block)
             last = tree.body[-1]
@@ -83,6 +88,15 @@ def copied_programs(lesson: Lesson, starter: str) -> Iterator[str]:
 def in_place_of_marks(starter: str, block: str) -> str:
     """The starter with a block in place of each line that says that it is to be written."""
     return TO_WRITE.sub(lambda found: textwrap.indent(block, found[1]), starter)
+
+
+def in_place_of_comments(starter: str, block: str) -> str:
+    """The starter with the statements in its numbered comments, and then a block, in place of these comments."""
+
+    def code(found: re.Match[str]) -> str:
+        return textwrap.indent("\n".join([*STATEMENT.findall(found[0]), block, ""]), found[1])
+
+    return NUMBERED.sub(code, starter)
 
 
 def parsed(text: str) -> ast.Module | None:

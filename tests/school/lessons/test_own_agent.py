@@ -14,7 +14,7 @@ from kit.run.recording import load_recording
 from kit.run.scenario import find_recorded_scenario
 from kit.school.lessons.checking import STARTER
 from kit.school.lessons.learning_playback import LearningPlayback
-from kit.school.lessons.own_agent import FILM_FILE, OwnAgentError, OwnAgentFilm, make_film
+from kit.school.lessons.own_agent import FILM_FILE, OwnAgentError, OwnAgentFilm, describe_film, make_film
 from kit.school.lessons.own_learners import StudentLines, make_own_learner
 from kit.school.lessons.reading import lesson_names
 from kit.school.lessons.records import LearningScene, Lesson
@@ -120,3 +120,14 @@ def test_the_same_answers_make_the_same_table(tmp_path: Path) -> None:
         again.step()
     np.testing.assert_array_equal(first.values, again.values)
     assert first.cell == again.cell
+
+
+def test_a_robot_that_has_learned_no_way_stays_where_it_is(tmp_path: Path) -> None:
+    """Nothing is said of a drive then, of which there is none."""
+    lesson, scene = q_learning()
+    [file] = files_of(lesson, scene, tmp_path)
+    file.write_text(file.read_text().replace("drawn < epsilon", "False"))
+    film = make_film(scene, [file], INTERACTIVE_LEVEL)
+    assert not film.moves
+    assert "stays there" in describe_film(film)
+    assert "driven" not in describe_film(film)

@@ -155,6 +155,19 @@ def test_a_verdict_names_points_and_what_was_wanted() -> None:
     assert told.index("actual:") < told.index("Hint 1 of 3: Go.")
 
 
+def test_one_mistake_that_loses_many_criteria_is_said_once(lesson: Lesson) -> None:
+    def lost(name: str, rationale: str) -> CriterionResult:
+        return CriterionResult(name, name, CriterionStatus.STUDENT_ERROR, 0, 1, rationale=rationale)
+
+    again = "The same mistake as in “first”."
+    criteria = (lost("first", "It stopped."), *(lost(name, again) for name in ("second", "third", "fourth")))
+    told = "\n".join(
+        map(row_text, shown(verdict_blocks(replace(REPORT, result=replace(RESULT, tests=criteria)), ())))
+    )
+    assert all(name in told for name in ("second: 0 of 1", "third: 0 of 1", "fourth: 0 of 1", "It stopped."))
+    assert told.count("The same mistake") == 1
+
+
 def test_a_broken_check_is_nobodys_fault(lesson: Lesson, stand: LessonProgress) -> None:
     broken = replace(REPORT, verdict=GradingVerdict.BROKEN, result=None, problem="The check broke: no disk")
     assert "The check broke: no disk" in "\n".join(map(row_text, shown(verdict_blocks(broken, ()))))

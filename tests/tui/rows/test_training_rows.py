@@ -112,6 +112,20 @@ def test_the_lines_fit_into_eighty_columns() -> None:
         assert "mine" in training_rows.farewell("mine", state)
 
 
+def test_a_note_that_is_too_long_ends_with_a_whole_part() -> None:
+    found = replace(
+        full(("a",), 1),
+        note="TEST mean 0.971, worst 0.948 (turn_b_to_a), kept; largest value 1.8, mean value 0.7",
+    )
+    assert (
+        row_text(training_rows.note("mine", found, 80))
+        == "TEST mean 0.971, worst 0.948 (turn_b_to_a), kept; largest value 1.8"
+    )
+    assert (
+        row_text(training_rows.note("mine", found, 60)) == "TEST mean 0.971, worst 0.948 (turn_b_to_a), kept"
+    )
+
+
 def test_the_tasks_to_begin_with_say_where_they_are_cut() -> None:
     whole = [row_text(each) for each in no_trainings(TASKS, 80, 100)]
     assert all(any(task.name in line for line in whole) for task in TASKS)

@@ -409,7 +409,7 @@ def test_a_pass_plays_the_students_own_run_which_stays(
         await pilot.press("c")
         await seen(pilot, "Passed: ***")
         if is_played:
-            await seen(pilot, "your run: w shows it again")
+            await seen(pilot, "your run: r shows it again")
             assert pilot.app.screen.query_one(LessonSceneView).display
         assert "[ok] It runs" in text(pilot)
         await pilot.press("w")

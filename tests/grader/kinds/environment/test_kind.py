@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -109,11 +110,12 @@ def test_the_seed_of_the_grade_is_another_one(folder: Path) -> None:
         (("return self.observation(), {}\n\n    def step", "return self.observation()\n\n    def step"), {"resets"}, "two values"),
         (("dx, dy, self.np_random", "1 + dx, dy, self.np_random"), {"resets"}, "from its home"),
         (("self.robot.drive(*MOVES[action])", "self.robot.drive(*MOVES[0])"), {"acts", "timeout"}, "should drive"),
+        (("def reset(", "def observation(self): return [2.0] * 9\n\n    def reset("), {"sees"}, "not a list"),
         (("self.steps = 0\n        return", "return"), {"crash"}, "count of steps"),
         (("self.steps += 1", "self.steps += 1; self.action_space = gymnasium.spaces.Discrete(3 + self.steps)"), {"spaces"}, "another one after step"),
         (("self.steps += 1", "self.steps += 1; self.observation_space.high[0] = self.steps"), {"spaces"}, "another one after step"),
     ],
-    ids=["four actions", "bytes", "no info", "elsewhere", "one move", "never counts anew", "more actions", "wider"],
+    ids=["four actions", "bytes", "no info", "elsewhere", "one move", "a list", "never counts anew", "more actions", "wider"],
 )  # fmt: skip
 def test_a_mistake_loses_what_it_is_about(
     folder: Path, change: tuple[str, str], checks: set[str], word: str
@@ -202,3 +204,9 @@ def test_the_sectors_are_those_that_agents_of_the_kit_see() -> None:
     wanted = [min(ranges[ray] for ray in range(91) if NINE_NUMBERS.sectors[ray] == k) for k in range(9)]
     assert sector_minima(ranges, 9, 2.0) == wanted
     assert sector_minima([math.nan] * 91, 9, 2.0) == [2.0] * 9
+
+
+def test_each_episode_is_named_while_it_runs(folder: Path) -> None:
+    said: list[str] = []
+    graded(folder, ("self.steps += 1", "1 / 0"), options=replace(DESK, show_progress=said.append))
+    assert said == ["starting the program", "episode “turning on the spot”"]
