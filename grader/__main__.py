@@ -46,7 +46,7 @@ VERBS: Final[Mapping[str, tuple[str, str]]] = MappingProxyType(
             "grader.cli.gradebook:gradebook",
             "The grades of a class: roster, late rules, own marks; for Moodle or Canvas; pages.",
         ),
-        "ladder": ("grader.cli.cohort:ladder", "Race all programs in a folder, and rank them."),
+        "ladder": ("grader.cli.ladder:ladder", "Race all programs in a folder, and rank them."),
     }
 )
 """Where each verb is, and its line, in the order of ``grader --help``."""

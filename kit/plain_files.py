@@ -8,8 +8,11 @@ import os
 import stat
 from contextlib import suppress
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, Final
 from urllib.parse import unquote
+
+MAX_PARTS: Final = 100_000
+"""Files and folders in a folder that the kit works in."""
 
 
 def open_plain_file(file: Path | str, *, follows_links: bool = True, folder: int | None = None) -> BinaryIO:
@@ -37,6 +40,30 @@ def read_plain_file(file: Path | str, limit: int) -> bytes:
     if content is None or len(content) > limit:
         raise OSError(errno.EFBIG, f"it is larger than {limit / 1e6:.3g} MB", str(file))
     return content
+
+
+def foreign_part(folder: Path) -> str:
+    """What keeps a folder that somebody else has made from being read and written by the names in it: a link, which may lead to
+    a file of this user's, or a pipe or device, which may hold a reader for ever. Empty if nothing does."""
+    folders, count = [folder], 0
+    while folders:
+        found = folders.pop()
+        try:
+            with os.scandir(found) as entries:
+                for entry in entries:
+                    count += 1
+                    if entry.is_dir(follow_symlinks=False):
+                        folders.append(Path(entry.path))
+                    elif not entry.is_file(follow_symlinks=False):
+                        name = Path(entry.path).relative_to(folder)
+                        return f"{name} is {'a link' if entry.is_symlink() else 'no plain file'}"
+                    if count > MAX_PARTS:
+                        return f"it has more than {MAX_PARTS:,} files"
+        except FileNotFoundError:  # removed meanwhile
+            continue
+        except OSError as error:
+            return f"{found.name} cannot be read ({error.strerror})"
+    return ""
 
 
 def is_file_there(file: Path) -> bool:

@@ -30,7 +30,7 @@ from kit.learning.training.events import EventReader, TrainingEnded, TrainingPro
 from kit.learning.training.learn_extra import require_learn_extra
 from kit.learning.training.run_check import check_run_config
 from kit.learning.training.run_config import PresetName, RunConfig, RunError, format_setting
-from kit.learning.training.run_folders import create_run, find_run, list_runs
+from kit.learning.training.run_folders import create_run, find_run, left_out, list_runs
 from kit.learning.training.run_text import format_event
 from kit.learning.training.run_upkeep import delete_run, disk_bytes, read_overviews, rename_run, runs_blocks
 from kit.learning.training.runs import TrainingRun
@@ -485,12 +485,13 @@ def runs_command(
             ]
             click.echo(json.dumps(rows, indent=2))
         else:
-            found = list_runs(folder)
-            click.echo(
-                "\n".join(lines_of(runs_blocks(read_overviews(found))))
-                if found
-                else "No runs yet. `kit train turn` starts one."
-            )
+            found, foreign = list_runs(folder), left_out(folder)
+            if found:
+                click.echo("\n".join(lines_of(runs_blocks(read_overviews(found)))))
+            elif not foreign:
+                click.echo("No runs yet. `kit train turn` starts one.")
+            for problem in foreign:
+                click.echo(problem, err=True)
 
 
 def _delete_run(run: TrainingRun, yes: bool) -> None:

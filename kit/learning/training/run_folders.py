@@ -12,6 +12,7 @@ from pathlib import Path
 
 from kit.learning.training.run_config import RunConfig, RunError
 from kit.learning.training.runs import TrainingRun
+from kit.plain_files import foreign_part
 from kit.plain_text import quoted, suggestion
 from kit.workspace import draft_folder, write_atomically
 
@@ -75,19 +76,39 @@ def _rename_to_first_free(draft: Path, names: Iterable[str]) -> Path:
 
 
 def list_runs(folder: Path) -> tuple[TrainingRun, ...]:
-    """Every run in the folder, the one begun last first."""
+    """Every run in the folder, the one begun last first; without those that ``left_out`` tells of."""
+    return tuple(run for run in _all_runs(folder) if not foreign_part(run.folder))
+
+
+def left_out(folder: Path) -> tuple[str, ...]:
+    """A sentence for each run in the folder that is neither read nor written, with the reason."""
+    return tuple(problem for run in _all_runs(folder) if (problem := _problem_of(run)))
+
+
+def _all_runs(folder: Path) -> list[TrainingRun]:
     files = [(file.stat().st_mtime, file.parent) for file in folder.glob("[!.]*/config.json")]
-    return tuple(TrainingRun(each) for _, each in sorted(files, reverse=True))
+    return [TrainingRun(each) for _, each in sorted(files, reverse=True)]
+
+
+def _problem_of(run: TrainingRun) -> str:
+    part = foreign_part(run.folder)
+    return (
+        f"{run.folder}: {part}. A run has plain files alone, because the kit writes to them: replace or delete it."
+        if part
+        else ""
+    )
 
 
 def find_run(folder: Path, name: str | None = None) -> TrainingRun:
-    """The run of that name, or, without one, the one begun last. RunError if there is none."""
-    runs = {run.name: run for run in list_runs(folder)}
+    """The run of that name, or, without one, the one begun last. RunError if there is none, or if it is left out."""
+    runs = {run.name: run for run in _all_runs(folder)}
     if name is None:
         if not runs:
             raise RunError("There are no runs yet. `kit train turn` starts one.")
-        return next(iter(runs.values()))
+        name = next(iter(runs))
     if name in runs:
+        if problem := _problem_of(runs[name]):
+            raise RunError(problem)
         return runs[name]
     if not runs:
         raise RunError(f"There is no run {quoted(name)}, nor any other. `kit train turn` starts one.")

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import zipfile
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import get_args
+from typing import Final, get_args
 
 from kit.array_archives import READ_ERRORS
 from kit.learning.policies.policy import Policy
@@ -27,7 +28,13 @@ from kit.learning.training.events import (
 from kit.learning.training.process_lock import LockedError, is_locked, process_lock
 from kit.learning.training.run_config import RunConfig, RunError
 from kit.learning.training.training_summary import TrainingCommand, TrainingSummary, summarise_events
+from kit.plain_files import open_plain_file, read_plain_file
 from kit.workspace import write_atomically
+
+MAX_CONFIG_BYTES: Final = 16 << 20
+"""Bytes of ``config.json``: it may hold a task's whole text."""
+LOG_END_BYTES: Final = 64 << 10
+"""Bytes at the end of the log, in which its last line is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +90,9 @@ class TrainingRun:
     def last_log_line(self) -> str:
         """The last line that the newest process printed: why it ended, where it could not write that among the events."""
         try:
-            lines = self.log.read_text(errors="replace").split("\n")
+            with open_plain_file(self.log) as file:
+                file.seek(max(0, file.seek(0, os.SEEK_END) - LOG_END_BYTES))
+                lines = file.read(LOG_END_BYTES).decode(errors="replace").split("\n")
         except FileNotFoundError:
             return ""
         return next((line.strip() for line in reversed(lines) if line.strip()), "")
@@ -92,7 +101,7 @@ class TrainingRun:
         """RunError if it is missing or damaged."""
         file = self.folder / "config.json"
         try:
-            return RunConfig.from_dict(json.loads(file.read_bytes()))
+            return RunConfig.from_dict(json.loads(read_plain_file(file, MAX_CONFIG_BYTES)))
         except FileNotFoundError:
             raise RunError(f"{self.folder}: not a run; its config.json is missing.") from None
         except (ValueError, OSError) as error:

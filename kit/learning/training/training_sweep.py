@@ -32,6 +32,7 @@ from kit.learning.training.run_config import PresetName, RunConfig, RunError, fo
 from kit.learning.training.run_folders import RunExists, create_run
 from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training import train
+from kit.plain_files import foreign_part
 from kit.workspace import make_private_folder, write_atomically
 
 ALL_CASES = "all"
@@ -97,6 +98,10 @@ class TrainingSweep(JobFolder):
 
         ``grows``: the sweep that is there may be the beginning of this one, or this one of it; the longer one stays.
         """
+        if folder.exists() and (part := foreign_part(folder)):
+            raise RunError(
+                f"{folder}: {part}. A sweep has plain files alone, because the kit writes to them."
+            )
         sweep = cls(folder)
         frozen = [replace(config, choice=config.choice.frozen()) for config in configs]
         content = {"episodes": episodes, "runs": [config.as_dict() for config in frozen]}

@@ -17,6 +17,7 @@ from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import ScreenAction, letter
 from kit.document.blocks import Block, Text
 from kit.document.rows import at_both_edges, row
+from kit.plain_files import foreign_part
 from kit.plain_text import counted, format_size
 from kit.tui.rows import training_rows
 from kit.tui.rows.key_rows import bindings, footer
@@ -405,6 +406,8 @@ def _sweep_items(folder: Path) -> list[PickerItem]:
     )
     items = []
     for file in manifests:
+        if foreign_part(file.parent):  # it would be written to; `kit sweep` says why it is left out
+            continue
         sweep = TrainingSweep(file.parent)
         total, waiting = len(sweep.entries()), len(sweep.waiting())
         state = ", training" if sweep.is_active else ""

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from grader.cli.cohort import ladder
+from grader.cli.ladder import ladder
 from grader.cohort.program_ladder import LadderRace, find_programs, fit_elo, race_all, rank
 from grader.look_alikes import outline
 from kit.host.sandbox import probe

@@ -4,6 +4,7 @@ import errno
 import io
 import multiprocessing
 import os
+import re
 import tracemalloc
 import zipfile
 from collections.abc import Callable, Mapping
@@ -25,12 +26,16 @@ from kit.learning.training.events import (
     encode_event,
 )
 from kit.learning.training.run_config import RunConfig, RunError
-from kit.learning.training.run_folders import create_run, find_run, list_runs
+from kit.learning.training.run_folders import create_run, find_run, left_out, list_runs
 from kit.learning.training.runs import TrainingRun
 from kit.learning.training.training_summary import summarise_events
 from tests.cases import every_case
 
 CONFIG = RunConfig(TaskSpec("turn"), "q-learning", seed=3)
+RUN_PARTS = (
+    "config.json", "events.jsonl", "control", "lock", "log.txt", "newest.npz", "best.npz", "checkpoint.zip",
+    "checkpoint.old.zip", "sweep.jsonl", "theirs.py", "tensorboard/training_0",
+)  # fmt: skip
 EVENTS = (
     TrainingStarted(1.5, 0, {"numpy": "2"}),
     TrainingProgress(100, 0.5, 200.0, {"a": [1, 2, 3]}, -1.0, 20.0, {"reached": 2.0}, None),
@@ -256,3 +261,47 @@ def test_a_named_pipe_is_no_checkpoint(tmp_path: Path) -> None:
     os.mkfifo(run.checkpoints[0])
     with pytest.raises(RunError, match="damaged"):
         run.load_checkpoint()
+
+
+@every_case(("part", "kind"), [(part, kind) for part in RUN_PARTS for kind in ("link", "pipe")])
+def test_a_run_of_somebody_elses_leads_to_no_file_of_ones_own_and_holds_nobody(
+    part: str, kind: str, tmp_path: Path
+) -> None:
+    own, runs = tmp_path / "own.txt", tmp_path / part.replace("/", "-") / kind
+    own.write_text("mine")
+    runs.mkdir(parents=True)
+    run = create_run(runs, CONFIG, "theirs")
+    file = run.folder / part
+    file.parent.mkdir(exist_ok=True)
+    file.unlink(missing_ok=True)
+    if kind == "link":
+        file.symlink_to(own)
+    else:
+        os.mkfifo(file)
+    create_run(runs, CONFIG, "mine")
+    assert [each.name for each in list_runs(runs)] == ["mine"]
+    assert find_run(runs, "mine").config() == CONFIG
+    with pytest.raises(RunError, match=re.escape(part)):
+        find_run(runs, "theirs")
+    assert [part in line for line in left_out(runs)] == [True]
+    assert own.read_text() == "mine"
+
+
+def test_a_run_whose_folder_lies_elsewhere_is_read(tmp_path: Path) -> None:
+    (tmp_path / "large_disk").mkdir()
+    (tmp_path / "runs").mkdir()
+    run = create_run(tmp_path / "large_disk", CONFIG, "mine")
+    (tmp_path / "runs" / "mine").symlink_to(run.folder)
+    assert find_run(tmp_path / "runs", "mine").config() == CONFIG
+
+
+def test_a_log_without_end_is_read_at_its_end_and_such_a_configuration_is_none(tmp_path: Path) -> None:
+    run = create_run(tmp_path, CONFIG, "theirs")
+    for name, text in (("log.txt", b"\nthe last\n"), ("config.json", b"{}")):
+        with (run.folder / name).open("wb") as file:
+            file.truncate(1 << 40)  # a file of holes
+            file.seek(0, os.SEEK_END)
+            file.write(text)
+    assert run.last_log_line == "the last"
+    with pytest.raises(RunError, match="damaged"):
+        run.config()
