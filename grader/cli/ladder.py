@@ -13,6 +13,7 @@ from grader.cohort.class_findings import passed_over_line
 from grader.cohort.program_ladder import LadderRace, find_programs, race_all, rank
 from grader.reports.cleaning import clean_line, spreadsheet_cell
 from kit.cli.existing_path import ExistingPath
+from kit.cli.messages import describe_error
 from kit.document.blocks import CellStyle, Column, Table
 from kit.document.layout import lines_of
 from kit.host.sandbox import probe
@@ -68,7 +69,10 @@ def ladder(folder: Path, names: tuple[str, ...], as_csv: bool, unconfined: bool)
         if sys.stderr.isatty():
             click.echo(f"\r{race.level}: {clean_line(race.program):<40.40}", nl=False, err=True)
 
-    races = race_all(programs, levels, report)
+    try:
+        races = race_all(programs, levels, report)
+    except OSError as error:
+        exits.fail(describe_error(error))
     rows = rank(races)
     if sys.stderr.isatty():
         click.echo(f"\r{'':<70}\r", nl=False, err=True)

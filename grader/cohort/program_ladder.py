@@ -9,7 +9,7 @@ them finite. Intervals are percentiles of a bootstrap over levels.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -22,6 +22,8 @@ from grader.submission import submission_name
 from grader.submitted_files import is_ignored_name
 from kit.arrays import FloatArray
 from kit.controllers import find_controller
+from kit.host.private_folder import private_folder
+from kit.plain_files import open_plain_file
 from kit.plain_text import counted
 from kit.school.game.levels import GameLevel
 from kit.school.game.race import RaceFinish, race_controller
@@ -107,16 +109,33 @@ def race_all(
     *,
     wall_limit_s: float = RACE_LIMIT_S,
 ) -> list[LadderRace]:
-    """Races every program on every level: the races of all pairs, since nobody is in another's way."""
+    """Races every program on every level: the races of all pairs, since nobody is in another's way. Raises OSError if a program
+    cannot be read."""
     races = []
-    for level in levels:
-        for name, file in programs.items():
-            finish, _ = race_controller(
-                level, find_controller(str(file.absolute())), wall_limit_s=wall_limit_s
-            )
-            races.append(_race_of(name, level, finish))
-            on_race(races[-1])
+    with private_folder() as folder:
+        alone = {
+            name: _alone(file.absolute(), programs.values(), folder / str(number))
+            for number, (name, file) in enumerate(programs.items())
+        }
+        for level in levels:
+            for name, file in alone.items():
+                finish, _ = race_controller(level, find_controller(str(file)), wall_limit_s=wall_limit_s)
+                races.append(_race_of(name, level, finish))
+                on_race(races[-1])
     return races
+
+
+def _alone(file: Path, programs: Iterable[Path], folder: Path) -> Path:
+    """Copies a program that lies beside those of others into a folder of its own: it may read all of the folder it lies in."""
+    if not any(
+        other.absolute() != file and other.absolute().is_relative_to(file.parent) for other in programs
+    ):
+        return file
+    folder.mkdir()
+    copy = folder / file.name
+    with open_plain_file(file, follows_links=False) as opened:
+        copy.write_bytes(opened.read())
+    return copy
 
 
 def _race_of(name: str, level: GameLevel, finish: RaceFinish) -> LadderRace:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -101,19 +102,23 @@ def open_photo(path: Path) -> Image.Image:
                 raise PhotoError(
                     f"{path} has {image.width} x {image.height} pixels. Make it smaller first, 4000 wide at most."
                 )
-            upright = _in_colour(ImageOps.exif_transpose(image))
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # Pillow's own, of remarks in the file that are damaged
+                upright = _in_colour(ImageOps.exif_transpose(image))
     except Image.DecompressionBombError:
         raise PhotoError(f"{path} has too many pixels. Make it smaller first, 4000 wide at most.") from None
     except UnusableFile as error:
         raise PhotoError(f"{path}: {error}.") from None
-    except (UnidentifiedImageError, SyntaxError, ValueError) as error:
-        if isinstance(error, PhotoError):
-            raise
-        raise PhotoError(f"{path} is not a readable picture, such as JPEG or PNG.") from None
+    except PhotoError:
+        raise
     except OSError as error:
+        if isinstance(error, UnidentifiedImageError):
+            raise PhotoError(f"{path} is not a readable picture, such as JPEG or PNG.") from None
         if error.errno is None:  # Pillow's own: a file that ends early, or is damaged
             raise PhotoError(f"{path}: {error}. Copy it again, or take another photograph.") from None
         raise PhotoError(f"{path}: {error.strerror}") from None
+    except Exception:  # noqa: BLE001 - Pillow's decoders raise whatever a broken file makes of them
+        raise PhotoError(f"{path} is not a readable picture, such as JPEG or PNG.") from None
     if min(upright.size) < SMALLEST_SIDE:
         raise PhotoError(
             f"{path} has {upright.width} x {upright.height} pixels; each side needs at least {SMALLEST_SIDE}."

@@ -68,8 +68,8 @@ def open_picture(content: bytes, formats: Iterable[str] = FORMATS) -> Image.Imag
     if content.startswith(START_OF_JPEG) and _has_more_scans(content, MAX_JPEG_SCANS):
         raise UnusableFile(f"it goes over its pixels more than {MAX_JPEG_SCANS} times: save it again")
     with warnings.catch_warnings():
-        # Pillow's own size warning: whoever opens a picture has a stricter limit, and says what to do.
-        warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+        # Pillow's own: of the size, for which whoever opens a picture has a stricter limit, and of remarks that are damaged.
+        warnings.simplefilter("ignore")
         return Image.open(io.BytesIO(content), formats=tuple(formats))
 
 

@@ -10,6 +10,7 @@ from kit.plain_text import quoted
 from kit.world.documents import AllowedRoot, UnusableFile, WorldDocuments
 from kit.world.layer_reader import LayerReader
 from kit.world.model_loading import ModelPlacement, read_model
+from kit.world.overlaps import note_overlaps
 from kit.world.plugin_reader import (
     PluginReader,
     WorldPluginReader,
@@ -114,6 +115,7 @@ def read_world(
     layers = reader.read(section.sections("layers"))
     entries = _read_model_entries(section.sections("models", ()), documents)
     models = [_read_model(entry, documents, reader.layer_bits, plugin_readers) for entry in entries]
+    note_overlaps(section, layers, [model for model in models if model is not None])
     scope = WorldScope(layers, tuple(model for model in models if model is not None), reader.layer_bits)
     plugins = read_plugins(section.sections("plugins", ()), scope, world_plugin_readers)
     return World(

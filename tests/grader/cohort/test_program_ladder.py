@@ -183,3 +183,24 @@ def test_a_race_has_a_wall_clock(tmp_path: Path) -> None:
     (race,) = race_all(find_programs(tmp_path)[0], [find_level("left-turn")], wall_limit_s=1.0)
     assert not race.reached
     assert "longer than 1 s" in race.failure
+
+
+SPY = """
+import os
+
+here = os.path.dirname(os.path.abspath(__file__))
+raise RuntimeError(sorted(name for _, folders, files in os.walk(here) for name in (*folders, *files)))
+"""
+
+
+def test_a_program_sees_none_of_the_others_but_what_is_its_own(tmp_path: Path) -> None:
+    for name in ("spy.py", "first/program.py", "second/program.py"):
+        file = tmp_path / name
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(SPY)
+    (tmp_path / "first" / "weights.npz").write_bytes(b"")
+    programs, _ = find_programs(tmp_path)
+    failures = {race.program: race.failure for race in race_all(programs, [find_level("left-turn")])}
+    assert "['spy.py']" in failures["spy"]
+    assert "['program.py', 'weights.npz']" in failures["first"]
+    assert "['program.py']" in failures["second"]
