@@ -572,8 +572,11 @@ class StudentProcess:
 
 def _program_below(supervisor: int) -> int | None:
     """Returns the id of the student's process, the last one below its supervisor; None on other systems than Linux."""
-    below = descendants(supervisor)
-    return below[-1] if below else None
+    below = supervisor
+    with suppress(OSError, ValueError):  # ended meanwhile, or a kernel without these lists
+        while children := Path(f"/proc/{below}/task/{below}/children").read_text().split():
+            below = int(children[-1])
+    return below if below != supervisor else next(reversed(descendants(supervisor)), None)
 
 
 def _read_program(file: Path) -> dict[str, Json]:
