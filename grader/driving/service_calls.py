@@ -82,6 +82,8 @@ class ServiceCaller:
 
     def call_due(self, time_s: float) -> None:
         """Makes the calls due by ``time_s``; to be called once per tick."""
+        if not self._calls and not self._deadlines:
+            return
         for name, deadline in [*self._deadlines.items()]:
             future = self._futures[name]
             if time_s > deadline or future is None or future.done():
