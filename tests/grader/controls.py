@@ -49,6 +49,34 @@ class Control:
 
 CONTROLS: Final = (
     Control(
+        "a link in somebody else's run to a file of one's own",
+        "kit/plain_files.py",
+        "elif not entry.is_file(follow_symlinks=False):",
+        "elif not entry.is_file():",
+        "learning/training/test_runs.py::test_a_run_of_somebody_elses_leads_to_no_file_of_ones_own_and_holds_nobody",
+    ),
+    Control(
+        "a sweep of somebody else's",
+        "kit/learning/training/training_sweep.py",
+        "if folder.exists() and (part := foreign_part(folder)):",
+        "if not folder and (part := foreign_part(folder)):",
+        "learning/training/test_training_sweep.py::test_a_sweep_of_somebody_elses_leads_to_no_file_of_ones_own",
+    ),
+    Control(
+        "a program of the ladder that reads the others",
+        "grader/cohort/program_ladder.py",
+        "    if not any(other.absolute() != file and",
+        "    if True or not any(other.absolute() != file and",
+        "grader/cohort/test_program_ladder.py::test_a_program_sees_none_of_the_others_but_what_is_its_own",
+    ),
+    Control(
+        "walls on top of one another among others that are not",
+        "kit/world/overlaps.py",
+        "    found = round(count * len(first) / len(drawn))\n",
+        "    found = 0\n",
+        "world/test_overlaps.py::test_what_lies_on_top_of_itself_is_refused",
+    ),
+    Control(
         "the public cases known by heart",
         "grader/grading.py",
         "min(_joint_share(each, criterion.need) for each in (shares, secret))",

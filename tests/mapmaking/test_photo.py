@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import os
 import re
+import struct
+import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from PIL import EpsImagePlugin, Image, ImageDraw
+from PIL import EpsImagePlugin, Image, ImageDraw, ImageOps
 
 from kit.cli import main
 from kit.mapmaking.photo import PhotoError, PhotoScale, open_photo, plan_from_photo
 from kit.mapmaking.sheet import find_sheet
 from kit.run.scenario import find_scenario
+from kit.world.layer_reader import read_image
 from tests.mapmaking.judging import judge
 from tests.mapmaking.photos import SHEET, draw_photo
 
@@ -159,6 +162,29 @@ def test_what_is_wrong_with_a_file_is_said(tmp_path: Path) -> None:
     file.write_bytes(file.read_bytes()[:20_000])
     with pytest.raises(PhotoError, match=r"truncated.*Copy it again"):
         open_photo(file)
+
+
+def test_whatever_a_decoder_makes_of_a_damaged_file_it_is_a_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def of_a_damaged_tiff(image: Image.Image) -> Image.Image:
+        raise TypeError("'str' object cannot be interpreted as an integer")
+
+    file = tmp_path / "plan.png"
+    Image.new("RGB", (800, 600)).save(file)
+    monkeypatch.setattr(ImageOps, "exif_transpose", of_a_damaged_tiff)
+    with pytest.raises(PhotoError, match="not a readable picture"):
+        open_photo(file)
+
+
+def test_damaged_remarks_of_a_picture_warn_of_nothing(tmp_path: Path) -> None:
+    entries = struct.pack("<H", 600) + 50 * struct.pack("<HHII", 34665, 4, 1, 8)
+    file = tmp_path / "plan.jpg"
+    Image.effect_noise((800, 600), 80).save(file, exif=b"Exif\0\0II*\0\x08\0\0\0" + entries)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        open_photo(file)
+        read_image(file)
 
 
 def test_pictures_of_every_kind_show_the_same(tmp_path: Path) -> None:

@@ -55,6 +55,15 @@ def test_every_combination_is_trained_once(tmp_path: Path) -> None:
         TrainingSweep(tmp_path).entries()
 
 
+def test_a_sweep_of_somebody_elses_leads_to_no_file_of_ones_own(tmp_path: Path) -> None:
+    own, folder = tmp_path / "own.txt", tmp_path / "sweep"
+    own.write_text("mine")
+    TrainingSweep.prepare(folder, QUICK[:1], 5)
+    (folder / "log.txt").symlink_to(own)
+    with pytest.raises(RunError, match=r"log\.txt is a link"):
+        TrainingSweep.prepare(folder, QUICK[:1], 5)
+
+
 def test_a_setting_without_limit_is_a_json_value_and_comes_back(tmp_path: Path) -> None:
     configs = combine(["turn"], algorithms=["boltzmann-dqn"], settings={"value_limit": (math.inf,)})
     sweep = TrainingSweep.prepare(tmp_path / "sweep", configs, 10)
