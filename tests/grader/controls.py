@@ -65,8 +65,8 @@ CONTROLS: Final = (
     Control(
         "a program of the ladder that reads the others",
         "grader/cohort/program_ladder.py",
-        "    if not any(other.absolute() != file and",
-        "    if True or not any(other.absolute() != file and",
+        "    if not any(\n",
+        "    if True or not any(\n",
         "grader/cohort/test_program_ladder.py::test_a_program_sees_none_of_the_others_but_what_is_its_own",
     ),
     Control(
@@ -400,9 +400,9 @@ CONTROLS: Final = (
     ),
     Control(
         "slow near walls by the clock",
-        "grader/driving/checks/speeds.py",
-        "    return min(shares) if len(shares) == len(asked) else 0.0\n",
-        "    return 1.0\n",
+        "grader/driving/following.py",
+        "    share = min(shares.values()) if len(shares) == len(asked) else 0.0\n",
+        "    share = 1.0\n",
         "grader/driving/test_checks.py::test_the_speed_must_follow_what_the_laser_measures",
     ),
     Control(
