@@ -36,6 +36,9 @@ CLEARANCE_INTERVAL = 5
 NARROW = 0.021
 """m/s: a range of speeds that is no wider is told by its middle."""
 
+MOST_ANSWER = 160
+"""Characters of a program's answer that are quoted."""
+
 COLUMNS, ROWS = 60, 18
 """Size of the picture, in characters."""
 
@@ -288,7 +291,7 @@ class GradedDrive:
 
     def _explain_answer(self, call: str, holds: str) -> str:
         """Says what the program answered instead; see ``AnswerParams``."""
-        answer = self.answers.get(call, NO_ANSWER)
+        answer = self.answers.get(call, NO_ANSWER)[:MOST_ANSWER]
         said = {NO_ANSWER: "There was no answer in time", NO_SERVICE: "There was no such service"}
         return f"{said.get(answer, f'The answer was {answer}')}; one with {holds} is asked for."
 
