@@ -108,8 +108,12 @@ class LazyGroup(click.Group):
         try:
             return super().invoke(ctx)
         except (KeyboardInterrupt, click.Abort):  # of which click says "Aborted!"
-            click.echo(f"\n{ctx.command_path}: interrupted before it was done.", err=True)
-            raise SystemExit(INTERRUPTED) from None
+            pass
+        except RuntimeError as error:
+            if not isinstance(error.__cause__, KeyboardInterrupt):
+                raise  # before Python 3.12, an interrupt while a class is made, as in imports, is the cause of another error
+        click.echo(f"\n{ctx.command_path}: interrupted before it was done.", err=True)
+        raise SystemExit(INTERRUPTED)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return [*self._verbs, *self._extension_commands()]

@@ -110,6 +110,8 @@ def list_rows(table: Table, width: int, height: int, chosen: int, marked: Collec
     first_row = max(0, min(at[0] + at[1] // 2 - room // 2, len(made) - room))
     where = lines_shown(first_row, min(room, len(made)), len(made))
     if where and heads:
+        if row_width(heads[-1]) + len(where) >= width:
+            where = f"{first_row + 1}-{first_row + room}/{len(made)}"
         heads[-1] = at_both_edges(heads[-1], row((where, Tone.DIM)), width)
     return [*heads, *made[first_row : first_row + room]]
 

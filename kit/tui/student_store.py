@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -42,6 +43,8 @@ class StudentOverview:
     """What is new on the start screen, at the first visit."""
     problem: str = ""
     """Why progress, or lessons, cannot be read."""
+    is_whole: bool = True
+    """False while only the lessons have been read."""
 
     @property
     def done(self) -> int:
@@ -74,8 +77,11 @@ class StudentStore:
             notice, self._progress.notice = self._progress.notice, ""
         return notice
 
-    def read_overview(self) -> StudentOverview:
-        """Reads everything. Slow: to be called in another thread."""
+    def read_overview(
+        self, on_lessons: Callable[[StudentOverview], None] = lambda _: None
+    ) -> StudentOverview:
+        """Reads everything. Slow: to be called in another thread. ``on_lessons``: is told where to go on as soon as that is
+        known, a third of the way."""
         from kit.school.lessons.catalogue import list_lessons, next_lesson
         from kit.school.progress import ProgressError
 
@@ -84,13 +90,15 @@ class StudentStore:
             shelf = list_lessons(events, self._lessons)
         except (ProgressError, FileNotFoundError) as error:
             return StudentOverview(problem=str(error))
+        going_on = next_lesson(shelf)
+        on_lessons(StudentOverview(shelf, going_on, is_whole=False))
         from kit.school.game.daily import DAILY_PREFIX, streak, today
 
         day = today()
         next_medal, next_level, won = self._game(events)
         return StudentOverview(
             shelf,
-            next_lesson(shelf),
+            going_on,
             self._count_due(),
             streak(events, day),
             any(event.subject == f"{DAILY_PREFIX}{day.isoformat()}" for event in events),

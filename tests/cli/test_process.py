@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import click
@@ -56,11 +57,29 @@ def test_a_command_ends_without_being_taken_apart_once_all_is_written(tmp_path: 
     assert file.read_text() == "late", "the thread was waited for"
 
 
-@pytest.mark.parametrize("end", [KeyboardInterrupt, click.Abort])
-def test_an_interruption_that_no_verb_tells_is_a_sentence(end: type[BaseException]) -> None:
+def interrupt() -> None:
+    raise KeyboardInterrupt
+
+
+def abort() -> None:
+    raise click.Abort
+
+
+def interrupt_a_class() -> None:
+    """As while a module is imported: before Python 3.12 another error hides the interruption."""
+
+    class Interrupted:
+        def __set_name__(self, owner: type, name: str) -> None:
+            raise KeyboardInterrupt
+
+    type("Made", (), {"field": Interrupted()})
+
+
+@pytest.mark.parametrize("end", [interrupt, abort, interrupt_a_class])
+def test_an_interruption_that_no_verb_tells_is_a_sentence(end: Callable[[], None]) -> None:
     @click.command()
     def work() -> None:
-        raise end
+        end()
 
     class Group(LazyGroup):
         def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:

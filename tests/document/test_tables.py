@@ -39,6 +39,12 @@ def test_marked_entries_have_a_mark_and_optional_columns_are_left_out() -> None:
     assert [each[:2] for each in wide[1:4]] == [" *", ">*", "  "]
     assert wide[0].split() == ["run", "steps", "time"]
     narrow = [row_text(each) for each in list_rows(table(("a", "b")), 16, 5, 0)]
+    letters = table(tuple("abcdefghijkl"))
+    short = [row_text(list_rows(letters, width, 5, 0)[0]).split() for width in (50, 30)]
+    assert [" ".join(each) for each in short] == [
+        "run steps time lines 1 to 4 of 12",
+        "run steps time 1-4/12",
+    ]
     assert narrow == ["   run  steps", ">  a     1000", "   b     1001"]
 
 

@@ -54,6 +54,7 @@ def open_start(theme: Theme, workspace: Workspace, progress: ProgressJournal) ->
 
 async def start_is_ready(pilot: Pilot[None], screen: Screen[Any]) -> None:
     await seen(pilot, "0 of 3 done")
+    await seen(pilot, "today's maze")  # the last that is read
     await until(pilot, lambda: set(ROBOT) & set("".join(rows(pilot))), "a robot")
 
 

@@ -54,6 +54,10 @@ class Board(ABC):
     def rows(self, scale: int = 1) -> list[Row]:
         """The board with its cursor, and what is to be counted. ``scale``: how many times larger than usual a drawing is."""
 
+    def details(self) -> list[Row]:
+        """More that helps to solve it, which is shown where there is room."""
+        return []
+
     @abstractmethod
     def judgement(self) -> Judgement:
         """What the answer is worth now. Raises AnswerError."""

@@ -72,6 +72,11 @@ class ChallengeTask(ABC):
         """What is shown beside the text: a drawing, prices, a list."""
         return []
 
+    @property
+    def learning_task(self) -> str:
+        """The name of the task that is to be trained; empty where nothing is."""
+        return ""
+
     def naive_answer(self) -> str:
         """The content of an answer's file before anybody has written in it: an answer that earns no medal."""
         return ""

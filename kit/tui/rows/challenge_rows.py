@@ -29,7 +29,7 @@ WIDEST_TEXT: Final = 76
 LEAST_BOARD: Final = 60
 """Columns of a board that is no drawing."""
 GAP: Final = 2
-LARGEST_SCALE: Final = 5
+LARGEST_SCALE: Final = 9
 NAME_COLUMNS: Final = 14
 LIST_COLUMNS: Final = 56
 """Of the list, where a picture stands beside it."""
@@ -148,6 +148,8 @@ def puzzle_beside(
     worth, sentence = worth_now(judgement, room)
     text = [row(), *story, row(), *task, row(), *keys, row(), *worth, *sentence, row()]
     text += below if len(text) + len(below) <= height else ()
+    details = [part for each in board.details() for part in _wrap_row(each, room)]
+    text += [*details[: height - len(text)]]
     return side_by_side([row(), *left], text, column)
 
 

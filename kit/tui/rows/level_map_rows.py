@@ -10,7 +10,7 @@ from typing import Final
 from kit.document.rows import Row
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import LevelProgress
-from kit.tui.rows.medal_signs import MEDAL_SIGNS, SHUT
+from kit.tui.rows.medal_signs import MEDAL_SIGNS
 
 GAP: Final = 4
 """Columns between two pictures, for the lines."""
@@ -88,13 +88,14 @@ def map_rows(
             signs[y][x] = sign, "dim"
     for each in standings:
         place = by_level[each.level.id]
-        medal = SHUT if not each.is_open else MEDAL_SIGNS[each.best_medal] if each.best_medal else " "
+        medal = MEDAL_SIGNS[each.best_medal] if each.best_medal else " "
+        title = f"{medal} {each.level.title}" if each.is_open else f"({each.level.title})"
         style = "key" if each.level.id == chosen else "" if each.is_open else "dim"
         _write_signs(
             signs,
             place.x,
             place.y,
-            f"{medal} {each.level.title}"[: place.columns].ljust(place.columns),
+            title[: place.columns].ljust(place.columns),
             style,
         )
         style = "warn" if each.best_medal >= Medal.GOLD else "" if each.is_open else "dim"

@@ -15,11 +15,13 @@ from kit.school.game.player_progress import ExtraRule, GameSummary, LevelProgres
 from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.starts import SEEDS
 from kit.tui.rows.ladder_rows import ABOUT_BAR, LIST_BAR, ladder_bar, ladder_words
-from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, SHUT, STAR
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES, NO_STAR, NOT_MEANT, STAR
 
 TITLE_WIDTH: Final = 24
 NARROW_TITLE: Final = 17
 COLUMNS: Final = "hand  program  agent  stars    best"
+MEDAL_WIDTHS: Final = (6, 9, 7)
+"""Columns of the medals by hand, by program and by agent."""
 WHOLE: Final = 79
 """Columns of the list with its ladders."""
 LADDER_WORDS: Final = 38
@@ -83,11 +85,13 @@ def world_levels(
         level, is_chosen = each.level, each.level.id == chosen
         style = "chosen" if is_chosen else "" if each.is_open else "dim"
         medals: list[str | tuple[str, str]] = []
-        for driver, width in zip(DriverKind, (6, 9, 7), strict=True):
+        for driver, width in zip(DriverKind, MEDAL_WIDTHS, strict=True):
             medal = each.medals.get(driver, Medal.NONE)
             is_meant = driver is not DriverKind.AGENT or not level.untrained
-            sign = MEDAL_SIGNS[medal] if each.is_open and (medal or is_meant) else SHUT
+            sign = MEDAL_SIGNS[medal] if medal or is_meant else NOT_MEANT
             medals.append((f"{sign:<{width}}", MEDAL_STYLES[medal]))
+        if not each.is_open:
+            medals = [(f"{'locked':<{sum(MEDAL_WIDTHS)}}", "dim")]
         best = min(each.best_times.values(), default=None)
         reference = references.get(level.id)
         driver = max(DriverKind, key=lambda kind: (each.medals.get(kind, -1), kind in each.best_times))

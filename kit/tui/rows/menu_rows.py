@@ -82,7 +82,7 @@ def menu(
         rows += [row(), *(row("  ", (each, "dim")) for each in about)]
     elif overview is not None:
         rows += [row()]
-    if overview is None:
+    if overview is None or not overview.is_whole:
         return rows
     won = won_rows(overview, width)
     if is_wide and won:
@@ -170,6 +170,8 @@ def _status(name: str, overview: StudentOverview | None) -> str:
         return ""
     if name == "lessons":
         return f"{overview.done} of {len(overview.shelf)} done"
+    if not overview.is_whole:
+        return ""
     if name == "levels":
         if not overview.has_run_today:
             return f"maze: day {overview.streak + 1}" if overview.streak else "today's maze"

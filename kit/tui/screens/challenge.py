@@ -27,9 +27,11 @@ from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.lesson_rows import checking
 from kit.tui.rows.medal_rows import medal_drawing
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
+from kit.tui.screens.level_pictures import task_picture
 from kit.tui.screens.picker import Picker, PickerItem
-from kit.tui.screens.text_screen import TextScreen
+from kit.tui.screens.text_screen import COLUMN, TextScreen
 from kit.tui.suspend import edit_aside
+from kit.tui.widgets.program_colours import LANGUAGES, coloured_rows
 from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
 from kit.world.problems import WorldError
@@ -37,6 +39,8 @@ from kit.world.problems import WorldError
 if TYPE_CHECKING:
     from kit.tui.theme import Theme
 
+WIDE: Final = 118
+"""Columns from which on something stands beside the text."""
 POLL_S: Final = 0.2
 """Between two looks at the answer's file and at the check [s]."""
 NO_RUNS: Final = (
@@ -47,6 +51,8 @@ NO_RUNS: Final = (
 class ChallengeScreen(TextScreen, inherit_bindings=False):
     """Shows a challenge and checks its answer, on a key and whenever the file is saved."""
 
+    has_beside: ClassVar[bool] = True
+    """Whether what the answer is about stands beside the page, where there is room."""
     screen_actions = ScreenActions("challenge", ("check", "edit_file", "next", "help", "back"), ("scroll",))
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
     DEFAULT_CSS = """
@@ -64,6 +70,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         """``following``: the title of the next challenge. Raises ProgressError and OSError."""
         super().__init__(challenge.title, ())
         self._theme = theme
+        self._glyphs = theme.terminal.glyphs.value
         self._challenge = challenge
         self._progress = journal
         self._workspace = workspace
@@ -96,11 +103,28 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
 
     def on_resize(self, event: events.Resize) -> None:
         self._rows = tuple(self._page(event.size.width))
+        if self.has_beside:
+            self._draw_beside()
         # Textual calls the inherited handler after this one.
 
     def _page(self, width: int) -> list[Row]:
         """What the challenge asks for, in rows of at most ``width`` columns."""
-        return challenge_page(self._challenge, self._file, width)
+        return challenge_page(self._challenge, self._file, min(width, COLUMN - 2) if width >= WIDE else width)
+
+    @work(exclusive=True, group="beside")
+    async def _draw_beside(self) -> None:
+        """Shows what the answer is about beside the page, where there is room."""
+        width, height = self.size.width, self.size.height
+        shown = await to_thread(self._beside_page, width - COLUMN, height - 4) if width >= WIDE else []
+        self._beside = tuple(shown)
+        self._renew()
+
+    def _beside_page(self, columns: int, rows: int) -> list[Row]:
+        """The file that is to be handed in, or the map of the task that is to be trained."""
+        if self._file is not None:
+            lines = self._file.read_text(errors="replace").splitlines() if self._file.is_file() else []
+            return [row(), *coloured_rows(lines, LANGUAGES.get(self._file.suffix))]
+        return [row(), *task_picture(self._challenge.task.learning_task, columns, rows, self._glyphs)]
 
     def _renew(self) -> None:
         """The page has changed."""
@@ -155,6 +179,7 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
             self._file_was_saved()
 
     def _file_was_saved(self) -> None:
+        self._draw_beside()
         self.action_check()
 
     @work(exclusive=True, group="check")

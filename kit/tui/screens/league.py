@@ -17,7 +17,7 @@ from kit.controllers import user_controllers
 from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
 from kit.document.layout import Page, rows_of
-from kit.document.rows import Row, at_both_edges, row, side_by_side
+from kit.document.rows import Row, at_both_edges, fitted, row, side_by_side
 from kit.document.tables import list_rows
 from kit.host.job_folder import JobExecutor
 from kit.learning.training.run_folders import list_runs
@@ -150,10 +150,20 @@ class LeagueScreen(RowsScreen[None]):
         below = [row(), *(row("   ", *each) for each in self._maps)] if self._entrants and self._maps else []
         has_room = width >= WIDE and len(tables) + len(below) <= self._room[1]
         self._rows("body").show([*tables, *below] if has_room else tables)
-        self._rows("note").show([row((f"  {self._note}", "dim"))])
+        self._rows("note").show([fitted(row((f"  {self._note or self._told_of_match}", "dim")), width)])
         labels = {"open": "matches" if self._match is None else "replay"}
         idle = () if self._entrants else ("choose", "open", "run_matches")
         self._rows("keys").show([footer(self.screen_actions, width, labels=labels, without=idle)])
+
+    @property
+    def _told_of_match(self) -> str:
+        """What both did in the chosen match: the table has no room for it on most screens."""
+        if self._match is None:
+            return ""
+        match = self._matches[self._match]
+        return "; ".join(
+            f"{each.name}: {detail}" for each, detail in zip(match.entrants, match.details, strict=True)
+        )
 
     @property
     def _room(self) -> tuple[int, int]:

@@ -67,6 +67,17 @@ def picture_of(level: GameLevel, columns: int, rows: int, glyphs: str) -> list[s
     return scene_rows(scene, columns, rows, ENCODERS[glyphs](False))
 
 
+def task_picture(task: str, columns: int, rows: int, glyphs: str) -> list[Row]:
+    """The map of a learning task with its starts and targets. Takes a moment: the learning side is imported."""
+    from kit.learning.authoring.task_text import build_case_scene
+    from kit.learning.tasks.catalogue import find_task
+
+    found = find_task(task)
+    card, case = found.map_cases()[0]
+    drawn = scene_rows(build_case_scene(found, card, case), columns, rows, ENCODERS[glyphs](False))
+    return [row(line) for line in drawn]
+
+
 def pictures_of(levels: Sequence[GameLevel], width: int, height: int, glyphs: str) -> list[Row]:
     """Small pictures of levels below their titles, two or three beside each other."""
     across = 3 if width >= ROOM_FOR_THREE else 2

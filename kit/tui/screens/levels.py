@@ -74,7 +74,7 @@ NOTES: Final = (
     ("bump", "back to the start, and all targets are to be reached again"),
     ("side by side", "a pair that is apart for longer gets bronze at best"),
     ("agent -", "no training has what this level asks for"),
-    ("---", "not open yet: finish the level before it, or its lesson"),
+    ("locked", "finish the level before it, or its lesson; on the map ( )"),
 )
 
 

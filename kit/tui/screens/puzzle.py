@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Final
+from typing import TYPE_CHECKING, ClassVar
 
 from textual.binding import BindingType
 
@@ -16,20 +16,18 @@ from kit.school.game.medal import Medal
 from kit.school.progress import ProgressJournal
 from kit.tui.rows.challenge_rows import puzzle_beside, puzzle_page
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.screens.challenge import ChallengeScreen
+from kit.tui.screens.challenge import WIDE, ChallengeScreen
 from kit.tui.screens.dialogs import HelpDialog
 from kit.workspace import Workspace, write_atomically
 
 if TYPE_CHECKING:
     from kit.tui.theme import Theme
 
-WIDE: Final = 118
-"""Columns from which on the text stands beside the board."""
-
 
 class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
     """Plays a challenge. The answer's file is written when it is checked or left, and read again when it was edited."""
 
+    has_beside = False  # the page has both
     screen_actions = ScreenActions(
         "puzzle",
         ("move_cursor", "mark_cell", "undo", "check", "next", "help", "back"),

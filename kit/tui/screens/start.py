@@ -5,6 +5,8 @@ from __future__ import annotations
 from asyncio import Event, get_running_loop, to_thread
 from collections.abc import Awaitable, Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from contextvars import copy_context
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
@@ -178,16 +180,28 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     async def _refresh_overview(self) -> StudentOverview:
         """Read again, and shown."""
-        overview = await get_running_loop().run_in_executor(self._reading, self._store.read_overview)
+        loop, context = get_running_loop(), copy_context()
+
+        def tell_lessons(lessons: StudentOverview) -> None:
+            with suppress(RuntimeError):  # the kit has been left meanwhile
+                loop.call_soon_threadsafe(self._show_lessons, lessons, context=context)
+
+        overview = await loop.run_in_executor(self._reading, self._store.read_overview, tell_lessons)
         self._overview, self._is_outdated = overview, False
         if overview.next_level is not None and self.has_class("-vast"):
-            self._level_picture = await get_running_loop().run_in_executor(
+            self._level_picture = await loop.run_in_executor(
                 self._reading, _picture_of, overview.next_level, self._theme.terminal.glyphs.value
             )
         if notice := self._store.take_notice():
             self.app.push_screen(MessageDialog("Your progress", notice))
         self._show()
         return overview
+
+    def _show_lessons(self, lessons: StudentOverview) -> None:
+        """Shows where to go on before the rest is known; never in place of what was known already."""
+        if self._overview is None:
+            self._overview = lessons
+            self._show()
 
     # Keys
 

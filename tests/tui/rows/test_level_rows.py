@@ -12,7 +12,7 @@ from kit.school.game.medal import Medal
 from kit.school.game.player_progress import GameSummary, LevelProgress, level_progress
 from kit.school.game.race import DriverKind
 from kit.tui.rows.level_map_rows import map_places, map_rows
-from kit.tui.rows.level_rows import about, before_the_start, game_progress, world_heading
+from kit.tui.rows.level_rows import about, before_the_start, game_progress, world_heading, world_levels
 from kit.tui.widgets.text_rows import _ASCII
 from tests.kit_content import kit_levels
 from tests.tui.lesson_stage import row_text
@@ -99,3 +99,14 @@ def test_a_belt_and_a_count_of_each_world() -> None:
     assert "white belt" in worlds[0]
     assert "1 of 1" in worlds[-1]
     assert "yellow belt" in worlds[-1]
+
+
+def test_a_locked_level_says_so_and_a_dash_means_that_it_is_not_meant_for_a_driver() -> None:
+    found = [replace(each, is_open=True) for each in level_progress(kit_levels(), ())]
+    for each in found:
+        _, listed = map(row_text, world_levels([each], "", {}, 80))
+        signs = listed.removeprefix("  ").removeprefix(each.level.title).split()[:3]
+        assert signs == [".", ".", "-" if each.level.untrained else "."]
+        _, shut = map(row_text, world_levels([replace(each, is_open=False)], "", {}, 80))
+        assert "locked" in shut
+        assert " - " not in shut

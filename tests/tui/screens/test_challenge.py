@@ -272,3 +272,25 @@ def test_every_challenge_fits(journal: ProgressJournal, tmp_path: Path, size: tu
             await pilot.press("down")
 
     visit(scene, journal, tmp_path, size)
+
+
+@pytest.mark.parametrize("size", [(120, 35), (200, 50)], ids=str)
+def test_what_the_answer_is_about_stands_beside_the_page(
+    journal: ProgressJournal, tmp_path: Path, size: tuple[int, int]
+) -> None:
+    async def scene(pilot: Pilot[None], levels: LevelsScreen) -> None:
+        await pilot.press(*choose(levels, TrainingTask), "enter")
+        await seen(pilot, "a training run of yours")
+        await seen(pilot, "◎")  # the target on the task's map
+        await pilot.press("escape")
+        await until(pilot, lambda: pilot.app.screen is levels, "the list")
+        chosen = next(
+            number for number, each in enumerate(all_challenges()) if each is levels.chosen_challenge
+        )
+        await pilot.press(*choose(levels, RepairTask)[chosen:], "enter")
+        await seen(pilot, "def generate_launch_description")
+        file = answer_file(tmp_path, levels.chosen_challenge or FIRST, "convoy.launch.py")
+        file.write_text("# mended\n")
+        await seen(pilot, "# mended")
+
+    visit(scene, journal, tmp_path, size)

@@ -59,6 +59,7 @@ def test_from_the_standings_to_a_match_and_its_replay(tmp_path: Path, size: tupl
         await pilot.press("enter")
         await seen(pilot, "Matches of laser")
         await seen(pilot, "Enter replay")
+        await seen(pilot, "laser: ")  # what both did, at every size
         await pilot.press("enter")
         await until(pilot, lambda: isinstance(pilot.app.screen, MatchReplayScreen), "the replay")
         await seen(pilot, "laser against stands")

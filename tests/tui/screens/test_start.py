@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Sequence
 from pathlib import Path
 from threading import Event
@@ -21,6 +22,7 @@ from kit.tui.widgets.text_rows import TextRows
 from tests.kit_content import kit_bank, kit_lesson
 from tests.tui.lesson_folder import write_lessons
 from tests.tui.lesson_stage import ROBOT, Scene, rows, seen, stage, text, until
+from tests.waiting import LIMIT_S
 
 
 class House:
@@ -306,3 +308,24 @@ def test_questions_are_chosen_by_the_titles_of_lessons(house: House) -> None:
     wanted = {f"lesson {lesson.number}": lesson.title for lesson in map(kit_lesson, kit_bank().lessons)}
     found = [line.split(maxsplit=2) for line in shown if line.startswith("lesson ")]
     assert {f"{word} {number}": title for word, number, title in found} == wanted
+
+
+def test_where_to_go_on_is_told_before_the_rest_is_read(
+    house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    may_go_on = threading.Event()
+    count_due = StudentStore._count_due
+
+    def wait(store: StudentStore) -> int | None:
+        assert may_go_on.wait(LIMIT_S)
+        return count_due(store)
+
+    monkeypatch.setattr(StudentStore, "_count_due", wait)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "Lesson 1, Colours")
+        assert "today" not in text(pilot), "nothing is said of what is not known yet"
+        may_go_on.set()
+        await seen(pilot, "not driven yet")
+
+    house.play(scene, (120, 40))

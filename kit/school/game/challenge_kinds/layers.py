@@ -113,6 +113,11 @@ class LayersBoard(Board):
     def judgement(self) -> Judgement:
         return judge_assignment(self._task, self._make_plan)
 
+    def details(self) -> list[Row]:
+        """All that is still wrong."""
+        wrong = find_breaches(self._case, self._make_plan)
+        return [row(("still wrong", "dim")), *(row(f"  {each}") for each in wrong)] if wrong else []
+
     def move(self, columns: int, rows: int) -> None:
         self._row = max(0, min(self._row + rows, len(self._names) - 1))
         self._column = max(0, min(self._column + columns, min(len(self._layers), MAX_LAYERS - 1)))

@@ -39,6 +39,10 @@ class TrainingTask(ChallengeTask):
             section.flag("own_reward"),
         )
 
+    @property
+    def learning_task(self) -> str:
+        return self.trains
+
     def lines(self) -> list[str]:
         """What earns the medals, and the commands for it."""
         shares = ((Medal.GOLD, GOLD_STEPS), (Medal.SILVER, SILVER_STEPS), (Medal.BRONZE, 1.0))

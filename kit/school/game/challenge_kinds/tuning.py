@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -10,7 +11,16 @@ from typing import Final, Self
 import numpy as np
 
 from kit.document.rows import Row, row
-from kit.school.game.board import MOVES, Board, History, distances_to, find_cell, free_cells, step
+from kit.school.game.board import (
+    MOVES,
+    Board,
+    History,
+    distances_to,
+    find_cell,
+    free_cells,
+    grid_rows,
+    step,
+)
 from kit.school.game.challenge import AnswerError, AnswerSubmission, ChallengeTask
 from kit.school.game.judgement import AnswerComparison, Judgement
 from kit.school.game.medal import Medal
@@ -165,7 +175,7 @@ class TuningBoard(Board):
     """Sliders, and what Q-learning makes of them."""
 
     keys = "Up and down choose a number, left and right change it, u undoes it."
-    _BARS = "▁▂▃▄▅▆▇█"
+    _BARS = " ▁▂▃▄▅▆▇█"
 
     def __init__(self, task: TuningTask, answer: str) -> None:
         self._task = task
@@ -195,12 +205,17 @@ class TuningBoard(Board):
     def undo(self) -> None:
         self._numbers = self._history.take(self._numbers)
 
+    def details(self) -> list[Row]:
+        """The grid that it learns on."""
+        return [row(("the grid", "dim")), *grid_rows(self._task.grid, {})]
+
     def rows(self, scale: int = 1) -> list[Row]:
         learned = learn(self._task, tuple(self._numbers.values()))
         rows = []
+        stretch = 3 * scale
         for number, (name, values) in enumerate(CHOICES.items()):
             at, is_chosen = values.index(self._numbers[name]), number == self._chosen
-            slider = "─" * (3 * at) + "●" + "─" * (3 * (len(values) - 1 - at))
+            slider = "─" * (stretch * at) + "●" + "─" * (stretch * (len(values) - 1 - at))
             rows.append(
                 row(
                     (
@@ -211,17 +226,33 @@ class TuningBoard(Board):
                     f"  {self._numbers[name]:g}",
                 )
             )
-        longest = max(learned.curve)
-        stride = max(1, len(learned.curve) // 40)
-        curve = "".join(self._BARS[round(7 * each / longest)] for each in learned.curve[::stride])
         return [
             *rows,
             row(),
-            row("  steps of each episode  ", (curve, "good"), ("  first to last", "dim")),
+            *self._curve_rows(learned.curve, 20 + 20 * scale, scale),
             row(
                 (f"  steps {learned.steps:,.0f}", "bold"),
                 f" of {self._task.max_steps:,}   {learned.arrived} of {len(SEEDS)} seeds find a shortest way",
             ),
+        ]
+
+    def _curve_rows(self, curve: Sequence[float], columns: int, rows: int) -> list[Row]:
+        """The steps of each episode as bars of so many rows, in at most so many columns."""
+        stride = -(-len(curve) // columns)
+        shown, wide = curve[::stride], max(1, columns // len(curve))
+        eighths = [max(1, round(8 * rows * each / max(curve))) for each in shown]
+        drawn = [
+            "".join(self._BARS[min(8, max(0, each - 8 * below))] * wide for each in eighths)
+            for below in reversed(range(rows))
+        ]
+        label, end = "  steps of each episode  ", "  first to last"
+        return [
+            row(
+                label if number == 0 else " " * len(label),
+                (line, "good"),
+                (end if number == rows - 1 else "", "dim"),
+            )
+            for number, line in enumerate(drawn)
         ]
 
 

@@ -127,18 +127,21 @@ def match_recordings(league: League, match: Match) -> tuple[Recording, ...]:
 
 
 def race_match(jobs: tuple[LeagueJob, LeagueJob], judged: tuple[JudgedJob, JudgedJob]) -> Match:
-    """Compares two entrants' middle drives: at the goal, without a bump, soon. Less than a tick apart is a draw."""
-    finishes = [each.finishes[middle_drive(each.finishes)] for each in judged]
-    first, second = map(finish_order, finishes)
-    is_draw = first[:2] == second[:2] and (first[0] or abs(first[2] - second[2]) < STEP_SIZE_S)
-    details = []
-    for finish, each in zip(finishes, judged, strict=True):
-        remark = each.remarks[middle_drive(each.finishes)] if each.remarks else ""
+    """Compares two entrants' middle drives: at the goal, without a bump, soon. Less than a tick apart is a draw. Of two that
+    do not arrive, the one whose program has failed has lost; otherwise it is a draw."""
+    orders, details = [], []
+    for each in judged:
+        number = middle_drive(each.finishes)
+        finish, remark = each.finishes[number], each.remarks[number] if each.remarks else ""
         if finish.reached:
             bumps = ", touched something" if finish.collisions else ""
+            orders.append(finish_order(finish))
             details.append(f"{finish.seconds:.2f} s{bumps}")
         else:
+            orders.append((True, bool(remark), 0.0))
             details.append(remark or finish.foul or "did not arrive")
+    first, second = orders
+    is_draw = first[:2] == second[:2] and abs(first[2] - second[2]) < STEP_SIZE_S
     points = DRAW if is_draw else float(first < second)
     entrants = jobs[0].entrants[0], jobs[1].entrants[0]
     is_same = all(each.is_same_platform for each in judged)

@@ -24,19 +24,35 @@ from kit.school.game.league.entries import (
     HOLDERS,
     MAX_BYTES,
     MAX_OF_ONE_USER,
+    Entry,
     LeagueError,
     read_entries,
     record_holders,
     submit,
     withdraw,
 )
-from kit.school.game.league.league import League, LeagueJob, drive_job, own_league, read_programme, tag_job
+from kit.school.game.league.league import (
+    JudgedJob,
+    League,
+    LeagueJob,
+    drive_job,
+    own_league,
+    read_programme,
+    tag_job,
+)
 from kit.school.game.league.league_blocks import standings_table, summary_blocks
-from kit.school.game.league.standings import DRAW, Match, Standings, match_recordings, read_standings
+from kit.school.game.league.standings import (
+    DRAW,
+    Match,
+    Standings,
+    match_recordings,
+    race_match,
+    read_standings,
+)
 from kit.school.game.league.tag_game import play_tag, tag_again, tag_scenario
 from kit.school.game.league.verification import differing_jobs
 from kit.school.game.levels import find_level
-from kit.school.game.race import DriverKind
+from kit.school.game.race import DriverKind, RaceFinish
 from kit.school.game.shared_drives import digest_of, share_drives
 from kit.school.game.two_players import TAG_SECONDS
 from kit.workspace import open_workspace
@@ -150,7 +166,9 @@ def test_all_meet_all_and_the_best_is_champion(tmp_path: Path) -> None:
     assert standings.champion.entry.name == "laser"
     assert (standings.champion.won, standings.champion.lost) == (2, 0)
     by_pair = {tuple(sorted(entry.name for entry in each.entrants)): each for each in standings.matches}
-    assert by_pair["crashes", "stands"].points == DRAW  # neither arrives
+    lost = by_pair["crashes", "stands"]  # neither arrives, and one has failed
+    assert lost.winner is not None
+    assert lost.winner.name == "stands"
     assert "RuntimeError" in " ".join(by_pair["crashes", "laser"].details)
     assert len(standings_table(standings).rows) == 3
     assert sum(each.rating.points for each in standings.places) == pytest.approx(3 * 1500.0)
@@ -563,3 +581,21 @@ def test_a_game_run_again_is_the_same_to_the_bit(tmp_path: Path) -> None:
     assert (state.scores, state.winner) == (game.state.scores, game.state.winner)
     with pytest.raises(ValueError, match="is a game on"):
         tag_again(LEVEL, game.recording)
+
+
+def test_of_two_that_do_not_arrive_none_has_won_unless_a_program_has_failed() -> None:
+    level = find_level("left-turn")
+    stands, bumps = RaceFinish(False, 72.0, 0), RaceFinish(False, 72.0, 7)
+    arrives = RaceFinish(True, 9.0, 3)
+
+    def points(first: JudgedJob, second: JudgedJob) -> float:
+        jobs = [
+            LeagueJob(name, level, (Entry(name, DriverKind.CONTROLLER, Path(name), name, is_mine=True),))
+            for name in ("first", "second")
+        ]
+        return race_match((jobs[0], jobs[1]), (first, second)).points
+
+    assert points(JudgedJob((stands,)), JudgedJob((bumps,))) == DRAW
+    assert points(JudgedJob((stands,), remarks=("it failed",)), JudgedJob((bumps,))) == 0.0
+    assert points(JudgedJob((bumps,)), JudgedJob((stands,), remarks=("it failed",))) == 1.0
+    assert points(JudgedJob((arrives,)), JudgedJob((stands,))) == 1.0
