@@ -11,8 +11,16 @@ from pathlib import Path
 
 import pytest
 
+from kit.controllers import prepare_workspace
 from kit.render.palettes import COLOR_SCHEMES
 from kit.render.roles import Role
+from kit.school.game.drive_records import record_drive
+from kit.school.game.ghosts import ghost_file
+from kit.school.game.levels import find_level
+from kit.school.game.player_progress import BY_HAND
+from kit.school.game.race import DriverKind
+from kit.school.game.references import drive_reference
+from kit.school.progress import EventKind, ProgressJournal
 from tests.ssh.connection import SSH, SSHD, open_kit, private_sshd
 from tests.tui.test_play_pty import User
 from tests.tui.widgets.test_world_view_pty import run_on
@@ -51,6 +59,16 @@ def connect(server: tuple[int, Path], tmp_path: Path) -> Iterator[Connect]:
     yield run
     for user in made:
         user.close()
+
+
+def running(workspace: Path) -> list[str]:
+    """Processes on the other side: they have the workspace in their environment, or work in it."""
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            if str(workspace).encode() in (process / "environ").read_bytes():
+                found.append(process.name)
+    return found
 
 
 def shown_clock(user: User) -> float | None:
@@ -125,16 +143,28 @@ def test_exact_keys_pass_through_ssh(connect: Connect) -> None:
 
 def test_a_dropped_link_leaves_nothing_behind(connect: Connect, tmp_path: Path) -> None:
     user = connect(1e6, 0.005, "play")
-
-    def running() -> list[str]:
-        """Processes on the other side: they have our workspace in their environment, or work in it."""
-        found = []
-        for process in Path("/proc").glob("[0-9]*"):
-            with contextlib.suppress(OSError):
-                if str(tmp_path).encode() in (process / "environ").read_bytes():
-                    found.append(process.name)
-        return found
-
-    assert running()
+    assert running(tmp_path)
     user.process.kill()
-    wait_until(lambda: not running(), lambda: f"the end of {running()}", every_s=0.1)
+    wait_until(lambda: not running(tmp_path), lambda: f"the end of {running(tmp_path)}", every_s=0.1)
+
+
+@pytest.mark.long
+def test_a_link_that_is_dropped_in_the_middle_of_a_level_keeps_the_drives_before_it(
+    connect: Connect, tmp_path: Path
+) -> None:
+    level = find_level("first-drive")
+    workspace = prepare_workspace(tmp_path)
+    finish, recording = drive_reference(level)
+    with ProgressJournal(workspace.folder) as journal:
+        record_drive(journal, workspace, level, DriverKind.KEYS, [(finish, recording)], BY_HAND)
+    kept = ghost_file(workspace, level, DriverKind.KEYS).read_bytes()
+    user = connect(1e6, 0.005, "game", "play", "first-drive")
+    user.until(lambda: "The clock starts" in user.text, "the start")
+    user.send(b"w" * 5)
+    user.until(lambda: "0 of 2 targets" in user.text, "the race")
+    user.process.kill()
+    wait_until(lambda: not running(tmp_path), lambda: f"the end of {running(tmp_path)}", every_s=0.1)
+    with ProgressJournal(workspace.folder) as journal:
+        assert journal.notice == "", "it was closed well"
+        assert [event.subject for event in journal.events(EventKind.FINISH)] == [level.id]
+    assert ghost_file(workspace, level, DriverKind.KEYS).read_bytes() == kept
