@@ -122,7 +122,14 @@ class SpriteLayer:
         cell = self._cell_at(x, y)
         if cell is None or not self._is_wall(cell):
             return cell
-        distances, nearest = nearest_on_segments(np.array(((x, y),)), self._walls)
+        # The wall is in this cell: of thousands only those near it are measured.
+        reach = 2.0 * math.hypot(self._camera.cell_width, self._camera.cell_height)
+        x1, y1, x2, y2 = self._walls.T
+        is_near = (np.abs(0.5 * (x1 + x2) - x) <= 0.5 * np.abs(x2 - x1) + reach) & (
+            np.abs(0.5 * (y1 + y2) - y) <= 0.5 * np.abs(y2 - y1) + reach
+        )
+        near = self._walls[is_near] if is_near.any() else self._walls
+        distances, nearest = nearest_on_segments(np.array(((x, y),)), near)
         wall_x, wall_y = nearest[0, distances[0].argmin()].tolist()
         right, down = (x - wall_x) / self._camera.cell_width, (wall_y - y) / self._camera.cell_height
         row, column = cell

@@ -77,6 +77,7 @@ OPENING: Final = (
     "Getting ready",
     "Compiling for",
     "Reading your progress",
+    "Running the drives again",
     "reading ...",
 )
 """What a screen says while it is not yet what is to be seen."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from threading import Event
 
@@ -129,9 +129,11 @@ def test_a_key_pressed_at_once_after_coming_back_opens_what_is_true_now(
     is_read, may_read = Event(), Event()
     read = StudentStore.read_overview
 
-    def read_when_allowed(store: StudentStore) -> StudentOverview:
+    def read_when_allowed(
+        store: StudentStore, on_lessons: Callable[[StudentOverview], None]
+    ) -> StudentOverview:
         may_read.wait()
-        overview = read(store)
+        overview = read(store, on_lessons)
         is_read.set()
         return overview
 
