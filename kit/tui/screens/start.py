@@ -36,6 +36,7 @@ from kit.tui.screens.play import TELEOP, PlayScreen
 from kit.tui.screens.watch import BREAKPOINTS
 from kit.tui.student_store import StudentOverview, StudentStore
 from kit.tui.theme import Theme
+from kit.tui.widgets.text_rows import TextRows
 
 if TYPE_CHECKING:
     from kit.run.view import View
@@ -134,7 +135,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
     def _show(self) -> None:
         view = self.view
         self._show_menu()
-        if view is None or not self.is_current or self._is_away:
+        if view is None or not self.is_current or self._is_away or not self.query(TextRows):
             return
         self.world.offer(self._newest_scene)
         self._rows("heading").show([self._heading(view)])
@@ -154,6 +155,8 @@ class StartScreen(PlayScreen, inherit_bindings=False):
         )
 
     def _show_menu(self) -> None:
+        if not self.query(TextRows):  # the kit is left while the rest is read
+            return
         panel = self._rows("panel")
         size = panel.size  # without its padding
         columns = WIDE_PANEL if self.has_class("-vast") else PANEL_WIDTH

@@ -331,3 +331,24 @@ def test_where_to_go_on_is_told_before_the_rest_is_read(
         await seen(pilot, "not driven yet")
 
     house.play(scene, (120, 40))
+
+
+def test_the_kit_may_be_left_while_the_rest_is_read(house: House, monkeypatch: pytest.MonkeyPatch) -> None:
+    is_left = threading.Event()
+    count_due = StudentStore._count_due
+
+    def wait(store: StudentStore) -> int | None:
+        is_left.wait(LIMIT_S)
+        return count_due(store)
+
+    monkeypatch.setattr(StudentStore, "_count_due", wait)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        start = pilot.app.screen
+        assert isinstance(start, StartScreen)
+        await seen(pilot, "Lesson 1, Colours")
+        await start.query(TextRows).remove()  # as where the app ends
+        is_left.set()
+        await until(pilot, lambda: start._overview is not None and start._overview.is_whole, "the rest")
+
+    house.play(scene)
