@@ -29,7 +29,7 @@ from kit.learning.training.demonstrations import is_recording
 from kit.learning.training.events import EventReader, TrainingEnded, TrainingProgress
 from kit.learning.training.learn_extra import require_learn_extra
 from kit.learning.training.run_check import check_run_config
-from kit.learning.training.run_config import PresetName, RunConfig, RunError, format_setting
+from kit.learning.training.run_config import MAX_WORLDS, PresetName, RunConfig, RunError, format_setting
 from kit.learning.training.run_folders import create_run, find_run, left_out, list_runs
 from kit.learning.training.run_text import format_event
 from kit.learning.training.run_upkeep import delete_run, disk_bytes, read_overviews, rename_run, runs_blocks
@@ -188,7 +188,7 @@ def _suggest_race(run: TrainingRun) -> None:
 )
 @click.option(
     "--worlds",
-    type=click.IntRange(1, 100_000),
+    type=click.IntRange(1, MAX_WORLDS),
     help="Number of worlds simulated at once (default: the preset's).",
 )
 @click.option(

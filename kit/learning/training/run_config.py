@@ -6,13 +6,16 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 from kit.field_types import check_field_types
 from kit.learning.tasks.task_spec import TaskSpec
 
 PresetName = Literal["kit", "seed", "seed-text"]
 """The kit's; the dissertation's as its code ran; the same as its text says (section 3.1.2)."""
+
+MAX_WORLDS: Final = 100_000
+"""Worlds that are simulated at once: their memory grows with them, and a run may be somebody else's."""
 
 
 NO_LIMIT = "none"
@@ -94,4 +97,6 @@ class RunConfig:
             raise ValueError(f"not the configuration of a run: {error}") from None
         if config.seed < 0 or any(count is not None and count < 1 for count in (config.steps, config.worlds)):
             raise ValueError(f"seed {config.seed}, {config.steps} steps, {config.worlds} worlds")
+        if (config.worlds or 1) > MAX_WORLDS:
+            raise ValueError(f"{config.worlds} worlds; at most {MAX_WORLDS:,} are simulated at once")
         return config

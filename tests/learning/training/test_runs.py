@@ -8,6 +8,7 @@ import re
 import tracemalloc
 import zipfile
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -304,4 +305,13 @@ def test_a_log_without_end_is_read_at_its_end_and_such_a_configuration_is_none(t
             file.write(text)
     assert run.last_log_line == "the last"
     with pytest.raises(RunError, match="damaged"):
+        run.config()
+
+
+def test_a_run_of_more_worlds_than_any_memory_holds_is_refused(tmp_path: Path) -> None:
+    run = create_run(tmp_path, replace(CONFIG, worlds=100_000), "theirs")
+    assert run.config().worlds == 100_000
+    file = run.folder / "config.json"
+    file.write_text(file.read_text().replace("100000", "1000000000"))
+    with pytest.raises(RunError, match="1000000000 worlds"):
         run.config()
