@@ -107,8 +107,8 @@ def usual_depth(depth: FloatArray, mask: BoolArray) -> float:
     return float(np.percentile(depth[mask], 93.0)) if mask.any() else 0.0
 
 
-def judge_strokes(everything: BoolArray, deep: BoolArray) -> JudgedStrokes:
-    """Judges strokes (rows, columns). ``deep``: those that are not pale."""
+def judge_strokes(everything: BoolArray, breaks: BoolArray, deep: BoolArray) -> JudgedStrokes:
+    """Judges strokes (rows, columns). ``breaks``: which of them fill a break; ``deep``: those that are not pale."""
     found: dict[str, BoolArray] = {}
     walls = everything
     pale = everything & ~grown(deep, 9)
@@ -123,6 +123,9 @@ def judge_strokes(everything: BoolArray, deep: BoolArray) -> JudgedStrokes:
     pen = _pen_width(parts == main)
     for number, kind in _doubtful_parts(parts, boxes, main, pen, _reached_from_edge(walls)):
         found[kind] = found.get(kind, np.zeros_like(walls)) | (parts == number)
+    measures = _joined_measures(walls, breaks, pen)
+    if measures.any():
+        found["thin"] = found.get("thin", np.zeros_like(walls)) | measures
     kept = walls & ~union(walls.shape, (mask for kind, mask in found.items() if kind != "pale"))
     beyond = _outer_spurs(kept, pen)
     if _extent(beyond) >= LEAST * walls.shape[1]:
@@ -199,6 +202,15 @@ def _doubtful_parts(
                 yield number, "small"
         elif _has_arrows(parts, number, box, pen) or (own < THIN * pen and pen - own > 1.0):
             yield number, "thin"
+
+
+def _joined_measures(walls: BoolArray, breaks: BoolArray, pen: float) -> BoolArray:
+    """Lines with arrows that a filled break joins to the wall at which they point, with what fills it."""
+    parts = connected_parts(walls & ~breaks, across_corners=True)
+    arrows = [number for number, box in _boxes(parts).items() if _has_arrows(parts, number, box, pen)]
+    found = np.isin(parts, arrows)
+    fillings = connected_parts(walls & breaks, across_corners=True)
+    return found | np.isin(fillings, np.setdiff1d(fillings[grown(found, 3)], [0]))
 
 
 def _is_small(box: _Box, width: int, pen: float) -> bool:

@@ -63,21 +63,21 @@ def find_strokes(sheet: Image.Image, options: StrokeOptions = StrokeOptions()) -
     depth = stroke_depth(sheet)
     mask = _stroke_pixels(depth)
     lifted = depth - float(np.median(depth))
-    deep = _plan_of(mask & (lifted > PALE * usual_depth(lifted, mask)), sheet, options)
+    deep, _ = _plan_of(mask & (lifted > PALE * usual_depth(lifted, mask)), sheet, options)
     _check_share(deep)
-    return judge_strokes(_plan_of(mask, sheet, options), deep)
+    return judge_strokes(*_plan_of(mask, sheet, options), deep)
 
 
-def _plan_of(mask: BoolArray, sheet: Image.Image, options: StrokeOptions) -> BoolArray:
-    """(rows, columns): the pixels of strokes as a plan, without specks and short breaks."""
+def _plan_of(mask: BoolArray, sheet: Image.Image, options: StrokeOptions) -> tuple[BoolArray, BoolArray]:
+    """(rows, columns): the pixels of strokes as a plan, without specks and short breaks; and those of the breaks."""
     size = (PLAN_PIXELS, round(PLAN_PIXELS * sheet.height / sheet.width))
     plan = np.asarray(Image.fromarray((mask * 255).astype(np.uint8)).resize(size, Image.Resampling.BOX)) > 127
     plan = _without_specks(plan, 0.3 * options.least_length)
     # A line across a corner is no stroke: a stroke goes on for more than twice its width.
-    plan = bridged(
+    whole = bridged(
         plan, nearest_odd(options.widest_gap * PLAN_PIXELS), nearest_odd(max(12.0, 2.5 * stroke_width(plan)))
     )
-    return _without_specks(plan, options.least_length)
+    return _without_specks(whole, options.least_length), whole & ~plan
 
 
 def _check_share(plan: BoolArray) -> None:

@@ -48,7 +48,7 @@ def test_what_lies_beyond_a_short_break_in_a_stroke_is_a_wall(gap: int, is_wall:
     strokes[66:634, 66:934] = False
     strokes[66:150, 500:516] = True
     strokes[150 + gap : 185 + gap, 500:516] = True
-    judged = judge_strokes(strokes, strokes)
+    judged = judge_strokes(strokes, np.zeros_like(strokes), strokes)
     assert (judged.remarks == ()) == is_wall
     assert bool(judged.walls[160 + gap, 508]) == is_wall
 
@@ -68,6 +68,7 @@ def test_the_lesson_s_photograph_is_not_doubted() -> None:
         ("word", "small pieces"),
         ("slip", "small pieces"),
         ("measure", "thin lines"),
+        ("measure with arrows", "thin lines"),
         ("outside", "beyond the outer wall"),
         ("room", "a room without a door"),
     ],
@@ -92,6 +93,10 @@ def test_what_else_is_drawn_is_told_and_no_wall(what: str, said: str) -> None:
             draw.line((300, 500, 350, 520), fill="black", width=PEN)
         case "measure":
             draw.line((150, 800, 600, 800), fill="black", width=4)
+        case "measure with arrows":  # its point is so near to the wall that the break is bridged
+            draw.line((815, 700, 1262, 700), fill="black", width=10)
+            draw.polygon(((1284, 700), (1254, 685), (1254, 715)), fill="black")
+            draw.polygon(((800, 700), (830, 685), (830, 715)), fill="black")
         case "outside":
             draw.line((40, 200, 40, 700), fill="black", width=PEN)
         case "room":
