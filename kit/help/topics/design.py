@@ -32,6 +32,7 @@ DRAWING: Final = """
                  kit/array_archives  kit/field_types  kit/installation
                  kit/extensions  (others' packages)   kit/blas
                  kit/breadth_first  kit/line_log  kit/segments
+                 kit/yaml_numbers  kit/yaml_slips
 """
 """The rooms of the kit, floor by floor; an import only goes down."""
 
