@@ -83,8 +83,8 @@ AHEAD: Final = math.radians(60)
 def _ranges_ahead(scan: LaserScan) -> tuple[float, float]:
     """Returns the range of the ray in the middle, and the nearest of those within ``AHEAD`` of it [m]; nan for none."""
     middle, count = len(scan.ranges) // 2, round(AHEAD / abs(scan.angle_increment or math.inf))
-    near = [each for each in scan.ranges[max(0, middle - count) : middle + count + 1] if each == each]
-    return float(scan.ranges[middle]), float(min(near, default=math.nan))
+    near = np.asarray(scan.ranges[max(0, middle - count) : middle + count + 1])
+    return float(scan.ranges[middle]), float(np.fmin.reduce(near, initial=math.nan))
 
 
 class PrintedRecorder:

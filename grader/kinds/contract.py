@@ -6,6 +6,7 @@ import pkgutil
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
@@ -76,6 +77,7 @@ class SubmissionKind:
     """The lessons' exercise that is its example, ``LESSON/EXERCISE``, where it has no folder in ``grader/templates``."""
 
 
+@cache
 def _own_kinds() -> tuple[str, ...]:
     package = import_module(KINDS_PACKAGE)
     return tuple(sorted(each.name for each in pkgutil.iter_modules(package.__path__) if each.ispkg))

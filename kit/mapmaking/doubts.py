@@ -29,6 +29,8 @@ CROWDED: Final = 1.3
 """How many times the length of its box the strokes of a word are long."""
 SOLID: Final = 0.7
 """And how many times a piece of a wall's stroke is at least, drawn with the walls' pen."""
+WIDEST_ARROW: Final = 5.0
+"""How many times the pen's width a measure's arrows are wide at most."""
 LEAST: Final = 0.02
 """Less than this share of the sheet's width is no reason to doubt."""
 ENCLOSED: Final = 0.002
@@ -207,7 +209,11 @@ def _doubtful_parts(
 def _joined_measures(walls: BoolArray, breaks: BoolArray, pen: float) -> BoolArray:
     """Lines with arrows that a filled break joins to the wall at which they point, with what fills it."""
     parts = connected_parts(walls & ~breaks, across_corners=True)
-    arrows = [number for number, box in _boxes(parts).items() if _has_arrows(parts, number, box, pen)]
+    arrows = [
+        number
+        for number, box in _boxes(parts).items()
+        if not _is_small(box, walls.shape[1], pen) and _has_arrows(parts, number, box, pen)
+    ]
     found = np.isin(parts, arrows)
     fillings = connected_parts(walls & breaks, across_corners=True)
     return found | np.isin(fillings, np.setdiff1d(fillings[grown(found, 3)], [0]))
@@ -225,7 +231,7 @@ def _has_arrows(parts: np.ndarray, number: int, box: _Box, pen: float) -> bool:
     if box.height > box.width:
         piece = piece.T
     rows, columns = piece.shape
-    if columns < 5 * rows:
+    if columns < 5 * rows or rows > WIDEST_ARROW * pen:
         return False
     extent = rows - piece.argmax(axis=0) - piece[::-1].argmax(axis=0)
     end = max(3, columns // 6)

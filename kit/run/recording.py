@@ -180,7 +180,7 @@ class Recorder(Observer):
         self._step_size = simulation.step_size
         self._simulation = simulation
         self._inputs: list[bytes] = []  # JSON, a fifth of the memory that its values take
-        self._header_bytes = 0
+        self._header_bytes = self._recorded_bytes = 0
         self._is_full = False
         self._poses = array("d")
         self._counts = array("q")
@@ -225,8 +225,9 @@ class Recorder(Observer):
         for pose in simulation.poses():
             self._poses.extend(pose)
         self._counts.append(len(names))
-        recorded = 8 * (len(self._poses) + len(self._counts)) + self._header_bytes
-        self._is_full |= recorded >= MAX_RECORDED_BYTES
+        self._recorded_bytes += 8 * (3 * len(names) + 1)
+        if self._recorded_bytes >= MAX_RECORDED_BYTES:
+            self._is_full = True
         if self._store is not None:
             self._store.offer(self)
 
@@ -241,7 +242,7 @@ class Recorder(Observer):
             self._seed,
             self._step_size,
             tuple(self._models[since.models :]),
-            tuple(_read_input(json.loads(each)) for each in self._inputs[since.inputs :]),
+            tuple(map(_read_input, json.loads(b"[%b]" % b",".join(self._inputs[since.inputs :])))),
             poses.reshape(-1, 3),
             counts,
             self._level,
@@ -255,6 +256,7 @@ class Recorder(Observer):
     def _count_header(self, size: int) -> None:
         """Counts bytes of the header: a megabyte is left for what is not counted."""
         self._header_bytes += size + 2
+        self._recorded_bytes += size + 2
         self._is_full |= self._header_bytes >= MAX_HEADER_BYTES - (1 << 20)
 
 

@@ -86,7 +86,7 @@ OF_LESSONS = [
     ("04-launch-files/driver", number("time: 4", launch.MAX_RUN_S)),
     ("10-words-of-learning/hallway", number("max_steps: 200", environment.MOST_STEPS)),
     ("24-train-your-own/pays", number("steps: 60000", task.MAX_STEPS)),
-    ("24-train-your-own/pays", number("trainings: 2", task.MAX_TRAININGS)),
+    ("24-train-your-own/pays", number("trainings: 3", task.MAX_TRAININGS)),
     ("24-train-your-own/pays", number("episodes: 100", task.MAX_EPISODES)),
     ("12-training-strategies/forget", number("steps: 80000", training.MAX_STEPS)),
     (
