@@ -38,7 +38,7 @@ def controller_arguments(scenario: Scenario, home: Pose | None = None) -> list[s
     start = robot.pose if home is None else home
     parameters = {
         "home": f"[{start.x!r}, {start.y!r}, {start.theta!r}]",
-        "model": robot.name,
+        "model": json.dumps(robot.name),
         "models": json.dumps(scenario.partners),
         "world": json.dumps(str(scenario.world.file.absolute())),
     }

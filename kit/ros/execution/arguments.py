@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from fnmatch import fnmatchcase
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from kit.ros.exceptions import InvalidRosArguments, NameValidationException
 from kit.ros.graph.naming import (
@@ -185,15 +188,29 @@ def _remapping(text: str) -> Remapping:
 
 
 def _parse_parameter(text: str) -> GivenParameters:
-    from kit.ros.parameters.parameter_files import parse_value
-
     node, name, value = _split_rule(text, "-p", "name:=value or node:name:=value")
     if not value:
         raise InvalidRosArguments(f"-p '{text}': the value is missing; an empty text is written ''")
     if set(name) & set("{} \t"):
         raise InvalidRosArguments(f"-p '{text}': a parameter's name has no blanks and no braces")
     pattern = "/**" if node is None else node if node.startswith("/") else f"/**/{node}"
-    return GivenParameters(pattern, (Parameter(name, value=parse_value(value)),))
+    return GivenParameters(pattern, (Parameter(name, value=_parse_value(value)),))
+
+
+def _parse_value(text: str) -> Any:
+    """Parses a value as YAML. What JSON means alike, as are all values that the kit gives to programs, is read as JSON: PyYAML
+    takes longer to import than all else that a node needs to start."""
+    value = None
+    if "\\" not in text and text.isprintable():  # else a text may mean something else in JSON
+        with suppress(ValueError, RecursionError):
+            value = json.loads(text)
+    values = value if isinstance(value, list) else [value]
+    kinds = {type(each) for each in values}
+    if kinds in ({bool}, {str}, {int}) or (kinds == {float} and all(map(math.isfinite, values))):
+        return value
+    from kit.ros.parameters.parameter_files import parse_value
+
+    return parse_value(text)
 
 
 def _file(path: str) -> list[GivenParameters]:

@@ -116,6 +116,8 @@ def _compose(text: str, source: _TextSource) -> YamlNode | None:
         raise InvalidRosArguments(f"{source.name}{place}: {slip.message}") from None
     except yaml.YAMLError as problem:
         raise source.error(str(problem), None) from None
+    except RecursionError:
+        raise source.error("it is nested too deeply", None) from None
 
 
 def _node_parameters(node: YamlNode, path: str, source: _TextSource) -> Iterator[GivenParameters]:

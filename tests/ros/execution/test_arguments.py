@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +17,8 @@ from kit.ros.execution.context import Context
 from kit.ros.graph.graph import Graph
 from kit.ros.log import LoggingSeverity
 from kit.ros.node.node import Node, create_graph_node
+from kit.run.episode import controller_arguments
+from kit.run.scenario import find_scenario
 
 
 def node_with(graph: Graph, *arguments: str, **settings: Any) -> Node:
@@ -178,3 +182,60 @@ def test_an_empty_file_gives_nothing(tmp_path: Path) -> None:
     file = tmp_path / "params.yaml"
     file.write_text("# nothing\n")
     assert parse_ros_arguments(["--ros-args", "--params-file", str(file)]).parameters == ()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "1",
+        "-0",
+        "1.5",
+        "1e3",
+        "1E-5",
+        "1e999",
+        "NaN",
+        "true",
+        "null",
+        '"true"',
+        '"a # b: c"',
+        "serp",
+        "yes",
+        "12_3x",
+        "0x1F",
+        "[1, 2]",
+        "[1, 2.5]",
+        "[1.0, -2e-7]",
+        '["a", "b, c"]',
+        "[true, false]",
+        "[ 1 ,2 ]",
+        "'it''s'",
+        '"a\\tb"',
+        "[]",
+        ".5",
+    ],
+)
+def test_a_value_means_what_it_means_in_a_parameter_file(text: str, tmp_path: Path) -> None:
+    file = tmp_path / "parameters.yaml"
+    file.write_text(f"/**: {{ros__parameters: {{speed: {text}}}}}\n")
+    given, of_file = (
+        parse_ros_arguments(["--ros-args", *words]).parameters[0].parameters[0]
+        for words in (["-p", f"speed:={text}"], ["--params-file", str(file)])
+    )
+    assert (given.type_, given.value) == (of_file.type_, of_file.value)
+
+
+@pytest.mark.parametrize("text", ["[[1], [2]]", "[" * 100_000, '{"a": 1}', "012"])
+def test_a_value_that_no_parameter_can_have_is_refused(text: str) -> None:
+    with pytest.raises(InvalidRosArguments):
+        parse_ros_arguments(["--ros-args", "-p", f"speed:={text}"])
+
+
+def test_a_controller_s_arguments_are_read_without_a_yaml_library() -> None:
+    arguments = controller_arguments(find_scenario("turn", "turn_a_to_b"))
+    program = f"""
+import sys
+from kit.ros.execution.arguments import parse_ros_arguments
+assert parse_ros_arguments({arguments!r}).parameters
+assert "yaml" not in sys.modules
+"""
+    subprocess.run([sys.executable, "-c", program], check=True)
