@@ -6,7 +6,7 @@ seconds of its episodes, those with secret seeds too. Then the same for works th
 are compared with ``MEDIAN_S``, ``limit_s`` and ``LOADING_S``; exit code 1 if any is over. They depend less than the clock on
 what else the machine does, but not little: with fifteen busy processes on two cores they are a quarter larger.
 
-On an idle machine the median of 14 controllers was 1.68 s of processor time, and what cannot be loaded cost less than
+On an idle machine the median of 14 controllers was 0.79 s of processor time, and what cannot be loaded cost less than
 0.5 s, but for slips in tasks to learn: 0.56 to 0.60 s. Since these load no numba and no simulator either, they cost what
 slips in trainings do.
 
