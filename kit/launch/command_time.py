@@ -68,7 +68,6 @@ class CommandTime:
             )  # until the launch has taken note, which does so in the tick after the start
         if not command.is_of_kit:
             taken_s = now_s - began_s
-        if not command.is_of_kit:
             return self._is_within(COMMAND_S, taken_s, command) or (now_ns - began_ns) / 1e9 > taken_s
         if owing.get(command.pid) is False:
             self._answered_s[command.pid] = now_s
