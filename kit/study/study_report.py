@@ -251,9 +251,10 @@ def _sides_table(table: PrintedTable, recorded: RecordedResult, variant: StudyVa
 
 
 def _test_text(test: RecordedTest) -> str:
+    """What was trained or run; not how long it took, which says more of the machine and its other work."""
     if not test.steps:
-        return f"{', '.join(test.reached)}: {test.episodes} runs in {format_seconds(test.seconds)}"
-    return f"seed {test.seed}: {test.steps:,} steps in {format_seconds(test.seconds)}"
+        return f"{', '.join(test.reached)}: {test.episodes} runs"
+    return f"seed {test.seed}: {test.steps:,} steps"
 
 
 def _origin_text(recorded: RecordedResult) -> str:
@@ -267,11 +268,7 @@ def _origin_text(recorded: RecordedResult) -> str:
         how += f", {settings.changed}"
     if settings.steps is not None:
         how += f", at most {settings.steps:,} steps"
-    how += (
-        f", {settings.episodes} episodes of each case"
-        if settings.task
-        else ", runs of each case as named with their time"
-    )
+    how += f", {settings.episodes} episodes of each case" if settings.task else ", runs of each case as named"
     return f"`{settings.command}`{commit}: {how}. Log, with the versions of packages: {recorded.file.name}."
 
 
