@@ -188,3 +188,6 @@ class Assignment:
 
     def trial(self, name: str) -> Trial:
         return next(trial for trial in self.trials if trial.name == name)
+
+    def criterion(self, identity: str) -> Criterion:
+        return next(each for each in self.criteria if each.id == identity)

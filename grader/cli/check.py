@@ -144,7 +144,7 @@ def _report(result: GradingResult, format_name: str, hints: int, picture: str) -
 
 def _worst_picture(grading: Grading, replay: Path | None) -> str:
     """Draws the worst episode, and saves it in ``replay`` if given."""
-    worst = grading.worst_evidence()
+    worst = grading.scores.worst()
     shown = "" if worst is None else worst.picture()
     if worst is None or not shown:
         return ""
@@ -159,8 +159,8 @@ def _worst_picture(grading: Grading, replay: Path | None) -> str:
 
 def _keep_passed_run(grading: Grading, replay: Path) -> str:
     """Saves an episode of a work that lost nothing, where its kind has any."""
-    went_wrong = grading.worst_evidence() is not None
-    run = None if went_wrong else _watchable(grading.first_public_evidence())
+    went_wrong = grading.scores.worst() is not None
+    run = None if went_wrong else _watchable(grading.scores.first_public())
     if run is None:
         why = "There is no episode" if went_wrong else "No episode went wrong, and there is none"
         return f"\n{why} to save as a replay.\n"

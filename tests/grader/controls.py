@@ -218,7 +218,7 @@ CONTROLS: Final = (
     ),
     Control(
         "a secret handed on by the page cache",
-        "grader/grading.py",
+        "grader/evidence/evidence_scores.py",
         "        if self._has_run_public:\n            return\n        self._has_run_public = True\n",
         "        return\n",
         "grader/test_secrets.py::test_nothing_that_a_student_reads_of_is_run_after_a_secret_run",
@@ -337,8 +337,8 @@ CONTROLS: Final = (
     ),
     Control(
         "a criterion whose turn comes although one before that had none",
-        "grader/grading.py",
-        "return self._is_its_turn(before) and any(",
+        "grader/evidence/evidence_scores.py",
+        "return self.is_its_turn(before) and any(",
         "return any(",
         "grader/test_grading.py::test_what_comes_after_what_had_not_its_turn_has_not_its_turn_either",
     ),
@@ -792,8 +792,8 @@ CONTROLS: Final = (
     ),
     Control(
         "a picture that tells of what is shown later",
-        "grader/grading.py",
-        "for each in scored if self._criterion(name).visibility is Visibility.VISIBLE else ():",
+        "grader/evidence/evidence_scores.py",
+        "for each in scored if self._assignment.criterion(name).visibility is Visibility.VISIBLE else ():",
         "for each in scored:",
         "grader/cli/test_check.py::test_nothing_tells_how_a_criterion_went_that_is_shown_later",
     ),

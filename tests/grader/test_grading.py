@@ -225,7 +225,7 @@ def test_evidence_for_a_teachers_own_tests(quick: Assignment) -> None:
         (drive,) = grading.evidence("moves")
         assert drive.steps == 400
         assert grading.result().verdict is GradingVerdict.FAIL
-        assert grading.worst_evidence() is drive
+        assert grading.scores.worst() is drive
 
 
 @pytest.mark.long

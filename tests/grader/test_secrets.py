@@ -182,7 +182,7 @@ def test_where_secret_runs_alone_lose_points_ones_own_check_says_what_was_seen(
         function_assignment, submission, found, secret=True, clock=SubmissionClock(), examples=True
     )
     [test] = grading.result().tests
-    worst = grading.worst_evidence()
+    worst = grading.scores.worst()
     assert "printed 2000" not in test.log
     if level is Level.LIMITED:
         assert "80 %" in test.rationale
@@ -212,7 +212,7 @@ def test_an_example_that_loses_less_than_the_secret_run_is_not_told_as_why_point
     assert test.points == 0, "what only the public cases earn is not earned"
     assert "explained 10000" in test.rationale
     assert "explained 1" not in test.rationale.replace("explained 10000", "")
-    assert grading.worst_evidence() is found.evidence(function_assignment.criteria[0])[1]
+    assert grading.scores.worst() is found.evidence(function_assignment.criteria[0])[1]
 
 
 def test_a_broken_grader_tells_students_no_secret(function_assignment: Assignment) -> None:
