@@ -83,6 +83,21 @@ def rows_of(blocks: Sequence[Block], page: Page) -> list[Row]:
     return place(blocks, page).rows
 
 
+def sections_of(blocks: Sequence[Block], page: Page) -> list[list[Row]]:
+    """The rows of a page in parts that are not to be parted: each paragraph with what stands right below it, up to the next one.
+
+    >>> [len(each) for each in sections_of([Text("a"), Text("b", is_tight=True), Text("c")], Page())]
+    [3, 1]
+    """
+    rows, starts = place(blocks, page)
+    firsts = [
+        start
+        for block, start in zip(blocks, starts, strict=True)
+        if not start or (isinstance(block, Text) and not block.is_tight)
+    ]
+    return [rows[first:last] for first, last in pairwise([*firsts, len(rows)])]
+
+
 def lines_of(blocks: Sequence[Block], page: Page = HEARD) -> list[str]:
     """The rows without tones."""
     return [row_text(each) for each in rows_of(blocks, page)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import zip_longest
 from typing import Final
 
@@ -86,6 +86,48 @@ def side_by_side(left: Sequence[Row], right: Sequence[Row], column: int) -> list
         (*at_both_edges(here, (), column), *there) if there else here
         for here, there in zip_longest(left, right, fillvalue=())
     ]
+
+
+def in_columns(
+    sections: Callable[[int], Sequence[Sequence[Row]]], width: int, height: int, least: int, fewest: int = 1
+) -> list[Row]:
+    """Sections one after another in as few columns as it takes for ``height`` rows, none much longer than the others.
+
+    ``sections``: the rows of each for a column's width; none is parted. ``least``: columns of the terminal that each has at least.
+    ``fewest``: as many columns there are where there is room.
+
+    >>> parts = [[row("a"), row("b")], [row("c")], [row("d")]]
+    >>> [row_text(each) for each in in_columns(lambda columns: parts, 20, 2, 10)]
+    ['a         c', 'b         d']
+    """
+    most = max(1, width // least)
+    for count in range(min(fewest, most), most + 1):
+        column = width // count
+        made = sections(column)
+        lengths = [len(each) for each in made]
+        if count == most or sum(lengths) <= count * height:
+            break
+    longest = max(max(lengths, default=0), -(-sum(lengths) // count))
+    while len(starts := _column_starts(lengths, longest)) > count:
+        longest += 1
+    joined: list[Row] = []
+    for number, (first, last) in enumerate(zip(starts, [*starts[1:], len(made)], strict=True)):
+        part = [
+            broken_row for each in made[first:last] for parts in each for broken_row in broken(parts, column)
+        ]
+        joined = side_by_side(joined, part, number * column) if number else part
+    return joined
+
+
+def _column_starts(lengths: Sequence[int], longest: int) -> list[int]:
+    """The number of the first section of each column that has at most ``longest`` rows."""
+    starts, used = [0], 0
+    for number, length in enumerate(lengths):
+        if used + length > longest:
+            starts.append(number)
+            used = 0
+        used += length
+    return starts
 
 
 def text_width(width: int, widest: int = TEXT_WIDTH) -> int:

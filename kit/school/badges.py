@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import date, timedelta
@@ -13,7 +14,7 @@ from kit.school.lessons.catalogue import LessonEntry, LessonProgress
 from kit.school.lessons.records import LessonUnit
 from kit.school.progress import EventKind, ProgressEvent
 
-IDLE: Final = (EventKind.ABOUT, EventKind.FORM)
+IDLE: Final = (EventKind.ABOUT, EventKind.FORM, EventKind.NEWS)
 """Events that are no learning: a day with these alone does not count."""
 FIRST_TRIES: Final = 10
 FORESEEN: Final = 20
@@ -52,12 +53,15 @@ class Streak:
         return f"{now}; the longest so far: {self.longest}."
 
 
-def streak(events: Iterable[ProgressEvent], today: date) -> Streak:
-    """The days in a row. ``today``: in the time zone in which a day of the student begins and ends.
+def learning_days(events: Iterable[ProgressEvent]) -> Counter[date]:
+    """How many things were learned on each day on which any was: a step, a prediction, a check, an answer, a drive."""
+    return Counter(event.time.astimezone().date() for event in events if event.kind not in IDLE)
 
-    A day counts if anything was learned on it: a step, a prediction, a check, an answer.
-    """
-    days = sorted({event.time.astimezone().date() for event in events if event.kind not in IDLE})
+
+def streak(events: Iterable[ProgressEvent], today: date) -> Streak:
+    """The days in a row on which anything was learned. ``today``: in the time zone in which a day of the student begins and
+    ends."""
+    days = sorted(learning_days(events))
     longest = current = 0
     before: date | None = None
     for day in days:

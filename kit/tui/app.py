@@ -90,15 +90,10 @@ class KitApp(App[None]):
 
     def action_glossary(self) -> None:
         """Opens the glossary over any screen."""
-        from kit.document.layout import Page, rows_of
-        from kit.document.rows import MARGIN, TEXT_WIDTH, row
         from kit.school.lessons.glossary import glossary_blocks, read_glossary  # of no use to the first frame
-        from kit.tui.screens.text_screen import TextScreen
+        from kit.tui.screens.text_screen import page_screen
 
-        terms, page = read_glossary(), Page(TEXT_WIDTH, MARGIN)
-        half = (len(terms) + 1) // 2
-        left, right = (rows_of(glossary_blocks(part), page) for part in (terms[:half], terms[half:]))
-        self.push_screen(TextScreen("Glossary", [row(), *left], [row(), *right]))
+        self.push_screen(page_screen("Glossary", glossary_blocks(read_glossary())))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leaves Ctrl-C to a screen that has an action for it, and Ctrl-Z to a text that takes a change back."""

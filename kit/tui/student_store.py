@@ -129,7 +129,7 @@ class StudentStore:
         from kit.school.game.challenges import game_summary
         from kit.school.game.levels import all_levels
         from kit.school.game.medal import Medal
-        from kit.school.game.medal_in_reach import medal_in_reach
+        from kit.school.game.medal_in_reach import medals_in_reach
         from kit.school.game.player_progress import completed_lessons
         from kit.world.problems import WorldError
 
@@ -142,7 +142,8 @@ class StudentStore:
             for title, best in summary.best_by_world.items()
         )
         is_next = (each.level for each in summary.levels if each.is_open and each.best_medal is Medal.NONE)
-        return medal_in_reach(summary.levels), next(is_next, None), won
+        medals = [each.describe() for each in medals_in_reach(summary.levels)]
+        return next(iter(medals), ""), next(is_next, None), won
 
     def _take_news(self) -> str:
         """Taken once; what was taken stands for as long as the store is open."""

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from rich.terminal_theme import TerminalTheme
     from textual.theme import Theme as TextualTheme
 
+    from kit.layers.drawing.spans import GlyphStyle
     from kit.render.encode import Encoder
 
 
@@ -32,6 +33,11 @@ class Theme:
         if terminal.ansi:
             return cls(terminal, dict(PALETTES["none" if colour == "none" else "16"]))
         return cls(terminal, dict(COLOR_SCHEMES[terminal.theme_name.value].palette(colour == "256")))
+
+    @property
+    def graph_glyphs(self) -> GlyphStyle:
+        """The characters of drawings of layers."""
+        return "ascii" if self.terminal.glyphs.value == "ascii" else "braille"
 
     @cached_property
     def encoder(self) -> Encoder:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+import pytest
 from click.testing import CliRunner
 
 from kit.cli import main
@@ -38,8 +39,9 @@ def test_a_streak_ends_today_or_yesterday() -> None:
     assert streak([], TODAY) == Streak(0, 0)
 
 
-def test_a_name_is_no_learning() -> None:
-    assert streak([event(EventKind.ABOUT, "name")], TODAY).days == 0
+@pytest.mark.parametrize("kind", [EventKind.ABOUT, EventKind.FORM, EventKind.NEWS])
+def test_what_is_told_and_read_is_no_learning(kind: EventKind) -> None:
+    assert streak([event(kind, "name")], TODAY).days == 0
 
 
 def test_a_clock_that_went_wrong_does_no_harm() -> None:

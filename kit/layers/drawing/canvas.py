@@ -38,6 +38,8 @@ class EntityBox:
     label: str
     kind: str
     style: DrawingStyle
+    has_cursor: bool = False
+    """Whether the label stands out."""
 
     @property
     def width(self) -> int:
@@ -95,8 +97,11 @@ class TextCanvas:
         for number, text in enumerate(rows):
             for i, letter in enumerate(text):
                 self._letters[left + i, top + number] = letter
-                inside = number == 2 and 0 < i < box.width - 1
-                self._styles[left + i, top + number] = "text" if inside else box.style
+                inside = 0 < i < box.width - 1
+                style: DrawingStyle = (
+                    "text" if number == 2 else "cursor" if number == 1 and box.has_cursor else box.style
+                )
+                self._styles[left + i, top + number] = style if inside else box.style
 
     def arrow(self, start: EntityBox, end: EntityBox) -> None:
         """The head of an arrow where a line from one box meets another's frame."""
@@ -137,7 +142,7 @@ class TextCanvas:
     ) -> None:
         x0, y0, x1, y1 = (2 * start[0] + 0.5, 4 * start[1] + 1.5, 2 * end[0] + 0.5, 4 * end[1] + 1.5)
         steps = max(1, math.ceil(max(abs(x1 - x0), abs(y1 - y0))))
-        every = {"struck": 6, "beam": 3}.get(style, 1)
+        every = {"struck": 4, "beam": 3}.get(style, 1)
         aside = (1, 0) if abs(y1 - y0) > abs(x1 - x0) else (0, 1)
         for step in range(0, steps + 1, every):
             x, y = round(x0 + (x1 - x0) * step / steps), round(y0 + (y1 - y0) * step / steps)
@@ -156,7 +161,7 @@ class TextCanvas:
     ) -> None:
         (x0, y0), (x1, y1) = start, end
         steps = max(1, math.ceil(max(abs(x1 - x0), abs(y1 - y0))))
-        letter = {"struck": ".", "beam": ":", "group edge": "*"}.get(style) or _line_character(
+        letter = {"struck": ".", "beam": ":", "group edge": "*", "wrong": "x"}.get(style) or _line_character(
             x1 - x0, y1 - y0
         )
         for step in range(0, steps + 1, 2 if style == "struck" else 1):

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
+from functools import lru_cache
 from itertools import combinations
+from typing import TypeAlias
 
 from kit.layers.drawing.canvas import BOX_ROWS, EntityBox, TextCanvas
 from kit.layers.drawing.spans import STYLE_RANK, DrawingLine, DrawingStyle, GlyphStyle
@@ -12,6 +14,7 @@ from kit.layers.requirements import ContactRequirement, LayerCase
 
 MAX_ENTITIES_IN_PICTURE = 16
 """With more entities than this, lines cross too often to follow: draw the matrix."""
+EntityLabel: TypeAlias = tuple[str, DrawingStyle]
 
 
 def draw_graph(
@@ -20,6 +23,8 @@ def draw_graph(
     struck: Collection[ContactRequirement] = (),
     group: Collection[str] = (),
     laser: str | None = None,
+    wrong: Collection[ContactRequirement] = (),
+    cursor: str | None = None,
     width: int = 80,
     height: int = 17,
     glyphs: GlyphStyle = "braille",
@@ -29,36 +34,40 @@ def draw_graph(
 
     Edges are lines; a struck one is faint dots; one inside the ``group`` is drawn thick, and the names of the
     group stand in ``[ ]``. Maps stand between ``# #``. A ``laser``, in ``< >``, sends a dotted beam to everything
-    it must see. ``boxes``: where no two would touch, each name stands in a box that says what it is.
+    it must see. ``wrong``: pairs that collide and must not, as lines of their own. ``cursor``: a name that stands out.
+    ``boxes``: where no two would touch, each name stands in a box that says what it is.
     """
     names = [*_reduce_crossings(case), *([laser] if laser else [])]
     canvas = TextCanvas(width, height, glyphs)
-    if boxes and (placed := _place_boxes(case, names, group, laser, width, height)):
-        _draw_boxed_graph(canvas, case, placed, struck, group, laser)
+    edges = {edge: _edge_style(edge, struck, group) for edge in case.edges()}
+    lines = sorted((edges | dict.fromkeys(wrong, "wrong")).items(), key=lambda each: STYLE_RANK[each[1]])
+    labels = {name: _entity_label(case, name, group) for name in names}
+    if boxes and (placed := _place_boxes(case, labels, laser, cursor, width, height)):
+        _draw_boxed_graph(canvas, case, placed, lines, laser)
         return canvas.lines()
     positions = dict(zip(names, _ellipse_points(len(case.names), width, height), strict=False))
     if laser:
         positions[laser] = ((width - 1) / 2, (height - 1) / 2)
         for name in sorted(case.laser[laser].sees):
             canvas.line(positions[laser], positions[name], "beam")
-    for edge in sorted(case.edges(), key=lambda e: STYLE_RANK[_edge_style(e, struck, group)]):
-        canvas.line(positions[edge.a], positions[edge.b], _edge_style(edge, struck, group))
-    for name in names:
-        canvas.label(positions[name], *_entity_label(case, name, group))
+    for edge, style in lines:
+        canvas.line(positions[edge.a], positions[edge.b], style)
+    for name, (label, style) in labels.items():
+        canvas.label(positions[name], label, "cursor" if name == cursor else style)
     return canvas.lines()
 
 
 def _place_boxes(
     case: LayerCase,
-    names: Sequence[str],
-    group: Collection[str],
+    labels: Mapping[str, EntityLabel],
     laser: str | None,
+    cursor: str | None,
     width: int,
     height: int,
 ) -> dict[str, EntityBox] | None:
     """A box for every name on an ellipse that grows with their number; None where two boxes would touch."""
     count = len(case.names)
-    widest = max((len(_entity_label(case, name, names)[0]) for name in names), default=0) + 4
+    widest = max(map(len, labels), default=0) + 6  # a label is two columns wider than its name
     across = min((width - widest - 1) / 2, 20.0 + 8 * count)
     down = min((height - 1 - BOX_ROWS) / 2, 6.0 + 3 * count)
     if across <= 0 or down <= 0:
@@ -66,15 +75,14 @@ def _place_boxes(
     first = math.pi if count == 2 else -math.pi / 2
     middle = (width - 1) // 2, (height - 2) // 2 + 0.5  # a box of four rows has its middle between two
     placed: dict[str, EntityBox] = {}
-    for i, name in enumerate(names):
+    for i, (name, (label, style)) in enumerate(labels.items()):
         turn = first + math.tau * i / max(count, 1)
         x, y = middle[0] + across * math.cos(turn), middle[1] + math.floor(down * math.sin(turn) + 0.5)
         if name == laser:  # in the middle, but not on the only edge
             x, y = middle[0], middle[1] + (math.floor(down) if count == 2 else 0)
-        label, style = _entity_label(case, name, group)
         is_map = name != laser and case.by_name[name].kind == "map"
         kind = "laser" if name == laser else "map" if is_map else "body"
-        placed[name] = EntityBox((x, y), label, kind, style)
+        placed[name] = EntityBox((x, y), label, kind, style, name == cursor)
     apart = not any(one.touches(other) for one, other in combinations(placed.values(), 2))
     return placed if apart else None
 
@@ -83,12 +91,11 @@ def _draw_boxed_graph(
     canvas: TextCanvas,
     case: LayerCase,
     placed: Mapping[str, EntityBox],
-    struck: Collection[ContactRequirement],
-    group: Collection[str],
+    lines: Sequence[tuple[ContactRequirement, DrawingStyle]],
     laser: str | None,
 ) -> None:
-    for edge in sorted(case.edges(), key=lambda e: STYLE_RANK[_edge_style(e, struck, group)]):
-        canvas.line(placed[edge.a].middle, placed[edge.b].middle, _edge_style(edge, struck, group))
+    for edge, style in lines:
+        canvas.line(placed[edge.a].middle, placed[edge.b].middle, style)
     seen = sorted(case.laser[laser].sees) if laser else []
     for name in seen:
         canvas.line(placed[laser or ""].middle, placed[name].middle, "beam")
@@ -106,13 +113,14 @@ def _edge_style(
     return "struck" if edge in struck else "edge"
 
 
-def _entity_label(case: LayerCase, name: str, group: Collection[str]) -> tuple[str, DrawingStyle]:
-    if name in group:
-        return f"[{name}]", "group"
+def _entity_label(case: LayerCase, name: str, group: Collection[str]) -> EntityLabel:
     entity = case.by_name.get(name)
-    if entity is None:
-        return f"<{name}>", "laser"
-    return (f"#{name}#", "map") if entity.kind == "map" else (f" {name} ", "body")
+    is_map = entity is not None and entity.kind == "map"
+    style: DrawingStyle = "laser" if entity is None else "map" if is_map else "body"
+    ends = "<>" if entity is None else "##" if is_map else "  "
+    if name in group:
+        ends, style = "[]", "group"
+    return f"{ends[0]}{name}{ends[1]}", style
 
 
 def _ellipse_points(count: int, width: int, height: int) -> list[tuple[float, float]]:
@@ -122,12 +130,13 @@ def _ellipse_points(count: int, width: int, height: int) -> list[tuple[float, fl
     return [((width - 1) / 2 + across * math.cos(t), down + down * math.sin(t)) for t in turns]
 
 
-def _reduce_crossings(case: LayerCase) -> list[str]:
+@lru_cache(maxsize=8)
+def _reduce_crossings(case: LayerCase) -> tuple[str, ...]:
     """The entities around the ellipse, two swapped as long as that makes fewer edges cross."""
     order = list(case.names)
     edges = [(edge.a, edge.b) for edge in case.edges()]
     if len(order) > MAX_ENTITIES_IN_PICTURE:
-        return order
+        return tuple(order)
     best = _crossing_cost(order, edges)
     improved = True
     while improved and best > (0, 0):
@@ -139,7 +148,7 @@ def _reduce_crossings(case: LayerCase) -> list[str]:
                 best, improved = crossings, True
             else:
                 order[i], order[j] = order[j], order[i]
-    return order
+    return tuple(order)
 
 
 def _crossing_cost(order: Sequence[str], edges: Sequence[tuple[str, str]]) -> tuple[int, int]:

@@ -4,10 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Final, Literal
 
+from kit.document.rows import PLAIN, Row
+
 DrawingStyle = Literal[
-    "space", "edge", "struck", "group edge", "beam", "map", "body", "group", "laser", "text", "cursor"
+    "space",
+    "edge",
+    "struck",
+    "group edge",
+    "wrong",
+    "beam",
+    "map",
+    "body",
+    "group",
+    "laser",
+    "text",
+    "cursor",
 ]
 
 
@@ -24,13 +38,32 @@ DrawingLine = tuple[DrawingSpan, ...]
 
 
 _STYLE_ORDER: Final[tuple[DrawingStyle, ...]] = (
-    "space", "struck", "beam", "edge", "group edge", "text", "map", "body", "laser", "group",
+    "space", "struck", "beam", "edge", "group edge", "wrong", "text", "map", "body", "laser", "group",
     "cursor",
 )  # fmt: skip
 """Where two items meet in one character, the later style is shown."""
 
 
 STYLE_RANK: Final = {style: rank for rank, style in enumerate(_STYLE_ORDER)}
+
+
+_LOOKS: Final = MappingProxyType(
+    {
+        "struck": "dim",
+        "group edge": "good",
+        "group": "good",
+        "wrong": "bad",
+        "beam": "warn",
+        "laser": "warn",
+        "cursor": "key",
+    }
+)
+"""How the parts of a picture are written; each has a shape of its own too."""
+
+
+def drawn(lines: Iterable[DrawingLine]) -> list[Row]:
+    """A drawing as rows with tones."""
+    return [tuple((span.text, _LOOKS.get(span.style, PLAIN)) for span in line) for line in lines]
 
 
 def to_plain_lines(lines: Iterable[DrawingLine]) -> list[str]:

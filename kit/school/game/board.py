@@ -9,6 +9,7 @@ from typing import ClassVar, Final, Generic, TypeAlias, TypeVar
 
 from kit.breadth_first import reached_from
 from kit.document.rows import Row
+from kit.layers.drawing.spans import GlyphStyle
 from kit.school.game.judgement import Judgement
 
 State = TypeVar("State")
@@ -53,6 +54,10 @@ class Board(ABC):
     @abstractmethod
     def rows(self, scale: int = 1) -> list[Row]:
         """The board with its cursor, and what is to be counted. ``scale``: how many times larger than usual a drawing is."""
+
+    def drawing(self, width: int, height: int, glyphs: GlyphStyle) -> list[Row]:
+        """A picture of what ``rows`` tells, at most as large; empty where there is none, or no room for it."""
+        return []
 
     def details(self) -> list[Row]:
         """More that helps to solve it, which is shown where there is room."""
@@ -135,19 +140,28 @@ def letters_of(columns: int, rows: int) -> str:
 
 
 def grid_rows(grid: Grid, signs: Mapping[Cell, tuple[str, str]], scale: int = 1) -> list[Row]:
-    """A grid as rows, for each cell ``scale`` rows of twice as many columns. ``signs``: sign and style of cells that differ
-    from the drawing."""
+    """A grid as rows, for each cell ``scale`` rows of twice as many columns; walls at the edges of the grid are as thin as can be.
+    ``signs``: sign and style of cells that differ from the drawing."""
+    rows, columns = len(grid), max(map(len, grid))
+
+    def is_thin(number: int, count: int, line: Iterable[str]) -> bool:
+        return number in (0, count - 1) and all(sign == WALL for sign in line)
+
+    thick = [
+        1 if is_thin(column, columns, (line[column] for line in grid if column < len(line))) else scale
+        for column in range(columns)
+    ]
 
     def shown(row: int, column: int, part: int) -> tuple[str, str]:
         sign, style = signs.get((row, column)) or _plain_square(grid[row][column])
         if sign == FULL:
-            return sign * 2 * scale, style
+            return sign * 2 * thick[column], style
         return (sign if part == scale // 2 else " ").center(2 * scale - 1) + " ", style
 
     return [
         (("  ", ""), *_join_by_style(shown(row, column, part) for column in range(len(line))))
         for row, line in enumerate(grid)
-        for part in range(scale)
+        for part in range(1 if is_thin(row, rows, line) else scale)
     ]
 
 

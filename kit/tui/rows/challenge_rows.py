@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from kit.document.rows import Row, at_both_edges, lines_shown, row, row_text, side_by_side
+from kit.document.rows import Row, at_both_edges, lines_shown, row, row_text, row_width, side_by_side
+from kit.layers.drawing.spans import GlyphStyle
 from kit.plain_text import wrap
 from kit.school.game.board import Board
 from kit.school.game.challenge import Challenge
@@ -26,6 +27,8 @@ HEADER: Final = f"  {'challenge':<{TITLE_COLUMNS}} medal  lesson"
 LEAST_TEXT: Final = 36
 """Columns of a puzzle's text beside its board, at least."""
 WIDEST_TEXT: Final = 76
+DRAWING_SHARE: Final = 0.5
+"""Of the columns, for a drawing of a board."""
 LEAST_BOARD: Final = 60
 """Columns of a board that is no drawing."""
 GAP: Final = 2
@@ -82,13 +85,14 @@ def about_challenge(challenge: Challenge, medal: Medal, width: int) -> list[Row]
     ]
 
 
-def challenge_picture(challenge: Challenge, width: int, height: int) -> list[Row]:
+def challenge_picture(challenge: Challenge, width: int, height: int, glyphs: GlyphStyle) -> list[Row]:
     """What a challenge looks like before anybody has begun, as large as fits: its board, or the drawing of one that has none."""
     board = challenge.task.board("")
     if board is None:
         shown = [row((line, "code")) for line in challenge.task.lines()]
     else:
-        shown = board.rows(largest_drawing(board, width, height)[0])
+        scale, _ = largest_drawing(board, width, height)
+        shown = board.drawing(width, height, glyphs) or board.rows(scale)
     return [part for each in shown for part in _wrap_row(each, width)][:height]
 
 
@@ -108,13 +112,20 @@ def challenge_page(challenge: Challenge, file: Path | None, width: int) -> list[
 
 
 def puzzle_page(
-    challenge: Challenge, board: Board, judgement: Judgement | str, width: int, height: int
+    challenge: Challenge,
+    board: Board,
+    judgement: Judgement | str,
+    width: int,
+    height: int,
+    glyphs: GlyphStyle,
 ) -> list[Row]:
     """A puzzle below each other: what it asks for, its board, what the answer is worth. ``judgement``: or why there is none.
     Where there are too few rows, the story gives way first, then the sentence about the worth, then the task."""
     story, task, keys = _about_puzzle(challenge, board, width)
     worth, sentence = worth_now(judgement, width)
-    middle = [row(), *board.rows()]
+    around = sum(map(len, (story, task, keys, worth, sentence)))
+    scale, _ = largest_drawing(board, width, height - around - 1)
+    middle = [row(), *_with_drawing(board, board.rows(scale), width, height - around - 1, glyphs)]
     left_out = 0
     while True:
         parts = [
@@ -136,21 +147,53 @@ def puzzle_beside(
     judgement: Judgement | str,
     width: int,
     height: int,
+    glyphs: GlyphStyle,
     below: Sequence[Row] = (),
 ) -> list[Row]:
-    """A puzzle with its board at the left, as large as there is room for, and the rest beside it, with more ``below`` that where
-    it has room."""
-    scale, drawing = largest_drawing(board, width - LEAST_TEXT - GAP, height - 1)
-    column = min(max(LEAST_BOARD, drawing + GAP), width - LEAST_TEXT)
-    left = [each for shown in board.rows(scale) for each in _wrap_row(shown, column - GAP)]
+    """A puzzle with its picture at the left, as large as there is room for, and the rest beside it, with more ``below`` that
+    where it has room. The picture is the board, or a drawing of it, which then stands among the rest."""
+    drawing = board.drawing(int(width * DRAWING_SHARE), height - 1, glyphs)
+    if drawing:
+        column, left = max(map(row_width, drawing)) + GAP, drawing
+    else:
+        scale, columns = largest_drawing(board, width - LEAST_TEXT - GAP, height - 1)
+        column = min(max(LEAST_BOARD, columns + GAP), width - LEAST_TEXT)
+        left = [each for shown in board.rows(scale) for each in _wrap_row(shown, column - GAP)]
     room = min(width - column - 1, WIDEST_TEXT)
     story, task, keys = _about_puzzle(challenge, board, room)
     worth, sentence = worth_now(judgement, room)
-    text = [row(), *story, row(), *task, row(), *keys, row(), *worth, *sentence, row()]
-    text += below if len(text) + len(below) <= height else ()
     details = [part for each in board.details() for part in _wrap_row(each, room)]
-    text += [*details[: height - len(text)]]
+    about = [row(), *story, row(), *task, row(), *keys, row()]
+    table: list[Row] = []
+    if drawing:
+        cells, rest = _table_and_rest(board.rows())
+        told = [each for shown in rest for each in _wrap_row(shown, room)]
+        left_of = max(map(row_width, cells), default=0) + GAP
+        rows = len(about) + len(details) + len(told) + len(worth) + 1
+        if rows <= height and left_of + max(map(row_width, details), default=0) < width - column:
+            cells, details = side_by_side(cells, details, left_of), []
+        table = [*cells, *told, row()]
+    text = [*about, *table, *worth]
+    text += sentence if len(text) + len(sentence) <= height else ()
+    text += [row(), *below] if len(text) + len(below) < height else ()
+    text += [row(), *details][: max(0, height - len(text))]
     return side_by_side([row(), *left], text, column)
+
+
+def _with_drawing(
+    board: Board, rows: Sequence[Row], width: int, height: int, glyphs: GlyphStyle
+) -> list[Row]:
+    """A board with the drawing of it, if it has one, beside its table."""
+    table, rest = _table_and_rest(rows)
+    column = max(map(row_width, table), default=0) + GAP
+    drawing = board.drawing(width - column, max(len(table), height - len(rest)), glyphs)
+    return [*(side_by_side(table, drawing, column) if drawing else table), *rest]
+
+
+def _table_and_rest(rows: Sequence[Row]) -> tuple[list[Row], list[Row]]:
+    """A board's rows up to the first empty one, and from there on."""
+    count = next((number for number, each in enumerate(rows) if not each), len(rows))
+    return [*rows[:count]], [*rows[count:]]
 
 
 def largest_drawing(board: Board, width: int, height: int) -> tuple[int, int]:

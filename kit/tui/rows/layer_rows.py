@@ -2,34 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from types import MappingProxyType
 from typing import Final
 
-from kit.document.rows import PLAIN, Row, row
+from kit.document.rows import Row, row
 from kit.layers.drawing.graph import MAX_ENTITIES_IN_PICTURE, draw_graph
 from kit.layers.drawing.layer_grid import draw_layer_grid
-from kit.layers.drawing.spans import DrawingLine, GlyphStyle
+from kit.layers.drawing.spans import GlyphStyle, drawn
 from kit.layers.guided_tour import TourPage
 from kit.layers.requirements import LayerCase
 
 LEAST_WORDS_BESIDE: Final = 34
 """Columns for words beside a picture."""
 
-_LOOKS: Final = MappingProxyType(
-    {"struck": "dim", "group edge": "good", "group": "good", "beam": "warn", "laser": "warn", "cursor": "key"}
-)
-"""How the parts of a picture are written; each has a shape of its own too."""
-
 
 def words_width(width: int) -> int:
     """How many columns of a screen belong to words, the others to the picture."""
     return max(LEAST_WORDS_BESIDE, width * 7 // 16)
-
-
-def drawn(lines: Iterable[DrawingLine]) -> list[Row]:
-    """A drawing in the screen's styles."""
-    return [tuple((span.text, _LOOKS.get(span.style, PLAIN)) for span in line) for line in lines]
 
 
 def picture(case: LayerCase, page: TourPage, width: int, height: int, glyphs: GlyphStyle) -> list[Row]:

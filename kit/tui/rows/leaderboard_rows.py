@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from kit.document.blocks import Block, Cell, CellStyle, Column, Table, Text, Tone, ToneText
 from kit.plain_text import counted
@@ -61,14 +62,27 @@ def leaderboard_times(entries: Sequence[LeaderboardEntry]) -> Table:
     """The quickest drives of today's level and of each other. ``entries``: in the order of ``read_entries``."""
     titles = {daily_level(today()).id: "Today's level", **{each.id: each.title for each in all_levels()}}
     rows = tuple(
-        (title, _player_cell(each.name, each.is_mine), f"{each.seconds:.2f} s", _driver_text(each))
+        (title, *cells)
         for level, title in titles.items()
-        for each in [each for each in entries if each.level == level][
-            : BEST_TODAY if level.startswith(DAILY_PREFIX) else BEST
-        ]
+        for cells in _times_on(entries, level, BEST_TODAY if level.startswith(DAILY_PREFIX) else BEST)
     )
-    columns = (Column("", CellStyle.TEXT), Column("", CellStyle.TEXT), Column(""), Column("", CellStyle.TEXT))
-    return Table("times", "", columns, rows, grouped=True)
+    return Table("times", "", (Column("", CellStyle.TEXT), *_TIMES), rows, grouped=True)
+
+
+def todays_times(entries: Sequence[LeaderboardEntry]) -> Table:
+    """The quickest drives of today's level alone."""
+    return Table("today", "", _TIMES, tuple(_times_on(entries, daily_level(today()).id, BEST_TODAY)))
+
+
+_TIMES: Final = (Column("", CellStyle.TEXT), Column(""), Column("", CellStyle.TEXT))
+
+
+def _times_on(entries: Sequence[LeaderboardEntry], level: str, most: int) -> list[tuple[Cell, Cell, Cell]]:
+    """Player, time and driver of the quickest drives on a level."""
+    return [
+        (_player_cell(each.name, each.is_mine), f"{each.seconds:.2f} s", _driver_text(each))
+        for each in [each for each in entries if each.level == level][:most]
+    ]
 
 
 def times_to_beat(found: Sequence[LevelProgress], medals: Sequence[Medal]) -> Table:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from kit.document.blocks import Cell, CellStyle, Column, Table, Tone, ToneText
-from kit.document.layout import Page, rows_of
 from kit.document.rows import Row, row
 from kit.school.game.ghosts import Ghost
 from kit.school.game.levels import GameLevel, GameWorld, all_levels
@@ -53,16 +51,20 @@ def medal_counts(summary: GameSummary) -> str:
 
 
 def game_progress(summary: GameSummary) -> list[Row]:
-    """One row for all that was won, and one for each world: how many of its levels have a medal, and its belt."""
-    rows: list[tuple[Cell, ...]] = []
-    for title, entries in summary.best_by_world.items():
+    """One row for all that was won, and one for each world: the best medal of each of its levels, how many have one, and its
+    belt."""
+    worlds = summary.best_by_world
+    titles, signs = max(map(len, worlds)), max(map(len, worlds.values()))
+    rows = []
+    for title, entries in worlds.items():
         won = sum(medal is not Medal.NONE for medal in entries)
-        tone = Tone.BOLD if won else Tone.DIM
-        figures = (f"{won} of {len(entries)}", f"{belt_of(entries)} belt")
-        rows.append((title, *(ToneText(text, tone) for text in figures)))
-    columns = (Column("", CellStyle.TEXT), Column(""), Column("", CellStyle.TEXT))
-    table = Table("worlds", "", columns, tuple(rows))
-    return [row(f"  {medal_counts(summary)}"), row(), *rows_of([table], Page(margin=2))]
+        medals = ((MEDAL_SIGNS[medal], MEDAL_STYLES[medal]) for medal in entries)
+        blanks = " " * (signs - len(entries))
+        figures = f"{won:>2} of {len(entries):<3} {belt_of(entries)} belt"
+        rows.append(
+            row(f"  {title:<{titles}}  ", *medals, f"{blanks}  ", (figures, "bold" if won else "dim"))
+        )
+    return [row(f"  {medal_counts(summary)}"), row(), *rows]
 
 
 def still_in_reach(driver: DriverKind, reference: float, seconds: float, is_flawed: bool) -> str:

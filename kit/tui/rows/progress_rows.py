@@ -1,48 +1,99 @@
-"""A student's progress as rows of text."""
+"""A student's progress as rows of text, section by section."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from datetime import date, timedelta
 from typing import Final
 
-from kit.document.rows import Row, row
+from kit.document.blocks import Block
+from kit.document.layout import Page, rows_of
+from kit.document.rows import MARGIN, Row, row
+from kit.school.game.medal_in_reach import MedalInReach
 from kit.school.lessons.catalogue import LessonEntry
 from kit.tui.rows.lesson_list_rows import TITLE
+from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES
 from kit.tui.rows.progress_marks import mark, progress_bar, stars
+from kit.tui.rows.ruled_title import ruled_title
 
 STARS_LEGEND: Final = ("an exercise: *** all points, **. half", "or more, *.. some, ... none yet")
 """What ``stars`` means, on the page of progress."""
+WEEKDAYS: Final = ("Mon", "", "Wed", "", "Fri", "", "Sun")
+MOST_WEEKS: Final = 26
+LEVEL_TITLE: Final = 18
+"""Columns of a level's title."""
+STEPS: Final = 15
+"""Columns of a lesson's steps."""
+ROOM_FOR_STEPS: Final = 80
+BUSY: Final = ((1, "░"), (5, "▒"), (15, "█"))
+"""From how many things that were learned on a day on which sign stands for it."""
 
 
-def summary_rows(
-    game: Sequence[Row], quiz: Iterable[str], shelf: Sequence[LessonEntry], workspace: str
-) -> list[Row]:
-    """The game, the quiz, how to export everything, and how much of the lessons is done."""
+def section(title: str, rows: Sequence[Row], columns: int) -> list[Row]:
+    """Rows below their title, with an empty one after them."""
+    return [row("  ", *ruled_title(title, columns - 2 * MARGIN)), *rows, row()]
+
+
+def section_of(title: str, blocks: Sequence[Block], columns: int) -> list[Row]:
+    """Blocks below their title."""
+    return section(title, rows_of(blocks, Page(columns - 2 * MARGIN, MARGIN)), columns)
+
+
+def lesson_counts(shelf: Sequence[LessonEntry]) -> list[Row]:
+    """How much of the lessons is done, and what their stars mean."""
     readable = [each.progress for each in shelf if each.progress is not None]
     exercises = [(each, one.name) for each in readable for one in each.lesson.exercises]
     passed = sum(name in each.passed_exercises for each, name in exercises)
     return [
-        row(),
-        row("  ", ("Game", "bold")),
-        row(),
-        *game,
-        row(),
-        row("  ", ("Quiz", "bold")),
-        row(),
-        *(row("  " + each) for each in quiz),
-        row(),
-        row("  ", ("Export your progress", "bold")),
-        row(),
+        row(f"  {sum(each.is_completed for each in readable)} of {len(shelf)} done"),
+        row(f"  {passed} of {len(exercises)} exercises passed"),
+        *(row((f"  {line}", "dim")) for line in STARS_LEGEND),
+    ]
+
+
+def export_rows(workspace: str) -> list[Row]:
+    """How to take everything along."""
+    return [
         row("  ", ("kit progress export FILE", "code"), " writes it to a"),
         row("  file, for another machine or your teacher;"),
         row("  ", ("kit progress import FILE", "code"), " reads it there."),
         row((f"  Saved in {workspace}", "dim")),
-        row(),
-        row("  ", ("Lessons", "bold")),
-        row(),
-        row(f"  {sum(each.is_completed for each in readable)} of {len(shelf)} done"),
-        row(f"  {passed} of {len(exercises)} exercises passed"),
-        *(row((f"  {line}", "dim")) for line in STARS_LEGEND),
+    ]
+
+
+def calendar_rows(days: Mapping[date, int], today: date, columns: int) -> list[Row]:
+    """The last weeks, a column each, with a sign for each day that says how much was learned on it; the names of months above."""
+    label = len(WEEKDAYS[0]) + MARGIN + 1
+    weeks = max(1, min(MOST_WEEKS, (columns - label - MARGIN) // 2))
+    monday = today - timedelta(days=today.weekday() + 7 * (weeks - 1))
+    starts = [monday + timedelta(weeks=number) for number in range(weeks)]
+    months = [" "] * (2 * weeks + 2)
+    for number, start in enumerate(starts[:-1]):
+        if start.day <= 7:
+            months[2 * number : 2 * number + 3] = f"{start:%b}"
+    rows = [row(" " * label, ("".join(months).rstrip(), "dim"))]
+    for weekday, name in enumerate(WEEKDAYS):
+        parts: list[str | tuple[str, str]] = [(f"  {name:<{label - MARGIN}}", "dim")]
+        for start in starts:
+            day = start + timedelta(days=weekday)
+            sign = next((sign for least, sign in reversed(BUSY) if days.get(day, 0) >= least), "")
+            shown = (f"{sign} ", "good") if sign else ("· " if day <= today else "  ", "dim")
+            parts.append(shown)
+        rows.append(row(*parts))
+    legend = "  ".join(f"{sign} {least} or more" for least, sign in BUSY)
+    return [*rows, row((f"{' ' * label}{legend}", "dim"))]
+
+
+def reach_rows(medals: Iterable[MedalInReach]) -> list[Row]:
+    """The next medals, with what was driven and what they ask for."""
+    return [
+        row(
+            f"  {each.level.title:<{LEVEL_TITLE}.{LEVEL_TITLE}}  ",
+            (f"{each.driver.phrase:<11}{each.seconds:>7.2f} s   ", "dim"),
+            (MEDAL_SIGNS[each.medal], MEDAL_STYLES[each.medal]),
+            f" {each.medal.title} at {each.asked:.2f} s",
+        )
+        for each in medals
     ]
 
 
@@ -58,15 +109,16 @@ def lesson_rows(shelf: Sequence[LessonEntry]) -> list[Row]:
     return made
 
 
-def short_lesson_rows(shelf: Sequence[LessonEntry]) -> list[Row]:
-    """A row for each lesson, with the stars of its exercises where it was begun."""
+def short_lesson_rows(shelf: Iterable[LessonEntry], columns: int) -> list[Row]:
+    """A row for each lesson, with its steps where there is room, and the stars of its exercises where it was begun."""
     made = []
     for entry in shelf:
         progress, parts = entry.progress, _lesson_row(entry)
-        if progress is not None and entry.has_started:
-            earned = " ".join(stars(progress, one.name) for one in progress.lesson.exercises)
+        if progress is not None:
             blanks = " " * max(0, TITLE - len(entry.title))
-            parts = (*parts, (f"{blanks}  {earned}", "dim"))
+            bar = f"{progress_bar(progress):<{STEPS}}" if columns >= ROOM_FOR_STEPS else ""
+            earned = " ".join(stars(progress, one.name) for one in progress.lesson.exercises)
+            parts = (*parts, *row(f"{blanks}  {bar}", (earned if entry.has_started else "", "dim")))
         made.append(parts)
     return made
 

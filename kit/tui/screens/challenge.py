@@ -13,7 +13,7 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 
 from kit.dialogue.actions import ScreenActions
-from kit.document.rows import Row, broken, row
+from kit.document.rows import Row, broken, row, row_width, side_by_side
 from kit.host.file_watcher import FileWatcher
 from kit.learning.training.run_folders import list_runs
 from kit.school.game.challenge import AnswerError, AnswerSubmission, Challenge
@@ -29,7 +29,7 @@ from kit.tui.rows.medal_rows import medal_drawing
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.level_pictures import task_picture
 from kit.tui.screens.picker import Picker, PickerItem
-from kit.tui.screens.text_screen import COLUMN, TextScreen
+from kit.tui.screens.text_screen import TextScreen
 from kit.tui.suspend import edit_aside
 from kit.tui.widgets.program_colours import LANGUAGES, coloured_rows
 from kit.tui.widgets.text_rows import TextRows
@@ -41,6 +41,11 @@ if TYPE_CHECKING:
 
 WIDE: Final = 118
 """Columns from which on something stands beside the text."""
+COLUMN: Final = 80
+"""Columns of the text there; on a screen of less than twice as many, as many as it takes."""
+GAP: Final = 2
+LEAST_BESIDE: Final = 54
+"""Columns without which it stands below the text."""
 POLL_S: Final = 0.2
 """Between two looks at the answer's file and at the check [s]."""
 NO_RUNS: Final = (
@@ -78,6 +83,8 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
         self._file, seconds = self._prepare()
         self._clock_began_at = time.monotonic() - seconds
         self._watch = None if self._file is None else FileWatcher(self._file)
+        self._beside: tuple[Row, ...] = ()
+        """What the answer is about, beside the page."""
         self._result: list[Row] = []
         self._won = Medal.NONE
         """The medal that was just won, which is drawn where there is room."""
@@ -110,6 +117,13 @@ class ChallengeScreen(TextScreen, inherit_bindings=False):
     def _page(self, width: int) -> list[Row]:
         """What the challenge asks for, in rows of at most ``width`` columns."""
         return challenge_page(self._challenge, self._file, min(width, COLUMN - 2) if width >= WIDE else width)
+
+    def _arranged(self, width: int, height: int) -> list[Row]:
+        column = COLUMN if width >= 2 * COLUMN else max(map(row_width, self._rows), default=0) + GAP
+        if not self._beside or column + LEAST_BESIDE > width:
+            return [*self._rows, *self._beside]
+        right = [each for parts in self._beside for each in broken(parts, width - column)]
+        return side_by_side(self._rows, right, column)
 
     @work(exclusive=True, group="beside")
     async def _draw_beside(self) -> None:

@@ -22,7 +22,7 @@ from kit.tui.rows.key_rows import footer
 from kit.tui.rows.ruled_title import ruled_title
 from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.screens.picker import Picker, PickerItem
-from kit.tui.screens.text_screen import TextScreen
+from kit.tui.screens.text_screen import page_screen
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 from kit.tui.widgets.world_view import WorldView
 
@@ -377,8 +377,7 @@ class DialogueScreen(RowsScreen[None]):
         follows: Callable[[], Effect] = _no_effect
         match effect:
             case Tell(title, blocks):
-                page = Page(text_width(self.room.width), MARGIN)
-                await self.app.push_screen_wait(TextScreen(title, [row(), *rows_of(blocks, page)]))
+                await self.app.push_screen_wait(page_screen(title, blocks))
             case Choose(title, options, then, selected):
                 items = [PickerItem(str(at), name, text) for at, (name, text) in enumerate(options)]
                 chosen = await self.app.push_screen_wait(Picker(title, items, str(selected)))

@@ -17,11 +17,11 @@ from kit.dialogue.screen_action import ScreenAction, letter
 from kit.document.rows import at_both_edges, row
 from kit.layers.case_table import CaseTable, RowKind
 from kit.layers.drawing.matrix import draw_matrix
-from kit.layers.drawing.spans import GlyphStyle, to_plain_lines
+from kit.layers.drawing.spans import GlyphStyle, drawn, to_plain_lines
 from kit.layers.guided_tour import TourPage as Step
 from kit.layers.requirements import LayerCase, LayerCaseError
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.layer_rows import drawn, picture, words_width
+from kit.tui.rows.layer_rows import picture, words_width
 from kit.tui.screens.dialogs import HelpDialog
 from kit.tui.widgets.text_rows import RowsScreen, TextRows
 

@@ -19,7 +19,6 @@ from kit.dialogue.screen_action import ScreenAction, digits, letter
 from kit.document.rows import Row, at_both_edges, row, window
 from kit.layers.case_sources import PlanningTask, UnknownPlanningTask, open_task, solve_task
 from kit.layers.drawing.graph import MAX_ENTITIES_IN_PICTURE
-from kit.layers.drawing.spans import GlyphStyle
 from kit.layers.examples import EXAMPLES
 from kit.layers.flatland.world_planning import WorldPlan
 from kit.layers.guided_tour import GreedyTour, TourPart, case_page, method_pages, plan_pages
@@ -90,7 +89,7 @@ class LayersScreen(RowsScreen[None]):
 
     def __init__(self, theme: Theme, task: PlanningTask, title: str, *, saved_to: Path) -> None:
         super().__init__()
-        self._glyphs: GlyphStyle = "ascii" if theme.terminal.glyphs.value == "ascii" else "braille"
+        self._glyphs = theme.graph_glyphs
         self._folder = saved_to
         self._asked, self._title = task, title
         self._method = self._usual = GreedyTour(task.case)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import getpass
 from asyncio import to_thread
-from typing import ClassVar
+from collections.abc import Sequence
+from typing import ClassVar, Final
 
 from textual import events, work
 from textual.binding import BindingType
@@ -13,21 +14,38 @@ from kit.dialogue.actions import ScreenActions
 from kit.dialogue.screen_action import letter
 from kit.document.blocks import Block, Table, Text, Tone
 from kit.document.layout import Page, rows_of
-from kit.document.rows import MARGIN, Row, row, row_width
-from kit.document.tables import table_columns
+from kit.document.rows import MARGIN, Row, row, row_width, side_by_side
+from kit.document.tables import table_columns, table_rows
 from kit.school.game import leaderboard
+from kit.school.game.daily import daily_level, today
 from kit.school.game.drive_records import join_leaderboard
 from kit.school.game.levels import all_levels
 from kit.school.game.medal import RUNGS
+from kit.school.game.medal_in_reach import medals_in_reach
 from kit.school.game.player_progress import LevelProgress, level_progress
 from kit.school.progress import EventKind, ProgressError, ProgressJournal
 from kit.tui.rows.key_rows import bindings, footer
-from kit.tui.rows.leaderboard_rows import leaderboard_standings, leaderboard_times, times_to_beat
+from kit.tui.rows.leaderboard_rows import (
+    leaderboard_standings,
+    leaderboard_times,
+    times_to_beat,
+    todays_times,
+)
+from kit.tui.rows.progress_rows import reach_rows
+from kit.tui.rows.ruled_title import ruled_title
 from kit.tui.screens.dialogs import MessageDialog
+from kit.tui.screens.level_pictures import picture_of
 from kit.tui.screens.text_screen import TextScreen
+from kit.tui.theme import Theme
 from kit.tui.widgets.text_rows import TextRows
 from kit.workspace import Workspace
 from kit.world.problems import WorldError
+
+WIDE: Final = 150
+"""Columns from which today's level stands beside the times."""
+MAP_ROWS: Final = 24
+MOST_IN_REACH: Final = 8
+"""Medals that are named."""
 
 
 class LeaderboardScreen(TextScreen, inherit_bindings=False):
@@ -43,8 +61,9 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
     )  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = bindings(screen_actions)
 
-    def __init__(self, journal: ProgressJournal, workspace: Workspace) -> None:
+    def __init__(self, theme: Theme, journal: ProgressJournal, workspace: Workspace) -> None:
         super().__init__("Leaderboard", ())
+        self._theme = theme
         self._progress = journal
         self._workspace = workspace
         self._folder = leaderboard.leaderboard_folder()
@@ -53,6 +72,8 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         self._standings: list[Block] = [Text("Running the drives again ...", Tone.DIM)]
         self._times: tuple[Table, ...] = ()
         """The same times, the table that tells most first."""
+        self._today: list[Row] = []
+        """What stands beside them on a wide screen."""
 
     def on_mount(self) -> None:
         self._read()
@@ -61,6 +82,17 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         self._width = 0  # Textual calls the inherited handler after this one, which then wraps the rows again
 
     def _arranged(self, width: int, height: int) -> list[Row]:
+        """The standings and times, and beside them today's level and the player's next medals where there is room."""
+        if width < WIDE:
+            return self._board(width, height)
+        column = width - self._today_columns
+        return side_by_side(self._board(column, height), [row(), *self._today], column)
+
+    @property
+    def _today_columns(self) -> int:
+        return self.size.width * 2 // 5
+
+    def _board(self, width: int, height: int) -> list[Row]:
         """The standings, and below them the times, in as many columns as there is room for."""
         page = Page(width=width - 2 * MARGIN, margin=MARGIN)
         rows = [row(), *rows_of(self._standings, page)]
@@ -75,13 +107,34 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
         """Judges the drives, which takes a moment where they were not judged before."""
         self._has_joined = leaderboard.has_joined(self._folder)
         entries = await to_thread(leaderboard.read_entries, self._folder)
-        own = () if entries else await to_thread(self._own_progress)
+        own = await to_thread(self._own_progress)
+        self._today = await to_thread(self._beside, entries, own) if self.size.width >= WIDE else []
         self._standings = leaderboard_standings(leaderboard.standings(entries), self._offer)
         to_beat = (times_to_beat(own, medals) for medals in (RUNGS[:-1], RUNGS[1:3], RUNGS[2:3], ()))
         self._times = (leaderboard_times(entries),) if entries else tuple(to_beat)
         self._width = 0
         if self.query(TextRows):  # not where the screen was left meanwhile
             self._show()
+
+    def _beside(
+        self, entries: Sequence[leaderboard.LeaderboardEntry], own: Sequence[LevelProgress]
+    ) -> list[Row]:
+        """Today's level with its board, and the player's next medals."""
+        level = daily_level(today())
+        columns, glyphs = self._today_columns - MARGIN, self._theme.terminal.glyphs.value
+        times = table_rows(todays_times(entries), columns).entries
+        nearest = medals_in_reach(own)[:MOST_IN_REACH]
+        return [
+            ruled_title("today's level", columns, level.title),
+            *map(row, picture_of(level, columns, MAP_ROWS, glyphs)),
+            row(),
+            *(
+                [each for rows in times for each in rows]
+                or [row(("Nobody on the board has driven it yet.", "dim"))]
+            ),
+            row(),
+            *([ruled_title("your nearest medals", columns), *reach_rows(nearest)] if nearest else []),
+        ]
 
     def _own_progress(self) -> tuple[LevelProgress, ...]:
         try:
@@ -93,8 +146,10 @@ class LeaderboardScreen(TextScreen, inherit_bindings=False):
     def _offer(self) -> str:
         """What the key for it does."""
         if self._has_joined:
-            return "You are on it; j takes your name and drives off. What you drove first stays yours."
-        return f"j puts you on it as {self._player_name}: all users here see name and drives."
+            return (
+                "You are on it. j takes your name and drives off; a drive that was yours first stays yours."
+            )
+        return f"j adds you as {self._player_name}: everyone on this machine sees your name and drives."
 
     def _keys(self) -> Row:
         labels = {"join": "leave" if self._has_joined else "join"}

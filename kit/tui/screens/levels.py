@@ -296,7 +296,9 @@ class LevelsScreen(RowsScreen[None]):
         )
         if has_picture:
             height = height if is_beside else self._rows("map").size.height - len(heading)
-            picture = challenge_rows.challenge_picture(chosen, width - column - 1, height)
+            picture = challenge_rows.challenge_picture(
+                chosen, width - column - 1, height, self._theme.graph_glyphs
+            )
             below = [row(), *about] if is_beside else []
             listed = side_by_side([*listed, *below], picture, column)
         listed = [*heading, *listed]
@@ -593,7 +595,7 @@ class LevelsScreen(RowsScreen[None]):
         )
 
     def action_leaderboard(self) -> None:
-        self.app.push_screen(LeaderboardScreen(self._progress, self._workspace))
+        self.app.push_screen(LeaderboardScreen(self._theme, self._progress, self._workspace))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """While a drive is being prepared, nothing takes its place: a key that is pressed again would end it."""

@@ -3,34 +3,87 @@
 from __future__ import annotations
 
 from asyncio import to_thread
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import date, datetime
+from typing import Any, Final
 
 from textual.screen import Screen
 
-from kit.document.layout import lines_of
+from kit.document.blocks import Block, Text
 from kit.document.rows import Row, row
+from kit.school.badges import Streak, badge_table, badges, learning_days, streak
+from kit.school.game.medal_in_reach import MedalInReach, medals_in_reach
 from kit.school.lessons.catalogue import LessonEntry
-from kit.school.progress import EventKind
+from kit.school.lessons.reading import read_units
+from kit.school.progress import EventKind, ProgressEvent
 from kit.school.quiz.items import read_bank
-from kit.tui.rows.progress_rows import lesson_rows, short_lesson_rows, summary_rows
+from kit.tui.rows.progress_rows import (
+    calendar_rows,
+    export_rows,
+    lesson_counts,
+    lesson_rows,
+    reach_rows,
+    section,
+    section_of,
+    short_lesson_rows,
+)
 from kit.tui.screens.dialogs import MessageDialog
-from kit.tui.screens.text_screen import TextScreen
-from kit.tui.student_store import StudentOverview, StudentStore
+from kit.tui.screens.text_screen import LEAST_COLUMN, SectionsScreen
+from kit.tui.student_store import StudentStore
 from kit.world.problems import WorldError
 
+MOST_IN_REACH: Final = 5
+"""Medals that are named."""
 
-class ProgressScreen(TextScreen):
+
+NO_STREAK: Final = Streak(0, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class ProgressSummary:
+    """All that is shown of one student."""
+
+    shelf: Sequence[LessonEntry]
+    workspace: str
+    today: date
+    game: Sequence[Row] = ()
+    in_reach: Sequence[MedalInReach] = ()
+    """The next medals, the nearest first."""
+    days: Mapping[date, int] = field(default_factory=dict)
+    """How much was learned on each day on which anything was."""
+    streak: Streak = NO_STREAK
+    badges: Sequence[Block] = ()
+    quiz: Sequence[Block] = (Text("Nothing answered yet."),)
+
+
+class ProgressScreen(SectionsScreen):
     """Shows all that was done; the lessons beside the rest where there is room, each in one row."""
 
-    def __init__(self, summary: Sequence[Row], shelf: Sequence[LessonEntry]) -> None:
-        super().__init__("Progress", summary, short_lesson_rows(shelf))
-        self._shelf = shelf
+    def __init__(self, summary: ProgressSummary) -> None:
+        super().__init__("Progress", self._told, fewest=2)
+        self._summary = summary
 
-    def _arranged(self, width: int, height: int) -> list[Row]:
-        if not self._column:
-            return [*self._rows, row(), *lesson_rows(self._shelf)]
-        return super()._arranged(width, height)
+    def _told(self, columns: int) -> list[Sequence[Row]]:
+        """The sections for a column of this width."""
+        told = self._summary
+        is_alone = columns > self._width - LEAST_COLUMN
+        parts = [section("the game", told.game, columns)]
+        if told.in_reach:
+            parts.append(section("nearest medals", reach_rows(told.in_reach), columns))
+        if told.days:
+            days = [row(f"  {told.streak.describe()}"), row(), *calendar_rows(told.days, told.today, columns)]
+            parts.append(section("days", days, columns))
+        parts.append(section_of("quiz", told.quiz, columns))
+        if told.badges:
+            parts.append(section_of("badges", told.badges, columns))
+        parts.append(section("export your progress", export_rows(told.workspace), columns))
+        counts = section("lessons", lesson_counts(told.shelf), columns)
+        return [
+            *parts,
+            counts,
+            lesson_rows(told.shelf) if is_alone else short_lesson_rows(told.shelf, columns),
+        ]
 
 
 async def show_progress(screen: Screen[Any], store: StudentStore) -> None:
@@ -39,40 +92,54 @@ async def show_progress(screen: Screen[Any], store: StudentStore) -> None:
     if isinstance(found, str):
         screen.app.push_screen(MessageDialog("Progress cannot be read", found))
     else:
-        overview, summary = found
-        await screen.app.push_screen_wait(ProgressScreen(summary, overview.shelf))
+        await screen.app.push_screen_wait(ProgressScreen(found))
 
 
-def _read(store: StudentStore) -> tuple[StudentOverview, list[Row]] | str:
+def _read(store: StudentStore) -> ProgressSummary | str:
     """Reads the lessons and all else, or the problem; runs in another thread, since there are many files."""
     overview = store.read_overview()
     if overview.problem:
         return overview.problem
-    return overview, summary_rows(_game(store), _quiz(store), overview.shelf, str(store.workspace.folder))
+    events = store.progress().events()
+    today = datetime.now().astimezone().date()
+    game, in_reach = _game(store)
+    in_a_row, days = streak(events, today), learning_days(events)
+    won = badges(overview.shelf, read_units(), in_a_row, events)
+    return ProgressSummary(
+        overview.shelf,
+        str(store.workspace.folder),
+        today,
+        game,
+        in_reach,
+        days,
+        in_a_row,
+        [badge_table(won)] if any(each.done for each in won) else (),
+        _quiz(events),
+    )
 
 
-def _game(store: StudentStore) -> list[Row]:
+def _game(store: StudentStore) -> tuple[list[Row], list[MedalInReach]]:
     from kit.school.game.challenges import game_summary
     from kit.tui.rows.level_rows import game_progress
 
     try:
-        return game_progress(game_summary(store.progress().events(EventKind.FINISH)))
+        summary = game_summary(store.progress().events(EventKind.FINISH))
     except (WorldError, FileNotFoundError) as error:
-        return [row(f"  {line}") for line in str(error).splitlines()]
+        return [row(f"  {line}") for line in str(error).splitlines()], []
+    return game_progress(summary), medals_in_reach(summary.levels)[:MOST_IN_REACH]
 
 
-def _quiz(store: StudentStore) -> list[str]:
+def _quiz(events: list[ProgressEvent]) -> list[Block]:
     from kit.school.quiz.answers import answers_from_events
     from kit.school.quiz.quiz_session import local_now
     from kit.school.quiz.quiz_text import scores_blocks
     from kit.school.quiz.schedule import build_schedule
 
-    events = store.progress().events()
     try:
         bank = read_bank()
     except (WorldError, FileNotFoundError) as error:
-        return str(error).splitlines()
+        return [Text(line, is_tight=True) for line in str(error).splitlines()]
     answers = answers_from_events(events)
     if not answers:
-        return ["Nothing answered yet."]
-    return lines_of(scores_blocks(bank, answers, build_schedule(bank, events, local_now())))
+        return [Text("Nothing answered yet.")]
+    return scores_blocks(bank, answers, build_schedule(bank, events, local_now()))

@@ -70,9 +70,12 @@ class PuzzleScreen(ChallengeScreen, inherit_bindings=False):
         except AnswerError as error:  # which says how an answer is written: nobody writes who has not begun
             judgement = str(error) if self._board.answer.strip() else ""
         height = self.size.height - 2 - len(self._result_rows())
+        glyphs = self._theme.graph_glyphs
         if width >= WIDE:
-            return puzzle_beside(self._challenge, self._board, judgement, width, height, self._drawing)
-        return puzzle_page(self._challenge, self._board, judgement, width, height)
+            return puzzle_beside(
+                self._challenge, self._board, judgement, width, height, glyphs, self._drawing
+            )
+        return puzzle_page(self._challenge, self._board, judgement, width, height, glyphs)
 
     @property
     def _draws_beside(self) -> bool:

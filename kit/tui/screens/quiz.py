@@ -7,8 +7,6 @@ from typing import Any
 
 from textual.screen import Screen
 
-from kit.document.layout import Page, rows_of
-from kit.document.rows import MARGIN, row
 from kit.school.lessons.reading import lesson_number, lesson_title
 from kit.school.progress import ProgressError, ProgressJournal
 from kit.school.quiz.answers import answers_from_events
@@ -28,7 +26,7 @@ from kit.school.quiz.schedule import build_schedule
 from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.tui.screens.picker import Picker, PickerItem
-from kit.tui.screens.text_screen import TextScreen
+from kit.tui.screens.text_screen import page_screen
 from kit.world.problems import WorldError
 
 TWELVE, TODAY, SCORES = "twelve", "today", "scores"
@@ -59,9 +57,7 @@ async def choose_questions(screen: Screen[Any], journal: ProgressJournal) -> Non
     chosen = await screen.app.push_screen_wait(Picker("Questions", choices))
     if chosen == SCORES:
         blocks = scores_blocks(bank, answers_from_events(events), schedule)
-        await screen.app.push_screen_wait(
-            TextScreen("Scores", [row(), *rows_of(blocks, Page(margin=MARGIN))])
-        )
+        await screen.app.push_screen_wait(page_screen("Scores", blocks))
     elif chosen is not None:
         await _ask(screen, journal, bank, plans[chosen])
 

@@ -1,8 +1,9 @@
-"""A screen of text alone, which scrolls."""
+"""Screens of text alone, which scroll."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import ClassVar, Final
 
 from textual import events
@@ -10,16 +11,15 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 
 from kit.dialogue.actions import ScreenActions
-from kit.document.rows import Row, at_both_edges, broken, lines_shown, row, row_width, side_by_side
+from kit.document.blocks import Block
+from kit.document.layout import Page, sections_of
+from kit.document.rows import MARGIN, Row, at_both_edges, broken, in_columns, lines_shown, row, text_width
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.textual_patches import ActivePaintScreen
 from kit.tui.widgets.text_rows import TextRows
 
-COLUMN: Final = 80
-"""Columns of the left one of two texts beside each other, where there is room for two of them."""
-COLUMNS_BETWEEN: Final = 2
-LEAST_BESIDE: Final = 54
-"""Columns without which nothing stands beside the rest."""
+LEAST_COLUMN: Final = 56
+"""Columns without which no text stands beside another."""
 
 
 class TextScreen(ActivePaintScreen[None]):
@@ -34,12 +34,10 @@ class TextScreen(ActivePaintScreen[None]):
     TextScreen #body { height: 1fr; }
     """
 
-    def __init__(self, title: str, rows: Sequence[Row], beside: Sequence[Row] = ()) -> None:
-        """``beside``: more rows, to the right of the others where there is room, else below them."""
+    def __init__(self, title: str, rows: Sequence[Row]) -> None:
         super().__init__()
         self._title = title
         self._rows = tuple(rows)
-        self._beside = tuple(beside)
         self._shown: list[Row] = []
         """The same on as many rows as the width asks for."""
         self._width = 0
@@ -72,19 +70,7 @@ class TextScreen(ActivePaintScreen[None]):
 
     def _arranged(self, width: int, height: int) -> list[Row]:
         """All rows in the order in which they stand; what is too wide is broken afterwards. ``height``: without scrolling."""
-        column = self._column
-        if not column:
-            return [*self._rows, *self._beside]
-        right = [each for parts in self._beside for each in broken(parts, width - column)]
-        return side_by_side(self._rows, right, column)
-
-    @property
-    def _column(self) -> int:
-        """The column of what stands beside the rest; 0 where there is no room, or nothing."""
-        if not self._beside or self._width >= 2 * COLUMN:
-            return COLUMN if self._beside else 0
-        column = max(map(row_width, self._rows), default=0) + COLUMNS_BETWEEN
-        return column if column + LEAST_BESIDE <= self._width else 0
+        return [*self._rows]
 
     @property
     def _rows_below(self) -> int:
@@ -104,3 +90,28 @@ class TextScreen(ActivePaintScreen[None]):
 
     def action_back(self) -> None:
         self.dismiss()
+
+
+class SectionsScreen(TextScreen):
+    """Shows sections of text, in columns where they take more rows than the screen has and there is room."""
+
+    def __init__(
+        self, title: str, sections: Callable[[int], Sequence[Sequence[Row]]], fewest: int = 1
+    ) -> None:
+        """As in ``in_columns``."""
+        super().__init__(title, ())
+        self._sections = sections
+        self._fewest = fewest
+
+    def _arranged(self, width: int, height: int) -> list[Row]:
+        placed = in_columns(self._sections, width, height - 1, LEAST_COLUMN, self._fewest)
+        return placed if len(placed) == height else [row(), *placed]
+
+
+def page_screen(title: str, blocks: Sequence[Block]) -> SectionsScreen:
+    """A screen with a text."""
+    return SectionsScreen(title, partial(_text_sections, blocks))
+
+
+def _text_sections(blocks: Sequence[Block], columns: int) -> list[list[Row]]:
+    return sections_of(blocks, Page(text_width(columns), MARGIN))

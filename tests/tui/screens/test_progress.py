@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+from datetime import date, timedelta
 from pathlib import Path
 
 import pytest
 from textual.pilot import Pilot
 
 from kit.controllers import prepare_workspace
+from kit.document.rows import row_text
 from kit.school.progress import EventKind, ProgressJournal
-from kit.tui.rows.progress_rows import STARS_LEGEND, summary_rows
-from kit.tui.screens.progress import ProgressScreen
+from kit.tui.rows.progress_rows import BUSY, STARS_LEGEND, calendar_rows
+from kit.tui.screens.progress import ProgressScreen, ProgressSummary
 from kit.tui.student_store import StudentStore
 from tests.tui.lesson_folder import write_lessons
 from tests.tui.lesson_stage import rows, seen, stage, text
 
+MONDAY = date(2026, 11, 30)
+
 
 @pytest.mark.parametrize("count", [None, 3], ids=["the kit's", "begun"])
-def test_all_lessons_stand_on_one_page_beside_the_rest_at_120x35(tmp_path: Path, count: int | None) -> None:
+@pytest.mark.parametrize("size", [(120, 35), (200, 50)], ids=lambda size: f"{size[0]}x{size[1]}")
+def test_all_lessons_stand_on_one_page_beside_the_rest(
+    tmp_path: Path, count: int | None, size: tuple[int, int]
+) -> None:
     workspace = prepare_workspace(tmp_path / "home")
     folder = None if count is None else write_lessons(tmp_path / "lessons", more=count)
     if count is not None:
@@ -25,7 +32,6 @@ def test_all_lessons_stand_on_one_page_beside_the_rest_at_120x35(tmp_path: Path,
             progress.add(EventKind.STEP, "01-colours/1")
     store = StudentStore(workspace, folder) if folder else StudentStore(workspace)
     shelf = store.read_overview().shelf
-    summary = summary_rows((), ["Nothing answered yet."], shelf, "home")
 
     async def scene(pilot: Pilot[None]) -> None:
         await seen(pilot, STARS_LEGEND[0])
@@ -35,7 +41,7 @@ def test_all_lessons_stand_on_one_page_beside_the_rest_at_120x35(tmp_path: Path,
         for each in begun:
             assert any(f"[~] {each.title} " in line and "..." in line for line in rows(pilot))
 
-    stage(lambda theme: ProgressScreen(summary, shelf), scene, size=(120, 35))
+    stage(lambda theme: ProgressScreen(ProgressSummary(shelf, "home", MONDAY)), scene, size=size)
 
 
 def test_a_lesson_that_was_begun_names_its_exercises_where_lessons_stand_below(tmp_path: Path) -> None:
@@ -46,10 +52,24 @@ def test_a_lesson_that_was_begun_names_its_exercises_where_lessons_stand_below(t
     shelf = store.read_overview().shelf
 
     async def scene(pilot: Pilot[None]) -> None:
-        await seen(pilot, "Quiz")
+        await seen(pilot, "quiz")
         await pilot.press("end")
         first = shelf[0].progress
         assert first is not None
         await seen(pilot, f"{first.lesson.exercises[0].name} ...")
 
-    stage(lambda theme: ProgressScreen(summary_rows((), (), shelf, "home"), shelf), scene, size=(80, 24))
+    stage(lambda theme: ProgressScreen(ProgressSummary(shelf, "home", MONDAY)), scene, size=(80, 24))
+
+
+def test_the_calendar_ends_today_and_shows_how_busy_each_day_was() -> None:
+    (some, light), *_, (many, full) = BUSY
+    days = {MONDAY: many, MONDAY - timedelta(days=2): some}
+    months, monday, *others, legend = map(row_text, calendar_rows(days, MONDAY, 60))
+    saturday = others[4]
+    assert "Nov" in months
+    assert monday.endswith(full)
+    assert saturday.endswith(f"{light}"), "days to come are blank"
+    assert saturday.rindex(light) == monday.rindex(full) - 2, "a week is a column"
+    assert sum(line.count(sign) for line in (monday, *others) for _, sign in BUSY) == 2
+    assert light in legend
+    assert max(map(len, (months, monday, *others))) <= 60

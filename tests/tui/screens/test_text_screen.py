@@ -1,11 +1,12 @@
-"""A screen of text: long rows go on below and are counted."""
+"""Screens of text: long rows go on below and are counted; a long text stands in columns where there is room."""
 
 from __future__ import annotations
 
 from textual.pilot import Pilot
 
-from kit.document.rows import row
-from kit.tui.screens.text_screen import TextScreen
+from kit.document.blocks import Picture, Text
+from kit.document.rows import in_columns, row, row_text
+from kit.tui.screens.text_screen import TextScreen, page_screen
 from tests.tui.lesson_stage import rows, seen, stage
 from tests.tui.screens.test_start import house as house  # the fixture
 
@@ -26,3 +27,34 @@ def test_a_long_row_goes_on_below_and_is_counted() -> None:
 
     several = [row((long, "bold")), *(row("short") for _ in range(21)), row("the last")]
     stage(lambda theme: TextScreen("Printed", several), scene, size=(80, 24))
+
+
+def test_a_long_text_stands_in_columns_where_there_is_room_and_need() -> None:
+    blocks = [
+        block
+        for number in range(30)
+        for block in (Text(f"term {number}"), Text("what it means", is_tight=True), Picture((f"<{number}>",)))
+    ]
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "term 29")
+        assert "lines" not in rows(pilot)[0], "all is shown"
+        for number in range(30):
+            (named,) = [line for line in rows(pilot) if f"term {number} " in f"{line} "]
+            column = named.index(f"term {number}")
+            below = rows(pilot)[rows(pilot).index(named) + 3]
+            assert below[column:].strip().startswith(f"<{number}>"), "a picture stays below its term"
+        await pilot.resize_terminal(80, 24)
+        await seen(pilot, "lines 1 to")
+
+    stage(lambda theme: page_screen("Terms", blocks), scene, size=(200, 55))
+
+
+def test_no_column_is_much_longer_than_another_and_none_is_too_narrow() -> None:
+    lengths = (5, 1, 1, 9, 2, 2, 4)
+    parts = [[row(f"{part}.{line}") for line in range(length)] for part, length in enumerate(lengths)]
+    for width, columns in ((39, 1), (40, 2), (60, 3)):
+        shown = [row_text(each) for each in in_columns(lambda _: parts, width, 3, 20)]
+        assert max(len(each.split()) for each in shown) == columns
+        assert sum(len(each.split()) for each in shown) == sum(lengths)
+        assert len(shown) < sum(lengths) / columns + max(lengths)

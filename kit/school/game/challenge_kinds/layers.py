@@ -14,8 +14,10 @@ import yaml
 
 from kit.document.rows import Row, row
 from kit.layers.assignment import LayerAssignment, NamedLayer, find_breaches
+from kit.layers.drawing.graph import draw_graph
+from kit.layers.drawing.spans import GlyphStyle, drawn
 from kit.layers.planning import solve_layers
-from kit.layers.requirements import LayerCase
+from kit.layers.requirements import ContactRequirement, LayerCase
 from kit.layers.requirements_file import read_requirements
 from kit.plain_files import is_file_there
 from kit.plain_text import counted
@@ -29,6 +31,8 @@ from kit.world.yaml_section import Section
 
 MAX_LAYERS: Final = 16
 """That a world can have."""
+LEAST_DRAWING: Final = (30, 9)
+"""Columns and rows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +116,32 @@ class LayersBoard(Board):
 
     def judgement(self) -> Judgement:
         return judge_assignment(self._task, self._make_plan)
+
+    def drawing(self, width: int, height: int, glyphs: GlyphStyle) -> list[Row]:
+        """The collision graph: what must collide as lines, faint while it does not, thick where the cursor's layer makes it
+        collide; what collides and must not as others; beams from a laser under the cursor to what it must see."""
+        if width < LEAST_DRAWING[0] or height < LEAST_DRAWING[1]:
+            return []
+        missing: set[ContactRequirement] = set()
+        wrong: set[ContactRequirement] = set()
+        for each in find_breaches(self._case, self._make_plan):
+            if isinstance(each.requirement, ContactRequirement):
+                (missing if each.is_missing else wrong).add(each.requirement)
+        members = self._layers[self._column] if self._column < len(self._layers) else frozenset()
+        here = self._names[self._row]
+        lines = draw_graph(
+            self._case,
+            struck=missing,
+            wrong=wrong,
+            group=members,
+            laser=here if here in self._case.laser else None,
+            cursor=here,
+            width=width,
+            height=height,
+            glyphs=glyphs,
+            boxes=True,
+        )
+        return drawn(lines)
 
     def details(self) -> list[Row]:
         """All that is still wrong."""
