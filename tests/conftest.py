@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
-from kit.host.process import start_cold, started_by
+from kit.host.program_start import start_cold, started_by
 from kit.host.warm_start import warm_starts
 from tests.file_selection import may_select, shares
 

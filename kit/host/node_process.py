@@ -22,7 +22,8 @@ from kit.host.failure import (
     too_much_kept,
 )
 from kit.host.graph_bridge import INTERRUPT, INTERRUPTED, KeptLimitError, MessageLimitError, ParentBridge
-from kit.host.process import HostedFile, PackageProgram, StudentProcess
+from kit.host.process import HostedFile, StudentProcess
+from kit.host.program_start import PackageProgram
 from kit.host.program_terminal import ProgramStreams
 from kit.host.protocol import HOLD_NS, Ended, Frame, Reply
 from kit.host.proxy_nodes import ForeignNameError, NameScope, ReservedNameError

@@ -2,30 +2,23 @@
 
 There are no threads: the child runs only while it owes an answer, and the caller that waits for the answer also reads
 what the child prints. Every way out ends the child and every process that it has started.
-
-A process is a cold start, 0.09 s of processor time, unless the caller has it forked (``kit.host.warm_start``): the check of
-one's own program does. Where other people's programs are run, no process is kept warm that could hold what they may not read.
 """
 
 from __future__ import annotations
 
-import hashlib
 import math
 import os
 import select
 import socket
-import stat
 import subprocess
-import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, field
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import asdict
 from pathlib import Path
 from types import MappingProxyType
-from typing import IO, Final, Literal, NoReturn, Protocol, Self, TypeAlias
+from typing import Final, Literal, NoReturn, Self, TypeAlias
 
-from kit.blas import blas_environment
 from kit.host.failure import (
     Budget,
     Failure,
@@ -36,11 +29,19 @@ from kit.host.failure import (
     process_ended,
     protocol_violation,
     timed_out,
-    unreadable_file,
 )
 from kit.host.output import OutputCollector, ProgramOutput, StackPosition, Stream
 from kit.host.private_folder import make_private_folder
 from kit.host.processor_delay import delayed_s
+from kit.host.program_start import (
+    STARTS,
+    PackageProgram,
+    child_seed,
+    process_environment,
+    read_grants,
+    read_program,
+    start_command,
+)
 from kit.host.program_terminal import ProgramStreams
 from kit.host.protocol import (
     STATE_AFTER_COMMAND,
@@ -55,18 +56,13 @@ from kit.host.protocol import (
 )
 from kit.host.sandbox import bubblewrap
 from kit.host.sandbox.control_groups import ControlGroup, return_group, take_group
-from kit.host.sandbox.grants import ReadGrants, find_grants, library_folders, loader_folders
-from kit.host.sandbox.limits import INTERACTIVE_LIMITS, KIB, Limits
+from kit.host.sandbox.limits import INTERACTIVE_LIMITS, Limits
 from kit.host.sandbox.reaper import descendants, end_descendants, remove_folder
 from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level, SandboxConfig
 from kit.host.wire import HEADER, Json, ProtocolError, decode, encode
 
 Role: TypeAlias = Literal["node", "functions", "launch"]
 
-MAX_SOURCE: Final = 512 * KIB
-"""Bytes of a student's file."""
-ROS_DISTRO: Final = "jazzy"
-"""The distribution that programs read in their environment: the one whose messages and names the kit follows."""
 CHECK_S: Final = 0.02
 """How long to wait at least before the processor time is read again [s]."""
 STACK_DUMP_S: Final = 1.0
@@ -82,94 +78,7 @@ _STARTING_STATES: Final[Mapping[Role, ProcessState]] = MappingProxyType(
     }
 )
 
-_START: Final = (
-    f"import os, sys; sys.path.insert(0, {str(Path(__file__).parents[2])!r}); "
-    "from kit.host.child import supervisor; del sys.path[0]; os._exit(supervisor.run())"
-)
-"""Starts the child of the kit that this file is part of; nothing beside the kit becomes importable. Not ``sys.exit``: it
-would run the student's destructors and exit handlers, and wait for threads."""
 _READ_SIZE = 1 << 16
-
-
-@dataclass(frozen=True, slots=True)
-class PackageProgram:
-    """A program of a package, with what an installation would provide: entry point, imports, working folder, environment."""
-
-    folder: Path
-    """The package's folder: messages name files relative to it."""
-    cwd: Path | None
-    """Its working folder; None: one of its own."""
-    environment: Mapping[str, str]
-    entry: str | None = None
-    """``package.module:function``; None: the file itself is run."""
-    imports: tuple[Path, ...] = ()
-    """Folders from which modules are imported, before the installed libraries."""
-    interfaces: Mapping[str, Path] = field(default_factory=dict)
-    """The folders of the packages whose messages, services and actions it may use, by name."""
-    is_controller: bool = False
-    """Whether the file is run as a controller: one that only has a ``main`` or a class of nodes is run by that."""
-
-    def to_start_fields(self) -> dict[str, Json]:
-        """Returns the fields of the ``start`` frame."""
-        return {
-            "folder": str(self.folder),
-            "is_controller": self.is_controller,
-            **({} if self.cwd is None else {"cwd": str(self.cwd)}),
-            "environment": dict(self.environment),
-            "entry": self.entry,
-            "imports": [str(path) for path in self.imports],
-            "interfaces": {name: str(path) for name, path in self.interfaces.items()},
-        }
-
-
-def child_seed(seed: int) -> int:
-    """Returns the seed of a student's random numbers, 0 to 2**63 - 1, for the seed of a run.
-
-    It is one-way: a student's program can read its own seed, and the seed of the run may be a secret.
-    """
-    digest = hashlib.sha256(b"student" + str(seed).encode()).digest()
-    return int.from_bytes(digest[:8], "big") >> 1
-
-
-class StartedProcess(Protocol):
-    """What is used of a ``subprocess.Popen``."""
-
-    @property
-    def pid(self) -> int: ...
-
-    @property
-    def stdout(self) -> IO[bytes] | None: ...
-
-    @property
-    def stderr(self) -> IO[bytes] | None: ...
-
-    def wait(self, timeout: float | None = None) -> int: ...
-
-    def kill(self) -> None: ...
-
-
-StartProcess: TypeAlias = Callable[..., StartedProcess]
-"""Takes what ``subprocess.Popen`` does."""
-
-
-def start_cold(command: list[str], **options: object) -> StartedProcess:
-    """Starts an interpreter anew."""
-    process: subprocess.Popen[bytes] = subprocess.Popen(command, **options)  # type: ignore[call-overload] # as they came
-    return process
-
-
-_STARTS: Final[list[StartProcess]] = [start_cold]
-"""The last one starts students' processes."""
-
-
-@contextmanager
-def started_by(start: StartProcess) -> Iterator[None]:
-    """Has all students' processes of this one be started so."""
-    _STARTS.append(start)
-    try:
-        yield
-    finally:
-        _STARTS.pop()
 
 
 class StudentProcess:
@@ -200,7 +109,7 @@ class StudentProcess:
         self._home_folder = self._file.parent if package is None else package.folder
         self._start_fields = {
             **start,
-            **_read_program(self._file),
+            **read_program(self._file),
             "reply_s": limits.reply_s,
             "reply_wall_s": limits.reply_wall_s,
         }
@@ -214,7 +123,7 @@ class StudentProcess:
         self._waited_s = 0.0
         self._output = OutputCollector(limits.output)
         self._folder = make_private_folder()
-        granted = _read_grants(level, self._file, package)
+        granted = read_grants(level, self._file, package)
         in_bubblewrap = level == Level.SEPARATE and bubblewrap.is_needed()
         # From inside bubblewrap no group can be joined.
         self._group: ControlGroup | None = (
@@ -237,8 +146,8 @@ class StudentProcess:
         # Duplicates, since the numbers 0 to 2 are replaced in the child before it is told the others.
         inherited = [None if each is None else os.dup(each) for each in descriptors]
         try:
-            self._process = _STARTS[-1](
-                _start_command(config),
+            self._process = STARTS[-1](
+                start_command(config),
                 stdin=theirs.fileno(),
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
@@ -577,69 +486,6 @@ def _program_below(supervisor: int) -> int | None:
         while children := Path(f"/proc/{below}/task/{below}/children").read_text().split():
             below = int(children[-1])
     return below if below != supervisor else next(reversed(descendants(supervisor)), None)
-
-
-def _read_program(file: Path) -> dict[str, Json]:
-    """Reads the student's file, once: this version runs, whatever is saved later."""
-    try:
-        # A named pipe would have us wait for ever.
-        with open(os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as opened:
-            if not stat.S_ISREG(os.fstat(opened.fileno()).st_mode):
-                raise StudentCodeError(unreadable_file(file, "not a file"))
-            source = opened.read(MAX_SOURCE + 1)
-    except OSError as problem:
-        raise StudentCodeError(unreadable_file(file, problem.strerror or "unreadable")) from None
-    if len(source) > MAX_SOURCE:
-        raise StudentCodeError(unreadable_file(file, f"larger than {MAX_SOURCE // KIB} KiB"))
-    return {"file": str(file), "source": source.decode("latin-1"), "libraries": library_folders()}
-
-
-def interpreter_command() -> list[str]:
-    """Returns the command of an interpreter without anything of the user's: no site, user site or ``sys.path[0]``.
-
-    ``-I`` would also ignore PYTHONHASHSEED, and so let the order of a set differ from run to run; the
-    environment is ours anyway.
-    """
-    return [sys.executable, "-s", "-S", "-P", "-c", _START]
-
-
-def _start_command(config: SandboxConfig) -> list[str]:
-    """Returns the command that starts a process with this confinement."""
-    if config.in_bubblewrap:
-        return bubblewrap.wrap_command(
-            interpreter_command(), config.file_tree, config.scratch, config.limits.scratch
-        )
-    return interpreter_command()
-
-
-def process_environment(scratch: str) -> dict[str, str]:
-    """Returns the whole environment of a student's process: the same everywhere."""
-    fixed = {
-        "PATH": "/usr/bin:/bin",
-        "HOME": scratch,
-        "TMPDIR": scratch,
-        "LANG": "C.UTF-8",
-        "PYTHONHASHSEED": "0",
-        "PYTHONUTF8": "1",
-        "ROS_VERSION": "2",
-        "ROS_PYTHON_VERSION": "3",
-        "ROS_DISTRO": ROS_DISTRO,
-        # One thread each: more would differ between machines, and each reserves memory.
-        "OMP_NUM_THREADS": "1",
-        "MKL_NUM_THREADS": "1",
-        **blas_environment(),
-    }
-    # Where a computing cluster keeps the libraries of the very Python that runs this.
-    library_path = ":".join(loader_folders())
-    return fixed | ({"LD_LIBRARY_PATH": library_path} if library_path else {})
-
-
-def _read_grants(level: Level, file: Path, package: PackageProgram | None) -> ReadGrants:
-    """Returns what a program may read: with its folder, its package and what that imports from."""
-    if level == Level.LIMITED:  # nothing is kept from it
-        return ReadGrants()
-    more = () if package is None else (package.folder, *package.imports, *package.interfaces.values())
-    return find_grants((file.parent, *more))
 
 
 class HostedFile:

@@ -22,7 +22,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any, Final
 
-from kit.host import process
+from kit.host import program_start
 
 CLONE_CALLS: Final = {"x86_64": 56, "aarch64": 220}
 """The number of Linux's system call ``clone``, by machine."""
@@ -49,7 +49,7 @@ def warm_starts() -> Iterator[None]:
     if not is_possible():
         yield
         return
-    with WarmInterpreter() as interpreter, process.started_by(interpreter.start):
+    with WarmInterpreter() as interpreter, program_start.started_by(interpreter.start):
         yield
 
 
@@ -81,7 +81,7 @@ class WarmInterpreter:
 
     def __init__(self) -> None:
         self._lock, self._owner = threading.Lock(), os.getpid()
-        self._command = process.interpreter_command()
+        self._command = program_start.interpreter_command()
         serving = _SERVE.replace("{call}", str(CLONE_CALLS[platform.machine()]))
         self._requests, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
@@ -91,7 +91,7 @@ class WarmInterpreter:
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
                 cwd="/",
-                env=process.process_environment("/"),
+                env=program_start.process_environment("/"),
                 start_new_session=True,
             )
 
@@ -113,11 +113,13 @@ class WarmInterpreter:
         env: Mapping[str, str],
         pass_fds: Sequence[int],
         **options: Any,
-    ) -> process.StartedProcess:
+    ) -> program_start.StartedProcess:
         """Forks a process. What is no plain process of a student's is started, and so is what a fork of this process asks for,
         which would not be the parent of what is forked."""
         if command != self._command or pass_fds or os.getpid() != self._owner:
-            return process.start_cold(command, stdin=stdin, cwd=cwd, env=env, pass_fds=pass_fds, **options)
+            return program_start.start_cold(
+                command, stdin=stdin, cwd=cwd, env=env, pass_fds=pass_fds, **options
+            )
         out, err = os.pipe(), os.pipe()
         request = json.dumps([cwd, dict(env)]).encode()
         passed = array.array("i", [stdin, out[1], err[1]])
@@ -132,5 +134,7 @@ class WarmInterpreter:
         if not answer:  # the interpreter has ended: not every kernel of such a version lets it fork
             os.close(out[0])
             os.close(err[0])
-            return process.start_cold(command, stdin=stdin, cwd=cwd, env=env, pass_fds=pass_fds, **options)
+            return program_start.start_cold(
+                command, stdin=stdin, cwd=cwd, env=env, pass_fds=pass_fds, **options
+            )
         return ForkedProcess(int(answer), out[0], err[0])

@@ -10,7 +10,8 @@ from typing import Final, Literal, Protocol
 
 from kit.host.failure import protocol_violation
 from kit.host.output import ProgramOutput
-from kit.host.process import HostedFile, PackageProgram, StudentProcess
+from kit.host.process import HostedFile, StudentProcess
+from kit.host.program_start import PackageProgram
 from kit.host.protocol import Ended, Frame, Reply
 from kit.host.sandbox.limits import INTERACTIVE_LIMITS, MIB
 from kit.host.wire import Json, ProtocolError

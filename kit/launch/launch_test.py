@@ -15,7 +15,7 @@ from kit.host.failure import StudentCodeError
 from kit.host.graph_bridge import LAUNCH_CHANNEL, LAUNCH_OVER
 from kit.host.node_process import NodeProcess
 from kit.host.output import ProgramOutput
-from kit.host.process import PackageProgram
+from kit.host.program_start import PackageProgram
 from kit.host.protocol import GraphEvent
 from kit.host.wire import Json, ProtocolError, integer, items, number, text
 from kit.launch.launch_file_process import LaunchTarget

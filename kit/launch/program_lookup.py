@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from kit.host.failure import StudentCodeError
 from kit.host.node_process import NodeProcess
-from kit.host.process import PackageProgram
+from kit.host.program_start import PackageProgram
 from kit.host.program_terminal import ProgramStreams
 from kit.host.python_command import python_command
 from kit.inspection.sockets import WORLD_VARIABLE

@@ -11,7 +11,7 @@ from kit.controllers import ControllerFile
 from kit.host.failure import Failure, StudentCodeError
 from kit.host.file_watcher import FileWatcher
 from kit.host.node_process import NodeProcess
-from kit.host.process import PackageProgram
+from kit.host.program_start import PackageProgram
 from kit.host.program_terminal import ProgramStreams
 from kit.host.sandbox.limits import Limits
 from kit.host.sandbox.sandbox_config import INTERACTIVE_LEVEL, Level

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import IO, Any, Final
 from unittest.mock import patch
 
-from kit.host import process
+from kit.host import process, program_start
 from kit.host.failure import FailureKind, StudentCodeError
 from kit.host.node_process import NodeProcess
 from kit.host.process import Role
@@ -159,7 +159,7 @@ def _pipe() -> tuple[IO[bytes], int]:
 def scripted(script: Sequence[bytes | None]) -> Iterator[None]:
     """Has the next process be played by a script instead of being started."""
     played = type("_Played", (ScriptedProcess,), {"script": script})
-    with process.started_by(played):
+    with program_start.started_by(played):
         yield
 
 

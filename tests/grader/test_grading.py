@@ -25,7 +25,7 @@ from grader.kinds.controller import kind as controller
 from grader.reading import read_assignment
 from grader.self_test import try_works, unfair_fail_odds
 from grader.submission import Submission
-from kit.host.process import child_seed
+from kit.host.program_start import child_seed
 from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import CriterionStatus, GradingResult, GradingVerdict
 from kit.run.recording import load_recording

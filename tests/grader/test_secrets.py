@@ -26,7 +26,7 @@ from grader.scoring import round_share
 from grader.seeds import counterpart_seed, short_seeds_warning
 from grader.submission import Submission
 from kit.host.failure import Failure, FailureKind
-from kit.host.process import child_seed
+from kit.host.program_start import child_seed
 from kit.host.sandbox.sandbox_config import Level
 from kit.results.grading_result import (
     CriterionResult,

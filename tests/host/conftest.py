@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 import pytest
 
-from kit.host import process
+from kit.host import program_start
 from kit.host.sandbox.limits import MIB, Limits
 
 
@@ -56,7 +56,7 @@ def speaker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Speaker:
     def say(*steps: list[Any] | None) -> None:
         frames.write_text(json.dumps(steps))
         command = [sys.executable, "-S", str(program), str(frames)]
-        monkeypatch.setattr(process, "interpreter_command", lambda: command)
+        monkeypatch.setattr(program_start, "interpreter_command", lambda: command)
 
     return say
 

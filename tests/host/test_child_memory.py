@@ -11,7 +11,7 @@ from dataclasses import replace
 import pytest
 
 from kit.host.node_process import NodeProcess
-from kit.host.process import child_seed
+from kit.host.program_start import child_seed
 from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 from kit.launch.launch_bounds import LaunchBounds

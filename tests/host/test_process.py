@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 from kit.host.failure import Failure, FailureKind, StudentCodeError
-from kit.host.process import MAX_SOURCE
+from kit.host.program_start import MAX_SOURCE
 from kit.host.sandbox import landlock
 from kit.host.sandbox.limits import GRADER_LIMITS, MIB, Limits
 from kit.host.sandbox.sandbox_config import Level

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from grader.cli.check import _own_starts
-from kit.host import process
-from kit.host.process import start_cold, started_by
+from kit.host import program_start
+from kit.host.program_start import start_cold, started_by
 from kit.host.sandbox.sandbox_config import Level
 from kit.host.student_functions import StudentFunctions
 from kit.host.warm_start import ForkedProcess, WarmInterpreter, is_possible
@@ -85,7 +85,7 @@ def test_without_its_interpreter_a_process_is_started_after_all(file: Path) -> N
 def test_only_the_check_of_ones_own_program_forks(
     name: str, level: str | None, for_student: bool, is_warm: bool
 ) -> None:
-    before = process._STARTS[-1]
+    before = program_start.STARTS[-1]
     with _own_starts(Path(name), level, for_student=for_student):
-        assert (process._STARTS[-1] is not before) == is_warm
-    assert process._STARTS[-1] is before
+        assert (program_start.STARTS[-1] is not before) == is_warm
+    assert program_start.STARTS[-1] is before

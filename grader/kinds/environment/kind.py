@@ -44,7 +44,7 @@ from grader.kinds.environment.examination import (
 from grader.kinds.environment.sheet_keys import SHEET_KEYS
 from grader.seeds import read_seed
 from kit.host.failure import Failure, FailureKind, StudentCodeError
-from kit.host.process import child_seed
+from kit.host.program_start import child_seed
 from kit.host.wire import MAX_NAME, printable
 from kit.plain_text import quoted
 from kit.run.scenario import Scenario

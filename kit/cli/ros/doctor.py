@@ -11,7 +11,7 @@ import click
 
 from kit.cli import opening, options
 from kit.cli.ros.world_client import connect_to_world, package_folders
-from kit.host.process import ROS_DISTRO
+from kit.host.program_start import ROS_DISTRO
 from kit.inspection.client import InspectionClient
 from kit.inspection.diagnosis import NO_WORLD, DiagnosisCheck, Report, checks, reports
 from kit.inspection.sockets import WORLD_VARIABLE, running_worlds, sockets_folder

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from kit.host.process import process_environment
+from kit.host.program_start import process_environment
 from kit.host.sandbox import grants
 from kit.host.sandbox.grants import find_grants
 from kit.host.sandbox.namespaces import FileTree, plan_mounts

@@ -17,9 +17,9 @@ from typing import Any, Final
 import pytest
 
 from grader.assignment import Assignment
+from grader.evidence.evidence_scores import EvidenceScores
 from grader.evidence.submission_clock import SubmissionClock
-from grader.grading import Grading
-from kit.host import process, protocol
+from kit.host import process, program_start, protocol
 from kit.host.failure import StudentCodeError
 from kit.host.sandbox import grants
 from kit.host.sandbox.limits import MIB, Limits
@@ -259,10 +259,10 @@ def test_a_promise_is_broken_where_its_defence_is_taken_away(
     secret = tmp_path / "solution.txt"
     record = {"secret": str(secret), "grader": os.getpid()}
     taken_away, attacks = WITHOUT_DEFENCE[key]
-    start = process._START
+    start = program_start._START
     gained: dict[str, list[str]] = {}
     for prelude in ("", f"from kit.host.sandbox import confinement; {taken_away}"):
-        monkeypatch.setattr(process, "_START", start.replace("os._exit(", f"{prelude}os._exit("))
+        monkeypatch.setattr(program_start, "_START", start.replace("os._exit(", f"{prelude}os._exit("))
         gained[prelude] = []
         for name in attacks:
             secret.write_text("forty-two")
@@ -278,7 +278,9 @@ def test_a_promise_is_broken_where_its_defence_is_taken_away(
 def without(monkeypatch: pytest.MonkeyPatch, taken_away: str) -> None:
     """Takes something away in the processes that are started from now on."""
     prelude = f"from kit.host.sandbox import confinement; {taken_away}"
-    monkeypatch.setattr(process, "_START", process._START.replace("os._exit(", f"{prelude}os._exit("))
+    monkeypatch.setattr(
+        program_start, "_START", program_start._START.replace("os._exit(", f"{prelude}os._exit(")
+    )
 
 
 @LINUX
@@ -424,7 +426,7 @@ def test_words_come_after_a_secret_run_where_the_public_ones_do_not_come_first(
         )
 
     judge()
-    monkeypatch.setattr(Grading, "_run_public", lambda grading: None)
+    monkeypatch.setattr(EvidenceScores, "_run_public", lambda scores: None)
     with pytest.raises(AssertionError):
         judge()
 
