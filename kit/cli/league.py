@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from kit.host.job_folder import JobExecutor
     from kit.school.game.league.league import League
+    from kit.school.game.league.standings import Standings
     from kit.tui.app import KitApp
 
 INCOMPLETE = 1
@@ -168,27 +169,13 @@ def run(context: click.Context, level: str | None, executor: JobExecutor) -> Non
 
     Exit code: 0 all matches are driven; 1 some are not; 2 the league cannot be run.
     """
-    from kit.host.sandbox.probe import is_level_available
-    from kit.school.game.league.entries import record_holders
-
     with _open_league(context) as (league, _):
-        if not league.is_mine:
-            messages.fail(
-                f"{league.folder} belongs to another user: only results of its owner count, so its owner runs it."
-            )
-        if level is not None:
+        if level is not None and league.is_mine:
             league.confine(Level(int(level)))
-        confinement = league.programme().confinement
-        if not is_level_available(confinement):
-            messages.fail(
-                f"This machine cannot confine programs at level {confinement:d}. If all of them are your own: kit league run --level 0"
-            )
         try:
-            record_holders(league.folder)
+            keys = league.prepare_run()
         except OSError as error:
             messages.fail(messages.describe_error(error))
-        keys = league.waiting()
-        league.remove_stale_results()
         done: list[str] = []
 
         def count(key: str) -> None:
@@ -300,6 +287,16 @@ def _print_standings(league: League) -> None:
     from kit.school.game.league.league_blocks import standings_table, summary_blocks
     from kit.school.game.league.standings import read_standings
 
-    found = read_standings(league)
+    found = read_standings(league, _print_progress)
+    _print_progress(None)
     table = [standings_table(found)] if found.places else []
     click.echo("\n".join(lines_of([*summary_blocks(found), *table])))
+
+
+def _print_progress(standings: Standings | None) -> None:
+    """Shows on a terminal how many results have been run again; None clears it."""
+    if sys.stderr.isatty():
+        read = (
+            "" if standings is None else f"{standings.jobs - standings.unread} of {standings.jobs} run again"
+        )
+        click.echo(f"\r{read:<40}" + ("\r" if standings is None else ""), nl=False, err=True)

@@ -35,6 +35,7 @@ from kit.school.game.starts import film_scenario
 from kit.tui.rows.key_rows import bindings, footer
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
 from kit.tui.screens.lesson_drive import ReplayScreen
+from kit.tui.screens.level_drive import LeftError
 from kit.tui.screens.level_pictures import ghost_marks, ghost_paths, pictures_of
 from kit.tui.screens.picker import Picker, PickerItem
 from kit.tui.theme import Theme
@@ -86,7 +87,7 @@ class LeagueScreen(RowsScreen[None]):
             yield TextRows(id=name)
 
     def on_mount(self) -> None:
-        self._note = "Running the drives again ..."
+        self._note = "Opening the league ..."
         self._read()
 
     def on_resize(self, event: events.Resize) -> None:
@@ -99,8 +100,10 @@ class LeagueScreen(RowsScreen[None]):
 
     async def _read_now(self, note: str = "") -> None:
         try:
-            self._standings = await to_thread(read_standings, self._league)
+            self._standings = await to_thread(read_standings, self._league, self._show_so_far)
             self._note = note
+        except LeftError:
+            return
         except LeagueError as error:
             self._note = str(error)
         self._chosen = min(self._chosen, max(0, len(self._entrants) - 1))
@@ -109,6 +112,17 @@ class LeagueScreen(RowsScreen[None]):
         if self.is_attached:
             self._show()
             self._draw_maps()
+
+    def _show_so_far(self, standings: Standings) -> None:
+        """Shows what has been read, from the thread that reads; ends that where the screen has been left."""
+        if not self.is_attached:
+            raise LeftError("The league was left.")
+
+        def show() -> None:
+            self._standings, self._note = standings, ""
+            self._show()
+
+        self.app.call_from_thread(show)
 
     @work(exclusive=True, group="maps")
     async def _draw_maps(self) -> None:
@@ -263,14 +277,12 @@ class LeagueScreen(RowsScreen[None]):
     @work(group="run")
     async def action_run_matches(self) -> None:
         """Runs what is missing, in processes of their own; what is done stays where the screen is left."""
-        if self._is_running or self._standings is None:
-            return
-        if not self._league.is_mine:
-            self._show_note("Who owns the league's folder runs the matches: only the owner's results count.")
+        if self._is_running or self._standings is None or self._standings.unread:
             return
         self._is_running = True
+        keys: tuple[str, ...] = ()
         try:
-            keys = await to_thread(self._league.waiting)
+            keys = await to_thread(self._league.prepare_run)
             done = 0
 
             def count(key: str) -> None:
@@ -284,6 +296,7 @@ class LeagueScreen(RowsScreen[None]):
                 await to_thread(executor.run, self._league, keys, count)
         except (LeagueError, OSError) as error:
             self.app.push_screen(MessageDialog("The league cannot be run", str(error)))
+            return
         finally:
             self._is_running = False
         await self._read_now("All matches are driven." if not keys else f"{len(keys)} were driven.")

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from textual.pilot import Pilot
 
+from kit.school.game.league.entries import HOLDERS
 from kit.school.game.league.league import own_league
 from kit.tui.screens.league import LeagueScreen, MatchReplayScreen
 from kit.workspace import open_workspace
@@ -69,3 +70,18 @@ def test_from_the_standings_to_a_match_and_its_replay(tmp_path: Path, size: tupl
         await seen(pilot, "Enter matches")
 
     stage(lambda theme: LeagueScreen(theme, league, workspace), scene, size=size)
+
+
+@pytest.mark.long
+def test_the_screen_runs_the_matches_as_the_command_does(tmp_path: Path) -> None:
+    workspace = open_workspace(tmp_path / "home")
+    league = make_league(tmp_path, laser=LASER, stands=GIVES_UP)
+
+    async def scene(pilot: Pilot[None]) -> None:
+        await seen(pilot, "No match has been won yet")
+        await pilot.press("t")
+        await seen(pilot, "laser leads")
+
+    stage(lambda theme: LeagueScreen(theme, league, workspace), scene)
+    assert league.waiting() == ()
+    assert (league.folder / HOLDERS).is_file(), "so that nobody else can take a name"

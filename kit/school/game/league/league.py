@@ -26,11 +26,12 @@ from kit.host.job_folder import JobFolder
 from kit.host.private_folder import private_folder
 from kit.host.python_command import python_command
 from kit.host.sandbox.limits import GRADER_LIMITS
+from kit.host.sandbox.probe import is_level_available
 from kit.host.sandbox.sandbox_config import Level as Confinement
 from kit.plain_files import open_plain_file, read_plain_file
 from kit.run.recording import Recording, RecordingError
 from kit.school.game.league.entries import FOLDER as ENTRIES
-from kit.school.game.league.entries import MANIFEST, Entry, LeagueError, read_entries
+from kit.school.game.league.entries import MANIFEST, Entry, LeagueError, read_entries, record_holders
 from kit.school.game.league.tag_game import play_tag, tag_again, tag_scenario
 from kit.school.game.levels import GameLevel, UnknownLevel, find_level
 from kit.school.game.race import RaceFinish, race_controller
@@ -219,6 +220,24 @@ class League(JobFolder):
         trial = self.result_file(key).with_suffix(".trial")
         write_atomically(trial, bytes(4096))
         trial.unlink()
+
+    def prepare_run(self) -> tuple[str, ...]:
+        """Records whose name is whose, removes the results of those who have withdrawn, and returns the keys of the jobs that are
+        to be run. Raises LeagueError where this user's results do not count, or the machine cannot confine programs as the
+        league asks; and OSError."""
+        if not self.is_mine:
+            raise LeagueError(
+                f"{self.folder} belongs to another user: only results of its owner count, so its owner runs it."
+            )
+        confinement = self.programme().confinement
+        if not is_level_available(confinement):
+            raise LeagueError(
+                f"This machine cannot confine programs at level {confinement:d}. If all of them are your own: kit league run --level 0"
+            )
+        record_holders(self.folder)
+        waiting = self.waiting()
+        self.remove_stale_results()
+        return waiting
 
     # Results
 

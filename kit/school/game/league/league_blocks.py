@@ -20,6 +20,9 @@ def summary_blocks(standings: Standings) -> list[Block]:
         alone = "Nobody is" if not standings.places else f"{standings.places[0].entry.name} alone is"
         blocks.append(Text(f"{alone} entered: a league needs two."))
         blocks += rules_blocks(standings.programme)
+    elif standings.unread:
+        read = standings.jobs - standings.unread
+        blocks.append(Text(f"Running the drives again: {read} of {standings.jobs}."))
     elif champion is None:
         blocks.append(Text("No match has been won yet. `kit league run` runs what is missing."))
     elif standings.is_certain:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Final
@@ -20,6 +22,8 @@ from kit.sim.simulation import STEP_SIZE_S
 DIVISION_SIZE: Final = 6
 """Entrants of each division but the last."""
 DRAW: Final = 0.5
+PROGRESS_S: Final = 0.3
+"""Between two standings while results are read [s]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,6 +73,8 @@ class Standings:
     """Drives and games that all entrants owe."""
     waiting: int
     """Those that are still to be run."""
+    unread: int
+    """Those whose results have not been looked at yet."""
     refused: tuple[Entry, ...]
     """Entries that take no part."""
     programme: Programme
@@ -89,30 +95,54 @@ class Standings:
         return [each for each in self.matches if name in (entry.name for entry in each.entrants)]
 
 
-def read_standings(league: League) -> Standings:
+def read_standings(
+    league: League, on_progress: Callable[[Standings], object] = lambda standings: None
+) -> Standings:
     """Runs all recordings of a league again and judges them. Slow: about a second for every ten matches that were not judged
-    before. Raises LeagueError."""
-    programme = league.programme()
-    entries = league.entries()
+    before. ``on_progress``: gets the standings so far, at once and then as the results are read; what it raises ends the
+    reading. Raises LeagueError."""
+    programme, entries, jobs = league.programme(), league.entries(), league.jobs()
+    judged: dict[str, JudgedJob | None] = {}
+    told_s = -math.inf
+    for job in jobs:
+        if time.monotonic() - told_s >= PROGRESS_S:
+            on_progress(_standings_of(programme, entries, jobs, judged))
+            told_s = time.monotonic()
+        judged[job.key] = league.judge(job)
+    return _standings_of(programme, entries, jobs, judged)
+
+
+def _standings_of(
+    programme: Programme,
+    entries: Sequence[Entry],
+    jobs: Sequence[LeagueJob],
+    judged: Mapping[str, JudgedJob | None],
+) -> Standings:
+    """The standings by the jobs that have been judged; None: they have not been run."""
     entrants = [each for each in entries if not each.problem]
     matches = []
-    jobs = league.jobs()
-    waiting = sum(league.judge(job) is None for job in jobs)
     for first, second in combinations(entrants, 2):
         for level in programme.races:
             drives = drive_job(level, first), drive_job(level, second)
-            judged = league.judge(drives[0]), league.judge(drives[1])
-            if judged[0] is not None and judged[1] is not None:
-                matches.append(race_match(drives, (judged[0], judged[1])))
+            one, other = (judged.get(drive.key) for drive in drives)
+            if one is not None and other is not None:
+                matches.append(race_match(drives, (one, other)))
         for level in programme.tag:
             for pair in ((first, second), (second, first)):
                 job = tag_job(level, *pair)
-                game = league.judge(job)
+                game = judged.get(job.key)
                 if game is not None:
                     matches.append(tag_match(job, game))
-    refused = tuple(each for each in entries if each.problem)
-    places = _rank_entrants(entrants, matches)
-    return Standings(programme.title, places, tuple(matches), len(jobs), waiting, refused, programme)
+    return Standings(
+        programme.title,
+        _rank_entrants(entrants, matches),
+        tuple(matches),
+        len(jobs),
+        sum(judged.get(job.key, job) is None for job in jobs),
+        sum(job.key not in judged for job in jobs),
+        tuple(each for each in entries if each.problem),
+        programme,
+    )
 
 
 def match_recordings(league: League, match: Match) -> tuple[Recording, ...]:

@@ -192,6 +192,21 @@ def test_a_replay_shows_both_drives_of_a_race_from_one_start(driven: League) -> 
     assert drives[0].seed == drives[1].seed
 
 
+def test_the_standings_are_told_while_the_drives_are_run_again(driven: League) -> None:
+    told: list[Standings] = []
+    last = read_standings(driven, told.append)
+    assert (told[0].unread, told[0].waiting, told[0].jobs) == (2, 0, 2)
+    assert sorted(names(told[0])) == ["laser", "stands"]
+    assert "0 of 2" in " ".join(lines_of(summary_blocks(told[0])))
+    assert (last.unread, len(last.matches)) == (0, 1)
+
+    def leave(standings: Standings) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        read_standings(driven, leave)
+
+
 def test_a_lone_entrant_drives_nothing_and_nobody_is_champion(tmp_path: Path) -> None:
     league = make_league(tmp_path)
     for count in range(2):
