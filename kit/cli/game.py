@@ -68,6 +68,16 @@ def _read_summary(journal: ProgressJournal) -> GameSummary:
     return game_summary(events, completed_lessons(all_levels(), events))
 
 
+def _find_level(name: str) -> GameLevel:
+    """The level of a name. Ends the verb for the maze of a day that has not come; raises as ``find_playable_level``."""
+    from kit.school.game.daily import DailyLevel, find_playable_level, today
+
+    level = find_playable_level(name)
+    if isinstance(level, DailyLevel) and level.day > today():
+        messages.fail(f"{level.title} comes on its day.")
+    return level
+
+
 def _require_open(journal: ProgressJournal, level: GameLevel) -> None:
     """Ends the verb with what opens the level, where it is not open yet; levels of a day or a task always are."""
     from kit.tui.rows.level_rows import opens_after
@@ -120,18 +130,19 @@ def command(context: click.Context, workspace: Path | None, plain: bool) -> None
 @click.pass_obj
 def play(workspace: Path | None, level: str, plain: bool) -> None:
     """Drive LEVEL by hand. LEVEL is a level's name or number, or a task's file or name."""
-    from kit.school.game.daily import find_playable_level
+    from kit.school.game.drive_records import begin_run
     from kit.school.game.race import DriverKind
 
     with _open_journal(workspace) as (journal, opened_workspace):
-        chosen = find_playable_level(level)
+        chosen = _find_level(level)
         terminal = terminal_options.decide(plain=plain)
         if not terminal.plain.value:
             show_levels(journal, opened_workspace, terminal, chosen)
         _require_open(journal, chosen)
         click.echo(f"{chosen.title}. {chosen.story} {chosen.hint}")
+        is_practice = begin_run(journal, chosen)
         drive = _drive_line_by_line(chosen, opened_workspace)
-        _record_drive(journal, opened_workspace, chosen, DriverKind.KEYS, [drive])
+        _record_drive(journal, opened_workspace, chosen, DriverKind.KEYS, [drive], is_practice=is_practice)
 
 
 @command.command("race")
@@ -149,14 +160,14 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
     """
     from kit.learning.policies.policy import PolicyError
     from kit.learning.training.run_config import RunError
-    from kit.school.game.daily import find_playable_level
+    from kit.school.game.drive_records import begin_run
     from kit.school.game.player_progress import facts_of_program
     from kit.school.game.race import DriverKind, agent_controller, race_from_all_starts
 
     if (controller is None) == (agent is None):
         messages.fail("Give either --controller NAME or --agent RUN. To drive by hand, use `kit game play`.")
     with _open_journal(workspace) as (journal, opened_workspace):
-        chosen = find_playable_level(level)
+        chosen = _find_level(level)
         _require_open(journal, chosen)
         try:
             if controller is not None:
@@ -165,16 +176,18 @@ def race_(workspace: Path | None, level: str, controller: str | None, agent: str
                     find_controller(controller, opened_workspace.controllers),
                 )
                 facts = facts_of_program(program.file)
+                is_practice = begin_run(journal, chosen)
                 drives = race_from_all_starts(chosen, program, on_second=_print_race_time)
             else:
                 driver, (policy, facts) = DriverKind.AGENT, _find_policy(agent or "", opened_workspace)
                 with agent_controller(policy) as program:
+                    is_practice = begin_run(journal, chosen)
                     drives = race_from_all_starts(chosen, program, on_second=_print_race_time)
         except (LookupError, PolicyError, RunError) as error:
             messages.fail(str(error))
         finally:
             _print_race_time(0, None)
-        _record_drive(journal, opened_workspace, chosen, driver, drives, facts)
+        _record_drive(journal, opened_workspace, chosen, driver, drives, facts, is_practice)
 
 
 @command.command("daily")
@@ -266,15 +279,17 @@ def challenge(workspace: Path | None, name: str | None, answer: str | None) -> N
 def replay(workspace: Path | None, level: str, driver: str | None) -> None:
     """Replay your best drive of LEVEL, or the reference drive."""
     from kit.run.recording import RecordingError, load_recording
-    from kit.school.game.daily import find_playable_level
+    from kit.school.game.daily import has_run, is_of_today
     from kit.school.game.ghosts import ghost_file, load_ghosts
     from kit.school.game.race import DriverKind
     from kit.school.game.references import reference_recording
     from kit.school.game.starts import film_scenario
 
-    with _open_journal(workspace) as (_journal, opened_workspace):
-        chosen = find_playable_level(level)
+    with _open_journal(workspace) as (journal, opened_workspace):
+        chosen = _find_level(level)
         name = driver or next((each.name for each in load_ghosts(opened_workspace, chosen)), "reference")
+        if name == "reference" and is_of_today(chosen) and not has_run(journal.events(), chosen):
+            messages.fail("Drive today's maze first: finding the way is what it is about.")
         try:
             recording = (
                 reference_recording(chosen)
@@ -446,15 +461,20 @@ def _record_drive(
     driver: DriverKind,
     drives: list[tuple[RaceFinish, Recording]],
     facts: DriverFacts | None = None,
+    is_practice: bool = False,
 ) -> None:
     """Records a drive, or a program's drives from all starts, and prints what it earned."""
+    from kit.school.game.daily import DAILY_PREFIX
     from kit.school.game.drive_records import record_drive
     from kit.school.game.player_progress import BY_HAND
     from kit.school.game.references import reference_seconds
+    from kit.tui.rows.drive_end_rows import RUN_OF_THE_DAY
     from kit.tui.rows.ladder_rows import ladder_rows
     from kit.tui.rows.level_rows import starts_rows
 
-    record = record_drive(journal, opened_workspace, level, driver, drives, facts or BY_HAND)
+    record = record_drive(
+        journal, opened_workspace, level, driver, drives, facts or BY_HAND, is_practice=is_practice
+    )
     finishes = [each for each, _ in drives]
     finish = finishes[record.counts]
     for each in starts_rows(finishes, record.counts):
@@ -487,8 +507,10 @@ def _record_drive(
         click.echo(f"Opened: {opened.title} ({opened.id}).")
     if record.belt:
         click.echo(f"The {record.belt} belt of this world is yours.")
+    if level.id.startswith(DAILY_PREFIX) and not is_practice:
+        click.echo(f"Today's maze: {RUN_OF_THE_DAY}.")
     if record.streak:
-        click.echo(f"Today's level: {counted(record.streak, 'day')} in a row.")
+        click.echo(f"Today's maze: {counted(record.streak, 'day')} in a row.")
     if finish.failure is not None:
         raise SystemExit(1)
 

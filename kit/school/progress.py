@@ -62,6 +62,7 @@ class EventKind(StrEnum):
     SOLUTION = "solution"
     ANSWER = "answer"
     FORM = "form"
+    START = "start"
     FINISH = "finish"
     ABOUT = "about"
     DEFENCE = "defence"

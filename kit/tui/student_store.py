@@ -30,7 +30,7 @@ class StudentOverview:
     streak: int = 0
     """Days in a row on which the level of the day was finished."""
     has_run_today: bool = False
-    """Whether today's run of it is over."""
+    """Whether today's run of it has begun."""
     next_medal: str = ""
     """The medal that is nearest to what was driven, and its level; empty where none is in sight."""
     next_level: GameLevel | None = None

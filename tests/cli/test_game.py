@@ -1,10 +1,14 @@
 """``kit game``: its lists and replays without a full screen."""
 
+import datetime
 from pathlib import Path
 
 from click.testing import CliRunner
 
 from kit.cli import main
+from kit.school.game.daily import daily_level, today
+from kit.school.game.drive_records import begin_run
+from kit.school.progress import ProgressJournal
 
 
 def result_of(folder: Path, *words: str):
@@ -27,3 +31,18 @@ def test_a_race_of_a_program_that_stops_fails_and_says_where(tmp_path: Path) -> 
     found = result_of(tmp_path, "race", "first-drive", "--controller", str(program))
     assert found.exit_code == 1
     assert "driver.py:5" in found.output
+
+
+def test_the_maze_of_a_day_is_neither_driven_before_it_comes_nor_shown_before_it_is_driven(
+    tmp_path: Path,
+) -> None:
+    tomorrow = today() + datetime.timedelta(days=1)
+    for words in (("play", "--plain"), ("race", "--controller", "odometry"), ("replay",)):
+        found = result_of(tmp_path, words[0], f"daily-{tomorrow}", *words[1:])
+        assert found.exit_code == 2
+        assert "comes on its day" in found.output
+    of_today = daily_level(today())
+    assert result_of(tmp_path, "replay", of_today.id).exit_code == 2
+    with ProgressJournal(tmp_path) as journal:
+        begin_run(journal, of_today)
+    assert "reference" in result_of(tmp_path, "replay", of_today.id).output

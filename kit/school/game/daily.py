@@ -1,6 +1,6 @@
 """The level of the day: a map that its date generates, the same for everybody, with a drive that proves it drivable.
 
-The first run of a day counts, for the board of the day and the streak; further ones are practice.
+The first run of a day counts, for the board of the day and the streak, also if it is left; further ones are practice.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
-from itertools import pairwise
+from itertools import islice, pairwise
 from typing import Final, TypeAlias
 
 import numpy as np
@@ -53,8 +53,12 @@ LEAST_CELLS, LEAST_BENDS = 9, 4
 """Of the shortest way: a map with less is drawn again."""
 RADIUS: Final = 0.25
 """Of the target [m]."""
-LOOKAHEADS: Final = tuple(0.05 * number for number in range(6, 24))
+LOOKAHEADS: Final = (0.3, 0.35, 0.4)
 """Distances at which the reference drive may aim [m]: the farther, the more of a bend is cut."""
+INSETS: Final = (0.0, 0.03, 0.06)
+"""How far from the middle of an opening it may pass, on the inner side of the bends before and after [m]."""
+MOST_WAYS: Final = 8
+"""Of the equally short ways that it may take."""
 LEAST_CLEARANCE: Final = 0.147
 """Of the middle of the robot from walls; its hull reaches 0.145 m [m]."""
 HULL_AHEAD: Final = 0.048
@@ -127,7 +131,7 @@ def daily_level(day: datetime.date) -> GameLevel:
         title=f"The maze of {day.isoformat()}{' in fog' if fog else ''}",
         map_name=base.map_name,
         case=base.case,
-        hint="To the target, by the shortest way: the first run of the day counts.",
+        hint="To the target, by the shortest way. The first run counts, also if you leave it.",
         opened_by=(),
         row=0,
         story="A new maze every day, the same for everybody.",
@@ -236,25 +240,63 @@ def wall_segments(drawn: DailyMap) -> FloatArray:
 
 
 def daily_drive(drawn: DailyMap) -> ReferenceDrive:
-    """The reference drive of a map: pure pursuit along the middles of the cells at full speed, which cuts bends by as much as
-    the walls leave room for. That it arrives and touches nothing proves the map drivable."""
-    walls = wall_segments(drawn)
-    tried = [_pursue_path(drawn, lookahead) for lookahead in LOOKAHEADS]
+    """The reference drive of a map: pure pursuit from opening to opening at full speed, by the quickest of the shortest ways,
+    which cuts bends by as much as the walls leave room for. That it arrives and touches nothing proves the map drivable."""
+    walls, start = wall_segments(drawn), start_pose(drawn)
+    tried = [
+        _pursue_path(start, _places_to_pass(way, inset), lookahead)
+        for way in islice(_shortest_ways(drawn), MOST_WAYS)
+        for inset in INSETS
+        for lookahead in LOOKAHEADS
+    ]
     safe = [
         drive for drive, places in tried if nearest_on_segments(places, walls)[0].min() >= LEAST_CLEARANCE
     ]
     return min(safe, key=lambda drive: drive.seconds)
 
 
-def _pursue_path(drawn: DailyMap, lookahead: float) -> tuple[ReferenceDrive, FloatArray]:
+def _shortest_ways(drawn: DailyMap) -> Iterator[tuple[Cell, ...]]:
+    """All ways through as few cells as the map's own."""
+    moves = partial(_moves_through, sorted(drawn.openings))
+    left = {cell: len(way) for cell, way in reached_from(drawn.way[-1], moves)}
+
+    def go_on(way: tuple[Cell, ...]) -> Iterator[tuple[Cell, ...]]:
+        if way[-1] == drawn.way[-1]:
+            yield way
+        for _, cell in moves(way[-1]):
+            if left[cell] < left[way[-1]]:
+                yield from go_on((*way, cell))
+
+    return go_on(drawn.way[:1])
+
+
+def _places_to_pass(way: Sequence[Cell], inset: float) -> list[tuple[float, float]]:
+    """Points in the openings of a way, and the middle of its last cell. ``inset``: how far from the middle [m]."""
+    moves = [_direction(a, b) for a, b in pairwise(way)]
+    places = []
+    for number, (cell, move) in enumerate(zip(way, moves, strict=False)):
+        x, y = _middle_of_cell(cell)
+        before, after = moves[max(number - 1, 0)], moves[min(number + 1, len(moves) - 1)]
+        aside = [max(-1, min(1, then - earlier)) if not ahead else 0
+                 for then, earlier, ahead in zip(after, before, move, strict=True)]  # fmt: skip
+        places.append(
+            (x + 0.5 * CELL * move[0] + inset * aside[0], y + 0.5 * CELL * move[1] + inset * aside[1])
+        )
+    return [*places, _middle_of_cell(way[-1])]
+
+
+def _pursue_path(
+    start: Pose, corners: Sequence[tuple[float, float]], lookahead: float
+) -> tuple[ReferenceDrive, FloatArray]:
     """The commands of a pursuit, and (k, 2) its places [m]; the motors' model is exact, so the simulator drives the same."""
-    corners = np.array([_middle_of_cell(cell) for cell in drawn.way])
-    count = round(CELL / POINT_STEP)
+    x, y, theta = start
     points = np.concatenate(
-        [np.linspace(first, second, count, endpoint=False) for first, second in pairwise(corners)]
-        + [corners[-1:]]
-    )
-    x, y, theta = start_pose(drawn)
+        [
+            np.linspace(first, second, max(1, round(math.dist(first, second) / POINT_STEP)), endpoint=False)
+            for first, second in pairwise([(x, y), *corners])
+        ]
+        + [np.array(corners[-1:])]
+    ).tolist()
     dt = HOLD_TICKS * STEP_SIZE_S
     at, places = 0, [(x, y)]
     commands: list[DriveCommand] = []
@@ -295,15 +337,21 @@ def find_playable_level(name: str) -> GameLevel:
         raise UnknownLevel(f"There is no such day: {found[1]}.") from None
 
 
+def is_of_today(level: GameLevel) -> bool:
+    """Whether it is today's level."""
+    return isinstance(level, DailyLevel) and level.day == today()
+
+
 def streak(events: Sequence[ProgressEvent], today: datetime.date) -> int:
-    """Returns for how many days in a row, up to today or yesterday, the daily challenge was finished on its day."""
+    """Returns for how many days in a row, up to today or yesterday, the daily challenge was begun on its day and finished."""
+    begun = {event.subject: event for event in reversed(events) if event.kind is EventKind.START}
     days = set()
     for event in events:
         found = _ID.fullmatch(event.subject) if event.kind is EventKind.FINISH else None
         drive = drive_from_event(event) if found is not None else None
         if found is None or drive is None or not drive.finish.reached or drive.is_shipped:
             continue
-        day = event.time.astimezone().date()
+        day = begun.get(event.subject, event).time.astimezone().date()
         if day.isoformat() == found[1]:
             days.add(day)
     last = today if today in days else today - datetime.timedelta(days=1)
@@ -314,7 +362,7 @@ def streak(events: Sequence[ProgressEvent], today: datetime.date) -> int:
 
 
 def has_run(events: Sequence[ProgressEvent], level: GameLevel) -> bool:
-    """Whether a run of a day's level has been recorded: what comes after it is practice."""
+    """Whether a run of a day's level has begun: what comes after it is practice."""
     return level.id.startswith(DAILY_PREFIX) and any(
-        event.kind is EventKind.FINISH and event.subject == level.id for event in events
+        event.kind in (EventKind.START, EventKind.FINISH) and event.subject == level.id for event in events
     )

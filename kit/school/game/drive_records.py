@@ -69,6 +69,17 @@ class DriveRecord:
     """The saved recording, where the drive is the driver's best; else None."""
 
 
+def begin_run(journal: ProgressJournal, level: GameLevel) -> bool:
+    """Records that a level of a day is driven from now on, so that a run which is left counts as well. Returns whether it is
+    practice, as after the first run of the day. Raises ProgressError."""
+    if not level.id.startswith(DAILY_PREFIX):
+        return False
+    is_practice = has_run(journal.events(subject=level.id), level)
+    if not is_practice:
+        journal.add(EventKind.START, level.id)
+    return is_practice
+
+
 def record_drive(
     journal: ProgressJournal,
     workspace: Workspace,
@@ -76,10 +87,13 @@ def record_drive(
     driver: DriverKind,
     drives: Sequence[tuple[RaceFinish, Recording]],
     facts: DriverFacts = BY_HAND,
+    *,
+    is_practice: bool = False,
 ) -> DriveRecord:
     """Records a drive. Medals and stars count even where the recording cannot be written. Raises ProgressError.
 
-    ``drives``: one by hand; of a program or an agent those from all starts, of which the middle one counts.
+    ``drives``: one by hand; of a program or an agent those from all starts, of which the middle one counts. ``is_practice``: as
+    ``begin_run`` has said of it.
     """
     counts = middle_drive([finish for finish, _ in drives])
     finish = drives[counts][0]
@@ -87,7 +101,6 @@ def record_drive(
     lessons = completed_lessons(levels, events)
     before = level_progress(levels, events, lessons)
     (of_level,) = level_progress([level], events)
-    is_practice = has_run(events, level)
     is_best = not facts.is_shipped and not is_practice and is_best_drive(of_level, driver, finish)
     recording_file = None
     if is_best:

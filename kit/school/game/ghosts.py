@@ -20,6 +20,7 @@ from kit.school.game.references import reference_recording
 from kit.workspace import Workspace
 
 FOLDER: Final = "levels"
+UNFINISHED: Final = "unfinished.npz"
 REFERENCE: Final = "reference"
 MAX_CLASSMATES: Final = 3
 """Ghosts of classmates on a level."""
@@ -114,6 +115,20 @@ def level_ghosts(
 def ghost_file(workspace: Workspace, level: GameLevel, driver: DriverKind) -> Path:
     """The file of a driver's best drive."""
     return ghosts_folder(workspace) / f"{level.id}.{driver.value}.npz"
+
+
+def unfinished_file(workspace: Workspace) -> Path:
+    """The file of the last drive by hand that the end of the kit, such as a dropped link, has cut short. It is deleted when
+    that drive goes on."""
+    return ghosts_folder(workspace) / UNFINISHED
+
+
+def load_unfinished(workspace: Workspace) -> Recording | None:
+    """The drive that was cut short; None if there is none, or it cannot be read. ``level`` of it says where."""
+    try:
+        return load_recording(unfinished_file(workspace))
+    except (RecordingError, OSError):
+        return None
 
 
 def best_recordings(workspace: Workspace, level: GameLevel, driver: DriverKind) -> list[Recording]:

@@ -12,6 +12,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
 from kit.controllers import ControllerFile, find_controller, kit_controllers
 from kit.host.failure import Failure, FailureKind
 from kit.host.private_folder import private_folder
@@ -22,7 +24,7 @@ from kit.host.sandbox.sandbox_config import Level as Confinement
 from kit.run.episode import EndReason, run_until, when, when_failed
 from kit.run.lockstep import Observer
 from kit.run.metrics import MetricsRecorder
-from kit.run.recording import Recorder, Recording
+from kit.run.recording import Playback, Recorder, Recording
 from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.school.game.levels import GameLevel, LevelConditions
@@ -300,6 +302,36 @@ def run_again(level: GameLevel, recording: Recording) -> tuple[RaceFinish, Recor
         session.play_back(recording)
         run_until(session.runner, ticks=recording.ticks)
         return referee.finish, recorder.recording()
+
+
+def open_again(
+    level: GameLevel, recording: Recording, controller: ControllerFile
+) -> tuple[Session, RaceReferee, Recorder]:
+    """Opens a drive from the level's own start where its recording ends: the world stands, so do the robots, and the controller
+    is about to drive them. Raises as ``run_again``, and ValueError where the drive, run again, is another one.
+
+    The caller closes the session.
+    """
+    scenario = scenario_from(level, recording.seed)
+    if (recording.place, recording.case) != (scenario.name, level.case):
+        raise ValueError(f"this is a drive of {recording.place} {recording.case or ''}, not of {level.title}")
+    session = Session(scenario, seed=recording.seed, always_scan=True)
+    try:
+        runner = session.runner
+        referee, recorder = RaceReferee(level, scenario), Recorder.for_scenario(scenario, runner.simulation)
+        playback = Playback(recording, runner.accept, runner.call_service)
+        runner.participants.append(playback)
+        runner.observers += [playback, referee, recorder]
+        run_until(runner, ticks=recording.ticks)
+        if not np.array_equal(recorder.recording().poses, recording.poses):
+            raise ValueError("run again, it is another drive")
+        runner.paused = True
+        session.stop_robot()
+        session.drive_with(controller)
+    except BaseException:
+        session.close()
+        raise
+    return session, referee, recorder
 
 
 def judge_recording(level: GameLevel, recording: Recording) -> RaceFinish:

@@ -7,6 +7,7 @@ from typing import Final
 
 from kit.document.rows import MARGIN, Row, row
 from kit.plain_text import counted, wrap
+from kit.school.game.daily import DAILY_PREFIX
 from kit.school.game.drive_records import DriveRecord
 from kit.school.game.ghosts import Ghost, Split
 from kit.school.game.levels import GameLevel, all_worlds
@@ -20,6 +21,7 @@ from kit.tui.rows.ruled_title import ruled_title
 
 LEAST_LEAD: Final = 0.5
 """Of a chart's scale [s]."""
+RUN_OF_THE_DAY: Final = "this run counts; what follows is practice"
 MARK: Final = 5
 """Columns of a star before what it is for."""
 
@@ -115,8 +117,11 @@ def needed_rows(bins: Sequence[HistogramBin], unit: str = "s", decimals: int = 2
 
 
 def won_besides(level: GameLevel, record: DriveRecord) -> list[Row]:
-    """What a drive has won besides its medal and stars: levels that it opens, a belt, a day of the streak."""
+    """What a drive has won besides its medal and stars: levels that it opens, a belt, a day of the streak; and whether it is the
+    run of the day."""
     rows = []
+    if level.id.startswith(DAILY_PREFIX) and not record.is_practice:
+        rows.append(row(("   today:  ", "dim"), (RUN_OF_THE_DAY, "good")))
     if record.unlocked:
         titles = ", ".join(each.title for each in record.unlocked)
         rows.append(row(("   opened: ", "dim"), (titles, "good")))

@@ -177,12 +177,32 @@ def opens_after(level: GameLevel) -> str:
     return f"opens after {' or '.join(titles[each] for each in level.opened_by)}{lesson}"
 
 
+def before_it_goes_on(seconds: float) -> list[Row]:
+    """What stands below the picture of a drive that was cut short, until it goes on. ``seconds``: of it [s]."""
+    text = f" This drive was cut short after {seconds:.1f} s."
+    return [row((text, "bold")), row(" It goes on with your first key; r starts anew.")]
+
+
+GIVES_UP: Final = row(
+    (" This run counts for today.", "bold"), " Once more: Esc gives it up, r starts a practice run."
+)
+"""What is said before the run of the day is left."""
+
+
 def before_the_start(
-    level: GameLevel, ghosts: Sequence[str], width: int, *, task_in_sight: bool
+    level: GameLevel,
+    ghosts: Sequence[str],
+    width: int,
+    *,
+    task_in_sight: bool,
+    is_practice: bool = False,
 ) -> list[Row]:
     """What stands below the picture until somebody drives: the task, unless it is in sight beside the picture, and who is
-    raced. ``ghosts``: letter, driver and time of each; those are shown for which there is room."""
+    raced. ``ghosts``: letter, driver and time of each; those are shown for which there is room. ``is_practice``: of the day's
+    level, whose first run has counted."""
     start = " The clock starts with your first key."
+    if is_practice:
+        start += " Practice: today's run has counted."
     if task_in_sight:
         return [row((start, "bold")), row((_listed(ghosts, " You race: ", width), "dim"))]
     raced = _listed(ghosts, "  You race: ", width - len(start))

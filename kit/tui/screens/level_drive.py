@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar, Final
 
@@ -18,13 +19,19 @@ from kit.inspection.sockets import sockets_folder
 from kit.plain_text import format_clock
 from kit.render.scene import Scene, SceneMark
 from kit.run.laser_map import LaserMap, world_bounds
-from kit.run.recording import Recorder, Recording
+from kit.run.recording import Recorder, Recording, RecordingError, save_recording
 from kit.run.scenario import Scenario
 from kit.run.session import Session
 from kit.run.view import View
 from kit.school.game.daily import DAILY_PREFIX, has_run
-from kit.school.game.drive_records import DriveRecord, record_drive
-from kit.school.game.ghosts import Ghost, GhostComparison, compare_tracks
+from kit.school.game.drive_records import DriveRecord, begin_run, record_drive
+from kit.school.game.ghosts import (
+    Ghost,
+    GhostComparison,
+    compare_tracks,
+    load_unfinished,
+    unfinished_file,
+)
 from kit.school.game.levels import GameLevel
 from kit.school.game.medal import medal_of
 from kit.school.game.player_progress import BY_HAND, DriverFacts, level_progress
@@ -32,6 +39,7 @@ from kit.school.game.race import (
     DriverKind,
     RaceFinish,
     RaceReferee,
+    open_again,
     open_race,
     race_from_all_starts,
     sensors_in_use,
@@ -68,7 +76,7 @@ SIGHT: Final = 1.5
 
 
 class LeftError(Exception):
-    """Nobody waits for the end of the race any more."""
+    """Nobody waits for the result any more: the screen was left."""
 
 
 class OtherStart(Message):
@@ -152,7 +160,15 @@ class LevelDrive(WatchScreen):
         driven = journal.events(EventKind.FINISH, level.id)
         self._kept = level_progress([level], driven)[0].rules
         """The rules that a drive has kept before."""
-        if level.id.startswith(DAILY_PREFIX) and not has_run(driven, level):
+        cut_short = load_unfinished(workspace) if program is None else None
+        is_of_level = cut_short is not None and cut_short.level == level.find_scenario().level
+        self._cut_short = cut_short if is_of_level else None
+        """The drive that goes on here, until it does."""
+        has_begun = has_run(journal.events(subject=level.id), level)
+        self._is_practice = has_begun and self._cut_short is None
+        """Whether a run of this day's level has begun before: only the first one counts."""
+        self._is_left = self._has_warned = False
+        if self._is_daily and not self._is_practice:
             self._ghost_paths = ()  # finding the way is what the first run is about
         self.wish: Wish = "back"
 
@@ -160,9 +176,19 @@ class LevelDrive(WatchScreen):
     def has_started(self) -> bool:
         return self._referee is not None
 
+    @property
+    def _is_daily(self) -> bool:
+        return self._level.id.startswith(DAILY_PREFIX)
+
+    @property
+    def _is_driven(self) -> bool:
+        """Whether a hand drives: the clock has started, and the drive is neither at its end nor still to go on."""
+        is_by_hand = self._race_program is None
+        return is_by_hand and self.has_started and not self._is_over and self._cut_short is None
+
     def open_world(self) -> None:
         self._referee, self._is_over, self._result_row = None, False, ()
-        self._recorder, self._behind = None, None
+        self._recorder, self._behind, self._notice, self._has_warned = None, None, None, False
         self._comparison = None if self._reference is None else GhostComparison(self._reference)
         scenario = self._level.find_scenario()
         self._scenario: Scenario = scenario
@@ -171,10 +197,10 @@ class LevelDrive(WatchScreen):
         if self._race_program is not None:
             self.host.open_session(self._open_race, lambda session: self.host.pacing.factor)
             self.observe_agent()
+        elif self._cut_short is not None:
+            self.host.open_session(self._open_again, lambda session: self.host.pacing.factor)
         else:
-            self.host.open(
-                lambda: scenario, find_controller(TWO if len(scenario.partners) > 1 else ONE), paused=True
-            )
+            self.host.open(lambda: scenario, self._teleop, paused=True)
         self.view = None  # only now: until another world was asked for, there were views of the one before
         self.renew_laser_map(draws=self._level.conditions.fog)
 
@@ -183,6 +209,49 @@ class LevelDrive(WatchScreen):
         assert self._race_program is not None  # else the keys drive
         session, self._referee, self._recorder = open_race(self._level, self._scenario, self._race_program)
         return session
+
+    @property
+    def _teleop(self) -> ControllerFile:
+        return find_controller(TWO if len(self._scenario.partners) > 1 else ONE)
+
+    def _open_again(self) -> Session:
+        """Opens the drive that was cut short, in the helper thread; another one where it cannot go on, as in another version."""
+        assert self._cut_short is not None
+        try:
+            session, self._referee, self._recorder = open_again(self._level, self._cut_short, self._teleop)
+        except (RecordingError, ValueError):
+            self._cut_short = None
+            session = Session(self._scenario, seed=OWN_SEED, always_scan=True)
+            self._recorder = Recorder.for_scenario(self._scenario, session.runner.simulation)
+            session.runner.observers.append(self._recorder)
+            session.drive_with(self._teleop)
+            session.runner.paused = True
+        return session
+
+    def _begin(self) -> None:
+        """The clock starts: from now on, the run of a day is used up."""
+        with suppress(ProgressError):  # it is told at the end, when the drive cannot be saved either
+            self._is_practice = begin_run(self._progress, self._level)
+        self._referee = referee = RaceReferee(self._level, self._scenario)
+        self.host.post(lambda session: session.runner.observers.append(referee))
+        self.host.resume_when_driven()
+
+    def _take_cut_short(self) -> None:
+        """The drive that was cut short goes on now, or is given up."""
+        self._cut_short = None
+        with suppress(OSError):
+            unfinished_file(self._workspace).unlink(missing_ok=True)
+
+    def on_unmount(self) -> None:
+        """Keeps a drive that nobody has ended: a dropped link, or the kit that is quit, has."""
+        if not self._is_driven or self._is_left or (self._is_daily and self._is_practice):
+            return
+        recording = self.recording() if self._recorder is None else self._recorder.recording()
+        if recording is not None and recording.ticks:
+            file = unfinished_file(self._workspace)
+            with suppress(OSError):
+                file.parent.mkdir(parents=True, exist_ok=True)
+                save_recording(recording, file)
 
     def is_drive_key(self, key: str) -> bool:
         found = drive_key(key)
@@ -193,10 +262,12 @@ class LevelDrive(WatchScreen):
         if self.view is None or self._is_over or (not messages and strength == self._strength):
             return
         self._strength = strength
-        if self._referee is None and any(message.startswith("p_") for message in messages):
-            self._referee = referee = RaceReferee(self._level, self._scenario)
-            self.host.post(lambda session: session.runner.observers.append(referee))
-            self.host.resume_when_driven()
+        if any(message.startswith("p_") for message in messages):
+            if self._referee is None:
+                self._begin()
+            elif self._cut_short is not None:
+                self._take_cut_short()
+                self.host.resume_when_driven()
         self.host.post(lambda session: session.keys.publish(messages, strength))
 
     # What is shown
@@ -257,12 +328,19 @@ class LevelDrive(WatchScreen):
         ):
             self._behind = self._comparison.update(view.time_s, view.pose.x, view.pose.y)
         self._rows("heading").show([self._heading(view.time_s)])
-        if referee is None:
+        if self._cut_short is not None:
+            going_on = level_rows.before_it_goes_on(view.time_s)
+            self._rows("messages").show(going_on if self._notice is None else [self._notice])
+        elif referee is None:
             ghosts = [
                 f"{ghost_driver(each)} ({ghost_look(each)[0]}) {each.seconds:.1f} s" for each in self._ghosts
             ]
             rows = level_rows.before_the_start(
-                self._level, ghosts, self.size.width, task_in_sight=self._task_in_sight
+                self._level,
+                ghosts,
+                self.size.width,
+                task_in_sight=self._task_in_sight,
+                is_practice=self._is_practice,
             )
             self._rows("messages").show(rows)
         elif self._is_over:
@@ -310,7 +388,13 @@ class LevelDrive(WatchScreen):
             try:
                 drives = self._other_starts((finish, recording))
                 record = record_drive(
-                    self._progress, self._workspace, self._level, self._driver, drives, self._facts
+                    self._progress,
+                    self._workspace,
+                    self._level,
+                    self._driver,
+                    drives,
+                    self._facts,
+                    is_practice=self._is_practice,
                 )
                 finish, recording = drives[record.counts]
                 self._finishes = [each for each, _ in drives]
@@ -386,8 +470,23 @@ class LevelDrive(WatchScreen):
 
     def action_restart(self) -> None:
         """A new drive, recorded from its first tick."""
+        if self._warns_of_the_end():
+            return
         self.stop_driving()
+        if self._cut_short is not None:
+            self._take_cut_short()
+        self._is_practice = has_run(self._progress.events(subject=self._level.id), self._level)
         self.open_world()
+
+    def _warns_of_the_end(self) -> bool:
+        """Says once that a key would end the run that counts for today; whether it has just said so."""
+        counts = self._is_daily and not self._is_practice and self.has_started and not self._is_over
+        if not counts or self._has_warned:
+            return False
+        self._has_warned = True
+        self._notice = level_rows.GIVES_UP
+        self._show()
+        return True
 
     def action_share(self) -> None:
         """The map that the robot has drawn, as files."""
@@ -410,4 +509,6 @@ class LevelDrive(WatchScreen):
             super().action_speed(key)
 
     def action_back(self) -> None:
-        self.dismiss()
+        if self._cut_short is not None or not self._warns_of_the_end():
+            self._is_left = True
+            self.dismiss()

@@ -24,7 +24,7 @@ from kit.run.recording import Recording, RecordingError, load_recording
 from kit.school.game.challenge import Challenge
 from kit.school.game.challenges import all_challenges, challenge_medals
 from kit.school.game.daily import daily_level, streak, today
-from kit.school.game.ghosts import Ghost, ghost_file, level_ghosts
+from kit.school.game.ghosts import Ghost, ghost_file, level_ghosts, load_unfinished
 from kit.school.game.levels import CHALLENGES_WORLD, GameLevel, GameWorld, all_levels, all_worlds
 from kit.school.game.medal import Medal
 from kit.school.game.player_progress import (
@@ -160,10 +160,21 @@ class LevelsScreen(RowsScreen[None]):
             self._at = next(
                 (number for number, each in enumerate(self._found) if each.is_open and not each.best_times), 0
             )
+            self._choose_cut_short()
         self._load_ghosts()
         self._read_lessons()
         if self._first is not None:
             self._drive_first(self._first)
+
+    def _choose_cut_short(self) -> None:
+        """Names and chooses the level of a drive that a dropped link has ended: it goes on there."""
+        drive = load_unfinished(self._workspace)
+        number = next((at for at, each in enumerate(self._levels) if drive and drive.level == each.id), None)
+        if number is not None:
+            self._at = number
+            self._news = f"Your drive of {self._levels[number].title} was cut short: Enter goes on with it."
+        elif drive is not None and drive.level == daily_level(today()).id:
+            self._news = "Your run of today's level was cut short: d goes on with it."
 
     def on_resize(self, event: events.Resize) -> None:
         self.call_after_refresh(self._show)

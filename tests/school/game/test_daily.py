@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,9 +19,9 @@ from kit.school.game.daily import (
     streak,
     wall_segments,
 )
-from kit.school.game.drive_records import join_leaderboard, record_drive
+from kit.school.game.drive_records import begin_run, join_leaderboard, record_drive
 from kit.school.game.leaderboard import FOLDER_VARIABLE, leaderboard_folder, read_entries
-from kit.school.game.levels import UnknownLevel
+from kit.school.game.levels import UnknownLevel, find_level
 from kit.school.game.medal import Medal, medal_of
 from kit.school.game.race import DriverKind, judge_recording
 from kit.school.game.references import drive_reference, reference_seconds
@@ -89,6 +90,14 @@ def test_every_day_is_drivable(day: datetime.date) -> None:
     assert bends >= LEAST_BENDS
 
 
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("day", DAYS[:8], ids=str)
+def test_an_ordinary_hand_is_slower_than_the_reference_of_a_day(day: datetime.date) -> None:
+    level = daily_level(day)
+    finish, _ = keys_drive(level)
+    assert finish.seconds > 1.01 * (reference_seconds(level) or math.inf)
+
+
 def test_a_tape_earns_nothing_on_a_day_either() -> None:
     _, medal = judged(daily_level(DAY), DriverKind.CONTROLLER, tape_drives(daily_level(DAY)))
     assert medal <= Medal.BRONZE
@@ -103,9 +112,11 @@ def test_the_first_run_of_a_day_counts_and_others_are_practice(
     first, better = keys_drive(level), drive_reference(level)
     with ProgressJournal(workspace.folder) as journal:
         join_leaderboard(journal, workspace, "Ada")
-        record = record_drive(journal, workspace, level, DriverKind.KEYS, [first])
-        again = record_drive(journal, workspace, level, DriverKind.KEYS, [better])
-        events = [each for each in journal.events() if each.subject == level.id]
+        is_practice = begin_run(journal, level)
+        record = record_drive(journal, workspace, level, DriverKind.KEYS, [first], is_practice=is_practice)
+        is_practice = begin_run(journal, level)
+        again = record_drive(journal, workspace, level, DriverKind.KEYS, [better], is_practice=is_practice)
+        events = journal.events(EventKind.FINISH, level.id)
     assert (record.is_practice, again.is_practice) == (False, True)
     assert record.medal > Medal.NONE
     assert (again.medal, again.is_best, again.rules) == (Medal.NONE, False, ())
@@ -114,17 +125,15 @@ def test_the_first_run_of_a_day_counts_and_others_are_practice(
     assert entry.seconds == first[0].seconds
 
 
-def test_a_first_run_that_does_not_arrive_counts_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path / "board"))
+def test_a_first_run_that_is_left_is_used_up_and_that_of_another_day_is_not(tmp_path: Path) -> None:
     level = daily_level(DAY)
-    workspace = open_workspace(tmp_path / "desk")
-    finish, recording = keys_drive(level)
-    with ProgressJournal(workspace.folder) as journal:
-        record_drive(
-            journal, workspace, level, DriverKind.KEYS, [(replace(finish, reached=False), recording)]
-        )
-        again = record_drive(journal, workspace, level, DriverKind.KEYS, [(finish, recording)])
-    assert again.is_practice
+    with ProgressJournal(tmp_path) as journal:
+        assert not begin_run(journal, level)
+        assert begin_run(journal, level)
+        assert not begin_run(journal, daily_level(DAY + datetime.timedelta(days=1)))
+        assert streak(journal.events(), DAY) == 0
+        assert not begin_run(journal, find_level("first-drive"))
+        assert not begin_run(journal, find_level("first-drive"))
 
 
 def finish(day: datetime.date, level: str, *, reached: bool = True) -> ProgressEvent:
@@ -144,3 +153,11 @@ def test_a_streak_counts_days_in_a_row_on_their_day() -> None:
     assert streak(events, DAY) == 3
     assert streak(events, DAY + datetime.timedelta(days=2)) == 0
     assert streak([finish(DAY, "first-drive")], DAY) == 0
+
+
+def test_a_run_over_midnight_belongs_to_the_day_on_which_it_began() -> None:
+    late = datetime.datetime.combine(DAY, datetime.time(23, 59)).astimezone()
+    begun = ProgressEvent("begun", late.isoformat(), EventKind.START, f"daily-{DAY}", {})
+    ended = replace(finish(DAY + datetime.timedelta(days=1), f"daily-{DAY}"))
+    assert streak([ended], DAY) == 0
+    assert streak([begun, ended], DAY) == 1

@@ -287,6 +287,96 @@ def test_a_drive_is_followed_by_its_result_and_the_next_level(
     play(scene, progress, tmp_path / "desk")
 
 
+async def first_key(pilot: Pilot[None]) -> LevelDrive:
+    """Presses a drive's first key once it is shown, and waits until the world moves. Returns its screen."""
+    await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, LevelDrive))
+    drive = pilot.app.screen
+    assert isinstance(drive, LevelDrive)
+    await wait_until_shown(pilot, lambda: drive.view is not None and "first key" in flat(pilot.app))
+    assert drive.view is not None
+    shown_s = drive.view.time_s
+    drive.drive_keys_changed(("p_up",), drive.drive.state)
+    await wait_until_shown(pilot, lambda: drive.view is not None and drive.view.time_s > shown_s + 0.3)
+    return drive
+
+
+@pytest.mark.long
+def test_a_drive_that_is_cut_short_goes_on_where_it_was(progress: ProgressJournal, tmp_path: Path) -> None:
+    """As when the connection is lost: the kit ends, and nobody has left the drive."""
+
+    async def cut_short(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await pilot.press("enter")
+        await first_key(pilot)
+
+    async def go_on(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await wait_until_shown(pilot, lambda: "was cut short" in flat(pilot.app))
+        await pilot.press("enter")
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, LevelDrive))
+        await wait_until_shown(pilot, lambda: "cut short after" in flat(pilot.app))
+        await pilot.press("escape")  # nothing is lost yet
+        await wait_until_shown(pilot, lambda: pilot.app.screen is screen)
+        await pilot.press("enter")
+        drive = await first_key(pilot)
+        assert drive.view is not None
+        assert drive.view.time_s > load_unfinished_s
+        await wait_until_shown(pilot, lambda: isinstance(pilot.app.screen, DriveResultScreen))
+
+    play(cut_short, progress, tmp_path / "desk")
+    workspace = prepare_workspace(tmp_path / "desk")
+    recording = ghosts.load_unfinished(workspace)
+    assert recording is not None
+    load_unfinished_s = recording.ticks * recording.step_size
+    assert load_unfinished_s >= 0.3
+    assert progress.events(EventKind.FINISH) == []
+    play(go_on, progress, tmp_path / "desk")
+    (event,) = progress.events(EventKind.FINISH)
+    assert event.content["reached"]
+    assert ghosts.load_unfinished(workspace) is None
+    whole = ghosts.load_ghost(workspace, LEVELS[0], DriverKind.KEYS)
+    assert whole is not None
+    assert whole.seconds > load_unfinished_s
+    assert np.array_equal(whole.tracks[0][: recording.ticks], recording.track("serp"))
+
+
+@pytest.mark.long
+def test_a_drive_that_is_left_or_started_anew_is_not_kept(progress: ProgressJournal, tmp_path: Path) -> None:
+    async def leave(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        for key in ("r", "escape"):
+            await pilot.press("enter")
+            await first_key(pilot)
+            await pilot.press(key)
+            if key == "r":
+                await wait_until_shown(pilot, lambda: "The clock starts" in flat(pilot.app))
+                await pilot.press("escape")
+            await wait_until_shown(pilot, lambda: pilot.app.screen is screen)
+
+    play(leave, progress, tmp_path / "desk")
+    assert ghosts.load_unfinished(prepare_workspace(tmp_path / "desk")) is None
+
+
+@pytest.mark.long
+def test_leaving_the_run_of_the_day_is_asked_twice_and_uses_it_up(
+    progress: ProgressJournal, tmp_path: Path
+) -> None:
+    async def scene(screen: LevelsScreen, pilot: Pilot[None]) -> None:
+        await wait_until_shown(pilot, lambda: "> First drive" in flat(pilot.app))
+        await pilot.press("d")
+        drive = await first_key(pilot)
+        await pilot.press("r")
+        await wait_until_shown(pilot, lambda: "This run counts for today" in flat(pilot.app))
+        assert pilot.app.screen is drive
+        assert drive.has_started
+        await pilot.press("r")
+        await wait_until_shown(pilot, lambda: "Practice: today's run has counted" in flat(pilot.app))
+        await first_key(pilot)
+        await pilot.press("escape")  # practice is left at once
+        await wait_until_shown(pilot, lambda: pilot.app.screen is screen)
+
+    play(scene, progress, tmp_path / "desk")
+    assert [event.subject for event in progress.events(EventKind.START)] == [daily_level(today()).id]
+    assert ghosts.load_unfinished(prepare_workspace(tmp_path / "desk")) is None
+
+
 @pytest.mark.long
 def test_the_panel_speaks_of_the_target_that_is_next_and_of_all_bumps(
     progress: ProgressJournal, tmp_path: Path
