@@ -13,6 +13,7 @@ from textual.filter import DimFilter, LineFilter
 from textual.screen import Screen
 
 from kit.render.palettes import COLOR_SCHEMES
+from kit.tui.input.drive import ModeName
 from kit.tui.input.driver import KeyDriver
 from kit.tui.late_timers import fire_late_timers
 from kit.tui.terminal import LEAST_SIZE, TerminalDecision
@@ -54,6 +55,8 @@ class KitApp(App[None]):
             self.switch_theme(terminal.theme_name.value)
         self.set_class(terminal.glyphs.value == "ascii", ASCII_ONLY)
         self._first: Screen[Any] | None = None
+        self.drive_mode: ModeName | None = None
+        """How keys drive, as the user chose it on one of the screens; None: as the terminal allows."""
 
     def on_resize(self, event: events.Resize) -> None:
         """Says so as long as the terminal is too small for what is shown."""

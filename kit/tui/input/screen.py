@@ -6,7 +6,7 @@ import math
 import time
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Final
+from typing import Final, Protocol, runtime_checkable
 
 from textual import events
 from textual.app import App
@@ -27,6 +27,14 @@ _NEXT: Final[Mapping[ModeName | None, ModeName | None]] = MappingProxyType(
 
 SHORTEST_TIMER: Final = 1e-3
 """Seconds. Textual divides by a timer's interval where the timer comes late, so it must not be 0."""
+
+
+@runtime_checkable
+class DriveModeKeeper(Protocol):
+    """An app that keeps how keys drive while its screens come and go."""
+
+    drive_mode: ModeName | None
+    """The mode that the user chose, None for automatic."""
 
 
 class DriveScreen(Screen[None]):
@@ -61,8 +69,11 @@ class DriveScreen(Screen[None]):
         """Called when ``drive.status`` reads differently."""
 
     def action_drive_mode(self) -> None:
-        """Automatic, then latch, then repeat, then automatic again."""
-        self._report_drive(self.drive.choose(_NEXT[self.drive.requested_mode]))
+        """Automatic, then latch, then repeat, then automatic again; so also on the screens that follow."""
+        mode = _NEXT[self.drive.requested_mode]
+        if isinstance(self.app, DriveModeKeeper):
+            self.app.drive_mode = mode
+        self._report_drive(self.drive.choose(mode))
 
     def stop_driving(self) -> None:
         """All keys up, at once: for a pause, say."""
@@ -73,6 +84,8 @@ class DriveScreen(Screen[None]):
         self.app.app_suspend_signal.subscribe(self, self._suspended)
 
     def on_screen_resume(self) -> None:
+        if isinstance(self.app, DriveModeKeeper):
+            self._report_drive(self.drive.choose(self.app.drive_mode))
         driver = key_driver(self.app)
         if self._terminal is not None and not self._terminal.ask_keyboard.value:
             self._on_terminal_answer(None)

@@ -13,6 +13,7 @@ from textual.pilot import Pilot
 from textual.screen import Screen
 from textual.widgets import Input, Static
 
+from kit.tui.app import KitApp
 from kit.tui.input.drive import DriveState
 from kit.tui.input.key_parser import KeyboardAnswer, KeyReleased, KeyRepeated
 from kit.tui.input.modes import RepeatMode
@@ -194,3 +195,23 @@ def test_one_key_goes_through_the_modes() -> None:
         assert modes == [(None, "exact"), ("latch", "latch"), ("repeat", "repeat"), (None, "exact")]
 
     play(scene)
+
+
+def test_the_mode_that_was_chosen_holds_on_the_screens_that_follow_and_on_those_below() -> None:
+    async def run() -> None:
+        app: App[None] = KitApp(decide_terminal(TMUX, TerminalFacts()))
+        async with app.run_test() as pilot:
+            below, first, second = (Recorder(TMUX) for _ in range(3))
+            await app.push_screen(below)
+            await app.push_screen(first)
+            first.action_drive_mode()
+            await app.pop_screen()
+            await app.push_screen(second)
+            await pilot.pause()
+            assert [each.drive.choice.mode for each in (first, second, below)] == ["latch"] * 3
+            second.action_drive_mode()
+            await app.pop_screen()
+            await pilot.pause()
+            assert below.drive.requested_mode == "repeat"
+
+    asyncio.run(run())
