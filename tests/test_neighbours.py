@@ -64,6 +64,7 @@ def seen_by(user: str, folder: Path) -> str:
     look = 'find "$0" -exec sh -c \'echo "$1"; [ ! -f "$1" ] || cat "$1"\' sh {} ";" 2>/dev/null'
     run = subprocess.run(
         ["sh", "-c", look, str(folder)],
+        cwd="/",  # `find` does not go on where it may not return to
         user=user,
         group=user,
         extra_groups=[],

@@ -1,4 +1,5 @@
-"""Fuzzes everything that reads what others write: ``python -m tests.fuzz --inputs 100000`` or ``--seconds 600``.
+"""Fuzzes everything that reads what others write: ``python -m tests.fuzz`` tries 10,000 inputs of each kind, ``--seconds 600``
+as many as it can.
 
 Goes on where it was left when it is called again with the same ``--seed``. ``--replay frames:17`` tries one input again.
 Exit code 1 if there are findings.
@@ -23,7 +24,11 @@ BATCH = 1000
 
 @click.command(help=__doc__)
 @click.option(
-    "--inputs", type=click.IntRange(1), default=100_000, show_default=True, help="Of all targets together."
+    "--inputs",
+    type=click.IntRange(1),
+    default=10_000 * len(TARGETS),
+    show_default=True,
+    help="Of all targets together.",
 )
 @click.option(
     "--seconds", type=click.FloatRange(1), help="Go on until this time is over, instead of --inputs."
@@ -57,6 +62,7 @@ def main(
     tried = {name: saved.get("tried", {}).get(name, 0) for name in TARGETS}
     findings = list(saved.get("findings", []))
     outcomes = {name: Counter(saved.get("outcomes", {}).get(name, {})) for name in TARGETS}
+    growth = {name: saved.get("growth", {}).get(name, 0) for name in TARGETS}
     share = -(-inputs // len(names))
     until = None if seconds is None else time.monotonic() + seconds
     length = inputs if seconds is None else round(seconds)
@@ -72,11 +78,14 @@ def main(
             report = run_batch(name, range(tried[name], tried[name] + min(BATCH, left)), seed=seed)
             tried[name] += report.done
             outcomes[name] += report.outcomes
+            growth[name] = max(growth[name], report.growth)
             findings += _tell(report)
-            write_atomically(file, _packed(tried, outcomes, findings))
+            write_atomically(file, _packed(tried, outcomes, growth, findings))
             bar.update(report.done if until is None else round(time.monotonic() - began))
     for name in names:
-        click.echo(f"{name}: {tried[name]} inputs")
+        click.echo(
+            f"{name}: {tried[name]} inputs, memory grew by at most {growth[name] / 2**20:.1f} MiB in a batch"
+        )
         for outcome, count in outcomes[name].most_common(8):
             click.echo(f"  {count:>8} {outcome}")
     click.echo(f"{sum(tried[name] for name in names)} inputs, {len(findings)} findings")
@@ -92,8 +101,11 @@ def _tell(report: BatchReport) -> list[str]:
     return lines
 
 
-def _packed(tried: dict[str, int], outcomes: dict[str, Counter[str]], findings: list[str]) -> bytes:
-    return json.dumps({"tried": tried, "outcomes": outcomes, "findings": findings}).encode()
+def _packed(
+    tried: dict[str, int], outcomes: dict[str, Counter[str]], growth: dict[str, int], findings: list[str]
+) -> bytes:
+    state = {"tried": tried, "outcomes": outcomes, "growth": growth, "findings": findings}
+    return json.dumps(state).encode()
 
 
 def _replay(text: str, seed: int) -> None:

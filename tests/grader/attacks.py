@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 import tarfile
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -205,6 +206,7 @@ WORKED_ONCE: Mapping[str, tuple[str, ...]] = MappingProxyType(
             "grader/kinds/test_launch.py::test_what_it_writes_into_the_package_changes_no_program",
         ),
         "a compressed file that asks for 4 GB of memory": (
+            "grader/test_submission.py::test_unpacking_takes_no_more_memory_than_xz_at_its_best",
             "grader/cohort/test_unreadable.py::test_the_process_that_prepares_a_class_survives_every_bomb",
         ),
         "a lesson of somebody else's that writes its starter anywhere": (
@@ -437,8 +439,11 @@ def main() -> None:
     parser.add_argument("words", nargs="*", help="words in the names of the attacks to try")
     parser.add_argument("--level", type=int, choices=range(4), help="try this level only")
     given = parser.parse_args()
-    levels = [support.level for support in probe_levels() if support.is_available]
-    for line in table([each for each in levels if given.level in (None, each)], given.words):
+    asked = [support for support in probe_levels() if given.level in (None, support.level)]
+    for each in asked:
+        if not each.is_available:
+            print(f"level {each.level:d} is not tried: {each.reason}", file=sys.stderr)
+    for line in table([each.level for each in asked if each.is_available], given.words):
         print(line, flush=True)
 
 
