@@ -354,7 +354,7 @@ FOURTH_ROUND: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = MappingPro
     {
         "what surrounds the grader: a relative TMPDIR (no points), NUMBA_DISABLE_JIT (not read), a closed output": (
             ("grader/test_surroundings.py::test_no_environment_decides_a_grade", "grader/test_surroundings.py::test_nothing_that_a_process_inherits_decides_a_grade"),
-            ("host/test_private_folder.py::test_its_path_holds_in_every_current_folder",),
+            ("host/test_private_folder.py::test_its_path_holds_in_every_current_folder", "kernels/test_kernels.py::test_no_environment_keeps_kernels_from_being_compiled"),
         ),
         "a world whose robot moves by itself, and one of walls that close nothing": (
             ("grader/kinds/world/test_kind.py::test_a_robot_that_moves_by_itself_is_not_driven", "grader/kinds/world/test_kind.py::test_a_gap_in_the_walls_is_found"),

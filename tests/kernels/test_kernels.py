@@ -419,6 +419,20 @@ print(repr(config.CACHE_DIR))
     assert str(tmp_path) in control.stdout
 
 
+def test_no_environment_keeps_kernels_from_being_compiled() -> None:
+    """As Python they take a hundred times as long, and what a budget of time allows would depend on it."""
+    code = "from kit.kernels import kernels; print(hasattr(kernels.twist_step, 'signatures'))"
+    for imported, said in (("", "True"), ("import numba; ", "False")):  # numba reads it when it is imported
+        run = subprocess.run(
+            [sys.executable, "-c", imported + code],
+            env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        assert run.stdout.split() == [said]
+
+
 def test_what_kernels_do_not_use_is_not_imported_and_can_be_later() -> None:
     code = """
 import sys
