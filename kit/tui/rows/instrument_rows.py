@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from kit.document.rows import Row, row
+from kit.document.rows import Row, fitted, row, row_text
 from kit.tui.rows.chart_rows import laser_chart, time_chart
-from kit.tui.rows.readout_rows import message_rows, readout
+from kit.tui.rows.readout_rows import message_rows
 from kit.tui.rows.ruled_title import ruled_title
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ LEAST_ROWS: Final = 28
 LARGE_PANEL_WIDTH: Final = 46
 WIDE_PANEL: Final = (160, 60)
 """From this many columns on, the panel is this wide."""
+MESSAGES: Final = "messages"
+"""The title of the newest messages."""
 HISTORY_S: Final = 60.0
 SAMPLE_S: Final = 0.2
 """Seconds of the simulation that the charts of the past cover, and between two of their points."""
@@ -66,15 +68,15 @@ class SpeedHistory:
 
 
 def instruments(
-    view: View, history: SpeedHistory, drive: str | None, program: Sequence[str], size: tuple[int, int]
+    view: View, history: SpeedHistory, figures: Sequence[Row], program: Sequence[Row], size: tuple[int, int]
 ) -> tuple[Row, ...]:
     """The panel of a large screen, in order of importance as far as ``size``, columns and rows, has room; a chart for which there
     is no room is left out whole.
 
-    ``program``: the lines of the controller's file.
+    ``figures``: of ``figure_rows``. ``program``: the lines of the controller's file.
     """
     width, height = size
-    rows = figure_rows(view, drive, width)
+    rows = [*figures]
     for chart in _charts(view, history, width) if len(rows) < height else ():
         if len(rows) + len(chart) <= height:
             rows += chart
@@ -82,7 +84,7 @@ def instruments(
     if view.messages and left > 2:
         shown = view.messages[-max(1, min(len(view.messages), 8, left - 1)) :]
         rows += [
-            ruled_title("messages", width),
+            ruled_title(MESSAGES, width),
             *(each for record in shown for each in message_rows(record, width)),
         ]
     left = height - len(rows)
@@ -94,9 +96,15 @@ def instruments(
     return tuple(rows[:height])
 
 
-def figure_rows(view: View, drive: str | None, width: int) -> list[Row]:
-    """The robot's figures in two columns, with which the panel begins."""
-    return [ruled_title("robot", width), *_two_columns(readout(view, drive), width)]
+def tells_messages(panel: Sequence[Row]) -> bool:
+    """Whether a panel of ``instruments`` has the newest messages."""
+    title = ruled_title(MESSAGES, 0)[1]
+    return any(title in each for each in panel)
+
+
+def figure_rows(title: str, figures: Sequence[Row], width: int) -> list[Row]:
+    """Figures in two columns below a title, with which the panel begins."""
+    return [ruled_title(title, width), *_two_columns(figures, width)]
 
 
 def _charts(view: View, history: SpeedHistory, width: int) -> Iterator[list[Row]]:
@@ -128,11 +136,13 @@ def _two_columns(rows: Sequence[Row], width: int) -> list[Row]:
     return joined
 
 
-def _code_rows(program: Sequence[str], width: int, rows: int) -> list[Row]:
+def _code_rows(program: Sequence[Row], width: int, rows: int) -> list[Row]:
     """The program from its first class or function on, or its beginning."""
-    first = next((number for number, line in enumerate(program) if line.startswith(("class ", "def "))), 0)
+    first = next(
+        (number for number, line in enumerate(program) if row_text(line).startswith(("class ", "def "))), 0
+    )
     start = max(0, min(first, len(program) - rows))
     return [
-        row((f"{start + number + 1:3d} ", "dim"), line.expandtabs(4)[: max(0, width - 4)])
+        fitted(row((f"{start + number + 1:3d} ", "dim"), *line), width)
         for number, line in enumerate(program[start : start + rows])
     ]

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from kit.ros.parameters.parameter_client import ParameterTuner
     from kit.run.scenario import Scenario
     from kit.run.session import Session
+    from kit.run.view import View
 
 STEP: Final = 1.1
 """One key press multiplies or divides an intensity by this."""
@@ -69,7 +70,6 @@ class _FieldSetup:
 class FieldsScreen(PlayScreen, inherit_bindings=False):
     """The play screen with a field over the floor. Robots are driven by whatever controller drives them."""
 
-    has_instruments = False
     help_title = "The field"
     help_notes = (SIGNS,)
 
@@ -198,11 +198,11 @@ class FieldsScreen(PlayScreen, inherit_bindings=False):
 
     # In the face's
 
-    def _show(self) -> None:
-        super()._show()
-        opened, view = self._opened, self.view
-        if view is not None and opened is not None and self.is_current:
-            self._rows("panel").show(self._panel(opened.picture, self._poses(view.scene, opened.picture)))
+    def _figures(self, view: View, mode: str | None) -> tuple[str, Sequence[Row]]:
+        opened = self._opened
+        if opened is None:
+            return super()._figures(view, mode)
+        return "field", self._panel(opened.picture, self._poses(view.scene, opened.picture))
 
     def _newest_scene(self) -> Scene:
         scene, opened = super()._newest_scene(), self._opened

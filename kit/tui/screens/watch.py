@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, Final
@@ -19,7 +19,13 @@ from kit.kernels.compilation_progress import PROGRESS
 from kit.run.pacing import MAXIMUM, REAL_TIME
 from kit.tui.input.screen import DriveScreen
 from kit.tui.rows.agent_rows import AGENT_WIDTH, agent_panel
-from kit.tui.rows.instrument_rows import SpeedHistory, figure_rows, instruments, panel_width
+from kit.tui.rows.instrument_rows import (
+    SpeedHistory,
+    figure_rows,
+    instruments,
+    panel_width,
+    tells_messages,
+)
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.readout_rows import PANEL_WIDTH, failure_or_messages, heading, readout
 from kit.tui.screens.dialogs import HelpDialog, MessageDialog
@@ -115,7 +121,7 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         self._history = SpeedHistory()
         self._notice: Row | None = None
         self._tells_of_loading = False
-        self._program: tuple[Path | None, tuple[str, ...]] = (None, ())
+        self._program: tuple[Path | None, Sequence[Row]] = (None, ())
         self._announced = False
         self._beams = (
             self.world.is_shaded
@@ -137,6 +143,8 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         self._walls: FloatArray | None = None
         """Of the world for which the panel has its width."""
         self._instruments_width = 0
+        self._tells_messages = False
+        """Whether the panel has the newest messages."""
         """Columns of the panel with instruments; 0 where it has none."""
 
     def compose(self) -> ComposeResult:
@@ -307,8 +315,11 @@ class WatchScreen(RowsScreen[None], DriveScreen):
 
     def message_rows(self, view: View) -> tuple[Row, ...]:
         """The rows below the picture."""
-        messages = failure_or_messages(view, MESSAGE_ROWS, self.size.width)
-        return messages if self._notice is None else (self._notice,)
+        if self._notice is not None:
+            return (self._notice,)
+        if self._tells_messages and view.failure is None:
+            return ()
+        return failure_or_messages(view, MESSAGE_ROWS, self.size.width)
 
     def on_error_event(self, event: ErrorEvent) -> None:
         self.app.push_screen(MessageDialog("That did not work", event.text))
@@ -341,7 +352,9 @@ class WatchScreen(RowsScreen[None], DriveScreen):
             self._fit_panel()
         self.world.offer(self._newest_scene)
         self._rows("heading").show([heading(view, self.host.pacing, width, self.driver_name)])
-        self._rows("panel").show(self._panel_rows(view))
+        panel = self._panel_rows(view)
+        self._rows("panel").show(panel)
+        self._tells_messages = self._instruments_width > 0 and tells_messages(panel)
         self._rows("messages").show(self.message_rows(view))
         self._show_agent(view)
 
@@ -367,7 +380,9 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         mode = self.drive.choice.mode if self.shows_mode else None
         self._history.add(view)
         panel, width = self._rows("panel").content_size, self._instruments_width - 2
-        figures = readout(view, mode) if not self._instruments_width else figure_rows(view, mode, width)
+        title, figures = self._figures(view, mode)
+        if self._instruments_width:
+            figures = figure_rows(title, figures, width)
         card = self._card(panel.width - 1, panel.height - len(figures))
         if not self._instruments_width:
             return (*figures, *card)
@@ -375,7 +390,11 @@ class WatchScreen(RowsScreen[None], DriveScreen):
             self._program = view.program, _lines_of(view.program)
         program = self._program[1] if self.shows_program else ()
         size = width, panel.height - len(card)
-        return (*instruments(view, self._history, mode, program, size), *card)
+        return (*instruments(view, self._history, figures, program, size), *card)
+
+    def _figures(self, view: View, mode: str | None) -> tuple[str, Sequence[Row]]:
+        """What the panel begins with and its title, which a large screen shows. ``mode``: how keys drive; None: they do not."""
+        return "robot", readout(view, mode)
 
     def _card(self, width: int, room: int) -> list[Row]:
         """What stands below the figures of the panel; charts and the program get the room that it leaves. ``room``: rows."""
@@ -463,11 +482,16 @@ class WatchScreen(RowsScreen[None], DriveScreen):
         )
 
 
-def _lines_of(file: Path | None) -> tuple[str, ...]:
+def _lines_of(file: Path | None) -> Sequence[Row]:
+    """A program in colours."""
+    from kit.tui.widgets.program_colours import LANGUAGES, coloured_rows  # of no use to the first frame
+
     try:
-        return tuple(file.read_text(encoding="utf-8", errors="replace").splitlines()) if file else ()
+        lines = [] if file is None else file.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
         return ()
+    language = None if file is None else LANGUAGES.get(file.suffix)
+    return coloured_rows([line.expandtabs(4) for line in lines], language)
 
 
 def _do_nothing(session: Session) -> None:

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from kit.controllers import find_controller
-from kit.document.rows import Row
+from kit.document.rows import Row, row
 from kit.ros.log import LoggingSeverity, LogRecord
 from kit.run.scenario import find_scenario
 from kit.run.session import Session
 from kit.run.view import LASER_DIRECTIONS, View, ViewBuilder
 from kit.tui.rows.chart_rows import CHART_ROWS, laser_chart, time_chart
-from kit.tui.rows.instrument_rows import SpeedHistory, instruments, panel_width
+from kit.tui.rows.instrument_rows import SpeedHistory, figure_rows, instruments, panel_width, tells_messages
 from kit.tui.rows.readout_rows import failure_or_messages, readout
 from tests.cases import every_case
 from tests.tui.lesson_stage import row_text
@@ -40,20 +40,29 @@ def texts(rows: list[Row] | tuple[Row, ...]) -> list[str]:
     return [row_text(parts) for parts in rows]
 
 
+def figures(view: View, width: int) -> list[Row]:
+    return figure_rows("robot", readout(view, "repeat"), width)
+
+
 def test_the_panel_keeps_to_its_size_and_leaves_out_the_least_important(views: list[View]) -> None:
     history = SpeedHistory()
     for view in views:
         history.add(view)
-    program = [f"line {number}" for number in range(100)]
+    program = [row(f"line {number}") for number in range(100)]
     for size in ((44, 30), (44, 12), (58, 46), (58, 60)):
-        rows = texts(instruments(views[-1], history, "repeat", program, size))
+        rows = texts(instruments(views[-1], history, figures(views[-1], size[0]), program, size))
         assert len(rows) <= size[1]
         assert max(map(len, rows)) <= size[0]
         assert "robot" in rows[0]
-    assert not any(
-        "line 5" in line for line in texts(instruments(views[-1], history, None, program, (44, 24)))
-    )
-    assert any("line 5" in line for line in texts(instruments(views[-1], history, None, program, (58, 60))))
+        assert any("line 5" in line for line in rows) is (size[1] > 40)
+
+
+def test_a_panel_with_room_tells_the_newest_messages(views: list[View]) -> None:
+    view = replace(views[-1], messages=[LogRecord(0, LoggingSeverity.WARN, "fields", "A wall", "", "", 0)])
+    for height, is_told in ((46, True), (10, False)):
+        panel = instruments(view, SpeedHistory(), figures(view, 58), (), (58, height))
+        assert tells_messages(panel) is is_told
+        assert any("A wall" in line for line in texts(panel)) is is_told
 
 
 def test_a_chart_without_room_is_left_out_whole(views: list[View]) -> None:
@@ -61,7 +70,7 @@ def test_a_chart_without_room_is_left_out_whole(views: list[View]) -> None:
     for view in views:
         history.add(view)
     for height in range(8, 46):
-        rows = texts(instruments(views[-1], history, "repeat", (), (58, height)))
+        rows = texts(instruments(views[-1], history, figures(views[-1], 58), (), (58, height)))
         titles = [number for number, line in enumerate(rows) if line.startswith("── ")]
         for first, last in pairwise([*titles[1:], len(rows)]):
             assert last - first == 1 + CHART_ROWS, (height, rows[first])
@@ -86,8 +95,9 @@ def test_instruments_get_the_columns_that_the_picture_leaves(
 
 
 def test_a_program_is_shown_from_its_first_class_on(views: list[View]) -> None:
-    program = ["import rclpy", "", "", "class Mine(Node):", "    pass", *["# more"] * 50]
-    rows = texts(instruments(views[-1], SpeedHistory(), None, program, (58, 40)))
+    lines = ["import rclpy", "", "", "class Mine(Node):", "    pass", *["# more"] * 50]
+    program = [row((line, "keyword")) for line in lines]
+    rows = texts(instruments(views[-1], SpeedHistory(), figures(views[-1], 58), program, (58, 40)))
     assert not any("import rclpy" in line for line in rows)
     assert any(line.startswith("  4 class Mine") for line in rows)
 
