@@ -19,9 +19,9 @@ from kit.school.progress import ProgressError
 from kit.school.survey import AnswerShape, AnswerValue, SurveyQuestion
 
 KEPT: Final = (
-    ("what is kept", "an answer, when you go on, back or leave"),
-    ("blank", "counts only as blank; Enter without an answer"),
-    ("who sees it", "your teacher, if you hand in your progress"),
+    ("what is kept", "each answer, as soon as you go on, go back or leave"),
+    ("blank", "Enter without an answer; it counts as nothing else"),
+    ("who sees it", "your teacher, once you hand in your progress"),
 )
 BEFORE_CURRENT: Final = 3
 """Answered questions that are listed before the one that is asked."""

@@ -63,10 +63,10 @@ PLACES: Final = {
 }
 """The map that stands for each topic, where there is room for its picture."""
 HOW_IT_GOES: Final = (
-    Text("First choose an answer, then say how sure you are: only then is it kept, and only then told."),
     Text(
-        "0, not sure, is never counted as wrong. Nobody can tell a guess that was lucky from knowledge; you can."
+        "Choose an answer, then say how sure you are. Only then is it recorded, and are you told whether it is right."
     ),
+    Text("0, not sure, never counts as wrong. Only you can tell a lucky guess from knowledge."),
     *(Text(f"{words[0].upper()}{words[1:]}.", lead=f"{lead}:", lead_tone=Tone.DIM) for lead, words in KEPT),
 )
 """What the first question is told beside."""

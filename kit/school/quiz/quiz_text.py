@@ -73,7 +73,7 @@ def days_text(day: date, today: date) -> str:
 def schedule_blocks(schedule: PracticeSchedule) -> list[Block]:
     """The schedule: for every topic the number of questions today, or the next day."""
     if not schedule.topics:
-        return [Text("Nothing is scheduled yet: a topic returns the day after its first question.")]
+        return [Text("Nothing is scheduled yet: a topic comes back the day after its first question.")]
     rows = []
     for each in schedule.topics:
         left = each.questions_left(schedule.today)
@@ -183,7 +183,7 @@ def answered_blocks(session: QuizSession) -> tuple[Block, ...]:
 def calibration_blocks(calibration: Calibration) -> list[Block]:
     """Confidence against the share of right answers, one row per level."""
     if not calibration.answers:
-        return [Text("No answer says yet how sure you were.", is_tight=True)]
+        return [Text("You have not yet said how sure you were of any answer.", is_tight=True)]
     rows = []
     for level in calibration.levels:
         share = level.right / level.answers if level.answers else 0.0

@@ -12,7 +12,7 @@ from kit.document.rows import MARGIN, Row, row
 from kit.school.game.medal_in_reach import MedalInReach
 from kit.school.lessons.catalogue import LessonEntry
 from kit.tui.rows.lesson_list_rows import TITLE
-from kit.tui.rows.medal_signs import MEDAL_SIGNS, MEDAL_STYLES
+from kit.tui.rows.medal_signs import MEDAL_STYLES
 from kit.tui.rows.progress_marks import mark, progress_bar, stars
 from kit.tui.rows.ruled_title import ruled_title
 
@@ -20,7 +20,7 @@ STARS_LEGEND: Final = ("an exercise: *** all points, **. half", "or more, *.. so
 """What ``stars`` means, on the page of progress."""
 WEEKDAYS: Final = ("Mon", "", "Wed", "", "Fri", "", "Sun")
 MOST_WEEKS: Final = 26
-LEVEL_TITLE: Final = 18
+LEVEL_TITLE: Final = 17
 """Columns of a level's title."""
 STEPS: Final = 15
 """Columns of a lesson's steps."""
@@ -88,10 +88,10 @@ def reach_rows(medals: Iterable[MedalInReach]) -> list[Row]:
     """The next medals, with what was driven and what they ask for."""
     return [
         row(
-            f"  {each.level.title:<{LEVEL_TITLE}.{LEVEL_TITLE}}  ",
-            (f"{each.driver.phrase:<11}{each.seconds:>7.2f} s   ", "dim"),
-            (MEDAL_SIGNS[each.medal], MEDAL_STYLES[each.medal]),
-            f" {each.medal.title} at {each.asked:.2f} s",
+            f"  {each.level.title:<{LEVEL_TITLE}.{LEVEL_TITLE}} ",
+            (f"{each.driver.phrase:<11}{each.seconds:>7.2f} s  ", "dim"),
+            (each.medal.title, MEDAL_STYLES[each.medal]),
+            f" at {each.asked:.2f} s",
         )
         for each in medals
     ]

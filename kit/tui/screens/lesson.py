@@ -39,7 +39,7 @@ from kit.tui.screens.dialogs import MessageDialog
 from kit.tui.screens.dialogue import DialogueScreen
 from kit.tui.suspend import edit_aside, run_aside
 from kit.tui.theme import Theme
-from kit.tui.widgets.lesson_page import BESIDE, LessonContent, LessonPage, PageLayout
+from kit.tui.widgets.lesson_page import LessonContent, LessonPage, PageLayout, words_beside
 from kit.tui.widgets.lesson_scene_view import LessonSceneView
 from kit.tui.widgets.playback_scene_view import PlaybackSceneView
 from kit.tui.widgets.text_rows import TextRows
@@ -219,24 +219,30 @@ class LessonScreen(DialogueScreen, DriveScreen):
         hides_work = dialogue.has_ended or self.stage.is_recorded
         drawn = [] if hides_work else self._work_picture(self._width - 2, is_roomy=is_roomy)
         asked = dialogue.prediction_blocks()
+        question = [row(), *self._placed_rows(asked)] if asked else []
+        shown = () if hides_work else tuple(drawn or step.picture.splitlines())
+        room = self.room.height - 3 - len(file) - len(status)
+        if is_roomy and self._said_row + len(question) + answer + len(shown) <= room:
+            # What is said to the answer stands below the question, and neither moves.
+            words, question = [*words[: self._said_row], *question, *words[self._said_row :]], []
         has_work = work is not None and not work.by_hand and (is_roomy or not self._is_editing)
         lines = work.edited_lines() if work is not None and has_work else ()
         content = LessonContent(
             words,
-            [row(), *self._placed_rows(asked)] if asked else [],
-            () if hides_work else tuple(drawn or step.picture.splitlines()),
+            question,
+            shown,
             moves=self.stage.scene if dialogue.has_scene and not drawn else None,
             # Not all at once, where there is little room.
             moves_rows=self._playback_rows,
             first_words=max(self._said_row, answer, len(words) - self._said_row),
             most_words=self._said_row + answer,
+            words_width=self._width,
             scrolls_with="Esc, down" if self._is_writing else "PgDn" if dialogue.is_driving else "down",
             file=self._numbered(lines) if lines else (),
             file_title=work.edited_file.name if work is not None and has_work else "",
             file_line=max(work.error_line, work.changed_line) - 1 if work is not None and has_work else 0,
             log=[row("  ", line) for line in work.printed_lines] if work is not None and has_work else (),
         )
-        room = self.room.height - 3 - len(file) - len(status)
         self._page.show(content, room - self._editor_rows(room), layout)
 
     def _numbered(self, lines: Sequence[str]) -> list[Row]:
@@ -333,7 +339,7 @@ class LessonScreen(DialogueScreen, DriveScreen):
     def _width(self) -> int:
         """Width of the words."""
         width = self.room.width - self._editor_width
-        return width if self._layout is PageLayout.STACKED else min(width, BESIDE)
+        return width if self._layout is PageLayout.STACKED else words_beside(width)
 
     @property
     def _playback_rows(self) -> int:

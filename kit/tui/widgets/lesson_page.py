@@ -25,9 +25,10 @@ LEAST_FILE: Final = 8
 """Rows of the student's file below the words; where fewer are left it is not shown."""
 LINES_SEEN: Final = 2
 """Rows of a verdict or a hint that are brought into sight."""
-BESIDE: Final = 82
-"""Columns of the words, where the picture is beside them."""
-
+BESIDE: Final = (62, 82)
+"""Columns of the words, where the picture is beside them: at least, and at most."""
+LEAST_BESIDE: Final = 110
+"""Columns of the picture or the file, before the words get more than they need."""
 
 ROOMY_SIZE: Final = (120, 30)
 """Columns and rows from which on the scene, the file and its log stand beside the words, all at once."""
@@ -35,6 +36,15 @@ COLUMNS_WIDTH: Final = 180
 """Columns from which on the file has a column of its own."""
 MOST_LOG: Final = 8
 """Rows of what the program printed."""
+
+
+def words_beside(columns: int) -> int:
+    """The columns of the words on a page of so many, where the picture is beside them.
+
+    >>> words_beside(120), words_beside(200)
+    (62, 82)
+    """
+    return min(columns, max(BESIDE[0], min(columns - LEAST_BESIDE, BESIDE[1])))
 
 
 class PageLayout(Enum):
@@ -76,6 +86,8 @@ class LessonContent:
     """The key that shows more words."""
     file: Sequence[Row] = ()
     """The student's file, line by line; shown where there is room."""
+    words_width: int = BESIDE[0]
+    """Columns of the words, where something stands beside them."""
     file_title: str = ""
     file_line: int = 0
     """The line of it to look at first, counted from 0."""
@@ -86,27 +98,26 @@ class LessonContent:
 class LessonPage(Container):
     """``scenes``: are opened and shut by whoever owns the sheet; one of them is seen at a time."""
 
-    DEFAULT_CSS = f"""
-    LessonPage {{ height: 1fr; layout: vertical; }}
-    LessonPage #left, LessonPage #stage {{ height: auto; layout: vertical; }}
-    LessonPage #picture {{ height: auto; }}
-    LessonPage #words {{ height: 1fr; }}
-    LessonPage #ask {{ height: auto; }}
-    LessonPage #right {{ height: 1fr; layout: vertical; }}
-    LessonPage #work {{ display: none; }}
-    LessonPage #log {{ display: none; height: auto; }}
-    LessonPage.-beside, LessonPage.-roomy {{ layout: horizontal; }}
-    LessonPage.-beside #left, LessonPage.-roomy #left {{ width: 1fr; height: 1fr; }}
-    LessonPage.-beside #stage, LessonPage.-roomy #stage {{ height: 1fr; }}
-    LessonPage.-beside #right, LessonPage.-roomy #right {{ width: {BESIDE}; }}
-    LessonPage.-roomy.-work #work {{ display: block; width: 1fr; height: 1fr; }}
-    LessonPage.-roomy.-work #log {{ display: block; }}
-    LessonPage #work, LessonPage #log {{ padding: 0 1 0 0; }}
-    LessonPage.-below #left {{ dock: bottom; }}
-    LessonPage.-below #work {{ display: block; height: 1fr; padding: 0 2; }}
-    LessonPage.-roomy.-still #stage {{ height: auto; }}
-    LessonPage.-roomy.-columns #left {{ layout: horizontal; }}
-    LessonPage.-roomy.-columns #stage {{ width: 1fr; }}
+    DEFAULT_CSS = """
+    LessonPage { height: 1fr; layout: vertical; }
+    LessonPage #left, LessonPage #stage { height: auto; layout: vertical; }
+    LessonPage #picture { height: auto; }
+    LessonPage #words { height: 1fr; }
+    LessonPage #ask { height: auto; }
+    LessonPage #right { height: 1fr; layout: vertical; }
+    LessonPage #work { display: none; }
+    LessonPage #log { display: none; height: auto; }
+    LessonPage.-beside, LessonPage.-roomy { layout: horizontal; }
+    LessonPage.-beside #left, LessonPage.-roomy #left { width: 1fr; height: 1fr; }
+    LessonPage.-beside #stage, LessonPage.-roomy #stage { height: 1fr; }
+    LessonPage.-roomy.-work #work { display: block; width: 1fr; height: 1fr; }
+    LessonPage.-roomy.-work #log { display: block; }
+    LessonPage #work, LessonPage #log { padding: 0 1 0 0; }
+    LessonPage.-below #left { dock: bottom; }
+    LessonPage.-below #work { display: block; height: 1fr; padding: 0 2; }
+    LessonPage.-roomy.-still #stage { height: auto; }
+    LessonPage.-roomy.-columns #left { layout: horizontal; }
+    LessonPage.-roomy.-columns #stage { width: 1fr; }
     """
 
     def __init__(self, *scenes: LessonSceneView | PlaybackSceneView) -> None:
@@ -147,6 +158,7 @@ class LessonPage(Container):
         self.set_class(is_beside and is_roomy, "-roomy")
         self.set_class(has_work, "-work")
         self.set_class(content.moves is None, "-still")
+        self.query_one("#right").styles.width = content.words_width if is_beside else None
         # Where nothing moves the file has all columns beside the words.
         self.set_class(self.size.width >= COLUMNS_WIDTH and content.moves is not None, "-columns")
         self._rows("picture").show_all(picture)

@@ -92,7 +92,7 @@ def test_how_well_one_judges_oneself() -> None:
     assert "judge yourself well" in _calibrated([(4, 10, 10), (1, 3, 1)])[-1]
     assert "more than you think" in _calibrated([(1, 10, 9)])[-1]
     assert "After 8" in _calibrated([(4, 7, 1)])[-1]
-    assert _calibrated([]) == ["No answer says yet how sure you were."]
+    assert _calibrated([]) == ["You have not yet said how sure you were of any answer."]
     assert "5 of 10" in _calibrated([(4, 10, 5)])[3]
 
 
