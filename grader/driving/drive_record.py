@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from grader.driving.circle_fit import CircleFit, fit_circle
+from grader.driving.message_rate import MessageRate
 from grader.driving.service_calls import NO_ANSWER, NO_SERVICE
 from grader.driving.waypoints import pass_waypoints
 from kit.arrays import FloatArray
@@ -267,17 +268,18 @@ class GradedDrive:
     def _counts(self, check: str, params: Any) -> Iterator[str]:
         """Yields how often something came that is asked for at a rate, and how often it should; see ``PrintedTextParams`` and
         ``TopicRateParams``."""
+        per_second: Mapping[int, int] = {}
         if check == "says":
-            count = self.lines_with(params.text).total()
-            what, asked = (
-                f"It printed “{params.text}” {counted(count, 'time')}",
-                self.seconds / max(1e-9, params.seconds),
-            )
+            asked = 1.0 / params.seconds if params.seconds > 0.0 else 0.0
+            per_second = self.lines_with(params.text)
+            came = f"It printed “{params.text}” {counted(sum(per_second.values()), 'time')}"
         else:
-            traffic = self.traffic.get(params.topic)
-            came = counted(0 if traffic is None else traffic.count, "message")
-            what, asked = f"{came} came on {params.topic}", self.seconds * params.rate
-        yield f"{what} in {self.seconds:.0f} s; {asked:.0f} are asked for."
+            asked = params.rate
+            if params.topic in self.traffic:
+                per_second = self.traffic[params.topic].per_second
+            came = f"{counted(sum(per_second.values()), 'message')} came on {params.topic}"
+        if asked > 0.0 and self.seconds > 0.0:
+            yield MessageRate(per_second, asked, self.seconds).describe(came)
 
     def _explain_speed(self, params: Any) -> str:
         """Says how fast the robot drove, and how fast it should have; see ``SpeedSpanParams``."""

@@ -427,9 +427,9 @@ CONTROLS: Final = (
     ),
     Control(
         "all messages in the first tick",
-        "grader/driving/checks/interfaces.py",
-        "    return max(mean_error, uneven)\n",
-        "    return mean_error\n",
+        "grader/driving/message_rate.py",
+        "        return max(self.mean_error, self.uneven_share)\n",
+        "        return self.mean_error\n",
         "grader/driving/test_checks.py::test_a_rate_is_kept_all_the_time",
     ),
     Control(

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
 
 from grader.check import NoParams, check
 from grader.driving.drive_record import GradedDrive
+from grader.driving.message_rate import MessageRate
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,34 +62,14 @@ class NodeNamesParams:
     """Full names that the program's nodes must have, letter by letter."""
 
 
-@check(none=0.5, full=0.1, unit="%", params=TopicRateParams)
+@check(none=0.5, full=0.1, unit="%", params=TopicRateParams, is_explained=True)
 def rate(drive: GradedDrive, params: TopicRateParams) -> float:
     """The program's messages do not come at the asked rate: it is off by {actual} ({where}); {full} is
     allowed. A timer sets the rate, not a sleep."""
     traffic = drive.traffic.get(params.topic)
     if traffic is None or drive.seconds == 0.0 or params.rate <= 0.0:
         return math.inf
-    return _rate_error(traffic.per_second, params.rate, drive.seconds)
-
-
-def _rate_error(per_second: Mapping[int, int], rate: float, seconds: float) -> float:
-    """Returns how far what comes ``rate`` times a second is off: over all, or by the share of the time in which there is less than half
-    or more than twice as much of it, whichever is more. All at once is no rate.
-
-    ``per_second``: how much of it came in each second. The first second does not count as such a time: a program begins in it.
-    """
-    mean_error = abs(sum(per_second.values()) / seconds - rate) / rate
-    length = max(1, math.ceil(LEAST_PER_SPAN / rate))
-    spans = [
-        sum(per_second.get(each, 0) for each in range(first, first + length)) / (length * rate)
-        for first in range(1, int(seconds) - length + 1, length)
-    ]
-    uneven = sum(not 0.4 < share < 2.5 for share in spans) / len(spans) if spans else 0.0
-    return max(mean_error, uneven)
-
-
-LEAST_PER_SPAN: Final = 4
-"""Messages or lines that a span of time should hold that is looked at by itself."""
+    return MessageRate(traffic.per_second, params.rate, drive.seconds).error
 
 
 @check(none=0, full=1, unit="%", params=TopicsParams)
@@ -120,13 +100,13 @@ def answered(drive: GradedDrive, params: AnswerParams) -> float:
     return float(params.holds in drive.answers.get(params.call, ""))
 
 
-@check(none=0.5, full=0.1, unit="%", params=PrintedTextParams)
+@check(none=0.5, full=0.1, unit="%", params=PrintedTextParams, is_explained=True)
 def says(drive: GradedDrive, params: PrintedTextParams) -> float:
     """The program does not print the required text at the required rate: it is off by {actual} ({where}); {full} is
     allowed. A timer sets the rate, and `self.get_logger().info(...)` prints."""
     if drive.seconds == 0.0 or params.seconds <= 0.0:
         return math.nan
-    return _rate_error(drive.lines_with(params.text), 1.0 / params.seconds, drive.seconds)
+    return MessageRate(drive.lines_with(params.text), 1.0 / params.seconds, drive.seconds).error
 
 
 @check(none=0, full=1, unit="%", params=NodeNamesParams)

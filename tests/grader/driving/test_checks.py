@@ -17,6 +17,7 @@ from grader.driving.checks.interfaces import AnswerParams
 from grader.driving.checks.ways import CircleParams
 from grader.driving.drive_record import NO_COMMAND, GradedDrive, TopicTraffic
 from grader.driving.following import FlagByRangeParams, SpeedByFlagParams, SpeedByRangeParams
+from grader.driving.message_rate import MessageRate
 from grader.driving.service_calls import NO_SERVICE
 from grader.grading import GradingOptions, grade
 from grader.kinds.environment.examination import FreePlacementRunner
@@ -36,7 +37,7 @@ SECONDS = 20
 
 
 def rate_of(per_second: dict[int, int], rate: float) -> float:
-    return interfaces._rate_error(per_second, rate, SECONDS)
+    return MessageRate(per_second, rate, SECONDS).error
 
 
 @every_case(
