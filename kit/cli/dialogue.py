@@ -225,7 +225,7 @@ class _Conversation:
                 return attempt(closed)
             case Work(note, job, done):
                 _print_lines(wrap(note, HEARD.width) if note else [])
-                return attempt(lambda: done(job()))
+                return attempt(lambda: done(job(click.echo)))
             case Show(request, shown):
                 way = self._ways[type(request)]
                 return attempt(lambda: shown(way(request, self._buffer)))

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from kit.document.blocks import Block, Tone
 
 if TYPE_CHECKING:
     from kit.dialogue.dialogue import Dialogue
+
+ShowProgress: TypeAlias = Callable[[str], None]
+"""Takes a sentence on how far something is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +77,8 @@ class Work:
 
     note: str
     """Said meanwhile."""
-    job: Callable[[], Any]
+    job: Callable[[ShowProgress], Any]
+    """May say how far it is, in the note's place."""
     then: Callable[[Any], Effect]
 
 

@@ -423,7 +423,7 @@ class LessonDialogue(Dialogue):
         ):
             return None
         file = report.recording
-        return Work("", lambda: _load_run(file), lambda run: self._play(work, run))
+        return Work("", lambda _: _load_run(file), lambda run: self._play(work, run))
 
     def _play(self, work: ExerciseAttempt, run: tuple[Recording, Scenario] | None) -> Effect:
         if run is not None and self.work is work:
@@ -579,7 +579,7 @@ class LessonDialogue(Dialogue):
 
         files = [session.exercise_file(each) for each in session.lesson.exercises if each.name in scene.own]
         note = "Your lines learn the floor, off screen ..."
-        return Work(note, lambda: make_film(scene, files, session.own_code_level), shown)
+        return Work(note, lambda tell: make_film(scene, files, session.own_code_level, tell), shown)
 
     def explain_second_terminal(self) -> Effect:
         return Tell(SECOND_TERMINAL, [Marked(second_terminal_here(self.session.workspace))])
@@ -594,7 +594,7 @@ class LessonDialogue(Dialogue):
                 session = QuizSession(journal, bank, plan, seed=seed, restart=True)
             return Open(QuizDialogue(session))
 
-        return Work("Reading the questions ...", read_bank, start)
+        return Work("Reading the questions ...", lambda _: read_bank(), start)
 
     # The exercise
 
@@ -683,7 +683,7 @@ class LessonDialogue(Dialogue):
             return Open(DefenceDialogue(session, exercise, defence))
 
         note = "Running your program once, off screen, from a new start ..."
-        return Work(note, lambda: session.prepare_defence(exercise), ask)
+        return Work(note, lambda _: session.prepare_defence(exercise), ask)
 
     def start_over(self) -> Effect:
         kept = self._work.start_over()

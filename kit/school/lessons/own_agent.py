@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -51,14 +52,22 @@ class OwnAgentFilm:
     """How long it drives [s]."""
 
 
-def make_film(scene: LearningScene, files: list[Path], level: Level) -> OwnAgentFilm:
-    """Lets the lines in the student's files learn, then the robot drive. ``level``: their confinement. Takes some seconds.
-    Raises OwnAgentError."""
+def make_film(
+    scene: LearningScene, files: list[Path], level: Level, show_progress: Callable[[str], None]
+) -> OwnAgentFilm:
+    """Lets the lines in the student's files learn, then the robot drive. ``level``: their confinement. Takes some seconds, and
+    says at each tenth how far it is. Raises OwnAgentError."""
     try:
         with StudentLines(files, level) as lines:
             learner = make_own_learner(scene.world, scene.learners[0], lines)
+            tenth = 0
             while learner.updates < scene.updates:
                 learner.step()
+                if (reached := 10 * learner.updates // scene.updates) > tenth:
+                    tenth = reached
+                    show_progress(
+                        f"Your lines learn the floor: {learner.updates:,} of {scene.updates:,} updates."
+                    )
             kept = lines.kept_lines()
     except StudentCodeError as error:
         raise OwnAgentError(f"Your lines stopped: {error.failure}") from None

@@ -18,6 +18,7 @@ from kit.dialogue.effects import Choose, Effect, Help, Leave, Open, Remark, Show
 from kit.document.blocks import Tone
 from kit.document.layout import Page, place, rows_of
 from kit.document.rows import MARGIN, Row, at_both_edges, fitted, row, text_width, window
+from kit.tui.loop_calls import called_in_loop
 from kit.tui.rows.key_rows import footer
 from kit.tui.rows.ruled_title import ruled_title
 from kit.tui.screens.dialogs import HelpDialog
@@ -387,10 +388,10 @@ class DialogueScreen(RowsScreen[None]):
                 follows = then
             case Work(note, job, then):
                 if note:
-                    self.turn.set_remark(Remark(note, Tone.DIM))
-                    self.show()
+                    self._say_of_work(note)
                 result: list[Any] = []
-                failed = await to_thread(self.turn.attempt, lambda: result.append(job()))
+                tell = called_in_loop(self._say_of_work)
+                failed = await to_thread(self.turn.attempt, lambda: result.append(job(tell)))
                 if failed is not None or not result:
                     self._perform(failed)
                     return
@@ -399,6 +400,11 @@ class DialogueScreen(RowsScreen[None]):
                 follows = partial(then, await self.show_request(request))
         if self.is_mounted:
             self._perform(self.turn.attempt(follows))
+
+    def _say_of_work(self, text: str) -> None:
+        if self.is_mounted:
+            self.turn.set_remark(Remark(text, Tone.DIM))
+            self.show()
 
     def screen_for(self, dialogue: Dialogue) -> DialogueScreen:
         """The screen of a dialogue that is opened from this one."""

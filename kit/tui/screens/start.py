@@ -5,8 +5,6 @@ from __future__ import annotations
 from asyncio import Event, get_running_loop, to_thread
 from collections.abc import Awaitable, Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
-from contextvars import copy_context
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
@@ -20,6 +18,7 @@ from kit.document.rows import Row, at_both_edges, row
 from kit.inspection.sockets import sockets_folder
 from kit.tui.input.drive import DriveState
 from kit.tui.input.drive_keys import base_key
+from kit.tui.loop_calls import called_in_loop
 from kit.tui.rows.key_rows import bindings
 from kit.tui.rows.menu_rows import (
     MENU,
@@ -183,12 +182,7 @@ class StartScreen(PlayScreen, inherit_bindings=False):
 
     async def _refresh_overview(self) -> StudentOverview:
         """Read again, and shown."""
-        loop, context = get_running_loop(), copy_context()
-
-        def tell_lessons(lessons: StudentOverview) -> None:
-            with suppress(RuntimeError):  # the kit has been left meanwhile
-                loop.call_soon_threadsafe(self._show_lessons, lessons, context=context)
-
+        loop, tell_lessons = get_running_loop(), called_in_loop(self._show_lessons)
         overview = await loop.run_in_executor(self._reading, self._store.read_overview, tell_lessons)
         self._overview, self._is_outdated = overview, False
         if overview.next_level is not None and self.has_class("-vast"):

@@ -44,8 +44,12 @@ def files_of(lesson: Lesson, scene: LearningScene, folder: Path, work: str = "so
     return files
 
 
+def tell_nobody(text: str) -> None:
+    """How far it is, unread."""
+
+
 def film_of(lesson: Lesson, scene: LearningScene, folder: Path) -> OwnAgentFilm:
-    return make_film(scene, files_of(lesson, scene, folder), INTERACTIVE_LEVEL)
+    return make_film(scene, files_of(lesson, scene, folder), INTERACTIVE_LEVEL, tell_nobody)
 
 
 def test_each_lesson_on_an_algorithm_has_a_film() -> None:
@@ -78,7 +82,7 @@ def test_a_starter_learns_nothing(lesson: Lesson, scene: LearningScene, tmp_path
     """Else the film would say nothing of the student's lines."""
     files = files_of(lesson, scene, tmp_path, f"{STARTER}.py")
     with suppress(OwnAgentError):
-        assert not make_film(scene, files, INTERACTIVE_LEVEL).is_solved
+        assert not make_film(scene, files, INTERACTIVE_LEVEL, tell_nobody).is_solved
 
 
 def q_learning() -> tuple[Lesson, LearningScene]:
@@ -104,7 +108,7 @@ def test_a_mistake_in_the_lines_is_named(old: str, new: str, said: str, tmp_path
     assert old in text
     file.write_text(text.replace(old, new, 1))
     with pytest.raises(OwnAgentError) as raised:
-        make_film(scene, [file], INTERACTIVE_LEVEL)
+        make_film(scene, [file], INTERACTIVE_LEVEL, tell_nobody)
     assert said in str(raised.value)
 
 
@@ -127,7 +131,10 @@ def test_a_robot_that_has_learned_no_way_stays_where_it_is(tmp_path: Path) -> No
     lesson, scene = q_learning()
     [file] = files_of(lesson, scene, tmp_path)
     file.write_text(file.read_text().replace("drawn < epsilon", "False"))
-    film = make_film(scene, [file], INTERACTIVE_LEVEL)
+    told: list[str] = []
+    film = make_film(scene, [file], INTERACTIVE_LEVEL, told.append)
     assert not film.moves
+    assert len(told) == 10, "how far it is, at each tenth"
+    assert f"{scene.updates:,} of {scene.updates:,}" in told[-1]
     assert "stays there" in describe_film(film)
     assert "driven" not in describe_film(film)
